@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
+# Warnings, sanitizers and numeric flags of our own targets. Never exported: a consumer keeps its own.
+add_library(gazetrace_flags INTERFACE)
+target_compile_features(gazetrace_flags INTERFACE cxx_std_20)
+target_compile_options(gazetrace_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Wold-style-cast
+  -Woverloaded-virtual -Wcast-align
+  # The same bits from every kernel variant and instruction set: no fused multiply-add unless written,
+  # and sqrt inline instead of a call that sets errno.
+  -ffp-contract=off -fno-math-errno)
+if(GAZETRACE_WERROR)
+  target_compile_options(gazetrace_flags INTERFACE -Werror)
+endif()
+if(GAZETRACE_MARCH)
+  target_compile_options(gazetrace_flags INTERFACE -march=${GAZETRACE_MARCH})
+endif()
+if(GAZETRACE_SANITIZE)
+  target_compile_options(gazetrace_flags INTERFACE
+    -fsanitize=${GAZETRACE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(gazetrace_flags INTERFACE -fsanitize=${GAZETRACE_SANITIZE})
+endif()

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene cameras: what is pictured. Pose and projection as functions of video time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/display.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/math.hpp"
+
+namespace gazetrace {
+
+// Camera to world: looks along its own -z, +y up (glTF).
+struct CameraPose {
+  Vec3d position_m;
+  Quatd orientation;
+  friend bool operator==(const CameraPose&, const CameraPose&) = default;
+};
+
+// Degenerate `up` (parallel to the view, zero) falls back to the axis most across the view.
+CameraPose look_at(const Vec3d& eye, const Vec3d& target, const Vec3d& up);
+
+enum class ProjectionKind : std::uint8_t { perspective, orthographic };
+
+struct Projection {
+  ProjectionKind kind = ProjectionKind::perspective;
+  double yfov_rad = 50.0 * kRadPerDeg;  // perspective: vertical field of view, 0 < yfov < pi
+  double ymag_m = 1.0;                  // orthographic: half the height of the view
+  // glTF's znear/zfar clip rays: [near_m, far_m]; far 0 = infinite.
+  double near_m = 0.0, far_m = 0.0;
+  friend bool operator==(const Projection&, const Projection&) = default;
+};
+
+// All that ray generation needs for one frame.
+struct Camera {
+  CameraPose pose;
+  Projection projection;
+};
+
+// A camera over time. `pose_at` may be called with any time inside [begin_ns, end_ns].
+struct CameraPath {
+  std::string source;  // file, or file + camera name
+  Projection projection;
+  std::function<CameraPose(std::int64_t t_video_ns)> pose_at;
+  bool is_static = true;  // no time dependence: every time is inside
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;
+  Warnings warnings;
+};
+
+CameraPath static_camera(const CameraPose& pose, const Projection& projection);
+
+enum class CameraAxes { gl, cv, unity };  // -z forward y up | +z forward y down | left-handed +z forward y up
+enum class CameraExtrapolation { error, hold };
+enum class PathInterpolation { linear, step };  // linear: positions linear, orientations slerp
+
+struct CameraReadOptions {
+  std::string format;  // a name of `camera_formats()`; empty: by suffix and content
+  CameraAxes axes = CameraAxes::gl;
+  PathInterpolation interpolation = PathInterpolation::linear;
+  Projection projection;  // poses files carry none
+  // First stamp becomes video time 0 unless `keep_time`.
+  bool keep_time = false;
+};
+
+struct CameraFormatInfo {
+  std::string name;
+  std::string description;
+};
+std::vector<CameraFormatInfo> camera_formats();
+
+// A timestamped path: gazetrace CSV (`t[s],x[m],y[m],z[m],qx,qy,qz,qw`, t also [ns|us|ms]) or TUM
+// (`t tx ty tz qx qy qz qw`, seconds, `#` comments). Error(input) with file:line.
+CameraPath load_camera_path(const std::string& path, const CameraReadOptions& options);
+
+}  // namespace gazetrace

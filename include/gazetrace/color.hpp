@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exposure, and the viewing transform through OpenColorIO.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/image.hpp"
+#include "gazetrace/temporal.hpp"
+
+namespace gazetrace {
+
+enum class ExposureMode { fixed, log_average };
+
+struct ExposureSettings {
+  ExposureMode mode = ExposureMode::fixed;
+  double ev = 0;           // stops; fixed: the exposure. log_average: added to the measured one
+  double key = 0.18;       // log_average: luminance that the log-average is brought to (Reinhard 2002, eq. 1-2)
+  double smoothing_s = 0;  // time constant of exponential smoothing over video time; 0: off
+};
+
+// The exposure of a frame in stops. The log-average is taken over means of blocks of at least 16 x 16 pixels: that of a
+// noisy frame's pixels is biased low. Smoothing keeps its state in `history`.
+double choose_exposure_ev(const ImageRgb& radiance, std::int64_t t_video_ns, const ExposureSettings& settings,
+                          TemporalHistory& history);
+
+struct ColorSettings {
+  std::string config;   // OCIO config file; empty: $OCIO; neither: the built-in one
+  std::string input;    // name of linear Rec.709 in a config without aces_interchange
+  std::string display;  // empty: the config's default
+  std::string view;     // empty: the display's default
+  std::string look;     // empty: what the view says
+};
+
+struct ViewInfo {
+  std::string display, view;
+  bool is_default = false;
+};
+
+struct DisplayImage {
+  int width_px = 0, height_px = 0;
+  int bits = 8;                     // 8 or 16
+  std::vector<std::uint8_t> bytes;  // RGB interleaved, native endian for 16 bits
+};
+
+class ColorPipeline {
+ public:
+  // Error(usage) for an unknown display, view or look (with the known ones), Error(input) for a config that cannot be
+  // read or that offers no way in from linear Rec.709.
+  explicit ColorPipeline(const ColorSettings& settings);
+  ~ColorPipeline();
+  ColorPipeline(ColorPipeline&&) noexcept;
+  ColorPipeline& operator=(ColorPipeline&&) noexcept;
+  ColorPipeline(const ColorPipeline&) = delete;
+  ColorPipeline& operator=(const ColorPipeline&) = delete;
+
+  // radiance * 2^ev through the view. Values are clamped to 0..1e6 first (OCIO's ACES turns black above about 1e20);
+  // `clamped_pixels`, when not null, receives how many were.
+  [[nodiscard]] DisplayImage apply(const ImageRgb& radiance, double ev, int bits, int threads = 0,
+                                   std::uint64_t* clamped_pixels = nullptr) const;
+
+  [[nodiscard]] const std::vector<ViewInfo>& views() const;
+  [[nodiscard]] std::string description() const;  // "built-in: sRGB display, ACES 1.x SDR view"
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gazetrace

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one exception type. Library code throws it and never prints or exits; the program catches it once.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gazetrace {
+
+enum class ErrorKind {
+  usage,    // options that contradict each other or name something unknown; exit code 2
+  input,    // a file that is missing, broken or does not fit the rest; exit code 2
+  runtime,  // everything was right at the start and failed later (disk full, out of memory); exit code 3
+};
+
+class Error : public std::runtime_error {
+ public:
+  // One line is built from three parts: `place` (file, file:line, option; may be empty), `problem`, and
+  // `remedy` (what to do; may be empty): "place: problem; remedy".
+  Error(ErrorKind kind, std::string_view place, std::string_view problem, std::string_view remedy = {});
+  [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
+
+ private:
+  ErrorKind kind_;
+};
+
+// Things worth saying that do not stop the work, one line each. Functions that can warn return them beside
+// their result.
+using Warnings = std::vector<std::string>;
+
+// "unknown falloff 'linaer'; did you mean 'linear'? Known: regions, uniform". For every choice by name.
+std::string unknown_name_message(std::string_view what, std::string_view given, const std::vector<std::string>& known);
+
+}  // namespace gazetrace

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files: names of a sequence, pictures that appear only when complete, timing and the run record.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/color.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/plan.hpp"
+#include "gazetrace/reconstruct.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+// "beauty.####.exr", "beauty.%04d.exr", "beauty.<frame>.exr" -> a file name. Error(usage) for a pattern without a
+// place for the number when `require_number`, or with two.
+std::string frame_file_name(const std::string& pattern, std::int32_t frame);
+bool has_frame_number(const std::string& pattern);
+
+enum class ExrPixels { half, float32 };
+
+struct ExrSettings {
+  std::string pattern;  // empty: no EXR
+  ExrPixels pixels = ExrPixels::half;
+  std::string compression = "zip";  // none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab
+  std::vector<std::string> aovs;    // of aov_names()
+};
+const std::vector<std::string>& aov_names();  // albedo normal depth samples variance eccentricity
+
+struct DisplaySettings {
+  std::string pattern;  // .png .jpg .tif .dpx; empty: no display image
+  int bits = 8;         // 16 for png, tif; dpx is written with 10
+  int quality = 95;     // jpg
+};
+
+struct OutputSettings {
+  ExrSettings exr;
+  DisplaySettings display;
+  std::string map_pattern;    // EXR of the sampling map: region, samples per pixel, eccentricity
+  std::string run_directory;  // timing.csv and run.json
+  bool overwrite = false;
+  bool resume = false;
+};
+
+// What the header of a frame says. Free of times of day, so that a resumed run writes the same bytes.
+struct FrameHeader {
+  std::int32_t frame = 0;
+  std::int64_t t_video_ns = 0;
+  FrameRate fps;
+  Camera camera;
+  GazeAtTime gaze_render, gaze_true;
+  double exposure_ev = 0;
+  std::uint64_t seed = 0;
+  std::string settings_digest;  // hex
+  std::string software;         // "gazetrace 0.1.0"
+};
+
+// Scene-linear EXR through OpenEXR. The file appears under its name only when complete. Returns the number of values
+// clamped to half's range.
+std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
+                              const FrameHeader& header, const ExrSettings& settings, int threads = 0);
+void write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg);
+// PNG, JPEG, TIFF, DPX by suffix, through OpenImageIO; complete or absent.
+void write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
+                         const DisplaySettings& settings);
+ImageRgb read_exr_rgb(const std::string& path);
+// The digest stored in an EXR or display image of ours; empty: not ours, unreadable or incomplete.
+std::string read_settings_digest(const std::string& path);
+
+struct TimingRow {
+  std::int32_t frame = 0;
+  double plan_ms = 0, trace_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0, color_ms = 0, write_ms = 0,
+         total_ms = 0;
+  double trace_cpu_ms = 0;
+  std::uint64_t pixels = 0, samples = 0;
+  std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
+  std::uint64_t rejected_rays = 0, non_finite_samples = 0;
+  // fovea, intermediate, periphery; a uniform frame counts as fovea.
+  std::array<std::uint64_t, 3> region_pixels{}, region_samples{};
+  std::array<double, 3> region_cpu_ms{};
+  double exposure_ev = 0;
+  std::string gaze_state;
+  double peak_memory_mib = 0;
+};
+
+std::vector<std::string> timing_columns();
+std::string timing_row_text(const TimingRow& row);
+// Error(input) with file:line.
+std::vector<TimingRow> read_timing_csv(const std::string& path);
+
+// Enough to repeat the run. Serialised as JSON.
+struct RunRecord {
+  std::string version, build, instruction_set, ray_library;
+  std::vector<std::string> command_line;
+  std::string config_toml;  // every option with its effective value
+  std::string settings_digest;
+  std::map<std::string, std::string> input_digests;  // path -> content hash
+  std::string frames;                                // frame list text
+  bool is_part = false;                              // a part of a longer sequence
+  std::map<std::string, std::string> facts;          // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
+  Warnings warnings;
+  std::vector<BadSample> bad_samples;
+};
+std::string run_record_json(const RunRecord& record);
+
+// timing.csv / run.json, or timing.1-100.csv / run.1-100.json for a part of a sequence.
+std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part);
+std::string run_record_file_name(const std::string& directory, const std::string& frames, bool is_part);
+
+// Joins the parts found in a directory into timing.csv and run.json. Error(input) where parts disagree in settings
+// digest or overlap, or frames are missing (unless allowed).
+struct MergeResult {
+  std::vector<std::string> parts;
+  std::string frames;
+  Warnings warnings;
+};
+MergeResult merge_runs(const std::string& directory, bool allow_missing, bool overwrite);
+
+// Writes text to a temporary neighbour and renames it.
+void write_text_atomically(const std::string& path, const std::string& text);
+
+}  // namespace gazetrace

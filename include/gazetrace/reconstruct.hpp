@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// From sums per site to a dense frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/image.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+// Dense and finite. AOV images are empty unless the SparseFrame holds guides.
+struct Frame {
+  ImageRgb radiance;        // linear Rec.709
+  ImageGray sample_count;   // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
+  ImageGray variance;       // of the pixel's mean luminance, from the samples' spread; 0 for a single sample
+  ImageRgb albedo, normal;  // first hit; normal in world space, zero where nothing was hit
+  ImageGray depth_m;        // +Inf where nothing was hit
+};
+
+struct FilterInfo {
+  std::string name;  // "none": constant over a site's pixels. "linear": bilinear between sites' centroids
+  std::string description;
+};
+std::vector<FilterInfo> reconstruction_filters();
+
+// A site without samples takes its value from its neighbours; pixels of a 1x1 site pass through bit-equal.
+Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads = 0);
+
+}  // namespace gazetrace

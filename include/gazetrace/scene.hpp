@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene as plain data in metres, world +y up, and how it is read from glTF 2.0.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gazetrace/camera.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/image.hpp"
+#include "gazetrace/material.hpp"
+#include "gazetrace/math.hpp"
+
+namespace gazetrace {
+
+// One glTF primitive: triangles with one material, in the mesh's own space. Per-vertex arrays are empty when the
+// file has none; normals and, where a normal map needs them, tangents are always there after loading.
+struct Geometry {
+  std::vector<Vec3f> positions;
+  std::vector<Vec3f> normals;
+  std::vector<Vec4f> tangents;  // w: sign of the bitangent
+  std::vector<Vec2f> uv0, uv1;
+  std::vector<Vec4f> colors;  // linear, multiplies base colour
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::int32_t material = 0;
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Geometry> geometries;
+};
+
+// A mesh placed in the world. Instances whose 3x3 part has no finite inverse are left out at loading, with a
+// warning.
+struct Instance {
+  std::int32_t mesh = 0;
+  Affine to_world;
+};
+
+enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
+
+// 8 bits a channel, RGBA interleaved, unassociated alpha, full mip chain; level 0 first.
+struct Texture {
+  std::string name;
+  bool srgb = false;  // RGB are sRGB-encoded
+  bool has_alpha = false;
+  bool nearest = false;  // magFilter NEAREST
+  TextureWrap wrap_u = TextureWrap::repeat;
+  TextureWrap wrap_v = TextureWrap::repeat;
+  struct Level {
+    int width_px = 0, height_px = 0;
+    std::vector<std::uint8_t> rgba;
+  };
+  std::vector<Level> levels;
+};
+
+enum class LightKind : std::uint8_t { directional, point, spot };
+
+// KHR_lights_punctual, world space. Candela and lux are taken as W/sr and W/m^2 (no luminous efficacy).
+struct PunctualLight {
+  std::string name;
+  LightKind kind = LightKind::point;
+  Vec3f intensity{1, 1, 1};  // colour * intensity: W/sr (point, spot) or W/m^2 (directional)
+  Vec3f position_m;
+  Vec3f direction{0, 0, -1};  // the way the light travels (directional, spot)
+  float range_m = 0;          // 0: infinite
+  float cos_inner = 1, cos_outer = 0.70710678F;
+};
+
+// Radiance from all directions, a lat-long picture: u = 0.5 + azimuth / 2 pi with azimuth measured from -z towards +x
+// (the picture's centre is -z), v = 0 straight up (+y). A constant is one pixel.
+struct Environment {
+  ImageRgb radiance;        // empty: no environment at all
+  double rotation_rad = 0;  // about +y; positive turns the picture's content from -z towards +x
+  std::string source;
+  [[nodiscard]] bool present() const { return !radiance.empty(); }
+};
+
+struct SceneCamera {
+  std::string name;
+  CameraPath path;  // static or animated (parents too)
+};
+
+// What a scene contains, or-ed bottom up; the tracer compiles nothing else into its inner loop's variant.
+struct SceneFeatures {
+  bool textures = false;
+  bool normal_maps = false;
+  bool vertex_colors = false;
+  bool alpha_mask = false;
+  bool alpha_blend = false;
+  bool emissive_triangles = false;
+  bool punctual_lights = false;
+  bool environment = false;
+  bool instances = false;  // a mesh used more than once
+  bool unlit = false;
+  bool specular = true;  // any material that is not purely diffuse (all of glTF's are not)
+};
+
+struct Scene {
+  std::string source;
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Material> materials;  // never empty: index 0 may be glTF's default material
+  std::vector<Texture> textures;
+  std::vector<PunctualLight> lights;
+  std::vector<SceneCamera> cameras;
+  Environment environment;
+
+  std::vector<std::string> animations;  // names; "#0" where the file gives none
+  std::vector<std::string> extensions_used;
+  std::vector<std::string> ignored;  // what the file contains and this program does not show, one line each
+  Warnings warnings;
+};
+
+struct SceneReadOptions {
+  int threads = 0;  // texture decoding; 0: all
+};
+
+// .gltf or .glb. Error(input) names the file, the JSON place ("meshes[3].primitives[0].attributes.NORMAL") and what is
+// wrong; an extension in extensionsRequired that is not known ends in one naming it.
+Scene load_scene(const std::string& path, const SceneReadOptions& options = {});
+
+// Lat-long .hdr or .exr; pixels are multiplied by 2^exposure_ev. Non-finite and negative pixels are errors.
+Environment load_environment(const std::string& path, double rotation_deg = 0, double exposure_ev = 0);
+Environment constant_environment(const Vec3f& radiance);
+// A clear sky without a sun disc: an analytic gradient (zenith, horizon, ground) with a soft glow about the sun's
+// direction, smooth enough for few samples.
+Environment builtin_sky(double rotation_deg = 0, double exposure_ev = 0);
+
+SceneFeatures features_of(const Scene& scene);
+
+struct SceneSummary {
+  std::uint64_t triangles_unique = 0, triangles_instanced = 0;
+  std::uint64_t vertices = 0, meshes = 0, geometries = 0, instances = 0;
+  std::uint64_t materials = 0, textures = 0, lights = 0, emissive_triangles = 0;
+  std::uint64_t geometry_bytes = 0, texture_bytes = 0;
+  Vec3d bounds_min, bounds_max;  // world; min > max when empty
+};
+SceneSummary summarize(const Scene& scene);
+
+}  // namespace gazetrace

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path tracer: a scene, a camera and a sampling map in, sums per site out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/camera.hpp"
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/image.hpp"
+#include "gazetrace/scene.hpp"
+
+namespace gazetrace {
+
+enum class DiffuseModel : std::uint8_t { burley, lambert };
+enum class LightSampling : std::uint8_t { mis, light_only, bsdf_only };
+enum class PixelFilter : std::uint8_t { box, blackman_harris };
+enum class BvhQuality : std::uint8_t { high, medium };
+
+struct TraceSettings {
+  int max_bounces = 3;  // scattering events on a path; 0 shows emission only
+  bool russian_roulette = false;
+  DiffuseModel diffuse = DiffuseModel::burley;
+  LightSampling light_sampling = LightSampling::mis;
+  PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
+  std::uint64_t seed = 0;
+  bool guides = false;                   // collect albedo, normal and depth of the first hit
+  std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
+};
+
+struct TracerOptions {
+  int threads = 0;  // 0: all
+  BvhQuality bvh_quality = BvhQuality::high;
+  // For measurements: use the kernel variant with everything compiled in.
+  bool all_features = false;
+};
+
+// Sums over a site's samples, before any division.
+struct GuideSums {
+  Vec3f albedo, normal;
+  float depth_m = 0;  // distance along the view axis; a miss adds nothing
+  std::uint32_t hits = 0;
+};
+
+struct BadSample {
+  std::int32_t frame = 0;
+  int x_px = 0, y_px = 0;
+  std::uint32_t sample = 0;
+  std::string what;  // "non-finite radiance", "rejected ray"
+};
+
+struct RegionTraceStats {
+  std::uint64_t samples = 0;
+  std::int64_t cpu_ns = 0;  // thread time; tiles of several regions are split by samples
+};
+
+struct TraceStats {
+  std::uint64_t samples = 0;
+  std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
+  std::uint64_t rejected_rays = 0;
+  std::uint64_t non_finite_samples = 0;  // counted as black, never silently
+  std::vector<BadSample> bad_samples;    // the first 16, in pixel order
+  std::vector<RegionTraceStats> regions;
+  std::string kernel;  // name of the variant used
+};
+
+// One entry per site of the map, in its order.
+struct SparseFrame {
+  int width_px = 0, height_px = 0;
+  std::vector<Vec3f> sum;                   // radiance
+  std::vector<float> sum_square_luminance;  // of samples' luminance (Rec.709), for variance
+  std::vector<std::uint32_t> count;
+  std::vector<GuideSums> guides;  // empty unless TraceSettings::guides
+  TraceStats stats;
+};
+
+struct TracerMemory {
+  std::uint64_t bvh_bytes = 0;  // as Embree reports it to the device's memory monitor
+  double build_s = 0;
+};
+
+class PathTracer {
+ public:
+  // Keeps a reference to `scene`, which must outlive it.
+  PathTracer(const Scene& scene, const TracerOptions& options);
+  ~PathTracer();
+  PathTracer(PathTracer&&) noexcept;
+  PathTracer& operator=(PathTracer&&) noexcept;
+  PathTracer(const PathTracer&) = delete;
+  PathTracer& operator=(const PathTracer&) = delete;
+
+  // A pure function: same arguments, same bits, for any thread count. `frame` seeds the samples.
+  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
+                                  const TraceSettings& settings) const;
+
+  [[nodiscard]] TracerMemory memory() const;
+  // "Embree 3.13.5 avx512" and the like, for the run record.
+  [[nodiscard]] std::string ray_library() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gazetrace

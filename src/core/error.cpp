@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/error.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+namespace gazetrace {
+namespace {
+
+std::string one_line(std::string_view place, std::string_view problem, std::string_view remedy) {
+  std::string line;
+  if (!place.empty()) {
+    line.append(place).append(": ");
+  }
+  line.append(problem);
+  if (!remedy.empty()) {
+    line.append("; ").append(remedy);
+  }
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
+}
+
+// Levenshtein distance, one row at a time.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+Error::Error(ErrorKind kind, std::string_view place, std::string_view problem, std::string_view remedy)
+    : std::runtime_error(one_line(place, problem, remedy)), kind_(kind) {}
+
+std::string unknown_name_message(std::string_view what, std::string_view given, const std::vector<std::string>& known) {
+  std::string text = "unknown " + std::string(what) + " '" + std::string(given) + "'";
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(given, a) < edit_distance(given, b);
+  });
+  if (nearest != known.end() && edit_distance(given, *nearest) <= 1 + given.size() / 3) {
+    text += "; did you mean '" + *nearest + "'?";
+  }
+  text += " Known:";
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    text += (i == 0 ? " " : ", ") + known[i];
+  }
+  return text;
+}
+
+}  // namespace gazetrace
