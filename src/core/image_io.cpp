@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/image_io.hpp"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kMaxSide_px = 65536;
+
+// OpenImageIO multiplies PNG colour by alpha unless told not to; colour under alpha 0 would be lost.
+OIIO::ImageSpec keep_alpha_unassociated() {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  return config;
+}
+
+std::string reason(const std::string& message) {
+  return message.empty() ? std::string("not a readable picture") : message;
+}
+
+const OIIO::ImageSpec& check_size(const OIIO::ImageInput& input, const std::string& place) {
+  const OIIO::ImageSpec& spec = input.spec();
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kMaxSide_px ||
+      spec.height > kMaxSide_px || spec.depth > 1) {
+    throw Error(ErrorKind::input, place,
+                "a picture of " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels and " +
+                    std::to_string(spec.nchannels) + " channels cannot be used");
+  }
+  return spec;
+}
+
+// Spreads `channels` (1 to 4) of each pixel over R, G, B, A in place of a second buffer where there are 4 already.
+std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& pixels, std::size_t count, int channels) {
+  if (channels == 4) {
+    return std::move(pixels);
+  }
+  std::vector<std::uint8_t> rgba(count * 4);
+  const auto step = static_cast<std::size_t>(channels);
+  const std::size_t green = channels == 3 ? 1 : 0;
+  const std::size_t blue = channels == 3 ? 2 : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* from = &pixels[i * step];
+    std::uint8_t* to = &rgba[i * 4];
+    to[0] = from[0];
+    to[1] = from[green];
+    to[2] = from[blue];
+    to[3] = channels == 2 ? from[1] : std::uint8_t{255};
+  }
+  return rgba;
+}
+
+ImageRgba8 read_rgba8(OIIO::ImageInput& input, const std::string& place) {
+  const OIIO::ImageSpec& spec = check_size(input, place);
+  input.threads(1);  // callers decode many pictures side by side
+  ImageRgba8 image;
+  image.width_px = spec.width;
+  image.height_px = spec.height;
+  image.reduced_to_8_bit = spec.format.size() > 1;
+  const int channels = std::min(spec.nchannels, 4);
+  const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
+  std::vector<std::uint8_t> pixels(count * static_cast<std::size_t>(channels));
+  if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, pixels.data())) {
+    throw Error(ErrorKind::input, place, "the picture is damaged: " + reason(input.geterror()), "export it again");
+  }
+  image.rgba = to_rgba(std::move(pixels), count, channels);
+  if (channels == 2 || channels == 4) {
+    for (std::size_t i = 3; i < image.rgba.size() && !image.has_alpha; i += 4) {
+      image.has_alpha = image.rgba[i] != 255;
+    }
+  }
+  return image;
+}
+
+// OpenImageIO picks its reader by the name's suffix; bytes in memory have none, so the magic number speaks.
+const char* name_by_content(std::span<const std::uint8_t> bytes) {
+  const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
+  struct Magic {
+    std::string_view start;
+    const char* name;
+  };
+  constexpr std::array<Magic, 8> kMagics{{{"\x89PNG", "memory.png"},
+                                          {"\xff\xd8\xff", "memory.jpg"},
+                                          {"#?R", "memory.hdr"},
+                                          {"\x76\x2f\x31\x01", "memory.exr"},
+                                          {"RIFF", "memory.webp"},
+                                          {"GIF8", "memory.gif"},
+                                          {"BM", "memory.bmp"},
+                                          {"DDS ", "memory.dds"}}};
+  for (const Magic& magic : kMagics) {
+    if (head.starts_with(magic.start)) {
+      return magic.name;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+ImageRgba8 read_image_rgba8(const std::string& path, const std::string& place) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
+  }
+  const OIIO::ImageSpec config = keep_alpha_unassociated();
+  const auto input = OIIO::ImageInput::open(path, &config);
+  if (!input) {
+    throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(OIIO::geterror()));
+  }
+  return read_rgba8(*input, place + " ('" + path + "')");
+}
+
+ImageRgba8 read_image_rgba8(std::span<const std::uint8_t> file_bytes, const std::string& place) {
+  const char* name = name_by_content(file_bytes);
+  if (name == nullptr) {
+    throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
+  }
+  const OIIO::ImageSpec config = keep_alpha_unassociated();
+  OIIO::Filesystem::IOMemReader reader(OIIO::cspan<unsigned char>(file_bytes.data(), file_bytes.size()));
+  const auto input = OIIO::ImageInput::open(name, &config, &reader);
+  if (!input) {
+    throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(OIIO::geterror()));
+  }
+  return read_rgba8(*input, place);
+}
+
+ImageRgb read_image_rgb_float(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw Error(ErrorKind::input, path, "there is no such file");
+  }
+  const auto input = OIIO::ImageInput::open(path);
+  if (!input) {
+    throw Error(ErrorKind::input, path, "cannot be read: " + reason(OIIO::geterror()));
+  }
+  const OIIO::ImageSpec& spec = check_size(*input, path);
+  const int channels = spec.nchannels >= 3 ? 3 : 1;
+  ImageRgb image(spec.width, spec.height);
+  const std::size_t count = image.pixels.size();
+  std::vector<float> values(count * static_cast<std::size_t>(channels));
+  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
+    throw Error(ErrorKind::input, path, "the picture is damaged: " + reason(input->geterror()), "export it again");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    image.pixels[i] = channels == 3 ? Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]}
+                                    : Vec3f{values[i], values[i], values[i]};
+  }
+  return image;
+}
+
+}  // namespace gazetrace
