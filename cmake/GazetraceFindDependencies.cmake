@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Every dependency is met in one file of the library, so all of them are private to it.
+# The packages that the library links, found the same way when it is built and when it is used. Every one is met in one
+# file of the library, so all of them are private to it.
 if(GAZETRACE_EMBREE STREQUAL "auto" OR GAZETRACE_EMBREE STREQUAL "4")
   find_package(embree 4 QUIET)
 endif()
@@ -27,8 +28,3 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 find_package(OpenEXR REQUIRED)
 find_package(OpenColorIO REQUIRED)
 find_package(TinyGLTF REQUIRED)
-find_package(tomlplusplus REQUIRED)
-find_path(GAZETRACE_JSON_INCLUDE_DIR nlohmann/json.hpp REQUIRED)
-if(GAZETRACE_BUILD_CLI)
-  find_path(GAZETRACE_CLI11_INCLUDE_DIR CLI/CLI.hpp REQUIRED)
-endif()

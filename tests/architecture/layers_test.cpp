@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// The layer table of src/README.md, held against every #include: an include goes only down, each dependency is met in
+// one place, and public headers name no dependency at all.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSource = GAZETRACE_SOURCE_DIR;
+
+// A module may include modules of a smaller number, and itself.
+const std::map<std::string, int> kLayer = {
+    {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},  {"scene", 2},
+    {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4}, {"output", 4},
+    {"compare", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"sweep", 6},    {"cli", 7},
+};
+
+// Within a layer, the order of the data: what may be seen sideways.
+const std::set<std::pair<std::string, std::string>> kSideways = {
+    {"gaze", "display"},          // logs carry the geometry of their recording
+    {"camera", "display"},        // a camera's image plane is a view
+    {"temporal", "reconstruct"},  // accumulates frames
+    {"color", "temporal"},        // smoothed exposure is history
+    {"output", "color"},          // writes display images
+    {"output", "reconstruct"},    // writes frames
+};
+
+// The module of each public header.
+const std::map<std::string, std::string> kPublicHeader = {
+    {"math", "core"},
+    {"image", "core"},
+    {"error", "core"},
+    {"version", "core"},
+    {"display", "display"},
+    {"gaze", "gaze"},
+    {"camera", "camera"},
+    {"material", "material"},
+    {"scene", "scene"},
+    {"plan", "plan"},
+    {"foveation", "foveation"},
+    {"trace", "trace"},
+    {"reconstruct", "reconstruct"},
+    {"temporal", "temporal"},
+    {"color", "color"},
+    {"output", "output"},
+    {"pipeline", "pipeline"},
+};
+
+// Which files may meet which dependency.
+const std::vector<std::pair<std::string, std::string>> kDependency = {
+    {R"(embree[34]/)", R"(src/trace/embree\.(hpp|cpp))"},
+    {R"(tiny_gltf\.h)", R"(src/scene/gltf\.cpp)"},
+    {R"(OpenImageIO/)", R"(src/core/image_io\.cpp)"},
+    {R"(OpenColorIO/)", R"(src/color/ocio\.cpp)"},
+    {R"((OpenEXR/|Imf|Imath|Iex))", R"(src/output/exr\.cpp)"},
+    {R"(tbb/|oneapi/)", R"(src/core/parallel\.cpp)"},
+    {R"(CLI/)", R"(src/cli/.*)"},
+    {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_config\.cpp)"},
+    {R"(nlohmann/)", R"(src/.*\.cpp)"},
+    {R"(fmt/)", R"(src/.*\.cpp)"},
+    {R"(zlib\.h)", R"(src/gaze/.*\.cpp)"},
+};
+
+std::vector<fs::path> sources(const std::vector<std::string>& folders) {
+  std::vector<fs::path> found;
+  for (const std::string& folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(kSource / folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".hpp" || extension == ".cpp" || extension == ".def" || extension == ".inl") {
+        found.push_back(entry.path());
+      }
+    }
+  }
+  return found;
+}
+
+struct Include {
+  std::string file;  // relative to the repository
+  int line = 0;
+  std::string target;
+  bool quoted = false;
+};
+
+std::vector<Include> includes_of(const fs::path& path) {
+  static const std::regex kInclude(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"])re");
+  std::vector<Include> found;
+  std::ifstream in(path);
+  std::string text;
+  for (int line = 1; std::getline(in, text); ++line) {
+    std::smatch match;
+    if (std::regex_search(text, match, kInclude)) {
+      found.push_back({fs::relative(path, kSource).string(), line, match[2], match[1] == "\""});
+    }
+  }
+  return found;
+}
+
+// "core", "cli", ... of a file of ours; empty for others.
+std::string module_of_file(const std::string& relative) {
+  static const std::regex kPublic(R"(include/gazetrace/([a-z_]+)\.hpp)");
+  static const std::regex kPrivate(R"(src/([a-z]+)/.*)");
+  std::smatch match;
+  if (std::regex_match(relative, match, kPublic)) {
+    const auto found = kPublicHeader.find(match[1]);
+    return found == kPublicHeader.end() ? "" : found->second;
+  }
+  return std::regex_match(relative, match, kPrivate) ? match[1].str() : "";
+}
+
+std::string module_of_target(const Include& include) {
+  if (include.target.rfind("gazetrace/", 0) == 0) {
+    return module_of_file("include/" + include.target);
+  }
+  const auto slash = include.target.find('/');
+  const std::string first = include.target.substr(0, slash);
+  return include.quoted && slash != std::string::npos && kLayer.count(first) != 0 ? first : "";
+}
+
+TEST(Architecture, IncludesGoOnlyDown) {
+  for (const fs::path& path : sources({"include", "src"})) {
+    const std::string from = module_of_file(fs::relative(path, kSource).string());
+    if (path.filename() == "version.hpp.in") {
+      continue;
+    }
+    ASSERT_TRUE(kLayer.count(from) != 0) << path << " belongs to no module of the layer table";
+    for (const Include& include : includes_of(path)) {
+      const std::string to = module_of_target(include);
+      if (to.empty() || to == from) {
+        continue;
+      }
+      const bool down = kLayer.at(to) < kLayer.at(from);
+      EXPECT_TRUE(down || kSideways.count({from, to}) != 0)
+          << include.file << ":" << include.line << ": " << from << " may not include " << to << " (" << include.target
+          << ")";
+    }
+  }
+}
+
+TEST(Architecture, EveryDependencyIsMetInItsPlace) {
+  for (const fs::path& path : sources({"include", "src"})) {
+    for (const Include& include : includes_of(path)) {
+      for (const auto& [pattern, place] : kDependency) {
+        if (std::regex_search(include.target, std::regex("^" + pattern))) {
+          EXPECT_TRUE(std::regex_match(include.file, std::regex(place)))
+              << include.file << ":" << include.line << ": " << include.target << " belongs into " << place;
+        }
+      }
+    }
+  }
+}
+
+TEST(Architecture, PublicHeadersNeedOnlyTheStandardLibrary) {
+  for (const fs::path& path : sources({"include"})) {
+    for (const Include& include : includes_of(path)) {
+      const bool ours = include.target.rfind("gazetrace/", 0) == 0;
+      const bool standard = !include.quoted && include.target.find('/') == std::string::npos &&
+                            include.target.find('.') == std::string::npos;
+      EXPECT_TRUE(ours || standard) << include.file << ":" << include.line << ": " << include.target;
+    }
+  }
+}
+
+TEST(Architecture, TheProgramUsesPublicHeadersOnly) {
+  for (const fs::path& path : sources({"src"})) {
+    if (module_of_file(fs::relative(path, kSource).string()) != "cli") {
+      continue;
+    }
+    for (const Include& include : includes_of(path)) {
+      const std::string to = module_of_target(include);
+      EXPECT_TRUE(to.empty() || to == "cli" || include.target.rfind("gazetrace/", 0) == 0)
+          << include.file << ":" << include.line << ": " << include.target;
+    }
+  }
+}
+
+TEST(Architecture, EveryFileNamesItsLicence) {
+  for (const fs::path& path : sources({"include", "src", "tests", "examples"})) {
+    std::ifstream in(path);
+    std::string first;
+    std::getline(in, first);
+    EXPECT_NE(first.find("SPDX-License-Identifier: Apache-2.0"), std::string::npos) << path;
+  }
+}
+
+}  // namespace
