@@ -18,8 +18,9 @@
 namespace gazetrace {
 
 // "beauty.####.exr", "beauty.%04d.exr", "beauty.<frame>.exr" -> a file name. Error(usage) for a pattern without a
-// place for the number when `require_number`, or with two.
-std::string frame_file_name(const std::string& pattern, std::int32_t frame);
+// place for the number when `require_number`, or with two; %% is a percent sign. Only the file name is looked at:
+// folders keep their # and %.
+std::string frame_file_name(const std::string& pattern, std::int32_t frame, bool require_number = false);
 bool has_frame_number(const std::string& pattern);
 
 enum class ExrPixels { half, float32 };
@@ -28,6 +29,7 @@ struct ExrSettings {
   std::string pattern;  // empty: no EXR
   ExrPixels pixels = ExrPixels::half;
   std::string compression = "zip";  // none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab
+  int zip_level = 1;                // of zip and zips: 1 fast .. 9 small; lossless at every level
   std::vector<std::string> aovs;    // of aov_names()
 };
 const std::vector<std::string>& aov_names();  // albedo normal depth samples variance eccentricity
@@ -37,6 +39,8 @@ struct DisplaySettings {
   int bits = 8;         // 16 for png, tif; dpx is written with 10
   int quality = 95;     // jpg
 };
+// The bits to ask ColorPipeline::apply for, by the suffix. Error(usage) for an unknown suffix, or bits it cannot hold.
+int display_image_bits(const DisplaySettings& settings);
 
 struct OutputSettings {
   ExrSettings exr;
@@ -46,6 +50,9 @@ struct OutputSettings {
   bool overwrite = false;
   bool resume = false;
 };
+
+// Error(usage) for whatever can be known to fail before the first ray: names, suffixes, compression, AOVs, bits.
+void check_output_settings(const OutputSettings& settings, bool several_frames);
 
 // What the header of a frame says. Free of times of day, so that a resumed run writes the same bytes.
 struct FrameHeader {
@@ -89,8 +96,9 @@ struct TimingRow {
 };
 
 std::vector<std::string> timing_columns();
-std::string timing_row_text(const TimingRow& row);
-// Error(input) with file:line.
+std::string timing_row_text(const TimingRow& row);                // one line, without its end
+std::string timing_csv_text(const std::vector<TimingRow>& rows);  // header and rows
+// Error(input) with file:line. A last line without its end is what a killed run leaves behind: it is passed over.
 std::vector<TimingRow> read_timing_csv(const std::string& path);
 
 // Enough to repeat the run. Serialised as JSON.
@@ -107,6 +115,7 @@ struct RunRecord {
   std::vector<BadSample> bad_samples;
 };
 std::string run_record_json(const RunRecord& record);
+RunRecord read_run_record(const std::string& path);  // Error(input)
 
 // timing.csv / run.json, or timing.1-100.csv / run.1-100.json for a part of a sequence.
 std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part);

@@ -158,4 +158,46 @@ ImageRgb read_image_rgb_float(const std::string& path) {
   return image;
 }
 
+std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, int height_px, int bits,
+                                       std::span<const std::uint8_t> rgb, const EncodeOptions& options) {
+  const auto fail = [&](const std::string& message) {
+    throw Error(ErrorKind::runtime, path, "cannot encode the picture: " + message);
+  };
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
+  if (!output) {
+    fail(OIIO::geterror());
+  }
+  const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
+  OIIO::ImageSpec spec(width_px, height_px, 3, options.file_bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:BitsPerSample", options.file_bits);
+  spec.attribute("Software", options.software);
+  spec.attribute("ImageDescription", options.note);
+  spec.attribute("DocumentName", options.note);  // DPX cuts descriptions after 100 characters, project names after 200
+  spec.attribute("png:compressionLevel", options.png_level);
+  spec.attribute("CompressionQuality", options.quality);
+  spec.attribute("jpeg:subsampling", "4:4:4");
+  // TIFF would otherwise carry the time of writing, and the same frame would not give the same bytes.
+  spec.attribute("DateTime", "0000:00:00 00:00:00");
+
+  // Through memory, because a full disk is noticed only by the one who writes the file; see output/atomic_file.cpp.
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput writer(bytes);
+  if (!output->set_ioproxy(&writer) || !output->open(path, spec) || !output->write_image(type, rgb.data()) ||
+      !output->close()) {
+    fail(output->geterror());
+  }
+  return bytes;
+}
+
+std::string read_image_note(const std::string& path) {
+  const auto input = OIIO::ImageInput::open(path);
+  if (!input) {
+    OIIO::geterror();  // or it would be printed when the program ends
+    return {};
+  }
+  // DPX keeps the whole of it in the name only; the others have no name or the same text in both.
+  const std::string name(input->spec().get_string_attribute("DocumentName"));
+  return name.empty() ? std::string(input->spec().get_string_attribute("ImageDescription")) : name;
+}
+
 }  // namespace gazetrace

@@ -28,4 +28,18 @@ ImageRgba8 read_image_rgba8(std::span<const std::uint8_t> file_bytes, const std:
 // Linear floats of an .hdr, .exr or other picture; grey is repeated into RGB, alpha and further channels are left out.
 ImageRgb read_image_rgb_float(const std::string& path);
 
+struct EncodeOptions {
+  int file_bits = 8;     // a channel, in the file: 8, 10 (DPX) or 16
+  int quality = 95;      // JPEG
+  int png_level = 1;     // zlib level; measured in tests/benchmarks/color_and_write.cpp
+  std::string software;  // who wrote it
+  std::string note;      // one line of text that read_image_note() gives back
+};
+// The bytes of a picture file whose format is that of `path`'s suffix; nothing is written. RGB interleaved, 8 or 16
+// bits (`bits`), display code values that are stored as they are. Error(runtime) at `path`.
+std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, int height_px, int bits,
+                                       std::span<const std::uint8_t> rgb, const EncodeOptions& options);
+// The note; empty where the file cannot be opened or has none.
+std::string read_image_note(const std::string& path);
+
 }  // namespace gazetrace

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exposure, clamping and threads around the viewing transform.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+
+#include "color/ocio.hpp"
+#include "core/parallel.hpp"
+#include "gazetrace/color.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Pixels handled at once: small enough that a band's floats stay in the L2 cache.
+constexpr std::size_t kBandPixels = 8192;
+constexpr float kMaxScene = 1e6F;
+
+// radiance * scale, limited to 0..kMaxScene, as interleaved RGB. Returns how many pixels the limits changed. A NaN
+// fails both comparisons and becomes 0.
+std::uint64_t expose(const Vec3f* radiance, std::size_t count, float scale, float* rgb) {
+  const auto limit = [](float value) {
+    const float low = value > 0 ? value : 0.0F;
+    return low < kMaxScene ? low : kMaxScene;
+  };
+  std::uint64_t clamped = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3f value = radiance[i] * scale;
+    const Vec3f limited{limit(value.x), limit(value.y), limit(value.z)};
+    clamped += value == limited ? 0U : 1U;
+    rgb[3 * i] = limited.x;
+    rgb[3 * i + 1] = limited.y;
+    rgb[3 * i + 2] = limited.z;
+  }
+  return clamped;
+}
+
+}  // namespace
+
+struct ColorPipeline::Impl {
+  explicit Impl(const ColorSettings& settings) : view(settings) {}
+  OcioView view;
+};
+
+ColorPipeline::ColorPipeline(const ColorSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+ColorPipeline::~ColorPipeline() = default;
+ColorPipeline::ColorPipeline(ColorPipeline&&) noexcept = default;
+ColorPipeline& ColorPipeline::operator=(ColorPipeline&&) noexcept = default;
+
+DisplayImage ColorPipeline::apply(const ImageRgb& radiance, double ev, int bits, int threads,
+                                  std::uint64_t* clamped_pixels) const {
+  if (bits != 8 && bits != 16) {
+    throw Error(ErrorKind::usage, "", "a display image has 8 or 16 bits a channel, not " + std::to_string(bits));
+  }
+  DisplayImage image;
+  image.width_px = radiance.width_px;
+  image.height_px = radiance.height_px;
+  image.bits = bits;
+  const std::size_t bytes_per_pixel = static_cast<std::size_t>(bits) / 8 * 3;
+  const std::size_t pixels = radiance.pixels.size();
+  image.bytes.resize(pixels * bytes_per_pixel);
+
+  const auto scale = static_cast<float>(std::exp2(ev));
+  std::atomic<std::uint64_t> clamped{0};
+  parallel_for((pixels + kBandPixels - 1) / kBandPixels, threads, [&](std::size_t band) {
+    const std::size_t first = band * kBandPixels;
+    const std::size_t count = std::min(kBandPixels, pixels - first);
+    std::vector<float> rgb(3 * count);
+    clamped += expose(&radiance.pixels[first], count, scale, rgb.data());
+    std::uint8_t* out = &image.bytes[first * bytes_per_pixel];
+    if (bits == 8) {
+      impl_->view.apply_8(rgb.data(), count, out);
+    } else {
+      std::vector<std::uint16_t> wide(3 * count);
+      impl_->view.apply_16(rgb.data(), count, wide.data());
+      std::copy_n(reinterpret_cast<const std::uint8_t*>(wide.data()), 2 * wide.size(), out);
+    }
+  });
+  if (clamped_pixels != nullptr) {
+    *clamped_pixels = clamped;
+  }
+  return image;
+}
+
+const std::vector<ViewInfo>& ColorPipeline::views() const {
+  return impl_->view.views();
+}
+std::string ColorPipeline::description() const {
+  return impl_->view.description();
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only file that includes OpenColorIO.
+#include "color/ocio.hpp"
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include <array>
+#include <bit>
+#include <cstdlib>
+#include <filesystem>
+
+namespace ocio = OCIO_NAMESPACE;
+
+namespace gazetrace {
+namespace {
+
+constexpr const char* kRec709Name = "Linear Rec.709";
+constexpr const char* kBuiltinDisplay = "sRGB";
+
+// Linear Rec.709 (D65) -> ACES2065-1 (AP0, its own white), Bradford adaptation. Derived from the primaries in
+// tests/unit/color_builtin_test.cpp; the same figures stand in the public ACES configurations.
+ocio::MatrixTransformRcPtr rec709_to_aces() {
+  constexpr std::array<double, 16> kMatrix{0.439632981919,
+                                           0.382988698152,
+                                           0.177378319929,
+                                           0,  //
+                                           0.089776442959,
+                                           0.813439428749,
+                                           0.096784128292,
+                                           0,  //
+                                           0.017541170383,
+                                           0.111546553302,
+                                           0.870912276315,
+                                           0,  //
+                                           0,
+                                           0,
+                                           0,
+                                           1};
+  auto matrix = ocio::MatrixTransform::Create();
+  matrix->setMatrix(kMatrix.data());
+  return matrix;
+}
+
+ocio::TransformRcPtr builtin(const char* style) {
+  auto transform = ocio::BuiltinTransform::Create();
+  transform->setStyle(style);
+  return transform;
+}
+
+// Value of the half with these bits, as float; infinities and NaN as the largest finite half of their sign.
+float half_from_bits(unsigned bits) {
+  const float sign = (bits & 0x8000U) != 0 ? -1.0F : 1.0F;
+  const unsigned exponent = (bits >> 10U) & 31U;
+  const auto mantissa = static_cast<float>(bits & 1023U);
+  if (exponent == 31) {
+    return sign * 65504.0F;
+  }
+  return exponent == 0 ? sign * std::ldexp(mantissa, -24)
+                       : sign * std::ldexp(1024.0F + mantissa, static_cast<int>(exponent) - 25);
+}
+
+// Reinhard et al. 2002, eq. (3): L_d = L / (1 + L), on luminance, chromaticity kept. The curve is a table over all
+// halves because OpenColorIO has no rational function; between neighbours it is linear (relative error < 2^-22).
+ocio::GroupTransformRcPtr reinhard() {
+  auto to_xyy = ocio::FixedFunctionTransform::Create(ocio::FIXED_FUNCTION_XYZ_TO_xyY);
+  auto from_xyy = ocio::FixedFunctionTransform::Create(ocio::FIXED_FUNCTION_XYZ_TO_xyY);
+  from_xyy->setDirection(ocio::TRANSFORM_DIR_INVERSE);
+  auto curve = ocio::Lut1DTransform::Create(65536, true);
+  curve->setInterpolation(ocio::INTERP_LINEAR);
+  for (unsigned bits = 0; bits < 65536; ++bits) {
+    const float value = half_from_bits(bits);
+    const float luminance = value > 0 ? value : 0;
+    curve->setValue(bits, value, value, luminance / (1 + luminance));
+  }
+  auto group = ocio::GroupTransform::Create();
+  group->appendTransform(builtin("UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD"));
+  group->appendTransform(to_xyy);
+  group->appendTransform(curve);
+  group->appendTransform(from_xyy);
+  return group;
+}
+
+void add_view_transform(ocio::Config& config, const char* name, const ocio::ConstTransformRcPtr& from_scene) {
+  auto transform = ocio::ViewTransform::Create(ocio::REFERENCE_SPACE_SCENE);
+  transform->setName(name);
+  transform->setTransform(from_scene, ocio::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+  config.addViewTransform(transform);
+}
+
+// Scene reference ACES2065-1, display reference CIE XYZ with a D65 white, as in the public ACES configurations.
+ocio::ConstConfigRcPtr make_builtin_config() {
+  auto config = ocio::Config::Create();
+  config->setVersion(2, 1);
+
+  auto aces = ocio::ColorSpace::Create(ocio::REFERENCE_SPACE_SCENE);
+  aces->setName("ACES2065-1");
+  config->addColorSpace(aces);
+  auto rec709 = ocio::ColorSpace::Create(ocio::REFERENCE_SPACE_SCENE);
+  rec709->setName(kRec709Name);
+  rec709->setTransform(rec709_to_aces(), ocio::COLORSPACE_DIR_TO_REFERENCE);
+  config->addColorSpace(rec709);
+  auto raw = ocio::ColorSpace::Create(ocio::REFERENCE_SPACE_SCENE);
+  raw->setName("Raw");
+  raw->setIsData(true);
+  config->addColorSpace(raw);
+  auto srgb = ocio::ColorSpace::Create(ocio::REFERENCE_SPACE_DISPLAY);
+  srgb->setName("sRGB - Display");
+  srgb->setTransform(builtin("DISPLAY - CIE-XYZ-D65_to_sRGB"), ocio::COLORSPACE_DIR_FROM_REFERENCE);
+  config->addColorSpace(srgb);
+
+  config->setRole(ocio::ROLE_INTERCHANGE_SCENE, "ACES2065-1");
+  config->setRole(ocio::ROLE_SCENE_LINEAR, kRec709Name);
+  config->setRole(ocio::ROLE_DEFAULT, "Raw");
+
+  add_view_transform(*config, "ACES 1.x SDR", builtin("ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - SDR-VIDEO_1.0"));
+  add_view_transform(*config, "Reinhard 2002", reinhard());
+  add_view_transform(*config, "Plain", builtin("UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD"));
+  const auto add_view = [&](const char* name, const char* transform) {
+    config->addDisplayView(kBuiltinDisplay, name, transform, "sRGB - Display", "", "", "");
+  };
+  add_view("ACES SDR", "ACES 1.x SDR");
+  add_view("sRGB", "Plain");
+  add_view("Reinhard", "Reinhard 2002");
+  config->addDisplayView(kBuiltinDisplay, "Raw", "Raw", "");
+  config->validate();
+  return config;
+}
+
+struct LoadedConfig {
+  ocio::ConstConfigRcPtr config;
+  std::string path;  // empty: built in
+};
+
+LoadedConfig load_config(const ColorSettings& settings) {
+  std::string path = settings.config;
+  std::string place = path;
+  if (path.empty()) {
+    const char* variable = std::getenv("OCIO");
+    path = variable != nullptr ? variable : "";
+    place = "$OCIO (" + path + ")";
+  }
+  if (path.empty()) {
+    return {make_builtin_config(), ""};
+  }
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::input, place, "no such OpenColorIO config", "give an existing file or leave it out");
+  }
+  try {
+    auto config = ocio::Config::CreateFromFile(path.c_str());
+    config->validate();
+    return {config, path};
+  } catch (const std::exception& e) {
+    throw Error(ErrorKind::input, place, std::string("not a usable OpenColorIO config: ") + e.what(), {});
+  }
+}
+
+std::vector<ViewInfo> list_views(const ocio::Config& config) {
+  std::vector<ViewInfo> views;
+  const std::string default_display = config.getDefaultDisplay();
+  for (int d = 0; d < config.getNumDisplays(); ++d) {
+    const char* display = config.getDisplay(d);
+    const std::string default_view = config.getDefaultView(display);
+    for (int v = 0; v < config.getNumViews(display); ++v) {
+      const char* view = config.getView(display, v);
+      views.push_back({display, view, default_display == display && default_view == view});
+    }
+  }
+  return views;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  for (const std::string& candidate : names) {
+    if (candidate == name) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The given name, or the default where none is given.
+std::string choose(const char* what, const std::string& given, const char* fallback,
+                   const std::vector<std::string>& known, const std::string& place) {
+  if (given.empty()) {
+    return fallback;
+  }
+  if (!contains(known, given)) {
+    throw Error(ErrorKind::usage, place, unknown_name_message(what, given, known));
+  }
+  return given;
+}
+
+// OpenColorIO's syntax for looks: names separated by , or : with optional + and - in front, alternatives by |.
+void check_looks(const ocio::Config& config, const std::string& looks, const std::string& place) {
+  std::vector<std::string> known;
+  for (int i = 0; i < config.getNumLooks(); ++i) {
+    known.emplace_back(config.getLookNameByIndex(i));
+  }
+  if (known.empty()) {
+    throw Error(ErrorKind::usage, place, "unknown look '" + looks + "'; this config has none", "leave --look out");
+  }
+  std::size_t begin = 0;
+  while (begin <= looks.size()) {
+    const std::size_t end = std::min(looks.find_first_of(",:|", begin), looks.size());
+    std::string name = looks.substr(begin, end - begin);
+    const std::size_t first = name.find_first_not_of(" +-");
+    name = first == std::string::npos ? "" : name.substr(first, name.find_last_not_of(' ') - first + 1);
+    if (!name.empty() && !contains(known, name)) {
+      throw Error(ErrorKind::usage, place, unknown_name_message("look", name, known));
+    }
+    begin = end + 1;
+  }
+}
+
+// Linear Rec.709 -> a colour space of the config: its name, and the matrix in front where one is needed.
+std::string enter_config(const LoadedConfig& loaded, const ColorSettings& settings, ocio::GroupTransform& group) {
+  const ocio::Config& config = *loaded.config;
+  if (!settings.input.empty()) {
+    if (const auto space = config.getColorSpace(settings.input.c_str())) {
+      return space->getName();
+    }
+    std::vector<std::string> known;
+    for (int i = 0; i < config.getNumColorSpaces(); ++i) {
+      known.emplace_back(config.getColorSpaceNameByIndex(i));
+    }
+    throw Error(ErrorKind::usage, loaded.path, unknown_name_message("input color space", settings.input, known));
+  }
+  if (loaded.path.empty()) {
+    return kRec709Name;
+  }
+  if (!config.hasRole(ocio::ROLE_INTERCHANGE_SCENE)) {
+    throw Error(ErrorKind::input, loaded.path,
+                "the config has no role aces_interchange, so linear Rec.709 has no way in",
+                "name its linear Rec.709 color space with --ocio-input");
+  }
+  group.appendTransform(rec709_to_aces());
+  return config.getColorSpace(ocio::ROLE_INTERCHANGE_SCENE)->getName();
+}
+
+}  // namespace
+
+struct OcioView::Impl {
+  std::vector<ViewInfo> views;
+  std::string description;
+  ocio::ConstCPUProcessorRcPtr to_8, to_16, to_float;
+};
+
+OcioView::OcioView(const ColorSettings& settings) : impl_(std::make_unique<Impl>()) {
+  const LoadedConfig loaded = load_config(settings);
+  const ocio::Config& config = *loaded.config;
+  const std::string place = loaded.path.empty() ? "built-in color config" : loaded.path;
+  impl_->views = list_views(config);
+  if (impl_->views.empty()) {
+    throw Error(ErrorKind::input, place, "the config has no display with a view", {});
+  }
+
+  std::vector<std::string> displays;
+  for (int i = 0; i < config.getNumDisplays(); ++i) {
+    displays.emplace_back(config.getDisplay(i));
+  }
+  const std::string display = choose("display", settings.display, config.getDefaultDisplay(), displays, place);
+  std::vector<std::string> views;
+  for (int i = 0; i < config.getNumViews(display.c_str()); ++i) {
+    views.emplace_back(config.getView(display.c_str(), i));
+  }
+  const std::string view =
+      choose("view", settings.view, config.getDefaultView(display.c_str()), views, place + ", display " + display);
+
+  auto group = ocio::GroupTransform::Create();
+  const std::string source = enter_config(loaded, settings, *group);
+  auto display_view = ocio::DisplayViewTransform::Create();
+  display_view->setSrc(source.c_str());
+  display_view->setDisplay(display.c_str());
+  display_view->setView(view.c_str());
+  if (!settings.look.empty()) {
+    check_looks(config, settings.look, place);
+    auto look = ocio::LookTransform::Create();
+    look->setSrc(source.c_str());
+    look->setDst(source.c_str());
+    look->setLooks(settings.look.c_str());
+    group->appendTransform(look);
+    display_view->setLooksBypass(true);
+  }
+  group->appendTransform(display_view);
+
+  try {
+    const auto processor = config.getProcessor(group);
+    const auto optimized = [&](ocio::BitDepth depth) {
+      return processor->getOptimizedCPUProcessor(ocio::BIT_DEPTH_F32, depth, ocio::OPTIMIZATION_VERY_GOOD);
+    };
+    impl_->to_8 = optimized(ocio::BIT_DEPTH_UINT8);
+    impl_->to_16 = optimized(ocio::BIT_DEPTH_UINT16);
+    impl_->to_float = optimized(ocio::BIT_DEPTH_F32);
+  } catch (const std::exception& e) {
+    throw Error(ErrorKind::input, place,
+                "view '" + view + "' of display '" + display + "' cannot be built: " + e.what(), {});
+  }
+  impl_->description = (loaded.path.empty() ? "built-in" : loaded.path) + ": display " + display + ", view " + view +
+                       (settings.look.empty() ? "" : ", look " + settings.look);
+}
+
+OcioView::~OcioView() = default;
+
+const std::vector<ViewInfo>& OcioView::views() const {
+  return impl_->views;
+}
+const std::string& OcioView::description() const {
+  return impl_->description;
+}
+
+namespace {
+
+void apply(const ocio::ConstCPUProcessorRcPtr& processor, float* rgb, std::size_t count, void* out,
+           ocio::BitDepth depth) {
+  const ocio::PackedImageDesc source(rgb, static_cast<long>(count), 1, ocio::CHANNEL_ORDERING_RGB, ocio::BIT_DEPTH_F32,
+                                     ocio::AutoStride, ocio::AutoStride, ocio::AutoStride);
+  ocio::PackedImageDesc target(out, static_cast<long>(count), 1, ocio::CHANNEL_ORDERING_RGB, depth, ocio::AutoStride,
+                               ocio::AutoStride, ocio::AutoStride);
+  processor->apply(source, target);
+}
+
+}  // namespace
+
+void OcioView::apply_8(float* rgb, std::size_t count, std::uint8_t* out) const {
+  apply(impl_->to_8, rgb, count, out, ocio::BIT_DEPTH_UINT8);
+}
+void OcioView::apply_16(float* rgb, std::size_t count, std::uint16_t* out) const {
+  apply(impl_->to_16, rgb, count, out, ocio::BIT_DEPTH_UINT16);
+}
+void OcioView::apply_float(float* rgb, std::size_t count) const {
+  apply(impl_->to_float, rgb, count, rgb, ocio::BIT_DEPTH_F32);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that are there completely or not at all.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace gazetrace {
+
+// Writes `.name.part.ext` in the folder of `path` and renames it. On failure the temporary is removed, what stood under
+// `path` stays, and Error(runtime) gives the path and the system's reason.
+void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes);
+
+}  // namespace gazetrace

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/image_io.hpp"
+#include "gazetrace/output.hpp"
+#include "output/atomic_file.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct Format {
+  std::string_view suffix;
+  int min_bits, max_bits;
+};
+constexpr std::array<Format, 6> kFormats{
+    {{".png", 8, 16}, {".jpg", 8, 8}, {".jpeg", 8, 8}, {".tif", 8, 16}, {".tiff", 8, 16}, {".dpx", 10, 10}}};
+
+const Format& format_of(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  for (const Format& format : kFormats) {
+    if (format.suffix == suffix) {
+      return format;
+    }
+  }
+  throw Error(ErrorKind::usage, path,
+              suffix.empty() ? "a display image needs a suffix" : "no display image ends in " + suffix,
+              "use .png, .jpg, .jpeg, .tif, .tiff or .dpx (scene-linear .exr has an option of its own)");
+}
+
+}  // namespace
+
+int display_image_bits(const DisplaySettings& settings) {
+  const Format& format = format_of(settings.pattern);
+  if (settings.bits != 8 && settings.bits != 16) {
+    throw Error(ErrorKind::usage, settings.pattern,
+                fmt::format("a display image has 8 or 16 bits a channel, not {}", settings.bits));
+  }
+  if (format.min_bits == 10) {
+    return 16;  // reduced to 10 when written
+  }
+  if (settings.bits > format.max_bits) {
+    throw Error(ErrorKind::usage, settings.pattern, fmt::format("JPEG holds 8 bits a channel, not {}", settings.bits),
+                "write PNG or TIFF, or 8 bits");
+  }
+  return settings.bits;
+}
+
+void write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
+                         const DisplaySettings& settings) {
+  const Format& format = format_of(path);
+  EncodeOptions options;
+  options.file_bits = std::clamp(image.bits, format.min_bits, format.max_bits);
+  options.quality = settings.quality;
+  options.software = header.software;
+  options.note = fmt::format("gazetrace:settings_digest={} frame={} t_video_ns={} exposure_ev={}",
+                             header.settings_digest, header.frame, header.t_video_ns, header.exposure_ev);
+  const std::vector<std::uint8_t> bytes =
+      encode_image(path, image.width_px, image.height_px, image.bits, image.bytes, options);
+  write_bytes_atomically(path, std::as_bytes(std::span(bytes)));
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only file that includes OpenEXR.
+#include "output/exr.hpp"
+
+#include <ImathMatrix.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticities.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+
+#include "core/parallel.hpp"
+#include "gazetrace/output.hpp"
+#include "output/atomic_file.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct Compression {
+  const char* name;
+  Imf::Compression value;
+};
+constexpr std::array<Compression, 10> kCompressions{{{"none", Imf::NO_COMPRESSION},
+                                                     {"rle", Imf::RLE_COMPRESSION},
+                                                     {"zips", Imf::ZIPS_COMPRESSION},
+                                                     {"zip", Imf::ZIP_COMPRESSION},
+                                                     {"piz", Imf::PIZ_COMPRESSION},
+                                                     {"pxr24", Imf::PXR24_COMPRESSION},
+                                                     {"b44", Imf::B44_COMPRESSION},
+                                                     {"b44a", Imf::B44A_COMPRESSION},
+                                                     {"dwaa", Imf::DWAA_COMPRESSION},
+                                                     {"dwab", Imf::DWAB_COMPRESSION}}};
+
+Imf::Compression compression_by_name(const std::string& name) {
+  for (const Compression& compression : kCompressions) {
+    if (name == compression.name) {
+      return compression.value;
+    }
+  }
+  throw Error(ErrorKind::usage, "", unknown_name_message("EXR compression", name, exr_compression_names()));
+}
+
+// A whole file in memory. OpenEXR's own file stream drops the error when its last buffer meets a full disk, so the
+// bytes are handed to write_bytes_atomically, which does not.
+class MemoryStream : public Imf::OStream {
+ public:
+  explicit MemoryStream(const std::string& name) : Imf::OStream(name.c_str()) {}
+  void write(const char* data, int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (at_ + size > bytes_.size()) {
+      bytes_.resize(at_ + size);
+    }
+    std::memcpy(&bytes_[at_], data, size);
+    at_ += size;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t position) override { at_ = position; }
+  [[nodiscard]] std::span<const std::byte> bytes() const { return std::as_bytes(std::span(bytes_)); }
+
+ private:
+  std::vector<char> bytes_;
+  std::size_t at_ = 0;
+};
+
+// OpenEXR's worker threads are the library's own pool, shared by the process; it only ever grows here.
+void want_exr_threads(int threads) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  if (threads > 1 && Imf::globalThreadCount() < threads) {
+    Imf::setGlobalThreadCount(threads);
+  }
+}
+
+// Channels of one picture with the buffers they are written from.
+class ExrPicture {
+ public:
+  ExrPicture(int width_px, int height_px, int threads)
+      : header_(width_px, height_px), width_px_(width_px), height_px_(height_px), threads_(threads) {}
+
+  Imf::Header& header() { return header_; }
+  [[nodiscard]] std::uint64_t clamped() const { return clamped_; }
+
+  void add_float(const std::string& name, const ImageGray& image) {
+    insert(name, Imf::FLOAT, reinterpret_cast<const char*>(image.pixels.data()), sizeof(float));
+  }
+  void add_float_rgb(const std::array<std::string, 3>& names, const ImageRgb& image) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      insert(names[c], Imf::FLOAT, reinterpret_cast<const char*>(image.pixels.data()) + c * sizeof(float),
+             sizeof(Vec3f));
+    }
+  }
+  void add_half_rgb(const std::array<std::string, 3>& names, const ImageRgb& image) {
+    constexpr std::size_t kRun = 16384;
+    const float* values = &image.pixels.data()->x;
+    const std::size_t count = image.pixels.size() * 3;
+    std::vector<half>& halves = halves_.emplace_back(count);
+    std::atomic<std::uint64_t> clamped{0};
+    parallel_for((count + kRun - 1) / kRun, threads_, [&](std::size_t run) {
+      const std::size_t end = std::min(count, (run + 1) * kRun);
+      std::uint64_t here = 0;
+      for (std::size_t i = run * kRun; i < end; ++i) {
+        const float limited = std::clamp(values[i], -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX));
+        here += limited != values[i] ? 1U : 0U;
+        halves[i] = half(limited);
+      }
+      clamped += here;
+    });
+    clamped_ += clamped;
+    for (std::size_t c = 0; c < 3; ++c) {
+      insert(names[c], Imf::HALF, reinterpret_cast<const char*>(&halves[c]), 3 * sizeof(half));
+    }
+  }
+
+  void write(const std::string& path) {
+    want_exr_threads(threads_);
+    MemoryStream stream(path);
+    try {
+      Imf::OutputFile file(stream, header_, threads_ > 1 ? threads_ : 0);
+      file.setFrameBuffer(buffer_);
+      file.writePixels(height_px_);
+    } catch (const std::exception& e) {
+      throw Error(ErrorKind::runtime, path, std::string("cannot encode the EXR: ") + e.what());
+    }
+    write_bytes_atomically(path, stream.bytes());
+  }
+
+ private:
+  void insert(const std::string& name, Imf::PixelType type, const char* first, std::size_t stride) {
+    header_.channels().insert(name, Imf::Channel(type));
+    // OpenEXR reads through this pointer only, though the type says char*.
+    buffer_.insert(name,
+                   Imf::Slice(type, const_cast<char*>(first), stride, stride * static_cast<std::size_t>(width_px_)));
+  }
+
+  Imf::Header header_;
+  Imf::FrameBuffer buffer_;
+  std::deque<std::vector<half>> halves_;  // a deque: the buffers must not move
+  int width_px_, height_px_, threads_;
+  std::uint64_t clamped_ = 0;
+};
+
+void add_text(Imf::Header& header, const std::string& name, const std::string& value) {
+  header.insert("gazetrace:" + name, Imf::StringAttribute(value));
+}
+
+void add_color_space(Imf::Header& header) {
+  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65
+  header.insert("colorSpace", Imf::StringAttribute("lin_rec709"));
+}
+
+// From world to the camera space of the EXR standard: left-handed, +z forward. Imath multiplies row vectors, p M.
+Imath::M44d world_to_camera(const CameraPose& pose) {
+  const Vec3d right = rotate(pose.orientation, {1, 0, 0});
+  const Vec3d up = rotate(pose.orientation, {0, 1, 0});
+  const Vec3d forward = rotate(pose.orientation, {0, 0, -1});
+  const Vec3d& p = pose.position_m;
+  return {right.x,        up.x,        forward.x,        0,  //
+          right.y,        up.y,        forward.y,        0,  //
+          right.z,        up.z,        forward.z,        0,  //
+          -dot(right, p), -dot(up, p), -dot(forward, p), 1};
+}
+
+// From that camera space to NDC: (0, 0) top left, (1, 1) bottom right. Depth is what is left over: 0 at the near plane.
+Imath::M44d camera_to_ndc(const Projection& projection, double aspect) {
+  const double near_m = projection.near_m > 0 ? projection.near_m : 1e-3;
+  if (projection.kind == ProjectionKind::orthographic) {
+    return {0.5 / (projection.ymag_m * aspect),
+            0,
+            0,
+            0,  //
+            0,
+            -0.5 / projection.ymag_m,
+            0,
+            0,  //
+            0,
+            0,
+            1,
+            0,  //
+            0.5,
+            0.5,
+            -near_m,
+            1};
+  }
+  const double slope = std::tan(projection.yfov_rad / 2);
+  return {0.5 / (slope * aspect),
+          0,
+          0,
+          0,  //
+          0,
+          -0.5 / slope,
+          0,
+          0,  //
+          0.5,
+          0.5,
+          1,
+          1,  //
+          0,
+          0,
+          -near_m,
+          0};
+}
+
+std::string camera_text(const Camera& camera) {
+  const Vec3d& p = camera.pose.position_m;
+  const Quatd& q = camera.pose.orientation;
+  const Projection& projection = camera.projection;
+  const std::string view = projection.kind == ProjectionKind::perspective
+                               ? fmt::format("perspective yfov_rad={}", projection.yfov_rad)
+                               : fmt::format("orthographic ymag_m={}", projection.ymag_m);
+  return fmt::format("position_m={},{},{} orientation_xyzw={},{},{},{} projection={} near_m={} far_m={}", p.x, p.y, p.z,
+                     q.x, q.y, q.z, q.w, view, projection.near_m, projection.far_m);
+}
+
+std::string gaze_text(const GazeAtTime& gaze) {
+  return fmt::format("state={} u={} v={} direction={},{},{} t_log_ns={} rows={},{} age_ns={}", to_string(gaze.state),
+                     gaze.u, gaze.v, gaze.direction.x, gaze.direction.y, gaze.direction.z, gaze.t_log_ns,
+                     gaze.row_before, gaze.row_after, gaze.age_ns);
+}
+
+void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
+  add_color_space(header);
+  header.insert("software", Imf::StringAttribute(frame.software));
+  if (frame.fps.numerator <= std::numeric_limits<int>::max() &&
+      frame.fps.denominator <= std::numeric_limits<int>::max()) {
+    Imf::addFramesPerSecond(
+        header, Imf::Rational(static_cast<int>(frame.fps.numerator), static_cast<int>(frame.fps.denominator)));
+  }
+  const Imath::M44d to_camera = world_to_camera(frame.camera.pose);
+  Imf::addWorldToCamera(header, Imath::M44f(to_camera));
+  Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(frame.camera.projection, aspect)));
+  header.insert("gazetrace:frame", Imf::IntAttribute(frame.frame));
+  header.insert("gazetrace:exposure_ev", Imf::DoubleAttribute(frame.exposure_ev));
+  // 64-bit integers have no attribute type of their own.
+  add_text(header, "t_video_ns", std::to_string(frame.t_video_ns));
+  add_text(header, "seed", std::to_string(frame.seed));
+  add_text(header, "settings_digest", frame.settings_digest);
+  add_text(header, "camera", camera_text(frame.camera));
+  add_text(header, "gaze_render", gaze_text(frame.gaze_render));
+  add_text(header, "gaze_true", gaze_text(frame.gaze_true));
+}
+
+std::array<std::string, 3> names_of(const std::string& layer, const char* letters) {
+  return {layer + '.' + letters[0], layer + '.' + letters[1], layer + '.' + letters[2]};
+}
+
+void require(const std::string& aov, bool present) {
+  if (!present) {
+    throw Error(ErrorKind::usage, "", "AOV '" + aov + "' was asked for, but this frame does not carry it",
+                aov == "eccentricity" ? "it needs a gaze" : "trace with guides on");
+  }
+}
+
+void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, const ImageGray* eccentricity_deg) {
+  if (aov == "albedo" || aov == "normal") {
+    const ImageRgb& image = aov == "albedo" ? frame.albedo : frame.normal;
+    require(aov, !image.empty());
+    picture.add_half_rgb(names_of(aov, aov == "albedo" ? "RGB" : "XYZ"), image);
+  } else if (aov == "depth") {
+    require(aov, !frame.depth_m.empty());
+    picture.add_float("depth.Z", frame.depth_m);
+  } else if (aov == "samples") {
+    picture.add_float("samples", frame.sample_count);
+  } else if (aov == "variance") {
+    picture.add_float("variance", frame.variance);
+  } else if (aov == "eccentricity") {
+    require(aov, eccentricity_deg != nullptr);
+    picture.add_float("eccentricity", *eccentricity_deg);
+  } else {
+    throw Error(ErrorKind::usage, "", unknown_name_message("AOV", aov, aov_names()));
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& exr_compression_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const Compression& compression : kCompressions) {
+      names.emplace_back(compression.name);
+    }
+    return names;
+  }();
+  return kNames;
+}
+
+std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
+                              const FrameHeader& header, const ExrSettings& settings, int threads) {
+  ExrPicture picture(frame.radiance.width_px, frame.radiance.height_px, resolve_threads(threads));
+  picture.header().compression() = compression_by_name(settings.compression);
+  picture.header().zipCompressionLevel() = settings.zip_level;
+  describe(picture.header(), header, static_cast<double>(frame.radiance.width_px) / frame.radiance.height_px);
+  if (settings.pixels == ExrPixels::half) {
+    picture.add_half_rgb({"R", "G", "B"}, frame.radiance);
+  } else {
+    picture.add_float_rgb({"R", "G", "B"}, frame.radiance);
+  }
+  for (const std::string& aov : settings.aovs) {
+    add_aov(picture, aov, frame, eccentricity_deg);
+  }
+  picture.write(path);
+  return picture.clamped();
+}
+
+void write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg) {
+  ImageGray region(map.width_px, map.height_px);
+  std::copy(map.region.pixels.begin(), map.region.pixels.end(), region.pixels.begin());
+  const ImageGray density = samples_per_pixel(map);
+  ExrPicture picture(map.width_px, map.height_px, 1);
+  picture.header().compression() = Imf::ZIP_COMPRESSION;
+  for (std::size_t i = 0; i < map.regions.size(); ++i) {
+    add_text(picture.header(), fmt::format("region_{}", i), map.regions[i].name);
+  }
+  picture.add_float("region", region);
+  picture.add_float("samples_per_pixel", density);
+  if (eccentricity_deg != nullptr) {
+    picture.add_float("eccentricity", *eccentricity_deg);
+  }
+  picture.write(path);
+}
+
+ImageRgb read_exr_rgb(const std::string& path) {
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::input, path, "there is no such file");
+  }
+  try {
+    Imf::InputFile file(path.c_str(), 0);
+    const Imath::Box2i window = file.header().dataWindow();
+    if (file.header().channels().findChannel("R") == nullptr) {
+      throw Error(ErrorKind::input, path, "the EXR has no channel R", "name an RGB picture");
+    }
+    ImageRgb image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+    Imf::FrameBuffer buffer;
+    constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) {
+      buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, &image.pixels.data()->x + c, window, sizeof(Vec3f),
+                                                sizeof(Vec3f) * static_cast<std::size_t>(image.width_px)));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(ErrorKind::input, path, std::string("cannot read the EXR: ") + e.what());
+  }
+}
+
+std::string read_exr_text(const std::string& path, const std::string& attribute) {
+  try {
+    Imf::InputFile file(path.c_str(), 0);
+    const auto* text = file.header().findTypedAttribute<Imf::StringAttribute>(attribute);
+    if (text == nullptr || !file.isComplete()) {
+      return {};
+    }
+    // A copy that was cut short still has its table of offsets: ask for the last block, which ends the file.
+    const char* pixels = nullptr;
+    int size = 0;
+    file.rawPixelData(file.header().dataWindow().max.y, pixels, size);
+    return text->value();
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be said against output settings before the first ray.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gazetrace/output.hpp"
+#include "output/exr.hpp"
+
+namespace gazetrace {
+namespace {
+
+void check_known(const char* what, const std::string& given, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), given) == known.end()) {
+    throw Error(ErrorKind::usage, "", unknown_name_message(what, given, known));
+  }
+}
+
+void check_exr_name(const std::string& pattern, bool require_number) {
+  if (!pattern.ends_with(".exr")) {
+    throw Error(ErrorKind::usage, pattern, "a scene-linear file must end in .exr");
+  }
+  frame_file_name(pattern, 1, require_number);
+}
+
+}  // namespace
+
+const std::vector<std::string>& aov_names() {
+  static const std::vector<std::string> kNames{"albedo", "normal", "depth", "samples", "variance", "eccentricity"};
+  return kNames;
+}
+
+void check_output_settings(const OutputSettings& settings, bool several_frames) {
+  if (!settings.exr.pattern.empty()) {
+    check_exr_name(settings.exr.pattern, several_frames);
+    check_known("EXR compression", settings.exr.compression, exr_compression_names());
+    for (const std::string& aov : settings.exr.aovs) {
+      check_known("AOV", aov, aov_names());
+    }
+  }
+  if (!settings.map_pattern.empty()) {
+    check_exr_name(settings.map_pattern, several_frames);
+  }
+  if (!settings.display.pattern.empty()) {
+    frame_file_name(settings.display.pattern, 1, several_frames);
+    display_image_bits(settings.display);
+    if (settings.display.quality < 1 || settings.display.quality > 100) {
+      throw Error(ErrorKind::usage, "",
+                  fmt::format("a JPEG quality of {} lies outside 1..100", settings.display.quality));
+    }
+  }
+}
+
+}  // namespace gazetrace

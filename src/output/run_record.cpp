@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/hash.hpp"
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+// 255 bytes is the limit of common file systems; long lists keep their beginning and become distinct by a digest.
+std::string part_file_name(const std::string& directory, const std::string& stem, const std::string& suffix,
+                           const std::string& frames, bool is_part) {
+  constexpr std::size_t kMaxFrames = 120;
+  std::string name = stem;
+  if (is_part) {
+    name += '.';
+    if (frames.size() > kMaxFrames) {
+      Digest digest;
+      digest.add(frames);
+      name += frames.substr(0, frames.rfind(',', kMaxFrames)) + "-and-more-" + digest.hex().substr(0, 12);
+    } else {
+      name += frames;
+    }
+  }
+  return (std::filesystem::path(directory) / (name + suffix)).string();
+}
+
+}  // namespace
+
+std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part) {
+  return part_file_name(directory, "timing", ".csv", frames, is_part);
+}
+
+std::string run_record_file_name(const std::string& directory, const std::string& frames, bool is_part) {
+  return part_file_name(directory, "run", ".json", frames, is_part);
+}
+
+std::string run_record_json(const RunRecord& record) {
+  Json bad_samples = Json::array();
+  for (const BadSample& bad : record.bad_samples) {
+    bad_samples.push_back(
+        {{"frame", bad.frame}, {"x_px", bad.x_px}, {"y_px", bad.y_px}, {"sample", bad.sample}, {"what", bad.what}});
+  }
+  const Json json{{"version", record.version},
+                  {"build", record.build},
+                  {"instruction_set", record.instruction_set},
+                  {"ray_library", record.ray_library},
+                  {"command_line", record.command_line},
+                  {"settings_digest", record.settings_digest},
+                  {"frames", record.frames},
+                  {"is_part", record.is_part},
+                  {"input_digests", record.input_digests},
+                  {"facts", record.facts},
+                  {"warnings", record.warnings},
+                  {"bad_samples", bad_samples},
+                  {"config_toml", record.config_toml}};
+  // Paths need not be UTF-8; what is not becomes a replacement character rather than an exception.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+RunRecord read_run_record(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw Error(ErrorKind::input, path, "cannot be opened");
+  }
+  try {
+    const Json json = Json::parse(file);
+    RunRecord record;
+    json.at("version").get_to(record.version);
+    json.at("build").get_to(record.build);
+    json.at("instruction_set").get_to(record.instruction_set);
+    json.at("ray_library").get_to(record.ray_library);
+    json.at("command_line").get_to(record.command_line);
+    json.at("settings_digest").get_to(record.settings_digest);
+    json.at("frames").get_to(record.frames);
+    json.at("is_part").get_to(record.is_part);
+    json.at("input_digests").get_to(record.input_digests);
+    json.at("facts").get_to(record.facts);
+    json.at("warnings").get_to(record.warnings);
+    json.at("config_toml").get_to(record.config_toml);
+    for (const Json& bad : json.at("bad_samples")) {
+      record.bad_samples.push_back({bad.at("frame"), bad.at("x_px"), bad.at("y_px"), bad.at("sample"), bad.at("what")});
+    }
+    return record;
+  } catch (const Json::exception& e) {
+    throw Error(ErrorKind::input, path, std::string("is no run record: ") + e.what());
+  }
+}
+
+}  // namespace gazetrace

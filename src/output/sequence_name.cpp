@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names of a sequence's files. The number's place is looked for in the file name only: folders keep their # and %.
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cstddef>
+#include <optional>
+
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct Placeholder {
+  std::size_t length = 0;  // characters of the pattern it takes up
+  int min_digits = 0;      // zero-padded to this many
+};
+
+// %d, %4d (as %04d: a file name has no use for spaces) and %04d.
+std::optional<Placeholder> printf_placeholder(const std::string& pattern, std::size_t at) {
+  std::size_t end = at + 1;
+  int digits = 0;
+  while (end < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[end])) != 0 && digits < 100) {
+    digits = digits * 10 + (pattern[end] - '0');
+    ++end;
+  }
+  if (end == pattern.size() || pattern[end] != 'd' || digits > 20) {
+    return std::nullopt;
+  }
+  return Placeholder{end + 1 - at, digits};
+}
+
+std::optional<Placeholder> placeholder_at(const std::string& pattern, std::size_t at) {
+  constexpr std::string_view kFrame = "<frame>";
+  if (pattern[at] == '#') {
+    const std::size_t end = std::min(pattern.find_first_not_of('#', at), pattern.size());
+    return Placeholder{end - at, static_cast<int>(end - at)};
+  }
+  if (pattern.compare(at, kFrame.size(), kFrame) == 0) {
+    return Placeholder{kFrame.size(), 0};
+  }
+  return pattern[at] == '%' ? printf_placeholder(pattern, at) : std::nullopt;
+}
+
+struct Expanded {
+  std::string name;
+  int numbers = 0;
+};
+
+Expanded expand(const std::string& pattern, std::int32_t frame) {
+  const std::size_t slash = pattern.find_last_of('/');
+  std::size_t at = slash == std::string::npos ? 0 : slash + 1;
+  Expanded result{pattern.substr(0, at), 0};
+  while (at < pattern.size()) {
+    if (pattern.compare(at, 2, "%%") == 0) {
+      result.name += '%';
+      at += 2;
+    } else if (const auto placeholder = placeholder_at(pattern, at)) {
+      result.name += fmt::format("{:0{}}", frame, placeholder->min_digits);
+      ++result.numbers;
+      at += placeholder->length;
+    } else if (pattern[at] == '%') {
+      throw Error(ErrorKind::usage, pattern, "a % stands in front of something that is no frame number",
+                  "write %04d, ####, <frame>, or %% for a percent sign");
+    } else {
+      result.name += pattern[at++];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string frame_file_name(const std::string& pattern, std::int32_t frame, bool require_number) {
+  if (frame < 0) {
+    throw Error(ErrorKind::usage, pattern, fmt::format("frame {} is negative", frame), "number frames from 1");
+  }
+  Expanded expanded = expand(pattern, frame);
+  if (expanded.numbers > 1) {
+    throw Error(ErrorKind::usage, pattern, "the name has more than one place for the frame number", "keep one");
+  }
+  if (require_number && expanded.numbers == 0) {
+    throw Error(ErrorKind::usage, pattern, "every frame would be written to the same file",
+                "put ####, %04d or <frame> into the file name");
+  }
+  return std::move(expanded.name);
+}
+
+bool has_frame_number(const std::string& pattern) {
+  return expand(pattern, 1).numbers > 0;
+}
+
+}  // namespace gazetrace
