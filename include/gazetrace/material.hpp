@@ -10,6 +10,9 @@
 
 namespace gazetrace {
 
+// Shape of the diffuse lobe; both are balanced so that a white surface loses no light.
+enum class DiffuseModel : std::uint8_t { burley, lambert };
+
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
 // A texture with the coordinates it is read at: uv' = (a u + b v + tx, c u + d v + ty) (KHR_texture_transform).

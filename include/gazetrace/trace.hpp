@@ -11,11 +11,11 @@
 #include "gazetrace/camera.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/image.hpp"
+#include "gazetrace/material.hpp"
 #include "gazetrace/scene.hpp"
 
 namespace gazetrace {
 
-enum class DiffuseModel : std::uint8_t { burley, lambert };
 enum class LightSampling : std::uint8_t { mis, light_only, bsdf_only };
 enum class PixelFilter : std::uint8_t { box, blackman_harris };
 enum class BvhQuality : std::uint8_t { high, medium };

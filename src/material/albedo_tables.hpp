@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directional albedos over (cosine, roughness), which keep the material's energy: computed at build time in double
+// precision by generate_albedo_tables.cpp.
+//   e      GGX lobe with Fresnel 1, single scattering
+//   b      the same weighted with Schlick's (1 - v.h)^5, so that Schlick's lobe has f0 (e - b) + b
+//   lambert, burley   s(mu): the diffuse lobe is  c / pi  s(o) s(i) shape(o, i)  with  s(o) * integral of
+//          s(i) shape(o, i) cos_i / pi  =  1 - (albedo of the whole dielectric specular lobe at o),
+//          so that a white dielectric reflects everything, and the lobe is reciprocal. For shape = 1 this is the
+//          diffuse term of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", 2017).
+//   e_average  2 * integral of e(mu) mu dmu
+// Nodes: mu = (k / (n - 1))^2, roughness = j / (n - 1); in between bilinear in (sqrt(mu), roughness).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace gazetrace {
+
+inline constexpr int kAlbedoNodes = 32;
+inline constexpr float kDielectricF0 = 0.04F;
+
+struct AlbedoTerms {
+  float e, b, lambert, burley;
+};
+
+struct AlbedoTables {
+  std::array<std::array<AlbedoTerms, kAlbedoNodes>, kAlbedoNodes> terms;  // [roughness][mu]
+  std::array<float, kAlbedoNodes> e_average;
+};
+
+extern const AlbedoTables kAlbedoTables;
+
+// Where a roughness lies between two rows.
+struct AlbedoRow {
+  int row;
+  float fraction;
+};
+
+inline AlbedoRow albedo_row(float roughness) noexcept {
+  const float y = roughness * static_cast<float>(kAlbedoNodes - 1);
+  const int row = std::min(static_cast<int>(y), kAlbedoNodes - 2);
+  return {row, y - static_cast<float>(row)};
+}
+
+inline AlbedoTerms albedo_terms(const AlbedoRow& at, float mu) noexcept {
+  const float x = std::sqrt(mu) * static_cast<float>(kAlbedoNodes - 1);
+  const int column = std::min(static_cast<int>(x), kAlbedoNodes - 2);
+  const float fx = x - static_cast<float>(column);
+  const float w11 = fx * at.fraction;
+  const float w10 = fx - w11;
+  const float w01 = at.fraction - w11;
+  const float w00 = 1.0F - fx - w01;
+  const auto row = static_cast<std::size_t>(at.row);
+  const auto k = static_cast<std::size_t>(column);
+  const AlbedoTerms& t00 = kAlbedoTables.terms[row][k];
+  const AlbedoTerms& t10 = kAlbedoTables.terms[row][k + 1];
+  const AlbedoTerms& t01 = kAlbedoTables.terms[row + 1][k];
+  const AlbedoTerms& t11 = kAlbedoTables.terms[row + 1][k + 1];
+  return {w00 * t00.e + w10 * t10.e + w01 * t01.e + w11 * t11.e, w00 * t00.b + w10 * t10.b + w01 * t01.b + w11 * t11.b,
+          w00 * t00.lambert + w10 * t10.lambert + w01 * t01.lambert + w11 * t11.lambert,
+          w00 * t00.burley + w10 * t10.burley + w01 * t01.burley + w11 * t11.burley};
+}
+
+inline float albedo_average(const AlbedoRow& at) noexcept {
+  const auto row = static_cast<std::size_t>(at.row);
+  const float a = kAlbedoTables.e_average[row];
+  return a + (kAlbedoTables.e_average[row + 1] - a) * at.fraction;
+}
+
+}  // namespace gazetrace

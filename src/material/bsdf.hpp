@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF 2.0's metallic-roughness surface as an energy-conserving, reciprocal BSDF.
+//   f = GGX lobe with Schlick's Fresnel, f0 = mix(0.04, base colour, metallic)              (glTF 2.0, appendix B)
+//     + multiple scattering between its facets: m (1 - e(o)) (1 - e(i)) / (pi (1 - e_avg))  (Kulla and Conty 2017)
+//         m = F^2 e_avg / (1 - F (1 - e_avg)),  F = f0 + (1 - f0) / 21, dielectric and metal part each with its own f0
+//     + (1 - metallic) base colour / pi * s(o) s(i) * shape(o, i)                       (albedo_tables.hpp explains s)
+//         shape = 1 (Lambert) or (1 + t (1-o.z)^5) (1 + t (1-i.z)^5), t = roughness (1 + o.i) - 0.5
+//         (Burley, "Physically Based Shading at Disney", 2012, section 5.3, with 2 cos^2 theta_d = 1 + o.i)
+// A white surface reflects exactly the light it receives, up to the tables' interpolation (bsdf_test states the bound).
+// Burley's own lobe absorbs light at grazing angles when smooth and makes light when rough; s takes both out and leaves
+// the angular shape. Directions point away from the surface; z is the shading normal.
+#pragma once
+
+#include "gazetrace/material.hpp"
+#include "material/albedo_tables.hpp"
+#include "material/microfacet.hpp"
+
+namespace gazetrace {
+
+// Values at a hit, after textures.
+struct Surface {
+  Vec3f base_color;
+  float metallic = 0;
+  float roughness = 0;  // perceptual, 0..1; alpha = roughness^2, at least kAlphaMin
+};
+
+struct BsdfEval {
+  Vec3f f_cos;    // f times the cosine at wi
+  float pdf = 0;  // of sample_bsdf, all lobes, over solid angle
+};
+
+struct BsdfSample {
+  Vec3f direction;
+  Vec3f weight;  // f cos / pdf
+  float pdf = 0;
+  bool valid = false;  // false: the path ends here (a direction below the surface, or black)
+  bool delta = false;  // no lobe of this model is
+};
+
+// One hit seen from one direction. Make it once, then evaluate for light samples and sample the next direction.
+template <DiffuseModel kDiffuse>
+class Bsdf {
+ public:
+  Bsdf(const Surface& surface, const Vec3f& wo) noexcept
+      : wo_(wo),
+        row_(albedo_row(std::clamp(surface.roughness, 0.0F, 1.0F))),
+        roughness_(surface.roughness),
+        alpha_(alpha_of_roughness(surface.roughness)),
+        f0_(Vec3f{kDielectricF0, kDielectricF0, kDielectricF0} * (1.0F - surface.metallic) +
+            surface.base_color * surface.metallic),
+        smith_o_(smith_length(wo.z, alpha_ * alpha_)) {
+    const AlbedoTerms terms = albedo_terms(row_, std::clamp(wo.z, 0.0F, 1.0F));
+    const float e_average = albedo_average(row_);
+    const float lost_average = 1.0F - e_average;
+    const auto repeated = [=](float f0) {
+      const float f = f0 + (1.0F - f0) * (1.0F / 21.0F);
+      return f * f * e_average / (1.0F - f * lost_average);
+    };
+    const float dielectric = repeated(kDielectricF0) * (1.0F - surface.metallic);
+    const Vec3f& c = surface.base_color;
+    const Vec3f repeats = Vec3f{repeated(c.x), repeated(c.y), repeated(c.z)} * surface.metallic +
+                          Vec3f{dielectric, dielectric, dielectric};
+    const float lost = 1.0F - terms.e;
+    // Where nothing is lost the lobe is 0/0 with a limit of 0.
+    multiple_ = repeats * (lost * kInvPi / std::max(lost_average, 1e-7F));
+    const float scale = kDiffuse == DiffuseModel::burley ? terms.burley : terms.lambert;
+    diffuse_ = c * ((1.0F - surface.metallic) * scale * kInvPi);
+    weight_o_ = schlick_weight(wo.z);
+
+    // Lobe choice by directional albedo.
+    const float specular = luminance(f0_) * (terms.e - terms.b) + terms.b;
+    const float diffuse =
+        luminance(c) * (1.0F - surface.metallic) * (1.0F - (kDielectricF0 * (terms.e - terms.b) + terms.b)) +
+        luminance(repeats) * lost;
+    const float sum = specular + diffuse;
+    specular_probability_ = sum > 0 ? specular / sum : 1.0F;
+  }
+
+  [[nodiscard]] BsdfEval evaluate(const Vec3f& wi) const noexcept {
+    if (!(wo_.z > 0) || !(wi.z > 0)) {
+      return {};
+    }
+    const Vec3f half = wo_ + wi;
+    const float length2 = dot(half, half);
+    return evaluate_half(wi, half * (1.0F / std::sqrt(length2)));
+  }
+
+  [[nodiscard]] BsdfSample sample(const Vec2f& u, float u_lobe) const noexcept {
+    if (!(wo_.z > 0)) {
+      return {};
+    }
+    BsdfSample result;
+    Vec3f half;
+    if (u_lobe < specular_probability_) {
+      half = sample_visible_normal(wo_, alpha_, u);
+      result.direction = reflect(wo_, half);
+    } else {
+      result.direction = sample_cosine_hemisphere(u);
+      half = normalize(wo_ + result.direction);
+    }
+    if (!(result.direction.z > 0)) {
+      return {};
+    }
+    const BsdfEval eval = evaluate_half(result.direction, half);
+    if (!(eval.pdf > 0)) {
+      return {};
+    }
+    result.pdf = eval.pdf;
+    result.weight = eval.f_cos * (1.0F / eval.pdf);
+    result.valid = result.weight.x + result.weight.y + result.weight.z > 0;
+    return result;
+  }
+
+ private:
+  static constexpr float kInvPi = static_cast<float>(1 / kPi);
+  static constexpr float luminance(const Vec3f& c) noexcept { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
+
+  [[nodiscard]] BsdfEval evaluate_half(const Vec3f& wi, const Vec3f& half) const noexcept {
+    const float distribution = ggx_distribution(half, alpha_);
+    const float smith_i = smith_length(wi.z, alpha_ * alpha_);
+    const float visible = 0.5F / (wo_.z * smith_i + wi.z * smith_o_);
+    const float fresnel = schlick_weight(dot(wo_, half));
+    const Vec3f reflectance = f0_ + (Vec3f{1, 1, 1} - f0_) * fresnel;
+
+    const AlbedoTerms terms = albedo_terms(row_, std::min(wi.z, 1.0F));
+    float shape = terms.lambert;
+    if constexpr (kDiffuse == DiffuseModel::burley) {
+      const float t = roughness_ * (1.0F + dot(wo_, wi)) - 0.5F;
+      shape = terms.burley * (1.0F + t * weight_o_) * (1.0F + t * schlick_weight(wi.z));
+    }
+    BsdfEval result;
+    result.f_cos = (reflectance * (distribution * visible) + multiple_ * (1.0F - terms.e) + diffuse_ * shape) * wi.z;
+    result.pdf = specular_probability_ * visible_reflection_pdf(wo_.z, smith_o_, distribution) +
+                 (1.0F - specular_probability_) * kInvPi * wi.z;
+    return result;
+  }
+
+  Vec3f wo_;
+  AlbedoRow row_;
+  float roughness_;
+  float alpha_;
+  Vec3f f0_;
+  float smith_o_;
+  Vec3f multiple_;  // everything of that lobe but (1 - e(i))
+  Vec3f diffuse_;   // everything of that lobe but s(i) shape
+  float weight_o_ = 0;
+  float specular_probability_ = 1;
+};
+
+template <DiffuseModel kDiffuse>
+BsdfEval evaluate_bsdf(const Surface& surface, const Vec3f& wo, const Vec3f& wi) noexcept {
+  return Bsdf<kDiffuse>(surface, wo).evaluate(wi);
+}
+
+template <DiffuseModel kDiffuse>
+BsdfSample sample_bsdf(const Surface& surface, const Vec3f& wo, const Vec2f& u, float u_lobe) noexcept {
+  return Bsdf<kDiffuse>(surface, wo).sample(u, u_lobe);
+}
+
+}  // namespace gazetrace

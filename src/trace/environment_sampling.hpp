@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Importance sampling of a lat-long environment. Radiance is the bilinear interpolation of the picture (u wraps, v
+// stops at the poles). The density is constant over cells of whole pixels (one each up to 2048 columns), proportional
+// to the interpolated luminance averaged over the cell, and samples are uniform in solid angle inside a cell. Rows and
+// columns are found by inverting cumulative sums through guide tables: constant expected time, and unlike an alias
+// table it keeps the samples' stratification.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/scene.hpp"
+
+namespace gazetrace {
+
+class EnvironmentSampler {
+ public:
+  EnvironmentSampler() = default;
+  // Keeps a reference to the picture, which must outlive it. An absent environment is black.
+  explicit EnvironmentSampler(const Environment& environment);
+
+  struct Value {
+    Vec3f radiance;
+    float pdf = 0;  // over solid angle
+  };
+  struct Sample {
+    Vec3f direction;  // world
+    Vec3f radiance;
+    float pdf = 0;
+  };
+  // Only where total() > 0.
+  [[nodiscard]] Sample sample(const Vec2f& u) const noexcept;
+  [[nodiscard]] Value value(const Vec3f& direction) const noexcept;
+  [[nodiscard]] Vec3f radiance(const Vec3f& direction) const noexcept;
+  [[nodiscard]] float pdf(const Vec3f& direction) const noexcept;
+
+  // Integral of luminance over all directions, W/m^2.
+  [[nodiscard]] double total() const noexcept { return total_; }
+
+ private:
+  struct Place {
+    float u, v;
+  };
+  struct Choice {
+    std::uint32_t index;
+    float fraction;  // of the way through the chosen interval
+  };
+  [[nodiscard]] Place place_of(const Vec3f& direction) const noexcept;
+  [[nodiscard]] Vec3f lookup(const Place& at) const noexcept;
+  static Choice invert(const float* cumulative, const std::uint16_t* guide, std::uint32_t count, float u) noexcept;
+
+  const ImageRgb* picture_ = nullptr;
+  float rotation_turns_ = 0;
+  std::uint32_t pixels_per_cell_ = 1;
+  std::uint32_t columns_ = 0, rows_ = 0;
+  std::vector<float> column_edges_;       // in u, columns + 1
+  std::vector<float> row_edges_;          // cosine of the polar angle, from 1 to -1, rows + 1
+  std::vector<float> row_cumulative_;     // upper ends, rows
+  std::vector<std::uint16_t> row_guide_;  // rows
+  std::vector<float> cell_cumulative_;    // [row][column]
+  std::vector<std::uint16_t> cell_guide_;
+  std::vector<float> cell_pdf_;
+  double total_ = 0;
+};
+
+}  // namespace gazetrace
