@@ -3,8 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace gazetrace {
@@ -52,11 +52,11 @@ class AliasTable {
   [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
 
-  // u in [0, 1). The table must not be empty.
-  [[nodiscard]] std::uint32_t choose(float u) const noexcept {
-    // In double: a float times a table's size has no digits left for the second decision.
-    const double at = static_cast<double>(u) * static_cast<double>(entries_.size());
-    const auto i = static_cast<std::size_t>(at);
+  // u in [0, 1), in double: a float times a table's size has no digits left for the second decision. The table must not
+  // be empty.
+  [[nodiscard]] std::uint32_t choose(double u) const noexcept {
+    const double at = u * static_cast<double>(entries_.size());
+    const std::size_t i = std::min(static_cast<std::size_t>(at), entries_.size() - 1);
     const Entry& entry = entries_[i];
     return at - static_cast<double>(i) < static_cast<double>(entry.keep) ? static_cast<std::uint32_t>(i) : entry.alias;
   }

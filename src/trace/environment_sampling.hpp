@@ -47,14 +47,15 @@ class EnvironmentSampler {
   };
   [[nodiscard]] Place place_of(const Vec3f& direction) const noexcept;
   [[nodiscard]] Vec3f lookup(const Place& at) const noexcept;
+  [[nodiscard]] float cell_pdf(const Place& at) const noexcept;
   static Choice invert(const float* cumulative, const std::uint16_t* guide, std::uint32_t count, float u) noexcept;
 
   const ImageRgb* picture_ = nullptr;
   float rotation_turns_ = 0;
-  std::uint32_t pixels_per_cell_ = 1;
+  float columns_per_u_ = 0, rows_per_v_ = 0;
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<float> column_edges_;       // in u, columns + 1
-  std::vector<float> row_edges_;          // cosine of the polar angle, from 1 to -1, rows + 1
+  std::vector<double> row_edges_;         // cosine of the polar angle, from 1 to -1, rows + 1
   std::vector<float> row_cumulative_;     // upper ends, rows
   std::vector<std::uint16_t> row_guide_;  // rows
   std::vector<float> cell_cumulative_;    // [row][column]

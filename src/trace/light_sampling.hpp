@@ -45,7 +45,7 @@ struct EmissiveTriangle {
 
 class LightSampler {
  public:
-  // Keeps a reference to `scene`, which must outlive it.
+  // Keeps a reference to the scene's environment picture, which must outlive it.
   explicit LightSampler(const Scene& scene);
 
   // False: sample() never returns a valid sample.
@@ -85,8 +85,10 @@ class LightSampler {
  private:
   [[nodiscard]] LightSample sample_environment(const Vec3f& normal, const Vec2f& u) const noexcept;
   [[nodiscard]] LightSample sample_triangle(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
-                                            float u_select) const noexcept;
-  [[nodiscard]] LightSample sample_punctual(const Vec3f& position, const Vec3f& normal, float u_select) const noexcept;
+                                            double u_select) const noexcept;
+  [[nodiscard]] LightSample sample_punctual(const Vec3f& position, const Vec3f& normal, double u_select) const noexcept;
+
+  std::vector<double> collect_triangles(const Scene& scene);
 
   EnvironmentSampler environment_;
   std::vector<EmissiveTriangle> triangles_;
@@ -94,6 +96,7 @@ class LightSampler {
   std::vector<std::uint32_t> first_geometry_;  // of each instance, into first_emitter_
   std::vector<std::uint32_t> first_emitter_;
   std::vector<PunctualLight> punctual_;
+  std::vector<float> punctual_pdf_;  // selection probability of each, class included
   AliasTable punctual_choice_;
   float environment_probability_ = 0;
   float triangle_probability_ = 0;

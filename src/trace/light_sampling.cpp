@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/light_sampling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "core/hash.hpp"
+#include "trace/emission_average.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Every class that is present gets at least this share of the samples, split evenly: power says nothing about who is
+// near. The same among punctual lights.
+constexpr double kClassFloor = 0.3;
+constexpr double kPunctualFloor = 0.1;
+
+// A triangle smaller than this cannot be told from a line in float.
+constexpr double kSmallestArea = 1e-30;
+constexpr float kGrazing = 1e-6F;
+
+double luminance(const Vec3d& c) {
+  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
+}
+
+bool usable(double weight) {
+  return weight > 0 && std::isfinite(weight);
+}
+
+// Of the sphere about the world box, in metres; 1 for an empty scene.
+double scene_radius_m(const Scene& scene) {
+  constexpr double kHuge = std::numeric_limits<double>::max();
+  Vec3d low{kHuge, kHuge, kHuge};
+  Vec3d high{-kHuge, -kHuge, -kHuge};
+  struct Box {
+    Vec3d low, high;
+    bool empty = true;
+  };
+  std::vector<Box> boxes;
+  for (const Mesh& mesh : scene.meshes) {
+    Box box{low, high};
+    for (const Geometry& geometry : mesh.geometries) {
+      for (const Vec3f& p : geometry.positions) {
+        box.low = {std::min<double>(box.low.x, p.x), std::min<double>(box.low.y, p.y),
+                   std::min<double>(box.low.z, p.z)};
+        box.high = {std::max<double>(box.high.x, p.x), std::max<double>(box.high.y, p.y),
+                    std::max<double>(box.high.z, p.z)};
+        box.empty = false;
+      }
+    }
+    boxes.push_back(box);
+  }
+  for (const Instance& instance : scene.instances) {
+    const Box& box = boxes[static_cast<std::size_t>(instance.mesh)];
+    for (unsigned corner = 0; corner < 8 && !box.empty; ++corner) {
+      const Vec3d p = transform_point(
+          instance.to_world, {(corner & 1U) != 0 ? box.high.x : box.low.x, (corner & 2U) != 0 ? box.high.y : box.low.y,
+                              (corner & 4U) != 0 ? box.high.z : box.low.z});
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  }
+  const double radius = low.x <= high.x ? 0.5 * length(high - low) : 1.0;
+  return usable(radius) ? radius : 1.0;
+}
+
+// Watts that a light sends into the scene's sphere.
+double power(const PunctualLight& light, double radius_m) {
+  const double intensity = luminance(to_double(light.intensity));
+  switch (light.kind) {
+    case LightKind::directional:
+      return intensity * kPi * radius_m * radius_m;
+    case LightKind::spot:
+      return intensity * 2 * kPi * std::max(1.0 - static_cast<double>(light.cos_outer), 1e-6);
+    case LightKind::point:
+      break;
+  }
+  return intensity * 4 * kPi;
+}
+
+// KHR_lights_punctual, "Range Property": the window is 1 near the light and 0 from `range` on.
+float range_window(float range_m, float distance_squared) {
+  if (!(range_m > 0)) {
+    return 1.0F;
+  }
+  const float s = distance_squared / (range_m * range_m);
+  return std::clamp(1.0F - s * s, 0.0F, 1.0F);
+}
+
+// KHR_lights_punctual, "Inner and Outer Cone Angles".
+float cone_falloff(const PunctualLight& light, float cosine) {
+  const float scale = 1.0F / std::max(0.001F, light.cos_inner - light.cos_outer);
+  const float t = std::clamp((cosine - light.cos_outer) * scale, 0.0F, 1.0F);
+  return t * t;
+}
+
+// 32 more digits below u's 24, a function of the other two numbers: choosing among a million lights needs them.
+double refine(float u, const Vec2f& other) {
+  const std::uint32_t digits =
+      hash32(std::bit_cast<std::uint32_t>(other.x) + 0x9e3779b9U * std::bit_cast<std::uint32_t>(other.y));
+  return static_cast<double>(u) + static_cast<double>(digits) * 0x1p-56;
+}
+
+double area_of(const EmissiveTriangle& triangle) {
+  return 0.5 * length(cross(to_double(triangle.edge1), to_double(triangle.edge2)));
+}
+
+}  // namespace
+
+LightSampler::LightSampler(const Scene& scene) : environment_(scene.environment) {
+  const double radius = scene_radius_m(scene);
+  const std::vector<double> triangle_powers = collect_triangles(scene);
+  std::vector<double> punctual_powers;
+  for (const PunctualLight& light : scene.lights) {
+    if (const double p = power(light, radius); usable(p)) {
+      punctual_.push_back(light);
+      punctual_.back().direction = normalize(light.direction);
+      punctual_powers.push_back(p);
+    }
+  }
+
+  const std::array<double, 3> powers{environment_.total() * kPi * radius * radius,
+                                     std::accumulate(triangle_powers.begin(), triangle_powers.end(), 0.0),
+                                     std::accumulate(punctual_powers.begin(), punctual_powers.end(), 0.0)};
+  const double total = powers[0] + powers[1] + powers[2];
+  const auto present = static_cast<double>(std::count_if(powers.begin(), powers.end(), usable));
+  std::array<double, 3> probability{};
+  for (std::size_t i = 0; i < powers.size(); ++i) {
+    probability[i] = usable(powers[i]) ? (1 - kClassFloor) * (powers[i] / total) + kClassFloor / present : 0;
+  }
+  environment_probability_ = static_cast<float>(probability[0]);
+  triangle_probability_ = static_cast<float>(probability[1]);
+  punctual_probability_ = static_cast<float>(probability[2]);
+
+  if (triangle_probability_ > 0) {
+    triangle_choice_ = AliasTable(triangle_powers);
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      EmissiveTriangle& triangle = triangles_[i];
+      triangle.pdf_area =
+          triangle_powers[i] > 0
+              ? static_cast<float>(probability[1] * (triangle_powers[i] / powers[1]) / area_of(triangle))
+              : 0.0F;
+    }
+  }
+  if (punctual_probability_ > 0) {
+    for (double& p : punctual_powers) {
+      p = (1 - kPunctualFloor) * (p / powers[2]) + kPunctualFloor / static_cast<double>(punctual_.size());
+      punctual_pdf_.push_back(static_cast<float>(p * probability[2]));
+    }
+    punctual_choice_ = AliasTable(punctual_powers);
+  }
+}
+
+// Fills triangles_ and the maps into it; returns each one's power in watts, 0 for what is never chosen.
+std::vector<double> LightSampler::collect_triangles(const Scene& scene) {
+  std::vector<double> powers;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+    first_geometry_.push_back(static_cast<std::uint32_t>(first_emitter_.size()));
+    const double side = determinant(instance.to_world) < 0 ? -1.0 : 1.0;  // mirrored: the winding turns
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
+      const Geometry& geometry = mesh.geometries[g];
+      const Material& material = scene.materials[static_cast<std::size_t>(geometry.material)];
+      if (material.unlit || !usable(luminance(to_double(material.emission)))) {
+        first_emitter_.push_back(kNoEmitter);
+        continue;
+      }
+      first_emitter_.push_back(static_cast<std::uint32_t>(triangles_.size()));
+      for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        const auto corner = [&](std::size_t k) {
+          return transform_point(instance.to_world, to_double(geometry.positions[geometry.triangles[t][k]]));
+        };
+        const Vec3d origin = corner(0);
+        EmissiveTriangle triangle;
+        triangle.origin = to_float(origin);
+        triangle.edge1 = to_float(corner(1) - origin);
+        triangle.edge2 = to_float(corner(2) - origin);
+        triangle.normal = to_float(normalize(cross(to_double(triangle.edge1), to_double(triangle.edge2))) * side);
+        triangle.emission = material.emission;
+        triangle.instance = static_cast<std::int32_t>(i);
+        triangle.geometry = static_cast<std::int32_t>(g);
+        triangle.primitive = static_cast<std::int32_t>(t);
+        triangle.material = geometry.material;
+        triangle.double_sided = material.double_sided;
+        const double area = area_of(triangle);
+        const double emitted = luminance(average_emission(scene, material, geometry, t));
+        const double p = emitted * area * kPi * (material.double_sided ? 2 : 1);
+        triangles_.push_back(triangle);
+        powers.push_back(area >= kSmallestArea && usable(p) ? p : 0.0);
+      }
+    }
+  }
+  return powers;
+}
+
+LightSample LightSampler::sample(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
+                                 float u_select) const noexcept {
+  double choice = refine(u_select, u);
+  const auto pe = static_cast<double>(environment_probability_);
+  const auto pt = static_cast<double>(triangle_probability_);
+  const auto pp = static_cast<double>(punctual_probability_);
+  // The floats sum to 1 but for rounding; the last class present takes the rest.
+  if (pe > 0 && (choice < pe || !(pt + pp > 0))) {
+    return sample_environment(normal, u);
+  }
+  choice -= pe;
+  if (pt > 0 && (choice < pt || !(pp > 0))) {
+    return sample_triangle(position, normal, u, std::min(choice / pt, 0x1.fffffffffffffp-1));
+  }
+  return pp > 0 ? sample_punctual(position, normal, std::min((choice - pt) / pp, 0x1.fffffffffffffp-1)) : LightSample{};
+}
+
+LightSample LightSampler::sample_environment(const Vec3f& normal, const Vec2f& u) const noexcept {
+  const EnvironmentSampler::Sample chosen = environment_.sample(u);
+  LightSample result;
+  result.direction = chosen.direction;
+  result.distance = std::numeric_limits<float>::infinity();
+  result.radiance = chosen.radiance;
+  result.pdf = chosen.pdf * environment_probability_;
+  result.valid = result.pdf > 0 && dot(normal, chosen.direction) > 0;
+  return result;
+}
+
+LightSample LightSampler::sample_triangle(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
+                                          double u_select) const noexcept {
+  LightSample result;
+  result.emitter = triangle_choice_.choose(u_select);
+  const EmissiveTriangle& triangle = triangles_[result.emitter];
+  // Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
+  float b1 = u.x;
+  float b2 = u.y;
+  if (b2 > b1) {
+    b1 *= 0.5F;
+    b2 -= b1;
+  } else {
+    b2 *= 0.5F;
+    b1 -= b2;
+  }
+  result.barycentric = {b1, b2};
+  const Vec3f way = (triangle.origin - position) + triangle.edge1 * b1 + triangle.edge2 * b2;
+  const float distance_squared = dot(way, way);
+  if (!(distance_squared > 0)) {
+    return result;
+  }
+  result.distance = std::sqrt(distance_squared);
+  result.direction = way / result.distance;
+  result.radiance = triangle.emission;
+  result.pdf = pdf_triangle(result.emitter, -dot(triangle.normal, result.direction), distance_squared);
+  result.valid = result.pdf > 0 && dot(normal, result.direction) > 0;
+  return result;
+}
+
+LightSample LightSampler::sample_punctual(const Vec3f& position, const Vec3f& normal, double u_select) const noexcept {
+  const std::uint32_t chosen = punctual_choice_.choose(u_select);
+  const PunctualLight& light = punctual_[chosen];
+  LightSample result;
+  result.delta = true;
+  result.pdf = punctual_pdf_[chosen];
+  if (light.kind == LightKind::directional) {
+    result.direction = -light.direction;
+    result.distance = std::numeric_limits<float>::infinity();
+    result.radiance = light.intensity;
+  } else {
+    const Vec3f way = light.position_m - position;
+    const float distance_squared = dot(way, way);
+    if (!(distance_squared > 0)) {
+      return result;
+    }
+    result.distance = std::sqrt(distance_squared);
+    result.direction = way / result.distance;
+    float falloff = range_window(light.range_m, distance_squared);
+    if (light.kind == LightKind::spot) {
+      falloff *= cone_falloff(light, -dot(light.direction, result.direction));
+    }
+    result.radiance = light.intensity * (falloff / distance_squared);
+  }
+  const float sum = result.radiance.x + result.radiance.y + result.radiance.z;
+  result.valid = sum > 0 && std::isfinite(sum) && dot(normal, result.direction) > 0;
+  return result;
+}
+
+LightSampler::EnvironmentHit LightSampler::environment(const Vec3f& direction) const noexcept {
+  const EnvironmentSampler::Value value = environment_.value(direction);
+  return {value.radiance, value.pdf * environment_probability_};
+}
+
+Vec3f LightSampler::environment_radiance(const Vec3f& direction) const noexcept {
+  return environment_.radiance(direction);
+}
+
+float LightSampler::pdf_environment(const Vec3f& direction) const noexcept {
+  return environment_.pdf(direction) * environment_probability_;
+}
+
+float LightSampler::pdf_triangle(std::uint32_t emitter, float cos_at_light, float distance_squared) const noexcept {
+  const EmissiveTriangle& triangle = triangles_[emitter];
+  const float cosine = triangle.double_sided ? std::fabs(cos_at_light) : cos_at_light;
+  return cosine > kGrazing ? triangle.pdf_area * distance_squared / cosine : 0.0F;
+}
+
+}  // namespace gazetrace
