@@ -125,8 +125,11 @@ ImageRgba8 read_image_rgba8(std::span<const std::uint8_t> file_bytes, const std:
   if (name == nullptr) {
     throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
   }
-  const OIIO::ImageSpec config = keep_alpha_unassociated();
+  OIIO::ImageSpec config = keep_alpha_unassociated();
   OIIO::Filesystem::IOMemReader reader(OIIO::cspan<unsigned char>(file_bytes.data(), file_bytes.size()));
+  // As an attribute: 2.4 loses a proxy that is handed to open() beside a config.
+  void* proxy = &reader;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
   const auto input = OIIO::ImageInput::open(name, &config, &reader);
   if (!input) {
     throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(OIIO::geterror()));

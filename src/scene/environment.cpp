@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light from far away: a picture, a constant, or a sky of our own.
+#include <algorithm>
+#include <cmath>
+
+#include "core/image_io.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/scene.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kSkyWidth_px = 512, kSkyHeight_px = 256;
+
+Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
+  return a * (1 - t) + b * t;
+}
+
+// A gradient by elevation, joined smoothly at the horizon, and a wide glow about the sun's direction. Not a model of
+// the atmosphere: it has the colours and the ratio of light (some 4 : 1 from the sun's side) of a clear day, without
+// the disc that would need many samples.
+Vec3d sky_radiance(const Vec3d& direction) {
+  constexpr Vec3d kZenith{0.16, 0.32, 0.72};
+  constexpr Vec3d kHorizon{0.78, 0.86, 0.95};
+  constexpr Vec3d kGround{0.20, 0.18, 0.15};
+  constexpr Vec3d kGlow{2.4, 2.0, 1.4};
+  const Vec3d sun = normalize(Vec3d{0.55, 0.62, -0.56});
+  const double up = std::max(direction.y, 0.0);
+  const Vec3d above = mix(kHorizon, kZenith, 1.0 - std::pow(1.0 - up, 3.0));
+  const double t = std::clamp((direction.y + 0.08) / 0.16, 0.0, 1.0);
+  const Vec3d base = mix(kGround, above, t * t * (3 - 2 * t));
+  const double glow = std::exp(-(1.0 - dot(direction, sun)) / 0.08);
+  return base + kGlow * (glow * t);
+}
+
+}  // namespace
+
+Environment load_environment(const std::string& path, double rotation_deg, double exposure_ev) {
+  Environment environment;
+  environment.radiance = read_image_rgb_float(path);
+  environment.rotation_rad = rotation_deg * kRadPerDeg;
+  environment.source = path;
+  const auto scale = static_cast<float>(std::exp2(exposure_ev));
+  ImageRgb& image = environment.radiance;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    Vec3f& pixel = image.pixels[i];
+    const bool good = is_finite(pixel) && pixel.x >= 0 && pixel.y >= 0 && pixel.z >= 0;
+    if (!good || !is_finite(pixel * scale)) {
+      const auto width = static_cast<std::size_t>(image.width_px);
+      throw Error(ErrorKind::input, path,
+                  "pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) +
+                      (good ? " overflows at this exposure" : " is negative or not finite"),
+                  good ? "lower the environment's exposure" : "repair the picture");
+    }
+    pixel *= scale;
+  }
+  return environment;
+}
+
+Environment constant_environment(const Vec3f& radiance) {
+  if (!is_finite(radiance) || radiance.x < 0 || radiance.y < 0 || radiance.z < 0) {
+    throw Error(ErrorKind::usage, "environment", "a constant radiance must be finite and not negative");
+  }
+  Environment environment;
+  environment.radiance = ImageRgb(1, 1, radiance);
+  environment.source = "constant";
+  return environment;
+}
+
+Environment builtin_sky(double rotation_deg, double exposure_ev) {
+  Environment environment;
+  environment.radiance = ImageRgb(kSkyWidth_px, kSkyHeight_px);
+  environment.rotation_rad = rotation_deg * kRadPerDeg;
+  environment.source = "built-in sky";
+  const double scale = std::exp2(exposure_ev);
+  for (int y = 0; y < kSkyHeight_px; ++y) {
+    const double theta = (y + 0.5) / kSkyHeight_px * kPi;
+    for (int x = 0; x < kSkyWidth_px; ++x) {
+      const double azimuth = ((x + 0.5) / kSkyWidth_px - 0.5) * 2 * kPi;  // from -z towards +x
+      const Vec3d direction{std::sin(theta) * std::sin(azimuth), std::cos(theta), -std::sin(theta) * std::cos(azimuth)};
+      environment.radiance(x, y) = to_float(sky_radiance(direction) * scale);
+    }
+  }
+  return environment;
+}
+
+}  // namespace gazetrace

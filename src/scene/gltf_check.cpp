@@ -1,0 +1,522 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf_check.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+using Json = nlohmann::json;
+
+// Deeper JSON than any exporter writes would overflow the stack of parsers that recurse.
+constexpr int kMaxJsonDepth = 200;
+
+bool is_nested_too_deep(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') {
+        ++i;
+      } else if (c == '"') {
+        in_string = false;
+      }
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kMaxJsonDepth) {
+        return true;
+      }
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return false;
+}
+
+// Walks the document and knows the place it is at, as "meshes[3].primitives[0].attributes".
+class Walker {
+ public:
+  Walker(std::string path, const Json& root) : path_(std::move(path)), root_(root) {}
+
+  class Step {
+   public:
+    Step(Walker& walker, std::string_view name, std::int64_t index = -1) : walker_(walker) {
+      walker_.steps_.emplace_back(name, index);
+    }
+    ~Step() { walker_.steps_.pop_back(); }
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+
+   private:
+    Walker& walker_;
+  };
+
+  [[noreturn]] void fail(const std::string& problem, const std::string& remedy = "export the file again") const {
+    std::string place = path_;
+    std::string separator = ": ";
+    for (const auto& [name, index] : steps_) {
+      place.append(separator).append(name);
+      if (index >= 0) {
+        place += "[" + std::to_string(index) + "]";
+      }
+      separator = ".";
+    }
+    throw Error(ErrorKind::input, place, problem, remedy);
+  }
+
+  const Json* find(const Json& object, const char* key) const {
+    const auto it = object.find(key);
+    return it == object.end() ? nullptr : &*it;
+  }
+
+  // The member, an object, or nothing when it is not there.
+  const Json* object(const Json& parent, const char* key) {
+    const Json* value = find(parent, key);
+    if (value != nullptr && !value->is_object()) {
+      const Step step(*this, key);
+      fail("is no JSON object");
+    }
+    return value;
+  }
+
+  template <class Body>
+  void each_object(const Json& parent, const char* key, Body body) {
+    const Json* array = find(parent, key);
+    if (array == nullptr) {
+      return;
+    }
+    if (!array->is_array()) {
+      const Step step(*this, key);
+      fail("is no JSON array");
+    }
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const Step step(*this, key, static_cast<std::int64_t>(i));
+      const Json& item = (*array)[i];
+      if (!item.is_object()) {
+        fail("is no JSON object");
+      }
+      body(item);
+    }
+  }
+
+  // A whole number from 0 to `maximum`, if it is there.
+  std::optional<std::uint64_t> whole(const Json& object, const char* key, bool required = false,
+                                     std::uint64_t maximum = std::numeric_limits<std::int64_t>::max()) {
+    const Json* value = find(object, key);
+    if (value == nullptr) {
+      if (required) {
+        fail("'" + std::string(key) + "' is missing");
+      }
+      return std::nullopt;
+    }
+    const Step step(*this, key);
+    if (!value->is_number_unsigned() || value->get<std::uint64_t>() > maximum) {
+      fail(value->dump().substr(0, 40) + " is not a whole number from 0 to " + std::to_string(maximum));
+    }
+    return value->get<std::uint64_t>();
+  }
+
+  void reference_value(const Json& value, const char* target) {
+    const Json* array = find(root_, target);
+    const std::size_t count = array != nullptr && array->is_array() ? array->size() : 0;
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= count) {
+      fail(value.dump().substr(0, 40) + " is not an index into the " + std::to_string(count) + " " + target);
+    }
+  }
+  void reference(const Json& object, const char* key, const char* target, bool required = false) {
+    if (const Json* value = find(object, key)) {
+      const Step step(*this, key);
+      reference_value(*value, target);
+    } else if (required) {
+      fail("'" + std::string(key) + "' is missing");
+    }
+  }
+  void references(const Json& object, const char* key, const char* target) {
+    const Json* array = find(object, key);
+    if (array == nullptr) {
+      return;
+    }
+    if (!array->is_array()) {
+      const Step step(*this, key);
+      fail("is no JSON array");
+    }
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const Step step(*this, key, static_cast<std::int64_t>(i));
+      reference_value((*array)[i], target);
+    }
+  }
+  void reference_map(const Json& parent, const char* key, const char* target, bool required = false) {
+    const Json* map = object(parent, key);
+    if (map == nullptr) {
+      if (required) {
+        fail("'" + std::string(key) + "' is missing");
+      }
+      return;
+    }
+    const Step step(*this, key);
+    for (const auto& [name, value] : map->items()) {
+      const Step attribute(*this, name);
+      reference_value(value, target);
+    }
+  }
+
+  void number(const Json& object, const char* key, bool required = false) {
+    const Json* value = find(object, key);
+    if ((value == nullptr && required) || (value != nullptr && !value->is_number())) {
+      const Step step(*this, key);
+      fail(value == nullptr ? "is missing" : "is no number");
+    }
+  }
+  void numbers(const Json& object, const char* key, std::size_t count) {
+    const Json* array = find(object, key);
+    if (array == nullptr) {
+      return;
+    }
+    if (!array->is_array() || array->size() != count ||
+        !std::all_of(array->begin(), array->end(), [](const Json& value) { return value.is_number(); })) {
+      const Step step(*this, key);
+      fail("is no array of " + std::to_string(count) + " numbers");
+    }
+  }
+  void text(const Json& object, const char* key, bool required = false) {
+    const Json* value = find(object, key);
+    if ((value == nullptr && required) || (value != nullptr && !value->is_string())) {
+      const Step step(*this, key);
+      fail(value == nullptr ? "is missing" : "is no text");
+    }
+  }
+
+ private:
+  std::string path_;
+  const Json& root_;
+  std::vector<std::pair<std::string_view, std::int64_t>> steps_;
+};
+
+using Step = Walker::Step;
+
+std::string remedy_for_extension(const std::string& name) {
+  if (name == "EXT_meshopt_compression" || name == "KHR_draco_mesh_compression") {
+    return "write the file without compression, for example with gltf-transform copy";
+  }
+  if (name == "KHR_materials_pbrSpecularGlossiness") {
+    return "convert its materials, for example with gltf-transform metalrough";
+  }
+  return "export the file without it";
+}
+
+void check_asset(Walker& walker, const Json& root, const std::string& path) {
+  const Json* asset = walker.object(root, "asset");
+  if (asset == nullptr) {
+    throw Error(ErrorKind::input, path, "'asset' is missing, so this is no glTF 2.0 file");
+  }
+  const Step step(walker, "asset");
+  walker.text(*asset, "version", true);
+  walker.text(*asset, "minVersion");
+  const auto version = (*asset)["version"].get<std::string>();
+  const auto minimum = asset->value("minVersion", std::string("2.0"));
+  if (!version.starts_with("2.") || minimum != "2.0") {
+    walker.fail("glTF version " + (version.starts_with("2.") ? minimum : version) + " cannot be read", "export as 2.0");
+  }
+  const auto& known = known_gltf_extensions();
+  for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+    const Json* list = walker.find(root, key);
+    if (list == nullptr) {
+      continue;
+    }
+    if (!list->is_array() ||
+        !std::all_of(list->begin(), list->end(), [](const Json& value) { return value.is_string(); })) {
+      throw Error(ErrorKind::input, path + ": " + key, "is no array of names");
+    }
+    for (const Json& item : *list) {
+      const auto name = item.get<std::string>();
+      if (std::string_view(key) == "extensionsRequired" && std::find(known.begin(), known.end(), name) == known.end()) {
+        throw Error(ErrorKind::input, path, "requires the extension " + name + ", which is not supported",
+                    remedy_for_extension(name));
+      }
+    }
+  }
+}
+
+void check_accessors(Walker& walker, const Json& root) {
+  constexpr std::uint64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
+  walker.each_object(root, "bufferViews", [&](const Json& view) {
+    walker.reference(view, "buffer", "buffers", true);
+    walker.whole(view, "byteOffset");
+    walker.whole(view, "byteLength", true);
+    walker.whole(view, "byteStride", false, 252);
+  });
+  walker.each_object(root, "accessors", [&](const Json& accessor) {
+    walker.reference(accessor, "bufferView", "bufferViews");
+    walker.whole(accessor, "byteOffset");
+    walker.whole(accessor, "count", true, std::numeric_limits<std::uint32_t>::max());
+    walker.text(accessor, "type", true);
+    const auto component = walker.whole(accessor, "componentType", true);
+    if (component < 5120U || component > 5126U || component == 5124U) {
+      walker.fail("componentType " + std::to_string(*component) + " does not exist");
+    }
+    if (const Json* sparse = walker.object(accessor, "sparse")) {
+      const Step step(walker, "sparse");
+      walker.whole(*sparse, "count", true, kMaxIndex);
+      for (const char* part : {"indices", "values"}) {
+        const Json* object = walker.object(*sparse, part);
+        if (object == nullptr) {
+          walker.fail("'" + std::string(part) + "' is missing");
+        }
+        const Step inner(walker, part);
+        walker.reference(*object, "bufferView", "bufferViews", true);
+        walker.whole(*object, "byteOffset", false, kMaxIndex);
+        walker.whole(*object, "componentType", std::string_view(part) == "indices", kMaxIndex);
+      }
+    }
+  });
+}
+
+void check_meshes(Walker& walker, const Json& root) {
+  walker.each_object(root, "meshes", [&](const Json& mesh) {
+    walker.text(mesh, "name");
+    walker.each_object(mesh, "primitives", [&](const Json& primitive) {
+      walker.reference_map(primitive, "attributes", "accessors", true);
+      walker.reference(primitive, "indices", "accessors");
+      walker.reference(primitive, "material", "materials");
+      walker.whole(primitive, "mode", false, 6);
+      walker.each_object(primitive, "targets", [](const Json&) {});
+    });
+  });
+}
+
+void check_texture_info(Walker& walker, const Json& parent, const char* key) {
+  const Json* info = walker.object(parent, key);
+  if (info == nullptr) {
+    return;
+  }
+  const Step step(walker, key);
+  walker.reference(*info, "index", "textures", true);
+  walker.whole(*info, "texCoord", false, 255);
+  walker.number(*info, "scale");
+  if (const Json* extensions = walker.object(*info, "extensions")) {
+    if (const Json* transform = walker.object(*extensions, "KHR_texture_transform")) {
+      const Step inner(walker, "extensions.KHR_texture_transform");
+      walker.numbers(*transform, "offset", 2);
+      walker.numbers(*transform, "scale", 2);
+      walker.number(*transform, "rotation");
+      walker.whole(*transform, "texCoord", false, 255);
+    }
+  }
+}
+
+void check_materials(Walker& walker, const Json& root) {
+  walker.each_object(root, "materials", [&](const Json& material) {
+    walker.text(material, "name");
+    walker.text(material, "alphaMode");
+    walker.number(material, "alphaCutoff");
+    walker.numbers(material, "emissiveFactor", 3);
+    check_texture_info(walker, material, "normalTexture");
+    check_texture_info(walker, material, "emissiveTexture");
+    if (const Json* pbr = walker.object(material, "pbrMetallicRoughness")) {
+      const Step step(walker, "pbrMetallicRoughness");
+      walker.numbers(*pbr, "baseColorFactor", 4);
+      walker.number(*pbr, "metallicFactor");
+      walker.number(*pbr, "roughnessFactor");
+      check_texture_info(walker, *pbr, "baseColorTexture");
+      check_texture_info(walker, *pbr, "metallicRoughnessTexture");
+    }
+    if (const Json* extensions = walker.object(material, "extensions")) {
+      if (const Json* strength = walker.object(*extensions, "KHR_materials_emissive_strength")) {
+        const Step step(walker, "extensions.KHR_materials_emissive_strength");
+        walker.number(*strength, "emissiveStrength");
+      }
+    }
+  });
+  walker.each_object(root, "textures", [&](const Json& texture) {
+    walker.reference(texture, "source", "images");
+    walker.reference(texture, "sampler", "samplers");
+  });
+  walker.each_object(root, "samplers", [&](const Json& sampler) {
+    for (const char* key : {"magFilter", "minFilter", "wrapS", "wrapT"}) {
+      walker.whole(sampler, key, false, 65535);
+    }
+  });
+}
+
+std::size_t light_count(Walker& walker, const Json& root) {
+  const Json* extensions = walker.object(root, "extensions");
+  const Json* lights = extensions != nullptr ? walker.object(*extensions, "KHR_lights_punctual") : nullptr;
+  if (lights == nullptr) {
+    return 0;
+  }
+  const Step step(walker, "extensions.KHR_lights_punctual");
+  std::size_t count = 0;
+  walker.each_object(*lights, "lights", [&](const Json& light) {
+    ++count;
+    walker.text(light, "type", true);
+    const auto type = light["type"].get<std::string>();
+    if (type != "directional" && type != "point" && type != "spot") {
+      walker.fail("'" + type + "' is no kind of light", "use directional, point or spot");
+    }
+    walker.numbers(light, "color", 3);
+    walker.number(light, "intensity");
+    walker.number(light, "range");
+    const Json* spot = walker.object(light, "spot");
+    if (type == "spot" && spot == nullptr) {
+      walker.fail("'spot' is missing");
+    }
+    if (spot != nullptr) {
+      const Step inner(walker, "spot");
+      walker.number(*spot, "innerConeAngle");
+      walker.number(*spot, "outerConeAngle");
+    }
+  });
+  return count;
+}
+
+void check_node_extensions(Walker& walker, const Json& node, std::size_t lights) {
+  const Json* extensions = walker.object(node, "extensions");
+  if (extensions == nullptr) {
+    return;
+  }
+  const Step step(walker, "extensions");
+  if (const Json* light = walker.object(*extensions, "KHR_lights_punctual")) {
+    const Step inner(walker, "KHR_lights_punctual");
+    if (walker.whole(*light, "light", true).value_or(0) >= lights) {
+      walker.fail("'light' is not an index into the " + std::to_string(lights) + " lights");
+    }
+  }
+  if (const Json* instancing = walker.object(*extensions, "EXT_mesh_gpu_instancing")) {
+    const Step inner(walker, "EXT_mesh_gpu_instancing");
+    walker.reference_map(*instancing, "attributes", "accessors", true);
+  }
+}
+
+void check_nodes(Walker& walker, const Json& root) {
+  const std::size_t lights = light_count(walker, root);
+  walker.each_object(root, "nodes", [&](const Json& node) {
+    walker.text(node, "name");
+    walker.reference(node, "mesh", "meshes");
+    walker.reference(node, "camera", "cameras");
+    walker.reference(node, "skin", "skins");
+    walker.references(node, "children", "nodes");
+    walker.numbers(node, "matrix", 16);
+    walker.numbers(node, "translation", 3);
+    walker.numbers(node, "rotation", 4);
+    walker.numbers(node, "scale", 3);
+    check_node_extensions(walker, node, lights);
+  });
+  walker.each_object(root, "scenes", [&](const Json& scene) { walker.references(scene, "nodes", "nodes"); });
+  walker.reference(root, "scene", "scenes");
+  walker.each_object(root, "skins", [&](const Json& skin) { walker.references(skin, "joints", "nodes"); });
+}
+
+void check_cameras_and_animations(Walker& walker, const Json& root) {
+  walker.each_object(root, "cameras", [&](const Json& camera) {
+    walker.text(camera, "name");
+    walker.text(camera, "type", true);
+    const auto type = camera["type"].get<std::string>();
+    if (type != "perspective" && type != "orthographic") {
+      walker.fail("'" + type + "' is no kind of camera", "use perspective or orthographic");
+    }
+    const Json* lens = walker.object(camera, type.c_str());
+    if (lens == nullptr) {
+      walker.fail("'" + type + "' is missing");
+    }
+    const Step step(walker, type);
+    walker.number(*lens, type == "perspective" ? "yfov" : "ymag", true);
+    walker.number(*lens, "znear", true);
+    walker.number(*lens, "zfar", type == "orthographic");
+  });
+  walker.each_object(root, "animations", [&](const Json& animation) {
+    walker.text(animation, "name");
+    std::size_t samplers = 0;
+    walker.each_object(animation, "samplers", [&](const Json& sampler) {
+      ++samplers;
+      walker.reference(sampler, "input", "accessors", true);
+      walker.reference(sampler, "output", "accessors", true);
+      walker.text(sampler, "interpolation");
+    });
+    walker.each_object(animation, "channels", [&](const Json& channel) {
+      if (walker.whole(channel, "sampler", true).value_or(0) >= samplers) {
+        walker.fail("'sampler' is not an index into the " + std::to_string(samplers) + " samplers");
+      }
+      if (const Json* target = walker.object(channel, "target")) {
+        const Step step(walker, "target");
+        walker.reference(*target, "node", "nodes");
+        walker.text(*target, "path", true);
+      } else {
+        walker.fail("'target' is missing");
+      }
+    });
+  });
+}
+
+// What the parser must not load itself: it wants buffers of the exact size, decodes pictures one by one and refuses
+// empty ones. It gets a byte in place of each.
+void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
+  walker.each_object(root, "buffers", [&](const Json& buffer) {
+    walker.text(buffer, "uri");
+    GltfBufferSource source;
+    source.byte_length = walker.whole(buffer, "byteLength", true).value_or(0);
+    source.uri = buffer.value("uri", std::string());
+    checked.buffers.push_back(std::move(source));
+  });
+  walker.each_object(root, "images", [&](const Json& image) {
+    walker.text(image, "name");
+    walker.text(image, "uri");
+    walker.reference(image, "bufferView", "bufferViews");
+    GltfImageSource source;
+    source.name = image.value("name", std::string());
+    source.uri = image.value("uri", std::string());
+    source.buffer_view = image.value("bufferView", -1);
+    checked.images.push_back(std::move(source));
+  });
+  for (std::size_t i = 0; i < checked.buffers.size(); ++i) {
+    root["buffers"][i] = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+  }
+  for (std::size_t i = 0; i < checked.images.size(); ++i) {
+    root["images"][i] = {{"uri", "data:image/png;base64,AA=="}};
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& known_gltf_extensions() {
+  static const std::vector<std::string> kKnown{
+      "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_emissive_strength",
+      "KHR_materials_unlit",   "KHR_lights_punctual",   "EXT_mesh_gpu_instancing"};
+  return kKnown;
+}
+
+CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text) {
+  if (is_nested_too_deep(json_text)) {
+    throw Error(ErrorKind::input, path, "the JSON is nested more than " + std::to_string(kMaxJsonDepth) + " deep");
+  }
+  Json root;
+  try {
+    root = Json::parse(json_text);
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::input, path, "is not valid JSON (" + std::string(error.what()) + ")",
+                "is it a .gltf or .glb file, complete?");
+  }
+  if (!root.is_object()) {
+    throw Error(ErrorKind::input, path, "is not a glTF file: the JSON is no object");
+  }
+  Walker walker(path, root);
+  check_asset(walker, root, path);
+  check_accessors(walker, root);
+  check_meshes(walker, root);
+  check_materials(walker, root);
+  check_nodes(walker, root);
+  check_cameras_and_animations(walker, root);
+  CheckedGltf checked;
+  take_binary_sources(walker, root, checked);
+  checked.json = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return checked;
+}
+
+}  // namespace gazetrace

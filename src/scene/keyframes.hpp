@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keyframe tracks of glTF 2.0 (section 3.11 and appendix C), evaluated in double.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "gazetrace/camera.hpp"
+
+namespace gazetrace {
+
+enum class KeyInterpolation : std::uint8_t { step, linear, cubic_spline };
+
+// Vectors (w unused) or quaternions over time. Times rise strictly. With cubic_spline there are
+// three values a key: in-tangent, value, out-tangent (tangents per second).
+struct KeyTrack {
+  KeyInterpolation interpolation = KeyInterpolation::linear;
+  std::vector<std::int64_t> times_ns;
+  std::vector<Vec4d> values;
+};
+
+// Before the first and after the last key the value holds.
+Vec3d vector_at(const KeyTrack& track, std::int64_t t_ns);
+Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns);  // linear: slerp; always of unit length
+
+// A node on the way from the root to a camera.
+struct AnimatedNode {
+  bool has_matrix = false;
+  Affine matrix;
+  Vec3d translation{0, 0, 0}, scale{1, 1, 1};
+  Quatd rotation;
+  std::optional<KeyTrack> translation_track, rotation_track, scale_track;
+};
+
+// The last node of the chain, looking along its -z.
+CameraPose pose_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);
+
+}  // namespace gazetrace

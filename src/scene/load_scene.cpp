@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a file to a Scene: read, check, parse, convert.
+#include <algorithm>
+#include <utility>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/scene.hpp"
+#include "scene/gltf_accessor.hpp"
+#include "scene/gltf_file.hpp"
+#include "scene/gltf_material.hpp"
+#include "scene/gltf_mesh.hpp"
+#include "scene/gltf_node.hpp"
+
+namespace gazetrace {
+namespace {
+
+// The bytes of all buffers; those not in the .glb itself are owned by `storage`.
+std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
+                                                        const std::vector<GltfBufferSource>& sources,
+                                                        std::vector<std::vector<std::uint8_t>>& storage) {
+  std::vector<std::span<const std::uint8_t>> buffers;
+  storage.reserve(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const GltfBufferSource& source = sources[i];
+    const std::string place = file.path + ": buffers[" + std::to_string(i) + "]";
+    std::span<const std::uint8_t> bytes;
+    if (!source.uri.empty()) {
+      storage.push_back(is_data_uri(source.uri) ? decode_data_uri(source.uri, place)
+                                                : read_whole_file(resolve_uri(file.path, source.uri, place), place));
+      bytes = storage.back();
+    } else if (i == 0 && file.is_binary) {
+      bytes = file.bin_chunk;
+    } else {
+      buffers.emplace_back();  // no data: an error where something reads from it
+      continue;
+    }
+    if (bytes.size() < source.byte_length) {
+      throw Error(ErrorKind::input, place,
+                  "byteLength says " + std::to_string(source.byte_length) + ", there are " +
+                      std::to_string(bytes.size()) + " bytes",
+                  "the file is incomplete; copy or export it again");
+    }
+    buffers.push_back(bytes.first(source.byte_length));
+  }
+  return buffers;
+}
+
+void list_extensions(const GltfDocument& document, Scene& scene) {
+  const auto& known = known_gltf_extensions();
+  for (const std::string& name : document.extensions_used) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      scene.ignored.push_back("extension " + name);
+      scene.warnings.push_back("the scene uses " + name + ", which is not supported and is left out");
+    }
+  }
+}
+
+void list_unshown(const GltfDocument& document, Scene& scene) {
+  if (document.skin_count > 0) {
+    scene.ignored.push_back(std::to_string(document.skin_count) + " skins");
+    scene.warnings.push_back("the scene has skins; their meshes are shown at rest");
+  }
+  const bool morphs = std::any_of(document.meshes.begin(), document.meshes.end(), [](const GltfMesh& mesh) {
+    return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                       [](const GltfPrimitive& primitive) { return primitive.has_morph_targets; });
+  });
+  if (morphs) {
+    scene.ignored.emplace_back("morph targets");
+    scene.warnings.emplace_back("the scene has morph targets; their meshes are shown at rest");
+  }
+  if (document.scene_count > 1) {
+    scene.ignored.push_back(std::to_string(document.scene_count - 1) + " scenes besides the default one");
+    scene.warnings.emplace_back("the file holds several scenes; the default one is shown");
+  }
+}
+
+// Index of the material of primitives that name none; appended when one needs it, or when there is no other.
+std::int32_t default_material(const GltfDocument& document, std::vector<Material>& materials) {
+  bool needed = materials.empty();
+  for (const GltfMesh& mesh : document.meshes) {
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      needed = needed || primitive.material < 0;
+    }
+  }
+  if (needed) {
+    materials.emplace_back().name = "glTF default";
+  }
+  return static_cast<std::int32_t>(materials.size()) - 1;
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const SceneReadOptions& options) {
+  const GltfFile file = read_gltf_file(path);
+  const CheckedGltf checked = check_gltf_json(path, file.json);
+  GltfDocument document = parse_gltf(path, checked);
+  check_gltf_ranges(document, checked.buffers);
+  std::vector<std::vector<std::uint8_t>> storage;
+  document.buffers = load_buffers(file, checked.buffers, storage);
+
+  Scene scene;
+  scene.source = path;
+  scene.extensions_used = document.extensions_used;
+  list_extensions(document, scene);
+  list_unshown(document, scene);
+
+  TextureTable textures(document);
+  scene.materials = make_materials(document, textures, scene.warnings);
+  const std::int32_t fallback = default_material(document, scene.materials);
+  scene.textures = textures.load(options.threads, scene.warnings);
+
+  MeshResult meshes = make_meshes(document, scene.materials, fallback, options.threads);
+  scene.meshes = std::move(meshes.meshes);
+  append(scene.ignored, meshes.ignored);
+  append(scene.warnings, meshes.warnings);
+
+  std::vector<int> parents;
+  const std::vector<WorldNode> nodes = world_nodes(document, parents);
+  scene.instances = make_instances(document, nodes, scene.meshes, scene.warnings);
+  scene.lights = make_lights(document, nodes, scene.warnings);
+  scene.cameras = make_cameras(document, nodes, parents, scene.ignored, scene.warnings);
+  for (std::size_t i = 0; i < document.animations.size(); ++i) {
+    scene.animations.push_back(animation_name(document, i));
+  }
+  return scene;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/texture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace gazetrace {
+namespace {
+
+// A texel while levels are made. Colour: linear RGB times weight, weight; else the stored values, 0..1.
+using Texel = Vec4f;
+
+// Keeps a wholly transparent area's own colour: its texels weigh next to nothing against any visible one.
+constexpr float kLeastWeight = 1.0F / 65536.0F;
+
+float srgb_to_linear(float encoded) {  // IEC 61966-2-1
+  return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+float linear_to_srgb(float linear) {
+  return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+}
+
+struct SrgbTables {
+  static constexpr std::size_t kEncodeSteps = 1U << 14U;
+  std::array<float, 256> decode{};
+  std::array<std::uint8_t, kEncodeSteps + 1> encode{};
+  SrgbTables() {
+    for (std::size_t i = 0; i < decode.size(); ++i) {
+      decode[i] = srgb_to_linear(static_cast<float>(i) / 255.0F);
+    }
+    for (std::size_t i = 0; i < encode.size(); ++i) {
+      const float encoded = linear_to_srgb(static_cast<float>(i) / static_cast<float>(kEncodeSteps));
+      encode[i] = static_cast<std::uint8_t>(encoded * 255.0F + 0.5F);
+    }
+  }
+};
+const SrgbTables& srgb_tables() {
+  static const SrgbTables tables;
+  return tables;
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 1.0F) * 255.0F + 0.5F);
+}
+
+Texel decode_texel(const std::uint8_t* p, TextureUse use, const SrgbTables& tables) {
+  if (use == TextureUse::color) {
+    const float weight = std::max(static_cast<float>(p[3]) / 255.0F, kLeastWeight);
+    return {tables.decode[p[0]] * weight, tables.decode[p[1]] * weight, tables.decode[p[2]] * weight, weight};
+  }
+  constexpr float kScale = 1.0F / 255.0F;
+  return {static_cast<float>(p[0]) * kScale, static_cast<float>(p[1]) * kScale, static_cast<float>(p[2]) * kScale,
+          static_cast<float>(p[3]) * kScale};
+}
+
+void encode_texel(const Texel& texel, TextureUse use, const SrgbTables& tables, std::uint8_t* p) {
+  if (use == TextureUse::color) {
+    const float scale = static_cast<float>(SrgbTables::kEncodeSteps) / texel.w;
+    const auto encode = [&](float weighted) {
+      const auto step = static_cast<std::size_t>(weighted * scale + 0.5F);
+      return tables.encode[std::min(step, SrgbTables::kEncodeSteps)];
+    };
+    p[0] = encode(texel.x);
+    p[1] = encode(texel.y);
+    p[2] = encode(texel.z);
+    p[3] = texel.w <= kLeastWeight ? std::uint8_t{0} : to_byte(texel.w);
+    return;
+  }
+  Vec3f v{texel.x, texel.y, texel.z};
+  if (use == TextureUse::normal) {
+    const Vec3f signed_v = v * 2.0F - Vec3f{1, 1, 1};
+    const float len = length(signed_v);
+    if (len > 1e-6F) {
+      v = (signed_v / len + Vec3f{1, 1, 1}) * 0.5F;
+    }
+  }
+  p[0] = to_byte(v.x);
+  p[1] = to_byte(v.y);
+  p[2] = to_byte(v.z);
+  p[3] = to_byte(texel.w);
+}
+
+// The texels of the level above that one texel of the level below covers: up to three, since sizes halve rounded down.
+struct Taps {
+  int first = 0, count = 1;
+  std::array<float, 3> weights{1, 0, 0};
+};
+
+std::vector<Taps> box_taps(int from, int to) {
+  std::vector<Taps> all(static_cast<std::size_t>(to));
+  const double width = static_cast<double>(from) / to;
+  for (int i = 0; i < to; ++i) {
+    Taps& taps = all[static_cast<std::size_t>(i)];
+    const double begin = i * width;
+    const double end = (i + 1) * width;
+    taps.first = static_cast<int>(begin);
+    taps.count = std::min({3, static_cast<int>(std::ceil(end - 1e-9)) - taps.first, from - taps.first});
+    for (int k = 0; k < taps.count; ++k) {
+      const double overlap = std::min<double>(end, taps.first + k + 1) - std::max<double>(begin, taps.first + k);
+      taps.weights[static_cast<std::size_t>(k)] = static_cast<float>(overlap / width);
+    }
+  }
+  return all;
+}
+
+// One level from the one above, which `read(x, y)` gives texel by texel.
+template <class Read>
+std::vector<Texel> halved(int width, int height, int half_width, int half_height, Read read) {
+  const std::vector<Taps> columns = box_taps(width, half_width);
+  const std::vector<Taps> rows = box_taps(height, half_height);
+  std::vector<Texel> texels;
+  texels.reserve(columns.size() * rows.size());
+  for (const Taps& row : rows) {
+    for (const Taps& column : columns) {
+      Texel sum{0, 0, 0, 0};
+      for (int j = 0; j < row.count; ++j) {
+        for (int i = 0; i < column.count; ++i) {
+          const float weight = row.weights[static_cast<std::size_t>(j)] * column.weights[static_cast<std::size_t>(i)];
+          const Texel texel = read(column.first + i, row.first + j);
+          sum.x += weight * texel.x;
+          sum.y += weight * texel.y;
+          sum.z += weight * texel.z;
+          sum.w += weight * texel.w;
+        }
+      }
+      texels.push_back(sum);
+    }
+  }
+  return texels;
+}
+
+}  // namespace
+
+Texture make_texture(ImageRgba8&& image, TextureUse use) {
+  const SrgbTables& tables = srgb_tables();
+  Texture texture;
+  texture.srgb = use == TextureUse::color;
+  texture.has_alpha = image.has_alpha;
+  texture.levels.push_back({image.width_px, image.height_px, std::move(image.rgba)});
+  std::vector<Texel> above;
+  while (texture.levels.back().width_px > 1 || texture.levels.back().height_px > 1) {
+    const Texture::Level& last = texture.levels.back();
+    const int width = last.width_px;
+    Texture::Level level;
+    level.width_px = std::max(1, width / 2);
+    level.height_px = std::max(1, last.height_px / 2);
+    const auto at = [width](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
+    std::vector<Texel> texels =
+        texture.levels.size() == 1
+            ? halved(width, last.height_px, level.width_px, level.height_px,
+                     [&](int x, int y) { return decode_texel(&last.rgba[4 * at(x, y)], use, tables); })
+            : halved(width, last.height_px, level.width_px, level.height_px,
+                     [&](int x, int y) { return above[at(x, y)]; });
+    level.rgba.resize(texels.size() * 4);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      encode_texel(texels[i], use, tables, &level.rgba[4 * i]);
+    }
+    texture.levels.push_back(std::move(level));
+    above = std::move(texels);
+  }
+  return texture;
+}
+
+}  // namespace gazetrace
