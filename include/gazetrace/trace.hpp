@@ -25,6 +25,9 @@ struct TraceSettings {
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
+  // Ray cones open by this angle (times 1 / sqrt(pi pdf): once for a diffuse bounce, hardly for a mirror), so that hits
+  // after a bounce read coarser texture levels. 0: full resolution everywhere, slower.
+  float bounce_cone_rad = 0.15F;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
   bool guides = false;                   // collect albedo, normal and depth of the first hit

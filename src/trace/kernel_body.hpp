@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+// The batch path tracer. A batch goes through generate -> intersect -> shade -> shadow, bounce by bounce; each stage
+// reads and writes packed arrays in order. The estimator at every scattering event, with f the BSDF:
+//   L += throughput * f cos(wi) * L_light / p_light * w_light      (one light sample, a shadow ray)
+//   throughput *= f cos(wi) / p_bsdf                                (one BSDF sample, the next ray), and where it ends:
+//   L += throughput * L_e * w_bsdf                                  w = power heuristic, exponent 2 (Veach 1997, 9.2)
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/hash.hpp"
+#include "trace/surface_hit.hpp"
+
+namespace gazetrace {
+
+// From the ratio of the densities: never squares a density, so nothing overflows before the result is 0 or 1.
+inline float power_heuristic(float chosen, float other) {
+  const float ratio = other / chosen;
+  return 1.0F / (1.0F + ratio * ratio);
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+class PathKernel {
+ public:
+  static void run(const FrameContext& frame, Workspace& work, int count, KernelCounts& counts) {
+    PathKernel(frame, work, counts).trace(count);
+  }
+
+ private:
+  PathKernel(const FrameContext& frame, Workspace& work, KernelCounts& counts)
+      : frame_(frame), work_(work), counts_(counts) {}
+
+  void trace(int count) {
+    start(count);
+    int alive = count;
+    const int last = frame_.settings.max_bounces;
+    for (int vertex = 0; alive > 0; ++vertex) {
+      RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
+      (vertex == 0 ? counts_.rays_primary : counts_.rays_bounce) += static_cast<std::uint64_t>(alive);
+      if (vertex == last && vertex > 0 && !frame_.last_ray_needs_surface) {
+        see_sky(vertex, alive);
+        return;
+      }
+      const RayShape shape = vertex == 0 ? RayShape::coherent_packet : RayShape::single;
+      counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
+      shadow_count_ = 0;
+      alive = shade(vertex, alive);
+      trace_shadows(vertex);
+    }
+  }
+
+  void start(int count) {
+    RayBatch& rays = work_.rays[0];
+    PathBatch& paths = work_.paths[0];
+    const CameraRays& camera = *frame_.camera;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const CameraRays::Ray ray = camera.ray(work_.samples.x[i], work_.samples.y[i]);
+      set_ray(rays, i, ray.origin, ray.direction, ray.tnear, ray.tfar);
+      rays.alpha_key[i] = alpha_key(i, 0);
+      paths.slot[i] = static_cast<std::uint32_t>(i);
+      paths.r[i] = 1;
+      paths.g[i] = 1;
+      paths.b[i] = 1;
+      paths.pdf[i] = 0;
+      paths.cone_width[i] = camera.cone_width();
+      paths.cone_spread[i] = ray.cone_spread;
+      work_.radiance.r[i] = 0;
+      work_.radiance.g[i] = 0;
+      work_.radiance.b[i] = 0;
+      work_.radiance.rejected[i] = 0;
+    }
+    if (frame_.settings.guides) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        work_.guides.hit[i] = 0;
+      }
+    }
+  }
+
+  static void set_ray(RayBatch& rays, std::size_t i, const Vec3f& origin, const Vec3f& direction, float tnear,
+                      float tfar) {
+    rays.ox[i] = origin.x;
+    rays.oy[i] = origin.y;
+    rays.oz[i] = origin.z;
+    rays.dx[i] = direction.x;
+    rays.dy[i] = direction.y;
+    rays.dz[i] = direction.z;
+    rays.tnear[i] = tnear;
+    rays.tfar[i] = tfar;
+  }
+
+  // `segment`: twice the vertex, plus one for shadow rays.
+  [[nodiscard]] std::uint32_t alpha_key(std::size_t slot, std::uint32_t segment) const {
+    const std::uint64_t key = work_.samples.key[slot].value;
+    return hash32(static_cast<std::uint32_t>(key >> 32U) ^
+                  hash32(work_.samples.sample[slot] ^ hash32(segment + 0x9e3779b9U)));
+  }
+
+  void add(std::size_t slot, const Vec3f& radiance) {
+    work_.radiance.r[slot] += radiance.x;
+    work_.radiance.g[slot] += radiance.y;
+    work_.radiance.b[slot] += radiance.z;
+  }
+
+  // What a BSDF-sampled ray may count of light it found that light sampling could have found too.
+  [[nodiscard]] float weight_of_found_light(int vertex, float pdf_bsdf, float pdf_light) const {
+    if (vertex == 0) {
+      return 1.0F;
+    }
+    switch (frame_.settings.light_sampling) {
+      case LightSampling::light_only:
+        return 0.0F;
+      case LightSampling::bsdf_only:
+        return 1.0F;
+      case LightSampling::mis:
+        break;
+    }
+    return power_heuristic(pdf_bsdf, pdf_light);
+  }
+
+  void add_sky(int vertex, const PathBatch& paths, std::size_t k, const Vec3f& direction) {
+    const LightSampler::EnvironmentHit sky = frame_.lights->environment(direction);
+    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    add(paths.slot[k], throughput * sky.radiance * weight_of_found_light(vertex, paths.pdf[k], sky.pdf));
+  }
+
+  // The ray after the last scattering event where only the sky can be found: visibility is enough.
+  void see_sky(int vertex, int count) {
+    const RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
+    const PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
+    counts_.rejected +=
+        static_cast<std::uint64_t>(frame_.scene->rays->occluded(rays, count, RayShape::single, work_.occluded.data));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      if (work_.occluded[k] == 0) {
+        add_sky(vertex, paths, k, {rays.dx[k], rays.dy[k], rays.dz[k]});
+      } else if (work_.occluded[k] == 2) {
+        work_.radiance.rejected[paths.slot[k]] = 1;
+      }
+    }
+  }
+
+  int shade(int vertex, int count) {
+    const auto from = static_cast<std::size_t>(vertex & 1);
+    const RayBatch& rays = work_.rays[from];
+    const PathBatch& paths = work_.paths[from];
+    next_count_ = 0;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+      const std::uint32_t geometry = work_.hits.geometry[k];
+      if (geometry == kRejected) {
+        work_.radiance.rejected[paths.slot[k]] = 1;
+        continue;
+      }
+      const Vec3f direction{rays.dx[k], rays.dy[k], rays.dz[k]};
+      if (geometry == kNoId) {
+        add_sky(vertex, paths, k, direction);
+        continue;
+      }
+      shade_hit(vertex, k, direction, paths);
+    }
+    return static_cast<int>(next_count_);
+  }
+
+  void shade_hit(int vertex, std::size_t k, const Vec3f& direction, const PathBatch& paths) {
+    const SurfaceHit hit =
+        resolve_hit<kFeatures>(*frame_.scene, work_.hits, k, direction, paths.cone_width[k], paths.cone_spread[k]);
+    if (!hit.good) {
+      return;
+    }
+    const std::size_t slot = paths.slot[k];
+    Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    if (vertex == 0 && frame_.settings.guides) {
+      record_guides(slot, hit, direction, work_.hits.t[k]);
+    }
+    if constexpr (kFeatures.emission) {
+      if (hit.material->unlit) {
+        add(slot, throughput * hit.surface.base_color);
+        return;
+      }
+      if (hit.emission.x + hit.emission.y + hit.emission.z > 0) {
+        add_emission(vertex, k, slot, throughput, hit, direction, paths.pdf[k]);
+      }
+    }
+    if (vertex == frame_.settings.max_bounces) {
+      return;
+    }
+    scatter(vertex, k, slot, throughput, hit, direction, paths);
+  }
+
+  void add_emission(int vertex, std::size_t k, std::size_t slot, const Vec3f& throughput, const SurfaceHit& hit,
+                    const Vec3f& direction, float pdf_bsdf) {
+    float weight = 1;
+    if (vertex > 0) {
+      float pdf_light = 0;
+      const std::uint32_t emitter = emitter_of(k);
+      if (emitter != kNoEmitter) {
+        // The geometric normal is turned towards the ray; the sampler wants the sign of the front face.
+        const float cosine = -dot(hit.geometric, direction) * (hit.front ? 1.0F : -1.0F);
+        pdf_light = frame_.lights->pdf_triangle(emitter, cosine, work_.hits.t[k] * work_.hits.t[k]);
+      }
+      weight = weight_of_found_light(vertex, pdf_bsdf, pdf_light);
+    }
+    add(slot, throughput * hit.emission * weight);
+  }
+
+  [[nodiscard]] std::uint32_t emitter_of(std::size_t k) const {
+    const RenderScene& scene = *frame_.scene;
+    std::uint32_t record = work_.hits.geometry[k];
+    std::uint32_t scene_instance = kNoId;
+    if constexpr (kFeatures.instances) {
+      if (work_.hits.instance[k] != kNoId) {
+        const ShadingInstance& instance = scene.instances[work_.hits.instance[k] - scene.first_instance_id];
+        record += instance.first_geometry;
+        scene_instance = instance.scene_instance;
+      }
+    }
+    const GeometryRecord& geometry = scene.geometries[record];
+    scene_instance = scene_instance == kNoId ? geometry.scene_instance : scene_instance;
+    return frame_.lights->emitter_of(scene_instance, geometry.scene_geometry, work_.hits.primitive[k]);
+  }
+
+  void record_guides(std::size_t slot, const SurfaceHit& hit, const Vec3f& direction, float t) {
+    GuideBatch& guides = work_.guides;
+    guides.albedo_r[slot] = hit.surface.base_color.x;
+    guides.albedo_g[slot] = hit.surface.base_color.y;
+    guides.albedo_b[slot] = hit.surface.base_color.z;
+    guides.normal_x[slot] = hit.shading.x;
+    guides.normal_y[slot] = hit.shading.y;
+    guides.normal_z[slot] = hit.shading.z;
+    guides.depth[slot] = t * dot(direction, frame_.camera->forward());
+    guides.hit[slot] = 1;
+  }
+
+  void scatter(int vertex, std::size_t k, std::size_t slot, const Vec3f& throughput, const SurfaceHit& hit,
+               const Vec3f& direction, const PathBatch& paths) {
+    const SampleKey key = work_.samples.key[slot];
+    const std::uint32_t index = work_.samples.sample[slot];
+    const LocalFrame local(hit.shading);
+    const Bsdf<kDiffuse> bsdf(hit.surface, local.to_local(-direction));
+    const Vec3f origin = hit.position + hit.geometric * hit.offset;
+    const Vec2f select = sample_2d(key, index, dimension_of(vertex, BounceDimension::select));
+    const LightSampling mode = frame_.settings.light_sampling;
+
+    if (frame_.lights->any()) {
+      const Vec2f u = sample_2d(key, index, dimension_of(vertex, BounceDimension::light_uv));
+      const LightSample light = frame_.lights->sample(hit.position, hit.geometric, u, select.x);
+      if (light.valid && (light.delta || mode != LightSampling::bsdf_only)) {
+        const BsdfEval eval = bsdf.evaluate(local.to_local(light.direction));
+        float weight = 1.0F / light.pdf;
+        if (!light.delta && mode == LightSampling::mis) {
+          weight *= power_heuristic(light.pdf, eval.pdf);
+        }
+        Vec3f arriving = throughput * eval.f_cos * (light_radiance(light) * weight);
+        if (arriving.x + arriving.y + arriving.z != 0) {
+          queue_shadow(vertex, slot, origin, hit, light, arriving);
+        }
+      }
+    }
+
+    const int last = frame_.settings.max_bounces;
+    if (vertex + 1 == last && !frame_.last_ray_finds_light) {
+      return;
+    }
+    const Vec2f u = sample_2d(key, index, dimension_of(vertex, BounceDimension::bsdf_uv));
+    const BsdfSample sample = bsdf.sample(u, select.y);
+    if (!sample.valid) {
+      return;
+    }
+    const Vec3f next = fast_normalize(local.to_world(sample.direction));
+    if (dot(next, hit.geometric) <= 0) {
+      return;
+    }
+    Vec3f weight = throughput * sample.weight;
+    if (frame_.settings.russian_roulette && vertex + 1 < last && vertex > 0) {
+      const float survive = std::min(std::max(std::max(weight.x, weight.y), weight.z), 0.95F);
+      if (!(sample_1d(key, index, dimension_of(vertex, BounceDimension::roulette)) < survive)) {
+        return;
+      }
+      weight = weight * (1.0F / survive);
+    }
+    const std::size_t to = static_cast<std::size_t>(vertex + 1) & 1U;
+    RayBatch& out = work_.rays[to];
+    PathBatch& state = work_.paths[to];
+    const std::size_t n = next_count_++;
+    set_ray(out, n, origin, next, 0.0F, std::numeric_limits<float>::infinity());
+    out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));
+    state.slot[n] = static_cast<std::uint32_t>(slot);
+    state.r[n] = weight.x;
+    state.g[n] = weight.y;
+    state.b[n] = weight.z;
+    state.pdf[n] = sample.pdf;
+    state.cone_width[n] = hit.cone_width;
+    state.cone_spread[n] =
+        paths.cone_spread[k] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * sample.pdf);
+  }
+
+  // A light sample on a textured emitter brings its place instead of the texture's value.
+  [[nodiscard]] Vec3f light_radiance(const LightSample& light) const {
+    if constexpr (kFeatures.emission) {
+      if (light.emitter != kNoEmitter) {
+        const EmissiveTriangle& emitter = frame_.lights->triangle(light.emitter);
+        const ShadingMaterial& material = frame_.scene->materials[static_cast<std::size_t>(emitter.material)];
+        if (material.emit.texture != nullptr) {
+          return light.radiance * emitted_texel(emitter, material, light.barycentric);
+        }
+      }
+    }
+    return light.radiance;
+  }
+
+  [[nodiscard]] Vec3f emitted_texel(const EmissiveTriangle& emitter, const ShadingMaterial& material,
+                                    const Vec2f& at) const {
+    const Instance& instance = frame_.source->instances[static_cast<std::size_t>(emitter.instance)];
+    const Geometry& geometry = frame_.source->meshes[static_cast<std::size_t>(instance.mesh)]
+                                   .geometries[static_cast<std::size_t>(emitter.geometry)];
+    const auto& corner = geometry.triangles[static_cast<std::size_t>(emitter.primitive)];
+    const std::vector<Vec2f>& set = material.emit.uv_set == 1 ? geometry.uv1 : geometry.uv0;
+    if (set.size() != geometry.positions.size()) {
+      return {1, 1, 1};
+    }
+    const float w = 1.0F - at.x - at.y;
+    const float x = w * set[corner[0]].x + at.x * set[corner[1]].x + at.y * set[corner[2]].x;
+    const float y = w * set[corner[0]].y + at.x * set[corner[1]].y + at.y * set[corner[2]].y;
+    const auto& m = material.emit.transform;
+    const Vec4f c = read_texture(*material.emit.texture, m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5], 0.0F);
+    return {c.x, c.y, c.z};
+  }
+
+  void queue_shadow(int vertex, std::size_t slot, const Vec3f& origin, const SurfaceHit& hit, const LightSample& light,
+                    const Vec3f& arriving) {
+    ShadowBatch& shadows = work_.shadows;
+    const std::size_t n = shadow_count_++;
+    // Stops short of the light by what rounding may move either end, so that an emitter does not shadow itself.
+    const float tfar = light.distance * (1.0F - 1e-4F) - 2 * hit.offset;
+    set_ray(shadows.rays, n, origin, light.direction, 0.0F, tfar);
+    shadows.rays.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex) + 1U);
+    shadows.slot[n] = static_cast<std::uint32_t>(slot);
+    shadows.r[n] = arriving.x;
+    shadows.g[n] = arriving.y;
+    shadows.b[n] = arriving.z;
+  }
+
+  void trace_shadows(int vertex) {
+    const int count = static_cast<int>(shadow_count_);
+    const ShadowBatch& shadows = work_.shadows;
+    const RayShape shape = vertex == 0 ? RayShape::packet : RayShape::single;
+    counts_.rays_shadow += shadow_count_;
+    counts_.rejected +=
+        static_cast<std::uint64_t>(frame_.scene->rays->occluded(shadows.rays, count, shape, work_.occluded.data));
+    for (std::size_t n = 0; n < shadow_count_; ++n) {
+      if (work_.occluded[n] == 0) {
+        add(shadows.slot[n], {shadows.r[n], shadows.g[n], shadows.b[n]});
+      } else if (work_.occluded[n] == 2) {
+        work_.radiance.rejected[shadows.slot[n]] = 1;
+      }
+    }
+  }
+
+  const FrameContext& frame_;
+  Workspace& work_;
+  KernelCounts& counts_;
+  std::size_t next_count_ = 0, shadow_count_ = 0;
+};
+
+}  // namespace gazetrace

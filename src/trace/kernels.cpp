@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include "trace/kernel_body.hpp"
+
+namespace gazetrace {
+namespace {
+
+template <KernelFeatures kFeatures>
+constexpr NamedKernel named(const char* name) {
+  return {name, kFeatures, PathKernel<kFeatures, DiffuseModel::burley>::run,
+          PathKernel<kFeatures, DiffuseModel::lambert>::run};
+}
+
+constexpr KernelFeatures kPlain{};
+constexpr KernelFeatures kTextured{.textures = true};
+constexpr KernelFeatures kInstanced{.textures = true, .instances = true};
+constexpr KernelFeatures kAll{.textures = true, .instances = true, .emission = true, .extras = true};
+
+constexpr std::array kKernels{named<kPlain>("plain"), named<kTextured>("textured"),
+                              named<kInstanced>("textured, instanced"), named<kAll>("all")};
+
+constexpr bool covers(const KernelFeatures& kernel, const KernelFeatures& scene) {
+  return (kernel.textures || !scene.textures) && (kernel.instances || !scene.instances) &&
+         (kernel.emission || !scene.emission) && (kernel.extras || !scene.extras);
+}
+
+}  // namespace
+
+KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene) {
+  return {.textures = features.textures || features.normal_maps,
+          .instances = !scene.instances.empty(),
+          .emission = features.emissive_triangles || features.unlit,
+          .extras = !scene.extras.empty()};
+}
+
+KernelList kernels() {
+  return {kKernels.data(), kKernels.data() + kKernels.size()};
+}
+
+const NamedKernel& choose_kernel(const KernelFeatures& features, bool all) {
+  for (const NamedKernel& kernel : kKernels) {
+    if (!all && covers(kernel.features, features)) {
+      return kernel;
+    }
+  }
+  return kKernels.back();
+}
+
+}  // namespace gazetrace

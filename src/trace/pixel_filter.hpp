@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where in and around a pixel a sample falls. The filter is sampled, not weighted (filter importance sampling, Ernst et
+// al. 2006): every sample counts 1, whatever the filter.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "gazetrace/math.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+class PixelFilterSampler {
+ public:
+  explicit PixelFilterSampler(PixelFilter filter);
+  // From [0,1)^2 to an offset from the pixel's centre, in pixels.
+  [[nodiscard]] Vec2f offset(float u, float v) const {
+    return box_ ? Vec2f{u - 0.5F, v - 0.5F} : Vec2f{lookup(u), lookup(v)};
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 512;
+  [[nodiscard]] float lookup(float u) const {
+    const float x = u * static_cast<float>(kSteps);
+    const auto i = static_cast<std::size_t>(x);
+    const float f = x - static_cast<float>(i);
+    return inverse_[i] + f * (inverse_[i + 1] - inverse_[i]);
+  }
+  bool box_ = true;
+  std::array<float, kSteps + 2> inverse_{};  // of the filter's distribution function, at equal steps
+};
+
+}  // namespace gazetrace

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays and hits as structures of arrays: what the tracer and the ray library hand each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gazetrace {
+
+// Paths that travel together. All arrays of a batch (about 160 bytes a path with its shadow ray) stay in a 1 MiB L2.
+inline constexpr int kBatchSize = 2048;
+inline constexpr std::uint32_t kNoId = 0xffffffffU;
+
+template <class T>
+struct alignas(64) BatchArray {
+  T data[kBatchSize];
+  T& operator[](std::size_t i) { return data[i]; }
+  const T& operator[](std::size_t i) const { return data[i]; }
+};
+
+struct RayBatch {
+  BatchArray<float> ox, oy, oz, dx, dy, dz;
+  BatchArray<float> tnear, tfar;
+  BatchArray<std::uint32_t> alpha_key;  // hash of (seed, frame, pixel, sample, vertex): the stochastic alpha test
+};
+
+// `instance` is kNoId for triangles of the top scene; `geometry` is then the top scene's id, else the mesh's.
+// A miss has geometry == kNoId.
+struct HitBatch {
+  BatchArray<float> t, u, v;
+  BatchArray<std::uint32_t> primitive, geometry, instance;
+};
+
+}  // namespace gazetrace

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small geometry of a hit: local frames, bent normals, ray origins that leave their surface.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "gazetrace/math.hpp"
+
+namespace gazetrace {
+
+inline Vec3f fast_normalize(const Vec3f& v) {
+  return v * (1.0F / std::sqrt(dot(v, v)));
+}
+
+// Orthonormal frame about a unit normal without a branch (Duff et al., "Building an Orthonormal Basis, Revisited",
+// JCGT 6(1), 2017).
+struct LocalFrame {
+  Vec3f s, t, n;
+  explicit LocalFrame(const Vec3f& normal) : n(normal) {
+    const float sign = std::copysign(1.0F, normal.z);
+    const float a = -1.0F / (sign + normal.z);
+    const float b = normal.x * normal.y * a;
+    s = {1.0F + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
+    t = {b, sign + normal.y * normal.y * a, -normal.y};
+  }
+  [[nodiscard]] Vec3f to_local(const Vec3f& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
+  [[nodiscard]] Vec3f to_world(const Vec3f& v) const { return s * v.x + t * v.y + n * v.z; }
+};
+
+// The shading normal nearest to the given one (in the plane of view and normal) whose mirror direction stays above the
+// geometric surface: no black fringes, no light from behind (Keller et al., "The Iray Light Transport Simulation and
+// Rendering System", 2017, section A.3). All unit, `geometric` on the viewer's side.
+inline Vec3f bend_normal(const Vec3f& shading, const Vec3f& geometric, const Vec3f& view) {
+  const float cosine = dot(shading, view);
+  const Vec3f mirrored = shading * (2.0F * cosine) - view;
+  const float height = dot(mirrored, geometric);
+  // The lowest mirror direction allowed lies as far above the surface as the view may lie low.
+  const float least = std::min(0.01F, 0.5F * dot(view, geometric));
+  if (cosine > 0 && height >= least) {
+    return shading;
+  }
+  const Vec3f raised = fast_normalize(mirrored + geometric * (least - height));
+  const Vec3f bent = raised + view;
+  const float len2 = dot(bent, bent);
+  return len2 > 1e-12F ? bent * (1.0F / std::sqrt(len2)) : geometric;
+}
+
+// Points on a triangle carry rounding errors of a few ulps of its largest coordinate (interpolation, and the ray
+// library's own edge tests); an origin this far along the geometric normal clears them at any scale. The idea of
+// Waechter and Binder, "A Fast and Robust Method for Avoiding Self-Intersection" (Ray Tracing Gems, 2019, chapter 6),
+// with the ulp taken from the triangle instead of the point, so that no absolute constant is left.
+inline constexpr float kOffsetUlps = 0x1p-19F;
+
+}  // namespace gazetrace

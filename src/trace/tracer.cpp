@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// PathTracer: tiles in parallel, batches in order, sums in double.
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <tuple>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "core/stopwatch.hpp"
+#include "gazetrace/trace.hpp"
+#include "trace/kernel.hpp"
+#include "trace/sample_list.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::size_t kReportedBadSamples = 16;
+
+struct TileResult {
+  KernelCounts counts;
+  std::uint64_t samples = 0, non_finite = 0;
+  std::vector<BadSample> bad;  // the first ones in pixel order
+  std::vector<RegionTraceStats> regions;
+};
+
+bool before(const BadSample& a, const BadSample& b) {
+  return std::tie(a.y_px, a.x_px, a.sample, a.what) < std::tie(b.y_px, b.x_px, b.sample, b.what);
+}
+
+void keep_first(std::vector<BadSample>& list, BadSample sample) {
+  list.insert(std::upper_bound(list.begin(), list.end(), sample, before), std::move(sample));
+  if (list.size() > kReportedBadSamples) {
+    list.pop_back();
+  }
+}
+
+// One site at a time: its samples are neighbours in the list, possibly over several batches.
+struct SiteSum {
+  double r = 0, g = 0, b = 0, luminance2 = 0;
+  std::uint32_t count = 0;
+  Vec3d albedo, normal;
+  double depth = 0;
+  std::uint32_t hits = 0;
+};
+
+void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
+  out.sum[site] = {static_cast<float>(sum.r), static_cast<float>(sum.g), static_cast<float>(sum.b)};
+  out.sum_square_luminance[site] = static_cast<float>(sum.luminance2);
+  out.count[site] = sum.count;
+  if (!out.guides.empty()) {
+    out.guides[site] = {to_float(sum.albedo), to_float(sum.normal), static_cast<float>(sum.depth), sum.hits};
+  }
+}
+
+// Workspaces are handed from tile to tile: a thread never waits for memory twice.
+class WorkspacePool {
+ public:
+  std::unique_ptr<Workspace> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        auto workspace = std::move(free_.back());
+        free_.pop_back();
+        return workspace;
+      }
+    }
+    return std::make_unique<Workspace>();
+  }
+  void give(std::unique_ptr<Workspace> workspace) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(workspace));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspace>> free_;
+};
+
+struct SiteRange {
+  std::uint32_t first = 0, count = 0;
+};
+
+// The one site that holds a pixel; an empty range outside the frame.
+SiteRange site_of_pixel(const SamplingMap& map, const PixelIndex& pixel) {
+  if (pixel.x >= map.width_px || pixel.y >= map.height_px) {
+    return {};
+  }
+  const std::uint8_t region = map.region(pixel.x, pixel.y);
+  const int block = map.regions[region].block_px;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const Site& site = map.sites[i];
+    if (site.region == region && site.block_x == pixel.x / block && site.block_y == pixel.y / block) {
+      return {static_cast<std::uint32_t>(i), 1};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+struct PathTracer::Impl {
+  Impl(const Scene& source, const TracerOptions& tracer_options)
+      : scene(&source), options(tracer_options), render_scene(source, tracer_options), lights(source) {}
+
+  const Scene* scene;
+  TracerOptions options;
+  RenderScene render_scene;
+  LightSampler lights;
+
+  void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
+                   const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
+                   SparseFrame& out) const;
+};
+
+void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter,
+                                   std::int32_t frame, const SamplingMap& map, const SiteRange& range, Workspace& work,
+                                   TileResult& tile, SparseFrame& out) const {
+  tile.regions.resize(map.regions.size());
+  SampleList list(map, range.first, range.count, context.settings.seed, frame);
+  SiteSum sum;
+  std::uint32_t current = range.first;
+  std::vector<std::uint64_t> in_region(map.regions.size());
+  for (;;) {
+    const std::int64_t begin_ns = thread_cpu_ns();
+    const int count = list.next(filter, work.samples);
+    if (count == 0) {
+      break;
+    }
+    kernel(context, work, count, tile.counts);
+
+    std::fill(in_region.begin(), in_region.end(), 0);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (work.samples.site[i] != current) {
+        store(sum, current, out);
+        sum = {};
+        current = work.samples.site[i];
+      }
+      ++in_region[map.sites[current].region];
+      ++sum.count;
+      const auto report = [&](const char* what) {
+        keep_first(tile.bad, {frame, work.samples.pixel_x[i], work.samples.pixel_y[i], work.samples.sample[i], what});
+      };
+      if (work.radiance.rejected[i] != 0) {
+        report("rejected ray");
+      }
+      if (!out.guides.empty() && work.guides.hit[i] != 0) {
+        const GuideBatch& g = work.guides;
+        sum.albedo += Vec3d{g.albedo_r[i], g.albedo_g[i], g.albedo_b[i]};
+        sum.normal += Vec3d{g.normal_x[i], g.normal_y[i], g.normal_z[i]};
+        sum.depth += static_cast<double>(g.depth[i]);
+        ++sum.hits;
+      }
+      const float r = work.radiance.r[i];
+      const float g = work.radiance.g[i];
+      const float b = work.radiance.b[i];
+      if (!std::isfinite(r) || !std::isfinite(g) || !std::isfinite(b)) {
+        ++tile.non_finite;
+        report("non-finite radiance");
+        continue;
+      }
+      sum.r += static_cast<double>(r);
+      sum.g += static_cast<double>(g);
+      sum.b += static_cast<double>(b);
+      const double luminance =
+          0.2126 * static_cast<double>(r) + 0.7152 * static_cast<double>(g) + 0.0722 * static_cast<double>(b);
+      sum.luminance2 += luminance * luminance;
+    }
+    const std::int64_t spent_ns = thread_cpu_ns() - begin_ns;
+    for (std::size_t region = 0; region < in_region.size(); ++region) {
+      tile.regions[region].samples += in_region[region];
+      tile.regions[region].cpu_ns += spent_ns * static_cast<std::int64_t>(in_region[region]) / count;
+    }
+    tile.samples += static_cast<std::uint64_t>(count);
+  }
+  if (sum.count > 0) {
+    store(sum, current, out);
+  }
+}
+
+PathTracer::PathTracer(const Scene& scene, const TracerOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options)) {}
+PathTracer::~PathTracer() = default;
+PathTracer::PathTracer(PathTracer&&) noexcept = default;
+PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
+
+SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
+                              const TraceSettings& settings) const {
+  const CameraRays rays(camera, map.height_px);
+  const PixelFilterSampler filter(settings.filter);
+  const SceneFeatures& features = impl_->render_scene.features;
+  const NamedKernel& variant =
+      choose_kernel(kernel_features(features, impl_->render_scene), impl_->options.all_features);
+
+  FrameContext context;
+  context.source = impl_->scene;
+  context.scene = &impl_->render_scene;
+  context.lights = &impl_->lights;
+  context.camera = &rays;
+  context.settings = settings;
+  const bool light_found_by_chance = settings.light_sampling != LightSampling::light_only;
+  context.last_ray_needs_surface = features.unlit || (light_found_by_chance && features.emissive_triangles);
+  context.last_ray_finds_light =
+      context.last_ray_needs_surface || (light_found_by_chance && impl_->scene->environment.present());
+
+  SparseFrame out;
+  out.width_px = map.width_px;
+  out.height_px = map.height_px;
+  out.sum.resize(map.sites.size());
+  out.sum_square_luminance.resize(map.sites.size());
+  out.count.resize(map.sites.size());
+  out.guides.resize(settings.guides ? map.sites.size() : 0);
+  out.stats.kernel = variant.name;
+  out.stats.regions.resize(map.regions.size());
+
+  std::vector<SiteRange> ranges;
+  if (settings.only_pixel) {
+    ranges.push_back(site_of_pixel(map, *settings.only_pixel));
+  } else {
+    for (const MapTile& tile : map.tiles) {
+      ranges.push_back({tile.first_site, tile.site_count});
+    }
+  }
+  std::vector<TileResult> results(ranges.size());
+  WorkspacePool pool;
+  const Kernel kernel = settings.diffuse == DiffuseModel::burley ? variant.burley : variant.lambert;
+  parallel_for(ranges.size(), impl_->options.threads, [&](std::size_t i) {
+    const FlushDenormals flush;
+    auto work = pool.take();
+    impl_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
+    pool.give(std::move(work));
+  });
+
+  TraceStats& stats = out.stats;
+  for (TileResult& tile : results) {
+    stats.samples += tile.samples;
+    stats.rays_primary += tile.counts.rays_primary;
+    stats.rays_bounce += tile.counts.rays_bounce;
+    stats.rays_shadow += tile.counts.rays_shadow;
+    stats.rejected_rays += tile.counts.rejected;
+    stats.non_finite_samples += tile.non_finite;
+    for (BadSample& bad : tile.bad) {
+      keep_first(stats.bad_samples, std::move(bad));
+    }
+    for (std::size_t region = 0; region < tile.regions.size(); ++region) {
+      stats.regions[region].samples += tile.regions[region].samples;
+      stats.regions[region].cpu_ns += tile.regions[region].cpu_ns;
+    }
+  }
+  return out;
+}
+
+TracerMemory PathTracer::memory() const {
+  return {impl_->render_scene.rays->bytes(), impl_->render_scene.build_s};
+}
+
+std::string PathTracer::ray_library() const {
+  return impl_->render_scene.rays->library();
+}
+
+}  // namespace gazetrace
