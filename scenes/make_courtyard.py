@@ -79,7 +79,7 @@ def place_building(out, material):
     out.node("stone trim", mesh=out.mesh("stone trim", (building.stone_trim(), material["stone"])))
     out.node("beams", mesh=out.mesh("beams", (building.beams(), material["wood"])))
     out.node("ground", mesh=out.mesh("ground", (building.ground(), material["earth"])))
-    ridge = lambda turn: 2.5 + 8.0 * fractal_noise(turn, 0.5, 7, 2, 4, seed=83)  # noqa: E731
+    ridge = lambda turn: max(1.0, 20.0 * fractal_noise(turn, 0.5, 16, 2, 4, seed=83) - 4.5)  # noqa: E731
     out.node("hills", mesh=out.mesh("hills", (building.hills(ridge), material["hills"])))
     stone, water = building.basin()
     out.node("basin", mesh=out.mesh("basin", (stone, material["stone"]), (water, material["water"])))
@@ -166,9 +166,13 @@ def place_plants(out, material):
 
     # Cypresses outside, seen through the arcade.
     cypresses = []
+    stem = Shape()
+    objects.tube(stem, [(0, -0.1, 0), (0.02, 0.5, 0.01), (0, 1.2, 0)], lambda t: 0.11 - 0.03 * t, 10)
+    stem = out.mesh("cypress stem", (stem, material["bark"]))
     for x, z, height in ((-9.5, -7.5, 5.2), (-11.5, -4.6, 6.0), (-8.6, -11.0, 4.6)):
+        out.node("cypress stem", mesh=stem, translation=[x, 0.0, z])
         for _ in range(280):
-            y = state.random() ** 1.3
+            y = 0.03 + 0.97 * state.random()
             angle = state.uniform(0.0, 2.0 * math.pi)
             radius = 0.62 * math.sin(math.pi * min(1.0, 0.12 + 0.88 * y)) ** 0.7
             cypresses.append(
