@@ -55,7 +55,9 @@ struct CameraPath {
 
 CameraPath static_camera(const CameraPose& pose, const Projection& projection);
 
-enum class CameraAxes { gl, cv, unity };  // -z forward y up | +z forward y down | left-handed +z forward y up
+// How a file names the camera's own axes. gl: -z forward, y up. cv: +z forward, y down, in the same right-handed world.
+// unity: +z forward, y up, in a left-handed world; world and camera are mirrored by (x, y, z) -> (x, y, -z).
+enum class CameraAxes { gl, cv, unity };
 enum class CameraExtrapolation { error, hold };
 enum class PathInterpolation { linear, step };  // linear: positions linear, orientations slerp
 

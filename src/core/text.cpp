@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+void append_utf8(std::string& out, std::uint32_t code) {
+  const auto put = [&](std::uint32_t byte) { out += static_cast<char>(static_cast<unsigned char>(byte)); };
+  if (code < 0x80U) {
+    put(code);
+  } else if (code < 0x800U) {
+    put(0xC0U | (code >> 6U));
+    put(0x80U | (code & 0x3FU));
+  } else if (code < 0x10000U) {
+    put(0xE0U | (code >> 12U));
+    put(0x80U | ((code >> 6U) & 0x3FU));
+    put(0x80U | (code & 0x3FU));
+  } else {
+    put(0xF0U | (code >> 18U));
+    put(0x80U | ((code >> 12U) & 0x3FU));
+    put(0x80U | ((code >> 6U) & 0x3FU));
+    put(0x80U | (code & 0x3FU));
+  }
+}
+
+std::string utf8_from_utf16(std::string_view bytes, bool little_endian) {
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i]));
+    const auto second = static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + 1]));
+    return little_endian ? first | (second << 8U) : second | (first << 8U);
+  };
+  std::string out;
+  out.reserve(bytes.size() / 2);
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    std::uint32_t code = unit(i);
+    if (code >= 0xD800U && code < 0xDC00U && i + 3 < bytes.size()) {
+      const std::uint32_t low = unit(i + 2);
+      if (low >= 0xDC00U && low < 0xE000U) {
+        code = 0x10000U + ((code - 0xD800U) << 10U) + (low - 0xDC00U);
+        i += 2;
+      }
+    }
+    if (code >= 0xD800U && code < 0xE000U) {
+      code = 0xFFFDU;  // half a surrogate pair
+    }
+    append_utf8(out, code);
+  }
+  return out;
+}
+
+constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+}  // namespace
+
+std::string read_text_file(const std::string& path) {
+  std::error_code code;
+  if (std::filesystem::is_directory(path, code)) {
+    throw Error(ErrorKind::input, path, "is a folder, not a file");
+  }
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) {
+    const int reason = errno;
+    throw Error(ErrorKind::input, path, std::string("cannot be opened: ") + std::strerror(reason), "check the path");
+  }
+  std::string text;
+  const auto size = std::filesystem::file_size(path, code);
+  std::size_t used = 0;
+  // One byte more than the size: a file that has not grown ends without another allocation. Pipes have no size.
+  text.resize((code ? 0 : static_cast<std::size_t>(size)) + 1);
+  for (std::size_t got = 1; got != 0; used += got) {
+    if (used == text.size()) {
+      text.resize(text.size() + 65536);
+    }
+    got = std::fread(text.data() + used, 1, text.size() - used, file.get());
+  }
+  if (std::ferror(file.get()) != 0) {
+    throw Error(ErrorKind::input, path, "cannot be read to its end");
+  }
+  text.resize(used);
+  if (text.starts_with("\xEF\xBB\xBF")) {
+    text.erase(0, 3);
+  } else if (text.starts_with("\xFF\xFE")) {
+    return utf8_from_utf16(std::string_view(text).substr(2), true);
+  } else if (text.starts_with("\xFE\xFF")) {
+    return utf8_from_utf16(std::string_view(text).substr(2), false);
+  }
+  return text;
+}
+
+std::string_view trim(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  constexpr std::string_view kNoBreakSpace = "\xC2\xA0";
+  for (;;) {
+    if (!text.empty() && kBlanks.find(text.front()) != std::string_view::npos) {
+      text.remove_prefix(1);
+    } else if (!text.empty() && kBlanks.find(text.back()) != std::string_view::npos) {
+      text.remove_suffix(1);
+    } else if (text.starts_with(kNoBreakSpace)) {
+      text.remove_prefix(2);
+    } else if (text.ends_with(kNoBreakSpace)) {
+      text.remove_suffix(2);
+    } else {
+      return text;
+    }
+  }
+}
+
+std::string to_lower(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return lower;
+}
+
+bool LineReader::next(std::string_view& line) {
+  if (rest_.empty()) {
+    return false;
+  }
+  const std::size_t end = rest_.find('\n');
+  line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') {
+    line.remove_suffix(1);
+  }
+  ++number_;
+  return true;
+}
+
+void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
+  cells.clear();
+  if (separator == ' ') {
+    constexpr std::string_view kBlanks = " \t";
+    for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+      cells.push_back(line.substr(begin, end - begin));
+      begin = line.find_first_not_of(kBlanks, end);
+    }
+    return;
+  }
+  bool quoted = false;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == separator && !quoted) {
+      cells.push_back(line.substr(begin, i - begin));
+      begin = i + 1;
+    }
+  }
+  cells.push_back(line.substr(begin));
+}
+
+std::string_view cell_text(std::string_view cell, std::string& buffer) {
+  cell = trim(cell);
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
+    cell = cell.substr(1, cell.size() - 2);
+    if (cell.find("\"\"") != std::string_view::npos) {
+      buffer.clear();
+      for (std::size_t i = 0; i < cell.size(); ++i) {
+        buffer += cell[i];
+        if (cell[i] == '"' && i + 1 < cell.size() && cell[i + 1] == '"') {
+          ++i;
+        }
+      }
+      cell = buffer;
+    }
+    cell = trim(cell);
+  }
+  return cell;
+}
+
+NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& value) {
+  bool negative = false;
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
+    negative = text.front() == '-';
+    text.remove_prefix(1);
+  }
+  std::size_t end = 0;
+  std::size_t mark = std::string_view::npos;  // of the decimal point
+  for (; end < text.size(); ++end) {
+    if ((text[end] == '.' || text[end] == ',') && mark == std::string_view::npos) {
+      mark = end;
+    } else if (!is_digit(text[end])) {
+      break;
+    }
+  }
+  const std::string_view digits = text.substr(0, end);
+  const auto whole = static_cast<std::int64_t>(std::min(mark, end));
+  const auto count = static_cast<std::int64_t>(end) - (mark == std::string_view::npos ? 0 : 1);
+  if (count == 0) {
+    return NumberStatus::malformed;
+  }
+  std::int64_t shift = exponent;
+  if (end < text.size()) {
+    std::string_view power = text.substr(end + 1);
+    if ((text[end] != 'e' && text[end] != 'E') || power.empty()) {
+      return NumberStatus::malformed;
+    }
+    if (power.front() == '+') {
+      power.remove_prefix(1);
+    }
+    std::int32_t given = 0;
+    const auto [rest, status] = std::from_chars(power.data(), power.data() + power.size(), given);
+    if (rest != power.data() + power.size() || status == std::errc::invalid_argument) {
+      return NumberStatus::malformed;
+    }
+    if (status != std::errc{}) {
+      given = power.front() == '-' ? -1'000'000 : 1'000'000;
+    }
+    shift += given;
+  }
+  const auto digit = [&](std::int64_t i) -> std::uint64_t {
+    if (i >= count) {
+      return 0;
+    }
+    const std::int64_t at = i < whole ? i : i + 1;
+    return static_cast<std::uint64_t>(digits[static_cast<std::size_t>(at)] - '0');
+  };
+  // Digits [0, kept) make the integer; the one after them rounds it.
+  const std::int64_t kept = whole + shift;
+  const std::uint64_t limit = negative ? std::uint64_t{1} << 63U : (std::uint64_t{1} << 63U) - 1;
+  std::uint64_t magnitude = 0;
+  for (std::int64_t i = 0; i < kept; ++i) {
+    if (i >= count && magnitude == 0) {
+      break;
+    }
+    const std::uint64_t d = digit(i);
+    if (magnitude > (limit - d) / 10) {
+      return NumberStatus::overflow;
+    }
+    magnitude = magnitude * 10 + d;
+  }
+  if (kept >= 0 && kept < count && digit(kept) >= 5) {
+    if (magnitude == limit) {
+      return NumberStatus::overflow;
+    }
+    ++magnitude;
+  }
+  value = static_cast<std::int64_t>(negative ? 0 - magnitude : magnitude);
+  return NumberStatus::ok;
+}
+
+std::optional<double> number_from(std::string_view text) {
+  if (!text.empty() && text.front() == '+') {
+    text.remove_prefix(1);
+    if (!text.empty() && text.front() == '-') {
+      return std::nullopt;
+    }
+  }
+  double value = 0;
+  const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status == std::errc{} && rest == text.data() + text.size()) {
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+  const std::size_t comma = text.find(',');
+  std::array<char, 64> copy{};
+  if (comma == std::string_view::npos || text.find('.') != std::string_view::npos || text.size() > copy.size()) {
+    return std::nullopt;
+  }
+  std::copy(text.begin(), text.end(), copy.begin());
+  copy[comma] = '.';
+  const char* const end = copy.data() + text.size();
+  const auto with_point = std::from_chars(copy.data(), end, value);
+  const bool good = with_point.ec == std::errc{} && with_point.ptr == end && std::isfinite(value);
+  return good ? std::optional(value) : std::nullopt;
+}
+
+std::optional<int> time_exponent(std::string_view unit) {
+  struct Spelling {
+    std::string_view text;
+    int exponent;
+  };
+  static constexpr std::array<Spelling, 26> kSpellings{{
+      {"s", 9},           {"sec", 9},          {"secs", 9},        {"second", 9},
+      {"seconds", 9},     {"in secs", 9},      {"ms", 6},          {"msec", 6},
+      {"millisecond", 6}, {"milliseconds", 6}, {"us", 3},          {"usec", 3},
+      {"\xC2\xB5s", 3},   {"\xCE\xBCs", 3},    {"microsecond", 3}, {"microseconds", 3},
+      {"100ns", 2},       {"100 ns", 2},       {"ns", 0},          {"nsec", 0},
+      {"nanosecond", 0},  {"nanoseconds", 0},  {"\xC2\xB5sec", 3}, {"\xCE\xBCsec", 3},
+      {"millis", 6},      {"nanos", 0},
+  }};
+  const std::string lower = to_lower(trim(unit));
+  for (const Spelling& spelling : kSpellings) {
+    if (lower == spelling.text) {
+      return spelling.exponent;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace gazetrace

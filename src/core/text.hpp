@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading numbers and lines from text files of unknown manners.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gazetrace {
+
+// The whole file as UTF-8: a byte-order mark is dropped, UTF-16 (either order, with its mark) is converted.
+// Error(input) when it cannot be read.
+std::string read_text_file(const std::string& path);
+
+std::string_view trim(std::string_view text);  // blanks, tabs, carriage returns, no-break spaces
+std::string to_lower(std::string_view text);   // ASCII
+
+// Walks lines ending in \n or \r\n; the last one may lack its end.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : rest_(text) {}
+  bool next(std::string_view& line);
+  [[nodiscard]] std::int64_t number() const { return number_; }  // 1-based, of the line last returned
+ private:
+  std::string_view rest_;
+  std::int64_t number_ = 0;
+};
+
+// Splits at `separator` outside double quotes. Cells keep their quotes and blanks; see `cell_text`.
+// A separator of ' ' means runs of blanks and tabs.
+void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
+// Trimmed and unquoted; `buffer` is used only for doubled quotes.
+std::string_view cell_text(std::string_view cell, std::string& buffer);
+
+// The decimal number `text` times 10^exponent, rounded to the nearest integer (halves away from zero), digit by digit:
+// no double in between. Sign, decimal point or comma, and e/E exponents are understood.
+enum class NumberStatus : std::uint8_t { ok, malformed, overflow };
+NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& value);
+
+// Finite doubles with a decimal point or comma, exactly rounded; empty where the text is anything else.
+std::optional<double> number_from(std::string_view text);
+
+// Powers of ten from a unit of time to nanoseconds: "ns", "us", "μs" (either mu), "ms", "s", with common spellings and
+// "100ns"; empty for anything else.
+std::optional<int> time_exponent(std::string_view unit);
+
+}  // namespace gazetrace
