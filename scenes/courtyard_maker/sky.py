@@ -12,12 +12,12 @@ from .vec import add, clamp01, dot, mix, normalize, scale, smoothstep
 
 SUN_DIRECTION = normalize((-1.0, 0.235, 0.42))  # towards the sun
 
-_ZENITH = (0.075, 0.125, 0.26)
-_MIDDLE = (0.20, 0.26, 0.40)
-_WARM_HORIZON = (1.15, 0.62, 0.30)
-_FAR_HORIZON = (0.52, 0.40, 0.44)
+_ZENITH = (0.10, 0.165, 0.34)
+_MIDDLE = (0.27, 0.34, 0.51)
+_WARM_HORIZON = (1.40, 0.76, 0.37)
+_FAR_HORIZON = (0.66, 0.51, 0.54)
 _GROUND = (0.055, 0.045, 0.038)
-_SUN = (5600.0, 3050.0, 1300.0)
+_SUN = (3900.0, 2150.0, 930.0)
 _GLOW = (3.4, 1.75, 0.70)
 
 
