@@ -123,7 +123,7 @@ def place_objects(out, material):
         "knot", mesh=out.mesh("knot", (objects.knot(), material["steel"])), translation=[1.68, top, -0.13],
         rotation=[0.0, math.sin(turn / 2), 0.0, math.cos(turn / 2)],
     )  # fmt: skip
-    out.node("ball", mesh=out.mesh("ball", (objects.ball(), material["brass"])), translation=[2.52, top, -0.10])
+    out.node("ball", mesh=out.mesh("ball", (objects.ball(), material["brass"])), translation=[2.40, top, -0.10])
     metal, light = objects.lantern()
     lantern = out.mesh("lantern", (metal, material["aged brass"]), (light, material["lantern light"]))
     out.node("lantern", mesh=lantern, translation=[1.55, 2.86, -1.30])

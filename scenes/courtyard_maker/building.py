@@ -145,7 +145,7 @@ def roof_tile_places():
 def basin():
     """An octagonal fountain basin; its water is a separate shape."""
     stone, water = Shape(), Shape()
-    center, twist = (-1.35, 0.0, -0.75), math.pi / 8
+    center, twist = (-1.15, 0.0, -0.75), math.pi / 8
     outer, inner, rim, level = 0.95, 0.80, 0.40, 0.33
     facets(stone, 8, outer + 0.10, outer + 0.10, 0.0, 0.07, center, twist=twist)
     ring(stone, 8, outer + 0.10, outer - 0.02, 0.07, center, twist)
