@@ -29,8 +29,9 @@ struct AccumulateSettings {
 };
 
 // running: the sample-weighted mean of all frames since the last change of camera or size; the first frame passes
-// through bit-equal.
-Frame accumulate(Frame frame, const FrameRequest& request, const AccumulateSettings& settings,
-                 TemporalHistory& history);
+// through bit-equal. Guides stay those of the current frame. Frames are to carry different samples: the same ones
+// added again raise the count, not the worth. Leaves the exposure's part of the history alone.
+Frame accumulate(Frame frame, const FrameRequest& request, const AccumulateSettings& settings, TemporalHistory& history,
+                 int threads = 0);
 
 }  // namespace gazetrace

@@ -61,29 +61,16 @@ SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarVie
 
 void pixels_of_site(const SamplingMap& map, const Site& site, std::vector<PixelIndex>& out) {
   out.clear();
-  const BlockRect rect = block_rect(map, site);
-  const bool full = site.pixels == (rect.x_end - rect.x) * (rect.y_end - rect.y);
-  for (int y = rect.y; y < rect.y_end; ++y) {
-    for (int x = rect.x; x < rect.x_end; ++x) {
-      if (full || map.region(x, y) == site.region) {
-        out.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
-      }
-    }
-  }
+  for_each_pixel(map, site, [&](int x, int y) {
+    out.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+  });
 }
 
 ImageGray samples_per_pixel(const SamplingMap& map) {
   ImageGray image(map.width_px, map.height_px);
   for (const Site& site : map.sites) {
     const auto value = static_cast<float>(static_cast<double>(site.samples) / site.pixels);
-    const BlockRect rect = block_rect(map, site);
-    for (int y = rect.y; y < rect.y_end; ++y) {
-      for (int x = rect.x; x < rect.x_end; ++x) {
-        if (map.region(x, y) == site.region) {
-          image(x, y) = value;
-        }
-      }
-    }
+    for_each_pixel(map, site, [&](int x, int y) { image(x, y) = value; });
   }
   return image;
 }

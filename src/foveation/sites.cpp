@@ -207,13 +207,6 @@ class SiteBuilder {
 
 }  // namespace
 
-BlockRect block_rect(const SamplingMap& map, const Site& site) {
-  const int block = map.regions[site.region].block_px;
-  const int x = site.block_x * block;
-  const int y = site.block_y * block;
-  return {x, y, std::min(x + block, map.width_px), std::min(y + block, map.height_px)};
-}
-
 SamplingMap map_from_layout(Layout layout) {
   return SiteBuilder(std::move(layout)).build();
 }

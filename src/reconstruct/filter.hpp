@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a reconstruction filter is: from the values of the sites to every pixel.
+#pragma once
+
+#include <cstddef>
+
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/reconstruct.hpp"
+#include "reconstruct/site_values.hpp"
+
+namespace gazetrace {
+
+// One function `filter_<name>` per line of filters.def.
+#define FILTER(name, description) Frame filter_##name(const SiteValues& values, const SamplingMap& map, int threads);
+#include "reconstruct/filters.def"
+#undef FILTER
+
+// A frame of the map's size; guide images only where `guides` is set.
+Frame make_frame(const SamplingMap& map, bool guides);
+
+// Gives every pixel of a site the site's own values. Pixels of 1x1 sites take this way in every filter, so that
+// they are bit-equal whichever filter is used.
+void paint_site(Frame& frame, const SamplingMap& map, const SiteValues& values, std::size_t site);
+
+}  // namespace gazetrace

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reconstruct/site_values.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "foveation/sites.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::uint32_t kNoSite = 0xffffffffU;
+
+// A weighted mean of sites. Variances are averaged, not divided: what was never sampled is no better known than
+// its neighbours.
+struct Average {
+  Vec3d radiance, albedo, normal;
+  double variance = 0, depth_m = 0, hits = 0, weight = 0;
+
+  void add(double w, const SiteValue& value, const SiteGuides& guides) {
+    weight += w;
+    radiance += w * to_double(value.radiance);
+    variance += w * static_cast<double>(value.variance);
+    albedo += w * to_double(guides.albedo);
+    normal += w * to_double(guides.normal);
+    if (guides.hit_share > 0) {
+      const double h = w * static_cast<double>(guides.hit_share);
+      hits += h;
+      depth_m += h * static_cast<double>(guides.depth_m);
+    }
+  }
+  [[nodiscard]] SiteValue value() const { return {to_float(radiance / weight), static_cast<float>(variance / weight)}; }
+  [[nodiscard]] SiteGuides guides() const {
+    SiteGuides g{to_float(albedo / weight), to_float(normal / weight)};
+    if (hits > 0) {
+      g.depth_m = static_cast<float>(depth_m / hits);
+      g.hit_share = static_cast<float>(hits / weight);
+    }
+    return g;
+  }
+};
+
+// Calls visit(neighbor) with the site of every pixel in or around the site's block that is not its own.
+template <class Visit>
+void for_each_neighbor(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel, std::uint32_t site,
+                       const Visit& visit) {
+  const BlockRect rect = block_rect(map, map.sites[site]);
+  for (int y = std::max(rect.y - 1, 0); y < std::min(rect.y_end + 1, map.height_px); ++y) {
+    for (int x = std::max(rect.x - 1, 0); x < std::min(rect.x_end + 1, map.width_px); ++x) {
+      if (site_of_pixel(x, y) != site) {
+        visit(site_of_pixel(x, y));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+SiteValues::SiteValues(const SparseFrame& sparse, const SamplingMap& map) : sparse_(&sparse) {
+  const std::size_t sites = map.sites.size();
+  if (sparse.width_px != map.width_px || sparse.height_px != map.height_px || sparse.sum.size() != sites ||
+      sparse.sum_square_luminance.size() != sites || sparse.count.size() != sites ||
+      (!sparse.guides.empty() && sparse.guides.size() != sites)) {
+    throw Error(ErrorKind::runtime, "reconstruct", "the samples were not traced with this sampling map",
+                "pass the map that the tracer was given");
+  }
+  if (std::find(sparse.count.begin(), sparse.count.end(), 0U) != sparse.count.end()) {
+    fill_empty_sites(map);
+  }
+}
+
+SiteGuides SiteValues::guides_from_sums(std::size_t site) const {
+  if (sparse_->guides.empty() || sparse_->count[site] == 0) {
+    return {};
+  }
+  const GuideSums& sums = sparse_->guides[site];
+  const auto n = static_cast<float>(sparse_->count[site]);
+  SiteGuides guides{sums.albedo / n, sums.normal / n};
+  if (sums.hits > 0) {
+    guides.depth_m = sums.depth_m / static_cast<float>(sums.hits);
+    guides.hit_share = static_cast<float>(sums.hits) / n;
+  }
+  return guides;
+}
+
+// Ring by ring outwards from the sampled sites: each empty site takes the mean of the neighbouring pixels whose values
+// were known a ring earlier, weighted by samples per pixel. Two visits a site, however large the hole is.
+void SiteValues::fill_empty_sites(const SamplingMap& map) {
+  const std::size_t sites = map.sites.size();
+  filled_.resize(sites);
+  filled_guides_.resize(has_guides() ? sites : 0);
+  Image<std::uint32_t> site_of_pixel(map.width_px, map.height_px, kNoSite);
+  std::vector<float> weight(sites, 0.0F);  // samples per pixel; 0: not known yet
+  std::vector<std::uint32_t> known;
+  for (std::size_t i = 0; i < sites; ++i) {
+    for_each_pixel(map, map.sites[i], [&](int x, int y) { site_of_pixel(x, y) = static_cast<std::uint32_t>(i); });
+    if (count(i) != 0) {
+      filled_[i] = value_from_sums(i);
+      if (has_guides()) {
+        filled_guides_[i] = guides_from_sums(i);
+      }
+      weight[i] = static_cast<float>(count(i)) / static_cast<float>(map.sites[i].pixels);
+      known.push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  std::vector<bool> queued(sites, false);
+  while (!known.empty()) {
+    std::vector<std::uint32_t> ring;
+    for (const std::uint32_t site : known) {
+      for_each_neighbor(map, site_of_pixel, site, [&](std::uint32_t neighbor) {
+        if (weight[neighbor] <= 0 && !queued[neighbor]) {
+          queued[neighbor] = true;
+          ring.push_back(neighbor);
+        }
+      });
+    }
+    std::vector<float> ring_weight;
+    for (const std::uint32_t site : ring) {
+      Average average;
+      int pixels = 0;
+      const auto take = [&](std::uint32_t neighbor) {
+        if (weight[neighbor] > 0) {
+          ++pixels;
+          average.add(static_cast<double>(weight[neighbor]), filled_[neighbor],
+                      has_guides() ? filled_guides_[neighbor] : SiteGuides{});
+        }
+      };
+      for_each_neighbor(map, site_of_pixel, site, take);
+      if (pixels == 0) {
+        // Reached over the corner of a straddling block only: the other site's block touches this one's pixels, not
+        // the other way round. Its ring comes later.
+        queued[site] = false;
+        ring_weight.push_back(0.0F);
+        continue;
+      }
+      filled_[site] = average.value();
+      if (has_guides()) {
+        filled_guides_[site] = average.guides();
+      }
+      ring_weight.push_back(static_cast<float>(average.weight / pixels));
+    }
+    known.clear();
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      weight[ring[i]] = ring_weight[i];
+      if (ring_weight[i] > 0) {
+        known.push_back(ring[i]);
+      }
+    }
+  }
+}
+
+}  // namespace gazetrace
