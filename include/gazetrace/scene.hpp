@@ -75,6 +75,7 @@ struct Environment {
   ImageRgb radiance;        // empty: no environment at all
   double rotation_rad = 0;  // about +y; positive turns the picture's content from -z towards +x
   std::string source;
+  Warnings warnings;
   [[nodiscard]] bool present() const { return !radiance.empty(); }
 };
 
@@ -122,7 +123,8 @@ struct SceneReadOptions {
 // wrong; an extension in extensionsRequired that is not known ends in one naming it.
 Scene load_scene(const std::string& path, const SceneReadOptions& options = {});
 
-// Lat-long .hdr or .exr; pixels are multiplied by 2^exposure_ev. Non-finite and negative pixels are errors.
+// Lat-long .hdr or .exr; pixels are multiplied by 2^exposure_ev. Non-finite pixels are errors. Negative values, which
+// lossy compression leaves in dark areas, become 0 with a warning.
 Environment load_environment(const std::string& path, double rotation_deg = 0, double exposure_ev = 0);
 Environment constant_environment(const Vec3f& radiance);
 // A clear sky without a sun disc: an analytic gradient (zenith, horizon, ground) with a soft glow about the sun's

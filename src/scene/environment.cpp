@@ -42,17 +42,23 @@ Environment load_environment(const std::string& path, double rotation_deg, doubl
   environment.source = path;
   const auto scale = static_cast<float>(std::exp2(exposure_ev));
   ImageRgb& image = environment.radiance;
+  std::size_t negative = 0;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Vec3f& pixel = image.pixels[i];
-    const bool good = is_finite(pixel) && pixel.x >= 0 && pixel.y >= 0 && pixel.z >= 0;
-    if (!good || !is_finite(pixel * scale)) {
+    const bool is_good = is_finite(pixel);
+    if (!is_good || !is_finite(pixel * scale)) {
       const auto width = static_cast<std::size_t>(image.width_px);
       throw Error(ErrorKind::input, path,
                   "pixel " + std::to_string(i % width) + ", " + std::to_string(i / width) +
-                      (good ? " overflows at this exposure" : " is negative or not finite"),
-                  good ? "lower the environment's exposure" : "repair the picture");
+                      (is_good ? " overflows at this exposure" : " is not finite"),
+                  is_good ? "lower the environment's exposure" : "repair the picture");
     }
-    pixel *= scale;
+    negative += pixel.x < 0 || pixel.y < 0 || pixel.z < 0 ? 1 : 0;
+    pixel = Vec3f{std::max(pixel.x, 0.0F), std::max(pixel.y, 0.0F), std::max(pixel.z, 0.0F)} * scale;
+  }
+  if (negative > 0) {
+    environment.warnings.push_back(path + ": " + std::to_string(negative) +
+                                   " pixels had negative values, which were set to 0");
   }
   return environment;
 }

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "gazetrace/scene.hpp"
+#include "support/gltf_builder.hpp"
+
+namespace gazetrace {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string error_of(const std::string& path) {
+  try {
+    static_cast<void>(load_environment(path));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// A Radiance picture of one scanline without run lengths: mantissas and a shared exponent, value = m / 256 * 2^(e -
+// 128).
+std::string radiance_file(int width, const std::vector<std::uint8_t>& rgbe) {
+  std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X " + std::to_string(width) + "\n";
+  file.append(reinterpret_cast<const char*>(rgbe.data()), rgbe.size());
+  return file;
+}
+
+TEST(Environment, RadianceValuesAndExposure) {
+  const test::TempFolder folder;
+  const std::string path = folder.write("two.hdr", radiance_file(2, {128, 64, 32, 129, 128, 128, 128, 138}));
+  const Environment environment = load_environment(path, 90, 1);
+  ASSERT_EQ(environment.radiance.width_px, 2);
+  ASSERT_EQ(environment.radiance.height_px, 1);
+  // OpenImageIO adds half a step to mantissas, as Radiance does: within 1/256 of the value.
+  EXPECT_NEAR(environment.radiance(0, 0).x, 2.0, 0.02);
+  EXPECT_NEAR(environment.radiance(0, 0).y, 1.0, 0.02);
+  EXPECT_NEAR(environment.radiance(0, 0).z, 0.5, 0.02);
+  EXPECT_NEAR(environment.radiance(1, 0).x, 1024.0, 8);
+  EXPECT_DOUBLE_EQ(environment.rotation_rad, kPi / 2);
+  EXPECT_EQ(environment.source, path);
+}
+
+TEST(Environment, BadFilesAreRefused) {
+  const test::TempFolder folder;
+  EXPECT_THAT(error_of(folder.file("gone.hdr")), HasSubstr("there is no such file"));
+  EXPECT_THAT(error_of(folder.write("text.hdr", "hello")), HasSubstr("text.hdr: cannot be read"));
+  EXPECT_THAT(error_of(folder.write("cut.hdr", radiance_file(64, {1, 2, 3, 4}))), HasSubstr("damaged"));
+}
+
+TEST(Environment, ExposureThatOverflowsIsRefused) {
+  const test::TempFolder folder;
+  const std::string path = folder.write("one.hdr", radiance_file(1, {128, 128, 128, 138}));
+  EXPECT_THROW(static_cast<void>(load_environment(path, 0, 200)), Error);
+}
+
+TEST(Environment, ConstantIsOnePixel) {
+  const Environment environment = constant_environment({1, 2, 3});
+  EXPECT_TRUE(environment.present());
+  EXPECT_EQ(environment.radiance, ImageRgb(1, 1, Vec3f{1, 2, 3}));
+  EXPECT_FALSE(Environment{}.present());
+  EXPECT_THROW(static_cast<void>(constant_environment({-1, 0, 0})), Error);
+  EXPECT_THROW(static_cast<void>(constant_environment({std::nanf(""), 0, 0})), Error);
+}
+
+TEST(Sky, IsPositiveSmoothAndWrapsAround) {
+  const Environment sky = builtin_sky(30, 2);
+  const ImageRgb& image = sky.radiance;
+  ASSERT_EQ(image.width_px, 512);
+  ASSERT_EQ(image.height_px, 256);
+  EXPECT_DOUBLE_EQ(sky.rotation_rad, kPi / 6);
+  double largest_step = 0;
+  float largest = 0;
+  for (int y = 0; y < image.height_px; ++y) {
+    for (int x = 0; x < image.width_px; ++x) {
+      const Vec3f pixel = image(x, y);
+      ASSERT_GT(std::min({pixel.x, pixel.y, pixel.z}), 0);
+      largest = std::max({largest, pixel.x, pixel.y, pixel.z});
+      const Vec3f right = image((x + 1) % image.width_px, y);
+      const Vec3f below = image(x, std::min(y + 1, image.height_px - 1));
+      largest_step = std::max({largest_step, std::abs(1.0 * pixel.x - right.x), std::abs(1.0 * pixel.x - below.x)});
+    }
+  }
+  EXPECT_LT(largest_step, 0.1 * largest);
+  // Brightest where the sun would be: above the horizon, right of the picture's centre (towards +x).
+  const auto brightest = std::max_element(image.pixels.begin(), image.pixels.end(),
+                                          [](const Vec3f& a, const Vec3f& b) { return a.x + a.y < b.x + b.y; });
+  const auto index = static_cast<int>(brightest - image.pixels.begin());
+  EXPECT_LT(index / image.width_px, 128);
+  EXPECT_GT(index % image.width_px, 256);
+  const Environment plain = builtin_sky();
+  EXPECT_FLOAT_EQ(image(100, 50).y, 4 * plain.radiance(100, 50).y);
+}
+
+// Figures from the data's own description: 0.2126 R + 0.7152 G + 0.0722 B.
+TEST(Environment, SharedPicturesHaveTheirDescribedLuminance) {
+  const std::string folder = std::string(GAZETRACE_SHARED_DIR) + "/hdri/";
+  if (!std::filesystem::exists(folder)) {
+    GTEST_SKIP() << folder << " is not here";
+  }
+  const Environment park = load_environment(folder + "rooitou_park_1k.hdr");
+  ASSERT_EQ(park.radiance.width_px, 1024);
+  ASSERT_EQ(park.radiance.height_px, 512);
+  const auto luminance = [](const Vec3f& p) { return 0.2126 * p.x + 0.7152 * p.y + 0.0722 * p.z; };
+  double sum = 0;
+  double weight = 0;
+  double largest = 0;
+  std::pair<int, int> place;
+  for (int y = 0; y < 512; ++y) {
+    const double solid_angle = std::sin((y + 0.5) / 512 * kPi);
+    for (int x = 0; x < 1024; ++x) {
+      const double value = luminance(park.radiance(x, y));
+      sum += solid_angle * value;
+      weight += solid_angle;
+      if (value > largest) {
+        largest = value;
+        place = {y, x};
+      }
+    }
+  }
+  EXPECT_NEAR(sum / weight, 0.756, 0.005);
+  EXPECT_NEAR(largest, 64890, 0.005 * 64890);
+  EXPECT_EQ(place, (std::pair{226, 614}));
+  EXPECT_TRUE(park.warnings.empty());
+  EXPECT_TRUE(load_environment(folder + "kiara_1_dawn_1k.hdr").present());
+  EXPECT_TRUE(load_environment(folder + "dikhololo_night_1k.hdr").present());
+}
+
+// Lossy compression left small negative values in this one.
+TEST(Environment, NegativePixelsBecomeBlackWithAWarning) {
+  const std::string folder = std::string(GAZETRACE_SHARED_DIR) + "/hdri/";
+  if (!std::filesystem::exists(folder)) {
+    GTEST_SKIP() << folder << " is not here";
+  }
+  for (const char* name : {"city_512_zip.exr", "city_512.exr"}) {
+    const Environment city = load_environment(folder + name);
+    ASSERT_EQ(city.warnings.size(), 1U);
+    EXPECT_THAT(city.warnings[0], HasSubstr("negative"));
+    float least = 1;
+    float most = 0;
+    for (const Vec3f& pixel : city.radiance.pixels) {
+      least = std::min({least, pixel.x, pixel.y, pixel.z});
+      most = std::max({most, pixel.x, pixel.y, pixel.z});
+    }
+    EXPECT_EQ(least, 0);
+    EXPECT_NEAR(most, 11, 1);
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
