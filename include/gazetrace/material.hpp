@@ -34,7 +34,7 @@ struct Material {
   float roughness = 1.0F;        // 0..1, perceptual: alpha = roughness^2; texture channel G
   Vec3f emission{0, 0, 0};       // emissiveFactor * KHR_materials_emissive_strength, radiance
   float normal_scale = 1.0F;
-  AlphaMode alpha_mode = AlphaMode::opaque;
+  AlphaMode alpha_mode = AlphaMode::opaque;  // loading turns mask and blend into opaque where nothing is transparent
   float alpha_cutoff = 0.5F;
   bool double_sided = false;
   bool unlit = false;  // KHR_materials_unlit: base colour is the outgoing radiance

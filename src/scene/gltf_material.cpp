@@ -104,6 +104,28 @@ std::vector<Material> make_materials(const GltfDocument& document, TextureTable&
   return materials;
 }
 
+void drop_needless_alpha(const std::vector<Texture>& textures, const std::vector<Mesh>& meshes,
+                         std::vector<Material>& materials) {
+  std::vector<bool> has_clear_vertices(materials.size(), false);
+  for (const Mesh& mesh : meshes) {
+    for (const Geometry& geometry : mesh.geometries) {
+      if (std::any_of(geometry.colors.begin(), geometry.colors.end(), [](const Vec4f& color) { return color.w < 1; })) {
+        has_clear_vertices[static_cast<std::size_t>(geometry.material)] = true;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    Material& material = materials[i];
+    const TextureRef& ref = material.base_color_texture;
+    const bool varies =
+        has_clear_vertices[i] || (ref.present() && textures[static_cast<std::size_t>(ref.texture)].has_alpha);
+    const float least = material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : 1.0F;
+    if (!varies && material.base_color.w >= least) {
+      material.alpha_mode = AlphaMode::opaque;
+    }
+  }
+}
+
 VertexNeeds vertex_needs(const Material& material) {
   VertexNeeds needs;
   for (const TextureRef* ref : {&material.base_color_texture, &material.metallic_roughness_texture,

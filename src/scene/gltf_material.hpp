@@ -51,6 +51,11 @@ class TextureTable {
 
 std::vector<Material> make_materials(const GltfDocument& document, TextureTable& textures, Warnings& warnings);
 
+// MASK and BLEND cost a test at every hit. Materials whose alpha can never let anything through (no transparent texel,
+// vertex or factor) become opaque, which looks the same.
+void drop_needless_alpha(const std::vector<Texture>& textures, const std::vector<Mesh>& meshes,
+                         std::vector<Material>& materials);
+
 // What a material reads from a vertex.
 struct VertexNeeds {
   bool uv0 = false, uv1 = false, tangents = false;

@@ -115,6 +115,7 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
 
   MeshResult meshes = make_meshes(document, scene.materials, fallback, options.threads);
   scene.meshes = std::move(meshes.meshes);
+  drop_needless_alpha(scene.textures, scene.meshes, scene.materials);
   append(scene.ignored, meshes.ignored);
   append(scene.warnings, meshes.warnings);
 

@@ -70,7 +70,7 @@ TEST(Materials, EveryFactorArrives) {
                       {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.25}, {"roughnessFactor", 0.75}}},
                      {"emissiveFactor", {1, 0.5, 0}},
                      {"alphaMode", "MASK"},
-                     {"alphaCutoff", 0.125},
+                     {"alphaCutoff", 0.625},
                      {"doubleSided", true},
                      {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}});
   const Scene scene = load(builder);
@@ -81,7 +81,7 @@ TEST(Materials, EveryFactorArrives) {
   EXPECT_EQ(material.roughness, 0.75F);
   EXPECT_EQ(material.emission, (Vec3f{4, 2, 0}));
   EXPECT_EQ(material.alpha_mode, AlphaMode::mask);
-  EXPECT_EQ(material.alpha_cutoff, 0.125F);
+  EXPECT_EQ(material.alpha_cutoff, 0.625F);
   EXPECT_TRUE(material.double_sided);
   const SceneFeatures features = features_of(scene);
   EXPECT_TRUE(features.alpha_mask);
@@ -95,6 +95,7 @@ TEST(Materials, EveryFactorArrives) {
 TEST(Materials, UnlitReadsNothingButBaseColor) {
   GltfBuilder builder = with_material({{"normalTexture", {{"index", 0}}},
                                        {"emissiveFactor", {1, 1, 1}},
+                                       {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.5}}}},
                                        {"alphaMode", "BLEND"},
                                        {"extensions", {{"KHR_materials_unlit", json::object()}}}},
                                       {{{"uri", data_uri(pixel(1, 2, 3))}}});
@@ -104,6 +105,30 @@ TEST(Materials, UnlitReadsNothingButBaseColor) {
   EXPECT_TRUE(features_of(scene).unlit);
   EXPECT_TRUE(features_of(scene).alpha_blend);
   EXPECT_FALSE(features_of(scene).emissive_triangles);
+}
+
+TEST(Materials, AlphaThatLetsNothingThroughIsOpaque) {
+  struct Case {
+    const char* mode;
+    double factor;
+    std::uint16_t texel, vertex;
+    AlphaMode expected;
+  };
+  for (const Case& c : {Case{"MASK", 1, 255, 255, AlphaMode::opaque}, Case{"MASK", 0.5, 255, 255, AlphaMode::opaque},
+                        Case{"MASK", 0.49, 255, 255, AlphaMode::mask}, Case{"MASK", 1, 254, 255, AlphaMode::mask},
+                        Case{"MASK", 1, 255, 254, AlphaMode::mask}, Case{"BLEND", 1, 255, 255, AlphaMode::opaque},
+                        Case{"BLEND", 0.99, 255, 255, AlphaMode::blend}, Case{"BLEND", 1, 0, 255, AlphaMode::blend},
+                        Case{"BLEND", 1, 255, 0, AlphaMode::blend}, Case{"OPAQUE", 0, 0, 0, AlphaMode::opaque}}) {
+    GltfBuilder builder = with_material(
+        {{"alphaMode", c.mode},
+         {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, c.factor}}, {"baseColorTexture", {{"index", 0}}}}}},
+        {{{"uri", data_uri(test::png_bytes(1, 1, PngColor::rgba, 8, {9, 9, 9, c.texel}))}}});
+    const auto alpha = static_cast<std::uint8_t>(c.vertex);
+    builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        builder.add<std::uint8_t>({9, 9, 9, 255, 9, 9, 9, alpha, 9, 9, 9, 255}, 4, true);
+    EXPECT_EQ(load(builder).materials.at(0).alpha_mode, c.expected)
+        << c.mode << " " << c.factor << " " << c.texel << " " << c.vertex;
+  }
 }
 
 TEST(Materials, PrimitivesWithoutOneGetTheDefault) {
