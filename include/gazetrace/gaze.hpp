@@ -34,6 +34,7 @@ struct GazeSample {
   float confidence = 1.0F;  // 0..1, NaN where the log has none
   float pupil = 0.0F;       // in the log's own unit, NaN where missing
   std::int64_t row = 0;     // 1-based line in the source file
+  // Coordinates are NaN where the log has none; such samples are never usable.
 };
 
 // off_screen samples are good measurements that happen to lie beside the display.
@@ -43,10 +44,12 @@ inline bool is_usable(GazeValidity v) {
 
 struct GazeLog {
   GazeKind kind = GazeKind::screen;
-  std::vector<GazeSample> samples;  // times never decrease
-  std::string source;               // the path as given
-  std::string format;               // a name of `gaze_formats()`
-  std::string clock;                // what the log says of its clock; may be empty
+  // Times increase. Rows of several eyes at one time are one cyclopean sample: the log's own where it has one, else the
+  // mean of the usable eyes.
+  std::vector<GazeSample> samples;
+  std::string source;  // the path as given
+  std::string format;  // a name of `gaze_formats()`
+  std::string clock;   // what the log says of its clock; may be empty
   // Geometry of the recording where the log states it (any zero field: not stated).
   std::optional<DisplayGeometry> recording_geometry;
   Warnings warnings;
@@ -54,7 +57,8 @@ struct GazeLog {
 
 enum class TimeUnit { automatic, ns, us, ms, s };
 enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector };
-// Where (0, 0) is and which way y grows.
+// Where (0, 0) is and which way y grows: down from the top, up from the bottom and the center. Fractions from the
+// center count half the display, -1..1. automatic: the center for degrees, else top left.
 enum class PositionOrigin { automatic, top_left, bottom_left, center };
 
 // What the user declared about columns of a CSV/TSV that does not say it itself. Empty names: found by header.
@@ -87,19 +91,23 @@ std::vector<GazeFormatInfo> gaze_formats();
 // sorting was asked for; then the last of equal stamps is kept and a warning counts them), with unknown columns or
 // units.
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
-// Lossless for the fields above: header `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`.
+// Lossless, bit by bit, for all fields but `row`: header `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`.
 void write_gaze_csv(const GazeLog& log, const std::string& path);
 
+// hold: the last row at or before the time. nearest: the row closest in time. linear: between two neighbouring usable
+// rows no farther apart than `max_interpolation_gap_ns`, so never across blinks and lost rows. Where nearest or linear
+// find no usable row they hold.
 enum class GazeInterpolation { hold, nearest, linear };
-// What a frame without usable gaze does.
+// What a frame without usable gaze does. hold: takes the last usable row however old, before the first one the first.
 enum class NoGazePolicy { hold, center, uniform, error };
 
 // t_video = scale * (t_log - t_event) + offset.
 struct GazeMapping {
   GazeInterpolation interpolation = GazeInterpolation::hold;
   NoGazePolicy no_gaze = NoGazePolicy::hold;
-  std::int64_t max_age_ns = 500'000'000;               // an older sample counts as no gaze
-  std::int64_t max_interpolation_gap_ns = 75'000'000;  // linear across no more than this (Tobii I-VT gap fill)
+  std::int64_t max_age_ns = 500'000'000;  // an older sample counts as no gaze
+  // linear across no more than this; a row older than this is `held` (Tobii I-VT gap fill).
+  std::int64_t max_interpolation_gap_ns = 75'000'000;
   double scale = 1.0;
   std::int64_t offset_ns = 0;
   std::optional<std::int64_t> event_ns;  // log time that is video time `offset_ns`; default: the first sample's
@@ -114,6 +122,7 @@ enum class GazeState : std::uint8_t {
 std::string_view to_string(GazeState state);
 
 struct GazeAtTime {
+  GazeKind kind = GazeKind::screen;  // u, v or direction
   GazeState state = GazeState::none;
   double u = 0.5, v = 0.5;
   Vec3d direction{0, 0, -1};
@@ -123,7 +132,8 @@ struct GazeAtTime {
   std::string reason;                          // for the plan: "hold: row 118", "gap of 312 ms: held row 104"
 };
 
-// Time on the log's clock of a video time, by 128-bit arithmetic where scale is 1 (exact).
+// Time on the log's clock of a video time, t_event + (t_video - offset) / scale, to the nearest nanosecond in 128-bit
+// integers. Error(usage) for a scale that is not positive, or a time beyond int64.
 std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns);
 // Error(input) under NoGazePolicy::error, naming the time and the nearest rows.
 GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns);

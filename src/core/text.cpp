@@ -104,6 +104,10 @@ std::string read_text_file(const std::string& path) {
 std::string_view trim(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r\n";
   constexpr std::string_view kNoBreakSpace = "\xC2\xA0";
+  const auto plain = [](char c) { return static_cast<signed char>(c) > ' '; };
+  if (!text.empty() && plain(text.front()) && plain(text.back())) {
+    return text;  // nearly always
+  }
   for (;;) {
     if (!text.empty() && kBlanks.find(text.front()) != std::string_view::npos) {
       text.remove_prefix(1);

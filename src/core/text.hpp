@@ -24,6 +24,8 @@ class LineReader {
   explicit LineReader(std::string_view text) : rest_(text) {}
   bool next(std::string_view& line);
   [[nodiscard]] std::int64_t number() const { return number_; }  // 1-based, of the line last returned
+  [[nodiscard]] std::string_view rest() const { return rest_; }
+
  private:
   std::string_view rest_;
   std::int64_t number_ = 0;

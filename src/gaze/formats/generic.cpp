@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any CSV or TSV with a column of time and two or three of position; what the header does not say, the user declares.
+#include "core/text.hpp"
+#include "gaze/delimited.hpp"
+
+namespace gazetrace {
+
+double sniff_gaze_generic(const GazeFile& file) {
+  if (file.text.find('\0') != std::string::npos) {
+    return 0.0;  // binary
+  }
+  LineReader lines(file.text);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty() || text.front() == '#') {
+      continue;
+    }
+    return text.find_first_of(",;\t") == std::string_view::npos ? 0.05 : 0.2;
+  }
+  return 0.05;
+}
+
+GazeLog read_gaze_generic(const GazeFile& file, const GazeReadOptions& options) {
+  return read_table(file, open_table(file), options, ValidityStyle::any);
+}
+
+}  // namespace gazetrace

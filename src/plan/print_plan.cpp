@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "gazetrace/plan.hpp"
+
+namespace gazetrace {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string position_text(const GazeAtTime& gaze) {
+  if (gaze.state == GazeState::none) {
+    return "-";
+  }
+  return gaze.kind == GazeKind::screen
+             ? fmt::format("{:.4f} {:.4f}", gaze.u, gaze.v)
+             : fmt::format("{:.4f} {:.4f} {:.4f}", gaze.direction.x, gaze.direction.y, gaze.direction.z);
+}
+
+std::string rows_text(const GazeAtTime& gaze) {
+  if (gaze.row_before != 0 && gaze.row_after != 0) {
+    return fmt::format("{}-{}", gaze.row_before, gaze.row_after);
+  }
+  const std::int64_t row = std::max(gaze.row_before, gaze.row_after);
+  return row != 0 ? fmt::format("{}", row) : "-";
+}
+
+bool has_rows(const GazeAtTime& gaze) {
+  return gaze.row_before != 0 || gaze.row_after != 0;
+}
+
+bool same_gaze(const FrameRequest& request) {
+  return request.gaze_render.t_log_ns == request.gaze_true.t_log_ns;
+}
+
+// A number that JSON can hold: NaN and infinities become null.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json vector_json(const Vec3d& v) {
+  return Json::array({number(v.x), number(v.y), number(v.z)});
+}
+
+Json gaze_json(const GazeAtTime& gaze, const std::optional<Vec3d>& direction) {
+  Json json{{"state", std::string(to_string(gaze.state))}};
+  if (gaze.kind == GazeKind::screen && gaze.state != GazeState::none) {
+    json["u"] = number(gaze.u);
+    json["v"] = number(gaze.v);
+  }
+  json["direction"] = direction ? vector_json(*direction) : Json(nullptr);
+  json["t_log_ns"] = gaze.t_log_ns;
+  json["row_before"] = gaze.row_before != 0 ? Json(gaze.row_before) : Json(nullptr);
+  json["row_after"] = gaze.row_after != 0 ? Json(gaze.row_after) : Json(nullptr);
+  json["age_ns"] = has_rows(gaze) ? Json(gaze.age_ns) : Json(nullptr);
+  json["reason"] = gaze.reason;
+  return json;
+}
+
+Json camera_json(const Camera& camera) {
+  const Quatd& q = camera.pose.orientation;
+  Json json{{"position_m", vector_json(camera.pose.position_m)},
+            {"orientation_xyzw", Json::array({q.x, q.y, q.z, q.w})}};
+  if (camera.projection.kind == ProjectionKind::perspective) {
+    json["yfov_deg"] = camera.projection.yfov_rad * kDegPerRad;
+  } else {
+    json["ymag_m"] = camera.projection.ymag_m;
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string plan_as_table(const FramePlan& plan) {
+  const bool with_true = !std::all_of(plan.frames.begin(), plan.frames.end(), same_gaze);
+  const bool directions = std::any_of(plan.frames.begin(), plan.frames.end(),
+                                      [](const FrameRequest& r) { return r.gaze_render.kind == GazeKind::direction; });
+  using Row = std::vector<std::string>;
+  std::vector<Row> rows;
+  rows.push_back({"frame", "time s", "position m", directions ? "gaze x y z" : "gaze u v"});
+  if (with_true) {
+    rows.back().emplace_back("true gaze");
+  }
+  for (const std::string_view title : {"state", "rows", "age ms", "reason"}) {
+    rows.back().emplace_back(title);
+  }
+  for (const FrameRequest& request : plan.frames) {
+    const Vec3d& p = request.camera.pose.position_m;
+    const GazeAtTime& gaze = request.gaze_render;
+    Row row{fmt::format("{}", request.frame), fmt::format("{:.6f}", static_cast<double>(request.t_video_ns) * 1e-9),
+            fmt::format("{:.3f} {:.3f} {:.3f}", p.x, p.y, p.z), position_text(gaze)};
+    if (with_true) {
+      row.push_back(position_text(request.gaze_true));
+    }
+    row.emplace_back(to_string(gaze.state));
+    row.push_back(rows_text(gaze));
+    row.push_back(has_rows(gaze) ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6) : "-");
+    row.push_back(gaze.reason);
+    rows.push_back(std::move(row));
+  }
+  std::vector<std::size_t> widths(rows.front().size());
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], row[i].size());
+    }
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) {
+      // Text to the left, numbers to the right.
+      const bool is_state = rows.front()[i] == "state";
+      text += is_state ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);
+    }
+    text += row.back() + "\n";
+  }
+  return text;
+}
+
+std::string plan_as_json(const FramePlan& plan) {
+  Json frames = Json::array();
+  for (const FrameRequest& request : plan.frames) {
+    frames.push_back(Json{{"frame", request.frame},
+                          {"t_video_ns", request.t_video_ns},
+                          {"size_px", Json::array({request.width_px, request.height_px})},
+                          {"camera", camera_json(request.camera)},
+                          {"gaze_render", gaze_json(request.gaze_render, request.gaze_direction_render)},
+                          {"gaze_true", gaze_json(request.gaze_true, request.gaze_direction_true)}});
+  }
+  const Json json{{"frames", std::move(frames)}, {"warnings", plan.warnings}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace gazetrace
