@@ -79,8 +79,7 @@ ImageGray eccentricity_image(const PlanarView& view, const Vec3d& gaze_direction
   ImageGray image(view.width_px, view.height_px);
   for (int y = 0; y < view.height_px; ++y) {
     for (int x = 0; x < view.width_px; ++x) {
-      image(x, y) =
-          static_cast<float>(angle_between_rad(gaze_direction, view.direction(x + 0.5, y + 0.5)) * kDegPerRad);
+      image(x, y) = static_cast<float>(eccentricity_deg(view, gaze_direction, x + 0.5, y + 0.5));
     }
   }
   return image;

@@ -92,8 +92,11 @@ class Substitutes {
     for (int by = grid.y; by < grid.y + grid.height; ++by) {
       for (int bx = grid.x; bx < grid.x + grid.width; ++bx) {
         if (grid.cells[grid.index(bx, by)].kind == CellKind::missing && touches_site(grid, bx, by)) {
-          gather(grid, bx, by);
-          blend(grid, grid.index(bx, by), full_count);
+          const BlockRect rect{bx * grid.block_px, by * grid.block_px,
+                               std::min((bx + 1) * grid.block_px, map_.width_px),
+                               std::min((by + 1) * grid.block_px, map_.height_px)};
+          gather(rect);
+          blend(grid, grid.index(bx, by), rect, full_count);
         }
       }
     }
@@ -112,12 +115,10 @@ class Substitutes {
     return false;
   }
 
-  void gather(const CellGrid& grid, int bx, int by) {
+  void gather(const BlockRect& rect) {
     found_.clear();
-    const int x_end = std::min((bx + 1) * grid.block_px, map_.width_px);
-    const int y_end = std::min((by + 1) * grid.block_px, map_.height_px);
-    for (int y = by * grid.block_px; y < y_end; ++y) {
-      for (int x = bx * grid.block_px; x < x_end; ++x) {
+    for (int y = rect.y; y < rect.y_end; ++y) {
+      for (int x = rect.x; x < rect.x_end; ++x) {
         if (map_.regions[map_.region(x, y)].block_px == 1) {
           add_pixel(x, y);
         } else {
@@ -154,7 +155,7 @@ class Substitutes {
     found_.push_back({cell, has_guides_ ? other.guides[i] : SiteGuides{}, 1});
   }
 
-  void blend(CellGrid& grid, std::size_t index, float full_count) const {
+  void blend(CellGrid& grid, std::size_t index, const BlockRect& rect, float full_count) const {
     double samples = 0;
     int pixels = 0;
     for (const Contribution& c : found_) {
@@ -187,8 +188,8 @@ class Substitutes {
                          std::min(static_cast<float>(samples), full_count),
                          static_cast<std::uint16_t>(pixels),
                          CellKind::substitute,
-                         static_cast<float>(x),
-                         static_cast<float>(y)};
+                         static_cast<float>(std::clamp(x, rect.x + 0.5, rect.x_end - 0.5)),
+                         static_cast<float>(std::clamp(y, rect.y + 0.5, rect.y_end - 0.5))};
     if (has_guides_) {
       SiteGuides& guides = grid.guides[index];
       guides = {to_float(albedo), to_float(normal)};

@@ -46,7 +46,8 @@ struct CellGrid {
 // Every cell that touches one of a region's sites, corners included, and lies in the frame has a value. Where the
 // region itself has none (beyond its border) the cell is a substitute:
 //   value     the mean of the sites of other regions in it, weighted by samples per pixel times pixels
-//   place     the same mean of their centroids, so that a ramp goes through the border unbent
+//   place     the same mean of their centroids, so that a ramp goes through the border to a finer region unbent; moved
+//             into the cell where a coarser site's centroid lies outside, so that neighbours always bracket a pixel
 //   count     the samples in it, but no more than a full block of the region: a finer neighbour, sampled many times
 //             more densely, must not pull the picture towards itself
 std::vector<CellGrid> make_cell_grids(const SiteValues& values, const SamplingMap& map, Frame& frame, int threads);

@@ -63,9 +63,7 @@ void fill_cone(Image<std::uint8_t>& region, const std::array<double, 2>& limits_
     // K = g_y Y - g_z and M = Y^2 + 1. Its derivative vanishes only at X = g_x M / K.
     const double plane_y = view.direction(0, y + 0.5).y;
     const double plane_turn = gaze.x * (plane_y * plane_y + 1.0) / (gaze.y * plane_y - gaze.z);
-    const auto classify = [&](int x) {
-      return region_of(angle_between_rad(gaze, view.direction(x + 0.5, y + 0.5)) * kDegPerRad, limits_deg);
-    };
+    const auto classify = [&](int x) { return region_of(eccentricity_deg(view, gaze, x + 0.5, y + 0.5), limits_deg); };
     fill_row(&region(0, y), region.width_px, (plane_turn - view.left) / view.step_x, classify);
   }
 }

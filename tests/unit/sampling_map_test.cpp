@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// The counts that the source paper's numbers imply, what settings are refused, and the cut into sites by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foveation/sites.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/foveation.hpp"
+
+namespace gazetrace {
+namespace {
+
+PlanarView paper_view() {
+  return view_of_display(display_by_name("paper"), {}, 3840, 2160);
+}
+
+struct PaperCase {
+  const char* name;
+  RegionShape shape;
+  AngleReading reading;
+  Vec2d gaze_px;
+  std::array<std::uint64_t, 3> pixels;
+  std::array<double, 3> ratios;  // uniform 32 spp over 32/16/8, 32/8/4, 32/2/1, as printed
+};
+
+const PaperCase kPaperCases[] = {
+    {"disc, diameter, center",
+     RegionShape::disc,
+     AngleReading::full_angle,
+     {1920, 1080},
+     {68488, 673600, 7552312},
+     {30.64, 48.91, 88.46}},
+    {"disc, radius, center",
+     RegionShape::disc,
+     AngleReading::eccentricity,
+     {1920, 1080},
+     {273988, 2694376, 5326036},
+     {11.95, 17.14, 25.40}},
+    {"disc, diameter, corner",
+     RegionShape::disc,
+     AngleReading::full_angle,
+     {0, 0},
+     {17122, 168400, 8108878},
+     {50.31, 91.15, 233.05}},
+    {"disc, radius, corner",
+     RegionShape::disc,
+     AngleReading::eccentricity,
+     {0, 0},
+     {68497, 673594, 7552309},
+     {30.64, 48.91, 88.45}},
+    {"cone, radius, center",
+     RegionShape::cone,
+     AngleReading::eccentricity,
+     {1920, 1080},
+     {275180, 2830344, 5188876},
+     {11.68, 16.84, 25.17}},
+    {"cone, radius, corner",
+     RegionShape::cone,
+     AngleReading::eccentricity,
+     {0, 0},
+     {120721, 973251, 7200428},
+     {23.37, 34.88, 55.30}},
+    {"cone, full angle, corner",
+     RegionShape::cone,
+     AngleReading::full_angle,
+     {0, 0},
+     {31606, 274269, 7988525},
+     {43.49, 74.62, 161.07}},
+};
+
+const std::array<std::array<std::uint32_t, 3>, 3> kPaperRates{{{32, 16, 8}, {32, 8, 4}, {32, 2, 1}}};
+
+double nominal_ratio(const SamplingMap& map) {
+  double nominal = 0;
+  for (const MapRegion& region : map.regions) {
+    nominal += region.nominal_samples;
+  }
+  return 32.0 * map.width_px * map.height_px / nominal;
+}
+
+double to_two_digits(double value) {
+  return std::round(value * 100) / 100;
+}
+
+TEST(SamplingMapPaper, CountsAndRatiosAreExact) {
+  const PlanarView view = paper_view();
+  for (const PaperCase& c : kPaperCases) {
+    SCOPED_TRACE(c.name);
+    for (std::size_t i = 0; i < kPaperRates.size(); ++i) {
+      FoveationSettings settings;
+      settings.shape = c.shape;
+      settings.reading = c.reading;
+      settings.region_samples = kPaperRates[i];
+      const SamplingMap map = make_sampling_map(settings, view, view.direction(c.gaze_px.x, c.gaze_px.y));
+      ASSERT_EQ(map.regions.size(), 3U);
+      std::array<std::uint64_t, 3> counted{};
+      for (const std::uint8_t region : map.region.pixels) {
+        ++counted.at(region);
+      }
+      EXPECT_EQ(counted, c.pixels);
+      for (std::size_t r = 0; r < 3; ++r) {
+        EXPECT_EQ(map.regions[r].pixels, c.pixels[r]);
+      }
+      EXPECT_DOUBLE_EQ(to_two_digits(nominal_ratio(map)), c.ratios[i]);
+      // Straddling blocks trace more than the nominal share, but little.
+      const auto traced = static_cast<double>(map.samples());
+      const double nominal = 32.0 * 3840 * 2160 / nominal_ratio(map);
+      EXPECT_GT(traced, nominal);
+      EXPECT_LT(traced, 1.005 * nominal);
+    }
+  }
+}
+
+TEST(SamplingMapPaper, SamplesPerPixelReading) {
+  const PlanarView view = paper_view();
+  const std::array<double, 3> printed{3.62, 7.02, 23.93};
+  for (std::size_t i = 0; i < kPaperRates.size(); ++i) {
+    FoveationSettings settings;
+    settings.shape = RegionShape::disc;
+    settings.unit = SampleUnit::per_pixel;
+    settings.region_samples = kPaperRates[i];
+    const SamplingMap map = make_sampling_map(settings, view, view.direction(1920, 1080));
+    EXPECT_DOUBLE_EQ(to_two_digits(nominal_ratio(map)), printed[i]);
+    for (const MapRegion& region : map.regions) {
+      EXPECT_EQ(static_cast<double>(region.samples), region.nominal_samples);  // nothing straddles a pixel
+    }
+  }
+}
+
+TEST(SamplingMap, WithoutGazeEveryPixelGetsTheUniformRate) {
+  FoveationSettings settings;
+  settings.uniform_spp = 5;
+  const PlanarView view = view_of_perspective(1.0, 130, 70);
+  for (const bool by_falloff : {false, true}) {
+    settings.falloff = by_falloff ? "uniform" : "regions";
+    const SamplingMap map =
+        make_sampling_map(settings, view, by_falloff ? std::optional<Vec3d>({0, 0, -1}) : std::nullopt);
+    ASSERT_EQ(map.regions.size(), 1U);
+    EXPECT_EQ(map.regions[0].name, "uniform");
+    EXPECT_EQ(map.regions[0].block_px, 1);
+    EXPECT_EQ(map.sites.size(), 130U * 70U);
+    EXPECT_EQ(map.samples(), 5U * 130U * 70U);
+    EXPECT_EQ(map.regions[0].nominal_samples, 5.0 * 130 * 70);
+  }
+}
+
+// 6 x 3 pixels, regions of 1-pixel and 2-pixel blocks: the second block of the first row straddles the border, the
+// third is whole, and the second row of blocks is cut by the frame's lower edge.
+Layout small_layout(SampleUnit unit) {
+  Layout layout;
+  layout.regions = {{"fovea", 1, 32, unit}, {"intermediate", 2, 16, unit}};
+  layout.region = Image<std::uint8_t>(6, 3, 1);
+  for (const auto& [x, y] :
+       {PixelIndex{0, 0}, PixelIndex{1, 0}, PixelIndex{2, 0}, PixelIndex{0, 1}, PixelIndex{1, 1}}) {
+    layout.region(x, y) = 0;
+  }
+  return layout;
+}
+
+TEST(SamplingMap, StraddlingAndClippedBlocksByHand) {
+  const SamplingMap map = map_from_layout(small_layout(SampleUnit::per_block));
+  ASSERT_EQ(map.tiles.size(), 1U);
+  const auto find = [&](int bx, int by, int region) {
+    for (const Site& site : map.sites) {
+      if (site.block_x == bx && site.block_y == by && site.region == region) {
+        return site;
+      }
+    }
+    return Site{};
+  };
+  EXPECT_EQ(map.sites.size(), 5U + 5U);
+  EXPECT_EQ(find(1, 0, 1).pixels, 3);     // straddles: 4 pixels but one
+  EXPECT_EQ(find(1, 0, 1).samples, 16U);  // ... and keeps the block's full tau
+  EXPECT_EQ(find(2, 0, 1).pixels, 4);
+  EXPECT_EQ(find(0, 1, 1).pixels, 2);  // clipped by the frame
+  EXPECT_EQ(find(0, 1, 1).samples, 16U);
+  EXPECT_EQ(find(2, 0, 0).samples, 32U);
+  EXPECT_EQ(find(0, 0, 1).pixels, 0);  // no pixel of the region, no site
+  EXPECT_EQ(map.regions[1].pixels, 13U);
+  EXPECT_EQ(map.regions[1].samples, 5U * 16U);
+  EXPECT_EQ(map.regions[1].nominal_samples, 13.0 * 16 / 4);
+
+  std::vector<PixelIndex> pixels{{9, 9}};
+  pixels_of_site(map, find(1, 0, 1), pixels);
+  ASSERT_EQ(pixels.size(), 3U);
+  EXPECT_TRUE(pixels[0].x == 3 && pixels[0].y == 0);
+  EXPECT_TRUE(pixels[1].x == 2 && pixels[1].y == 1);
+  EXPECT_TRUE(pixels[2].x == 3 && pixels[2].y == 1);
+
+  const ImageGray density = samples_per_pixel(map);
+  EXPECT_EQ(density(0, 0), 32.0F);
+  EXPECT_EQ(density(3, 0), 16.0F / 3.0F);
+  EXPECT_EQ(density(4, 0), 4.0F);
+  EXPECT_EQ(density(0, 2), 8.0F);
+}
+
+TEST(SamplingMap, PerPixelUnitCountsTheSitesPixels) {
+  const SamplingMap map = map_from_layout(small_layout(SampleUnit::per_pixel));
+  for (const Site& site : map.sites) {
+    EXPECT_EQ(site.samples, (site.region == 0 ? 32U : 16U) * site.pixels);
+  }
+  EXPECT_EQ(map.regions[1].nominal_samples, 13.0 * 16);
+}
+
+TEST(SamplingMap, SitesOfATileFollowAZCurve) {
+  Layout layout;
+  layout.regions = {{"uniform", 1, 1, SampleUnit::per_pixel}};
+  layout.region = Image<std::uint8_t>(128, 64, 0);
+  const SamplingMap map = map_from_layout(layout);
+  ASSERT_EQ(map.tiles.size(), 2U);
+  // Any 64 sites in a row that start at a multiple of 64 are one 8x8 square.
+  for (std::size_t first = 0; first < map.sites.size(); first += 64) {
+    const int x0 = map.sites[first].block_x;
+    const int y0 = map.sites[first].block_y;
+    EXPECT_EQ(x0 % 8, 0);
+    EXPECT_EQ(y0 % 8, 0);
+    for (std::size_t i = first; i < first + 64; ++i) {
+      EXPECT_EQ(map.sites[i].block_x / 8, x0 / 8);
+      EXPECT_EQ(map.sites[i].block_y / 8, y0 / 8);
+    }
+  }
+}
+
+TEST(SamplingMap, GazeBehindTheEye) {
+  const PlanarView view = view_of_perspective(1.0, 40, 30);
+  FoveationSettings settings;
+  settings.region_angles_deg = {10, 200};  // ends at 100 deg: a cone reaches past the side
+  for (const Vec3d gaze : {Vec3d{0, 0, 1}, Vec3d{1, 0, 0}, Vec3d{0, 2, 1e-9}}) {
+    settings.shape = RegionShape::disc;
+    settings.region_angles_deg = {10, 170};
+    EXPECT_EQ(make_sampling_map(settings, view, gaze).regions[2].pixels, 1200U);
+    settings.shape = RegionShape::cone;
+    settings.region_angles_deg = {10, 200};
+    const SamplingMap map = make_sampling_map(settings, view, gaze);
+    for (int y = 0; y < 30; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        EXPECT_EQ(map.region(x, y) == 1, eccentricity_deg(view, gaze, x + 0.5, y + 0.5) <= 100.0);
+      }
+    }
+  }
+}
+
+TEST(SamplingMap, EccentricityImageIsTheAngleAtThePixelCentre) {
+  const PlanarView view = paper_view();
+  const ImageGray image = eccentricity_image(view, view.direction(0, 0));
+  EXPECT_NEAR(image(0, 0), 0.0, 0.02);
+  // Corner to opposite corner of a 70.848 x 39.852 cm display seen from 60 cm.
+  const double half_diagonal = std::hypot(70.848, 39.852) / 2;
+  EXPECT_NEAR(image(3839, 2159), 2 * std::atan(half_diagonal / 60) * kDegPerRad, 0.02);
+}
+
+std::string refusal(const FoveationSettings& settings) {
+  try {
+    check_foveation(settings);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::usage);
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+    return e.what();
+  }
+  return "";
+}
+
+TEST(CheckFoveation, NamesTheFieldAndWhatIsAllowed) {
+  using testing::HasSubstr;
+  EXPECT_EQ(refusal({}), "");
+  FoveationSettings s;
+  s.falloff = "regoins";
+  EXPECT_THAT(refusal(s), HasSubstr("did you mean 'regions'"));
+  s = {};
+  s.uniform_spp = 0;
+  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("uniform_spp"), HasSubstr("1 to 1000000")));
+  s = {};
+  s.region_samples = {32, 0, 8};
+  EXPECT_THAT(refusal(s), HasSubstr("region_samples"));
+  s = {};
+  s.region_blocks_px = {2, 65};
+  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("region_blocks_px"), HasSubstr("1 to 64")));
+  s.region_blocks_px = {0, 4};
+  EXPECT_THAT(refusal(s), HasSubstr("region_blocks_px"));
+  s = {};
+  s.region_angles_deg = {17, 5.2};
+  EXPECT_THAT(refusal(s), testing::AllOf(HasSubstr("region_angles_deg"), HasSubstr("smaller angle first")));
+  s.region_angles_deg = {-1, 5};
+  EXPECT_THAT(refusal(s), HasSubstr("region_angles_deg"));
+  s.region_angles_deg = {5, std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_THAT(refusal(s), HasSubstr("region_angles_deg"));
+  s.region_angles_deg = {5, 180};
+  EXPECT_EQ(refusal(s), "");
+  s.shape = RegionShape::disc;  // tan(a/2)
+  EXPECT_THAT(refusal(s), HasSubstr("0 to below 180"));
+}
+
+TEST(SamplingMap, RefusesWhatIsNoGazeOrNoFrame) {
+  const PlanarView view = view_of_perspective(1.0, 8, 8);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const Vec3d gaze : {Vec3d{0, 0, 0}, Vec3d{kNan, 0, -1}, Vec3d{0, INFINITY, -1}}) {
+    EXPECT_THROW(make_sampling_map({}, view, gaze), Error);
+  }
+  PlanarView empty = view;
+  empty.width_px = 0;
+  EXPECT_THROW(make_sampling_map({}, empty, std::nullopt), Error);
+}
+
+}  // namespace
+}  // namespace gazetrace
