@@ -62,6 +62,26 @@ class RayScene {
   [[nodiscard]] std::string library() const;
 
  private:
+  friend class RayRecorder;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// Keeps rays in the library's own layout and shoots them again with nothing but the library's calls: the time that a
+// tracer of these rays cannot go below. For measurements.
+class RayRecorder {
+ public:
+  RayRecorder();
+  ~RayRecorder();
+  RayRecorder(const RayRecorder&) = delete;
+  RayRecorder& operator=(const RayRecorder&) = delete;
+
+  void record(const RayBatch& rays, int count, RayShape shape, bool occlusion);
+  // Every recorded ray once, in the order and packets of the recording; returns how many hit something.
+  [[nodiscard]] std::uint64_t replay(const RayScene& scene) const;
+  [[nodiscard]] std::uint64_t size() const;
+
+ private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

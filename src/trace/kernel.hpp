@@ -29,7 +29,11 @@ struct FrameContext {
   TraceSettings settings;
   bool last_ray_finds_light = false;    // the ray after the last scattering event can still add something
   bool last_ray_needs_surface = false;  // ... on a surface, so that visibility of the sky is not enough
+  RayRecorder* recorder = nullptr;      // measurements only
 };
+
+FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,
+                                const CameraRays& camera, const TraceSettings& settings);
 
 struct KernelCounts {
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0, rejected = 0;

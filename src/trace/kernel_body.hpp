@@ -43,10 +43,17 @@ class PathKernel {
         return;
       }
       const RayShape shape = vertex == 0 ? RayShape::coherent_packet : RayShape::single;
+      record(rays, alive, shape, false);
       counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
       shadow_count_ = 0;
       alive = shade(vertex, alive);
       trace_shadows(vertex);
+    }
+  }
+
+  void record(const RayBatch& rays, int count, RayShape shape, bool occlusion) const {
+    if (frame_.recorder != nullptr) {
+      frame_.recorder->record(rays, count, shape, occlusion);
     }
   }
 
@@ -344,6 +351,7 @@ class PathKernel {
     const ShadowBatch& shadows = work_.shadows;
     const RayShape shape = vertex == 0 ? RayShape::packet : RayShape::single;
     counts_.rays_shadow += shadow_count_;
+    record(shadows.rays, count, shape, true);
     counts_.rejected +=
         static_cast<std::uint64_t>(frame_.scene->rays->occluded(shadows.rays, count, shape, work_.occluded.data));
     for (std::size_t n = 0; n < shadow_count_; ++n) {

@@ -27,6 +27,22 @@ constexpr bool covers(const KernelFeatures& kernel, const KernelFeatures& scene)
 
 }  // namespace
 
+FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,
+                                const CameraRays& camera, const TraceSettings& settings) {
+  FrameContext context;
+  context.source = &scene;
+  context.scene = &render_scene;
+  context.lights = &lights;
+  context.camera = &camera;
+  context.settings = settings;
+  const SceneFeatures& features = render_scene.features;
+  const bool light_found_by_chance = settings.light_sampling != LightSampling::light_only;
+  context.last_ray_needs_surface = features.unlit || (light_found_by_chance && features.emissive_triangles);
+  context.last_ray_finds_light =
+      context.last_ray_needs_surface || (light_found_by_chance && scene.environment.present());
+  return context;
+}
+
 KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene) {
   return {.textures = features.textures || features.normal_maps,
           .instances = !scene.instances.empty(),

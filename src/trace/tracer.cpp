@@ -192,16 +192,8 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   const NamedKernel& variant =
       choose_kernel(kernel_features(features, impl_->render_scene), impl_->options.all_features);
 
-  FrameContext context;
-  context.source = impl_->scene;
-  context.scene = &impl_->render_scene;
-  context.lights = &impl_->lights;
-  context.camera = &rays;
-  context.settings = settings;
-  const bool light_found_by_chance = settings.light_sampling != LightSampling::light_only;
-  context.last_ray_needs_surface = features.unlit || (light_found_by_chance && features.emissive_triangles);
-  context.last_ray_finds_light =
-      context.last_ray_needs_surface || (light_found_by_chance && impl_->scene->environment.present());
+  const FrameContext context =
+      make_frame_context(*impl_->scene, impl_->render_scene, impl_->lights, rays, settings);
 
   SparseFrame out;
   out.width_px = map.width_px;
