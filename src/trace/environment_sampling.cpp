@@ -2,6 +2,7 @@
 #include "trace/environment_sampling.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -171,10 +172,7 @@ Vec3f EnvironmentSampler::lookup(const Place& at) const noexcept {
   return (p(x0, y0) * (1 - fx) + p(x1, y0) * fx) * (1 - fy) + (p(x0, y1) * (1 - fx) + p(x1, y1) * fx) * fy;
 }
 
-EnvironmentSampler::Sample EnvironmentSampler::sample(const Vec2f& u) const noexcept {
-  const Choice row = invert(row_cumulative_.data(), row_guide_.data(), rows_, u.y);
-  const std::size_t first = static_cast<std::size_t>(row.index) * columns_;
-  const Choice column = invert(cell_cumulative_.data() + first, cell_guide_.data() + first, columns_, u.x);
+EnvironmentSampler::Direction EnvironmentSampler::direction_of(const Choice& row, const Choice& column) const noexcept {
   // In double: near the poles a float cosine cannot tell directions apart.
   const double upper = row_edges_[row.index];
   const double cosine = upper + (row_edges_[row.index + 1] - upper) * static_cast<double>(row.fraction);
@@ -185,14 +183,91 @@ EnvironmentSampler::Sample EnvironmentSampler::sample(const Vec2f& u) const noex
   float azimuth = place_u + 0.5F + rotation_turns_;  // 0.5 + 1 turns less
   azimuth -= std::floor(azimuth);
   const Vec2f circle = cos_sin_2pi(azimuth);
-  const Place place{std::min(place_u, 0x1.fffffep-1F), 2.0F * atan2_turns(sine, y)};
-  return {{sine * circle.y, y, -sine * circle.x}, lookup(place), cell_pdf_[first + column.index]};
+  return {{sine * circle.y, y, -sine * circle.x}, {std::min(place_u, 0x1.fffffep-1F), 2.0F * atan2_turns(sine, y)}};
+}
+
+EnvironmentSampler::Sample EnvironmentSampler::sample(const Vec2f& u) const noexcept {
+  const Choice row = invert(row_cumulative_.data(), row_guide_.data(), rows_, u.y);
+  const std::size_t first = static_cast<std::size_t>(row.index) * columns_;
+  const Choice column = invert(cell_cumulative_.data() + first, cell_guide_.data() + first, columns_, u.x);
+  const Direction chosen = direction_of(row, column);
+  return {chosen.direction, lookup(chosen.place), cell_pdf_[first + column.index]};
+}
+
+std::size_t EnvironmentSampler::cell_at(const Place& at) const noexcept {
+  const auto c = std::min(static_cast<std::uint32_t>(at.u * columns_per_u_), columns_ - 1);
+  const auto r = std::min(static_cast<std::uint32_t>(at.v * rows_per_v_), rows_ - 1);
+  return static_cast<std::size_t>(r) * columns_ + c;
 }
 
 float EnvironmentSampler::cell_pdf(const Place& at) const noexcept {
-  const auto c = std::min(static_cast<std::uint32_t>(at.u * columns_per_u_), columns_ - 1);
-  const auto r = std::min(static_cast<std::uint32_t>(at.v * rows_per_v_), rows_ - 1);
-  return cell_pdf_[static_cast<std::size_t>(r) * columns_ + c];
+  return cell_pdf_[cell_at(at)];
+}
+
+void EnvironmentSampler::prefetch(const Place& at) const noexcept {
+  const int x = std::min(static_cast<int>(at.u * static_cast<float>(picture_->width_px)), picture_->width_px - 1);
+  const int y = std::min(static_cast<int>(at.v * static_cast<float>(picture_->height_px)), picture_->height_px - 1);
+  const std::size_t pixel = picture_->index(x, y);
+  const auto row = static_cast<std::size_t>(picture_->width_px);
+  __builtin_prefetch(&picture_->pixels[pixel]);
+  __builtin_prefetch(&picture_->pixels[pixel >= row ? pixel - row : pixel]);
+  __builtin_prefetch(&picture_->pixels[pixel + row < picture_->pixels.size() ? pixel + row : pixel]);
+}
+
+void EnvironmentSampler::sample_many(const Vec2f* u, std::size_t count, Sample* out) const noexcept {
+  constexpr std::size_t kStage = 32;
+  for (std::size_t begin = 0; begin < count; begin += kStage) {
+    const std::size_t n = std::min(kStage, count - begin);
+    std::array<Choice, kStage> row;
+    std::array<Place, kStage> place;
+    std::array<std::size_t, kStage> cell;
+    for (std::size_t i = 0; i < n; ++i) {
+      row[i] = invert(row_cumulative_.data(), row_guide_.data(), rows_, u[begin + i].y);
+      const std::size_t first = static_cast<std::size_t>(row[i].index) * columns_;
+      const auto at = static_cast<std::size_t>(u[begin + i].x * static_cast<float>(columns_));
+      __builtin_prefetch(&cell_guide_[first + std::min<std::size_t>(at, columns_ - 1)]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t first = static_cast<std::size_t>(row[i].index) * columns_;
+      const auto at = static_cast<std::size_t>(u[begin + i].x * static_cast<float>(columns_));
+      __builtin_prefetch(&cell_cumulative_[first + cell_guide_[first + std::min<std::size_t>(at, columns_ - 1)]]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t first = static_cast<std::size_t>(row[i].index) * columns_;
+      const Choice column =
+          invert(cell_cumulative_.data() + first, cell_guide_.data() + first, columns_, u[begin + i].x);
+      cell[i] = first + column.index;
+      __builtin_prefetch(&cell_pdf_[cell[i]]);
+      const Direction chosen = direction_of(row[i], column);
+      out[begin + i].direction = chosen.direction;
+      place[i] = chosen.place;
+      prefetch(chosen.place);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      out[begin + i].radiance = lookup(place[i]);
+      out[begin + i].pdf = cell_pdf_[cell[i]];
+    }
+  }
+}
+
+void EnvironmentSampler::value_many(const Vec3f* directions, std::size_t count, Value* out) const noexcept {
+  constexpr std::size_t kStage = 32;
+  for (std::size_t begin = 0; begin < count; begin += kStage) {
+    const std::size_t n = std::min(kStage, count - begin);
+    if (picture_ == nullptr) {
+      std::fill_n(out + begin, n, Value{});
+      continue;
+    }
+    std::array<Place, kStage> place;
+    for (std::size_t i = 0; i < n; ++i) {
+      place[i] = place_of(directions[begin + i]);
+      prefetch(place[i]);
+      __builtin_prefetch(&cell_pdf_[cell_at(place[i])]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      out[begin + i] = {lookup(place[i]), cell_pdf(place[i])};
+    }
+  }
 }
 
 EnvironmentSampler::Value EnvironmentSampler::value(const Vec3f& direction) const noexcept {

@@ -6,6 +6,7 @@
 // table it keeps the samples' stratification.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -34,6 +35,11 @@ class EnvironmentSampler {
   [[nodiscard]] Vec3f radiance(const Vec3f& direction) const noexcept;
   [[nodiscard]] float pdf(const Vec3f& direction) const noexcept;
 
+  // The same for many at once, with the same results: tables are asked for ahead of use, so that waiting for memory
+  // (most of the cost of one alone) overlaps.
+  void sample_many(const Vec2f* u, std::size_t count, Sample* out) const noexcept;
+  void value_many(const Vec3f* directions, std::size_t count, Value* out) const noexcept;
+
   // Integral of luminance over all directions, W/m^2.
   [[nodiscard]] double total() const noexcept { return total_; }
 
@@ -48,6 +54,13 @@ class EnvironmentSampler {
   [[nodiscard]] Place place_of(const Vec3f& direction) const noexcept;
   [[nodiscard]] Vec3f lookup(const Place& at) const noexcept;
   [[nodiscard]] float cell_pdf(const Place& at) const noexcept;
+  [[nodiscard]] std::size_t cell_at(const Place& at) const noexcept;
+  void prefetch(const Place& at) const noexcept;
+  struct Direction {
+    Vec3f direction;  // world
+    Place place;
+  };
+  [[nodiscard]] Direction direction_of(const Choice& row, const Choice& column) const noexcept;
   static Choice invert(const float* cumulative, const std::uint16_t* guide, std::uint32_t count, float u) noexcept;
 
   const ImageRgb* picture_ = nullptr;

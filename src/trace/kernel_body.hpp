@@ -6,6 +6,7 @@
 //   L += throughput * L_e * w_bsdf                                  w = power heuristic, exponent 2 (Veach 1997, 9.2)
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,8 @@ inline float power_heuristic(float chosen, float other) {
   const float ratio = other / chosen;
   return 1.0F / (1.0F + ratio * ratio);
 }
+
+inline constexpr std::size_t kChunk = 64;
 
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 class PathKernel {
@@ -125,10 +128,20 @@ class PathKernel {
     return power_heuristic(pdf_bsdf, pdf_light);
   }
 
-  void add_sky(int vertex, const PathBatch& paths, std::size_t k, const Vec3f& direction) {
-    const LightSampler::EnvironmentHit sky = frame_.lights->environment(direction);
-    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
-    add(paths.slot[k], throughput * sky.radiance * weight_of_found_light(vertex, paths.pdf[k], sky.pdf));
+  // Rays `list` of a packed batch left the scene.
+  void add_sky(int vertex, const RayBatch& rays, const PathBatch& paths, const std::uint16_t* list, std::size_t count) {
+    std::array<Vec3f, kChunk> directions;
+    std::array<LightSampler::EnvironmentHit, kChunk> sky;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t k = list[i];
+      directions[i] = {rays.dx[k], rays.dy[k], rays.dz[k]};
+    }
+    frame_.lights->environment_many(directions.data(), count, sky.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t k = list[i];
+      const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+      add(paths.slot[k], throughput * sky[i].radiance * weight_of_found_light(vertex, paths.pdf[k], sky[i].pdf));
+    }
   }
 
   // The ray after the last scattering event where only the sky can be found: visibility is enough.
@@ -137,12 +150,18 @@ class PathKernel {
     const PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
     counts_.rejected +=
         static_cast<std::uint64_t>(frame_.scene->rays->occluded(rays, count, RayShape::single, work_.occluded.data));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      if (work_.occluded[k] == 0) {
-        add_sky(vertex, paths, k, {rays.dx[k], rays.dy[k], rays.dz[k]});
-      } else if (work_.occluded[k] == 2) {
-        work_.radiance.rejected[paths.slot[k]] = 1;
+    std::array<std::uint16_t, kChunk> sky;
+    for (std::size_t begin = 0; begin < static_cast<std::size_t>(count); begin += kChunk) {
+      const std::size_t end = std::min(begin + kChunk, static_cast<std::size_t>(count));
+      std::size_t sky_count = 0;
+      for (std::size_t k = begin; k < end; ++k) {
+        sky[sky_count] = static_cast<std::uint16_t>(k);
+        sky_count += work_.occluded[k] == 0 ? 1 : 0;
+        if (work_.occluded[k] == 2) {
+          work_.radiance.rejected[paths.slot[k]] = 1;
+        }
       }
+      add_sky(vertex, rays, paths, sky.data(), sky_count);
     }
   }
 
@@ -151,46 +170,180 @@ class PathKernel {
     const RayBatch& rays = work_.rays[from];
     const PathBatch& paths = work_.paths[from];
     next_count_ = 0;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-      const std::uint32_t geometry = work_.hits.geometry[k];
-      if (geometry == kRejected) {
-        work_.radiance.rejected[paths.slot[k]] = 1;
-        continue;
-      }
-      const Vec3f direction{rays.dx[k], rays.dy[k], rays.dz[k]};
-      if (geometry == kNoId) {
-        add_sky(vertex, paths, k, direction);
-        continue;
-      }
-      shade_hit(vertex, k, direction, paths);
+    for (std::size_t begin = 0; begin < static_cast<std::size_t>(count); begin += kChunk) {
+      shade_chunk(vertex, rays, paths, begin, std::min(begin + kChunk, static_cast<std::size_t>(count)));
     }
     return static_cast<int>(next_count_);
   }
 
-  void shade_hit(int vertex, std::size_t k, const Vec3f& direction, const PathBatch& paths) {
-    const SurfaceHit hit =
-        resolve_hit<kFeatures>(*frame_.scene, work_.hits, k, direction, paths.cone_width[k], paths.cone_spread[k]);
-    if (!hit.good) {
-      return;
+  // In steps over a few dozen rays, so that each step's reads from memory overlap and its code stays small.
+  void shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths, std::size_t begin, std::size_t end) {
+    std::array<std::uint16_t, kChunk> sky;
+    std::array<std::uint16_t, kChunk> found;
+    std::array<HitPlace, kChunk> places;
+    std::size_t sky_count = 0;
+    std::size_t found_count = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t geometry = work_.hits.geometry[k];
+      if (geometry == kRejected) {
+        work_.radiance.rejected[paths.slot[k]] = 1;
+      } else if (geometry == kNoId) {
+        sky[sky_count++] = static_cast<std::uint16_t>(k);
+      } else {
+        places[found_count] = place_of_hit<kFeatures>(*frame_.scene, work_.hits, k);
+        found[found_count++] = static_cast<std::uint16_t>(k);
+      }
     }
+    add_sky(vertex, rays, paths, sky.data(), sky_count);
+
+    ChunkHits chunk;
+    chunk.count = 0;
+    for (std::size_t i = 0; i < found_count; ++i) {
+      const std::size_t k = found[i];
+      const Vec3f direction{rays.dx[k], rays.dy[k], rays.dz[k]};
+      SurfaceHit& hit = chunk.hits[chunk.count];
+      resolve_hit<kFeatures>(*frame_.scene, places[i], work_.hits, k, direction, paths.cone_width[k],
+                             paths.cone_spread[k], hit);
+      if (hit.good && goes_on(vertex, k, hit, direction, paths)) {
+        chunk.path[chunk.count++] = static_cast<std::uint16_t>(k);
+      }
+    }
+    if (chunk.count > 0) {
+      scatter_chunk(vertex, rays, paths, chunk);
+    }
+  }
+
+  struct ChunkHits {
+    std::size_t count;
+    std::array<SurfaceHit, kChunk> hits;
+    std::array<std::uint16_t, kChunk> path;
+  };
+
+  // Takes what the surface itself shines; true where the path scatters.
+  bool goes_on(int vertex, std::size_t k, const SurfaceHit& hit, const Vec3f& direction, const PathBatch& paths) {
     const std::size_t slot = paths.slot[k];
-    Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
     if (vertex == 0 && frame_.settings.guides) {
       record_guides(slot, hit, direction, work_.hits.t[k]);
     }
     if constexpr (kFeatures.emission) {
       if (hit.material->unlit) {
         add(slot, throughput * hit.surface.base_color);
-        return;
+        return false;
       }
       if (hit.emission.x + hit.emission.y + hit.emission.z > 0) {
         add_emission(vertex, k, slot, throughput, hit, direction, paths.pdf[k]);
       }
     }
-    if (vertex == frame_.settings.max_bounces) {
+    return vertex < frame_.settings.max_bounces;
+  }
+
+  void scatter_chunk(int vertex, const RayBatch& rays, const PathBatch& paths, const ChunkHits& chunk) {
+    std::array<SampleKey, kChunk> key;
+    std::array<std::uint32_t, kChunk> index;
+    std::array<Vec2f, kChunk> select;
+    std::array<Vec2f, kChunk> light_uv;
+    std::array<Vec2f, kChunk> bsdf_uv;
+    const std::size_t n = chunk.count;
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t slot = paths.slot[chunk.path[i]];
+      key[i] = work_.samples.key[slot];
+      index[i] = work_.samples.sample[slot];
+    }
+    const bool lit = frame_.lights->any();
+    const bool bounces = vertex + 1 < frame_.settings.max_bounces || frame_.last_ray_finds_light;
+    fill_2d(key, index, n, dimension_of(vertex, BounceDimension::select), select);
+    if (lit) {
+      fill_2d(key, index, n, dimension_of(vertex, BounceDimension::light_uv), light_uv);
+    }
+    if (bounces) {
+      fill_2d(key, index, n, dimension_of(vertex, BounceDimension::bsdf_uv), bsdf_uv);
+    }
+    std::array<LightSample, kChunk> lights;
+    if (lit) {
+      std::array<Vec3f, kChunk> positions;
+      std::array<Vec3f, kChunk> normals;
+      std::array<float, kChunk> choice;
+      for (std::size_t i = 0; i < n; ++i) {
+        positions[i] = chunk.hits[i].position;
+        normals[i] = chunk.hits[i].geometric;
+        choice[i] = select[i].x;
+      }
+      frame_.lights->sample_many(n, positions.data(), normals.data(), light_uv.data(), choice.data(), lights.data());
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t k = chunk.path[i];
+      const SurfaceHit& hit = chunk.hits[i];
+      const LocalFrame local(hit.shading);
+      const Bsdf<kDiffuse> bsdf(hit.surface, local.to_local(Vec3f{-rays.dx[k], -rays.dy[k], -rays.dz[k]}));
+      if (lit && lights[i].valid) {
+        take_light_sample(vertex, k, hit, local, bsdf, lights[i], paths);
+      }
+      if (bounces) {
+        take_bsdf_sample(vertex, k, hit, local, bsdf, bsdf_uv[i], select[i].y, paths);
+      }
+    }
+  }
+
+  static void fill_2d(const std::array<SampleKey, kChunk>& key, const std::array<std::uint32_t, kChunk>& index,
+                      std::size_t count, std::uint32_t dimension, std::array<Vec2f, kChunk>& out) {
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = sample_2d(key[i], index[i], dimension);
+    }
+  }
+
+  void take_light_sample(int vertex, std::size_t k, const SurfaceHit& hit, const LocalFrame& local,
+                         const Bsdf<kDiffuse>& bsdf, const LightSample& light, const PathBatch& paths) {
+    const LightSampling mode = frame_.settings.light_sampling;
+    if (!light.delta && mode == LightSampling::bsdf_only) {
       return;
     }
-    scatter(vertex, k, slot, throughput, hit, direction, paths);
+    const BsdfEval eval = bsdf.evaluate(local.to_local(light.direction));
+    float weight = 1.0F / light.pdf;
+    if (!light.delta && mode == LightSampling::mis) {
+      weight *= power_heuristic(light.pdf, eval.pdf);
+    }
+    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    const Vec3f arriving = throughput * eval.f_cos * (light_radiance(light) * weight);
+    if (arriving.x + arriving.y + arriving.z != 0) {
+      queue_shadow(vertex, paths.slot[k], hit, light, arriving);
+    }
+  }
+
+  void take_bsdf_sample(int vertex, std::size_t k, const SurfaceHit& hit, const LocalFrame& local,
+                        const Bsdf<kDiffuse>& bsdf, const Vec2f& u, float u_lobe, const PathBatch& paths) {
+    const BsdfSample sample = bsdf.sample(u, u_lobe);
+    if (!sample.valid) {
+      return;
+    }
+    const Vec3f next = fast_normalize(local.to_world(sample.direction));
+    if (dot(next, hit.geometric) <= 0) {
+      return;
+    }
+    const std::size_t slot = paths.slot[k];
+    Vec3f weight = Vec3f{paths.r[k], paths.g[k], paths.b[k]} * sample.weight;
+    if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 0) {
+      const float survive = std::min(std::max(std::max(weight.x, weight.y), weight.z), 0.95F);
+      if (!(sample_1d(work_.samples.key[slot], work_.samples.sample[slot],
+                      dimension_of(vertex, BounceDimension::roulette)) < survive)) {
+        return;
+      }
+      weight = weight * (1.0F / survive);
+    }
+    const std::size_t to = static_cast<std::size_t>(vertex + 1) & 1U;
+    RayBatch& out = work_.rays[to];
+    PathBatch& state = work_.paths[to];
+    const std::size_t n = next_count_++;
+    set_ray(out, n, hit.position + hit.geometric * hit.offset, next, 0.0F, std::numeric_limits<float>::infinity());
+    out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));
+    state.slot[n] = static_cast<std::uint32_t>(slot);
+    state.r[n] = weight.x;
+    state.g[n] = weight.y;
+    state.b[n] = weight.z;
+    state.pdf[n] = sample.pdf;
+    state.cone_width[n] = hit.cone_width;
+    state.cone_spread[n] =
+        paths.cone_spread[k] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * sample.pdf);
   }
 
   void add_emission(int vertex, std::size_t k, std::size_t slot, const Vec3f& throughput, const SurfaceHit& hit,
@@ -237,69 +390,6 @@ class PathKernel {
     guides.hit[slot] = 1;
   }
 
-  void scatter(int vertex, std::size_t k, std::size_t slot, const Vec3f& throughput, const SurfaceHit& hit,
-               const Vec3f& direction, const PathBatch& paths) {
-    const SampleKey key = work_.samples.key[slot];
-    const std::uint32_t index = work_.samples.sample[slot];
-    const LocalFrame local(hit.shading);
-    const Bsdf<kDiffuse> bsdf(hit.surface, local.to_local(-direction));
-    const Vec3f origin = hit.position + hit.geometric * hit.offset;
-    const Vec2f select = sample_2d(key, index, dimension_of(vertex, BounceDimension::select));
-    const LightSampling mode = frame_.settings.light_sampling;
-
-    if (frame_.lights->any()) {
-      const Vec2f u = sample_2d(key, index, dimension_of(vertex, BounceDimension::light_uv));
-      const LightSample light = frame_.lights->sample(hit.position, hit.geometric, u, select.x);
-      if (light.valid && (light.delta || mode != LightSampling::bsdf_only)) {
-        const BsdfEval eval = bsdf.evaluate(local.to_local(light.direction));
-        float weight = 1.0F / light.pdf;
-        if (!light.delta && mode == LightSampling::mis) {
-          weight *= power_heuristic(light.pdf, eval.pdf);
-        }
-        Vec3f arriving = throughput * eval.f_cos * (light_radiance(light) * weight);
-        if (arriving.x + arriving.y + arriving.z != 0) {
-          queue_shadow(vertex, slot, origin, hit, light, arriving);
-        }
-      }
-    }
-
-    const int last = frame_.settings.max_bounces;
-    if (vertex + 1 == last && !frame_.last_ray_finds_light) {
-      return;
-    }
-    const Vec2f u = sample_2d(key, index, dimension_of(vertex, BounceDimension::bsdf_uv));
-    const BsdfSample sample = bsdf.sample(u, select.y);
-    if (!sample.valid) {
-      return;
-    }
-    const Vec3f next = fast_normalize(local.to_world(sample.direction));
-    if (dot(next, hit.geometric) <= 0) {
-      return;
-    }
-    Vec3f weight = throughput * sample.weight;
-    if (frame_.settings.russian_roulette && vertex + 1 < last && vertex > 0) {
-      const float survive = std::min(std::max(std::max(weight.x, weight.y), weight.z), 0.95F);
-      if (!(sample_1d(key, index, dimension_of(vertex, BounceDimension::roulette)) < survive)) {
-        return;
-      }
-      weight = weight * (1.0F / survive);
-    }
-    const std::size_t to = static_cast<std::size_t>(vertex + 1) & 1U;
-    RayBatch& out = work_.rays[to];
-    PathBatch& state = work_.paths[to];
-    const std::size_t n = next_count_++;
-    set_ray(out, n, origin, next, 0.0F, std::numeric_limits<float>::infinity());
-    out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));
-    state.slot[n] = static_cast<std::uint32_t>(slot);
-    state.r[n] = weight.x;
-    state.g[n] = weight.y;
-    state.b[n] = weight.z;
-    state.pdf[n] = sample.pdf;
-    state.cone_width[n] = hit.cone_width;
-    state.cone_spread[n] =
-        paths.cone_spread[k] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * sample.pdf);
-  }
-
   // A light sample on a textured emitter brings its place instead of the texture's value.
   [[nodiscard]] Vec3f light_radiance(const LightSample& light) const {
     if constexpr (kFeatures.emission) {
@@ -332,13 +422,13 @@ class PathKernel {
     return {c.x, c.y, c.z};
   }
 
-  void queue_shadow(int vertex, std::size_t slot, const Vec3f& origin, const SurfaceHit& hit, const LightSample& light,
+  void queue_shadow(int vertex, std::size_t slot, const SurfaceHit& hit, const LightSample& light,
                     const Vec3f& arriving) {
     ShadowBatch& shadows = work_.shadows;
     const std::size_t n = shadow_count_++;
     // Stops short of the light by what rounding may move either end, so that an emitter does not shadow itself.
     const float tfar = light.distance * (1.0F - 1e-4F) - 2 * hit.offset;
-    set_ray(shadows.rays, n, origin, light.direction, 0.0F, tfar);
+    set_ray(shadows.rays, n, hit.position + hit.geometric * hit.offset, light.direction, 0.0F, tfar);
     shadows.rays.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex) + 1U);
     shadows.slot[n] = static_cast<std::uint32_t>(slot);
     shadows.r[n] = arriving.x;

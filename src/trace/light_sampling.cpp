@@ -215,6 +215,43 @@ LightSample LightSampler::sample(const Vec3f& position, const Vec3f& normal, con
   return pp > 0 ? sample_punctual(position, normal, std::min((choice - pt) / pp, 0x1.fffffffffffffp-1)) : LightSample{};
 }
 
+void LightSampler::sample_many(std::size_t count, const Vec3f* position, const Vec3f* normal, const Vec2f* u,
+                               const float* u_select, LightSample* out) const noexcept {
+  if (!(environment_probability_ > 0) || triangle_probability_ + punctual_probability_ > 0) {
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = sample(position[i], normal[i], u[i], u_select[i]);
+    }
+    return;
+  }
+  constexpr std::size_t kStage = 64;
+  std::array<EnvironmentSampler::Sample, kStage> chosen;
+  for (std::size_t begin = 0; begin < count; begin += kStage) {
+    const std::size_t n = std::min(kStage, count - begin);
+    environment_.sample_many(u + begin, n, chosen.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      LightSample& result = out[begin + i];
+      result = {};
+      result.direction = chosen[i].direction;
+      result.distance = std::numeric_limits<float>::infinity();
+      result.radiance = chosen[i].radiance;
+      result.pdf = chosen[i].pdf * environment_probability_;
+      result.valid = result.pdf > 0 && dot(normal[begin + i], chosen[i].direction) > 0;
+    }
+  }
+}
+
+void LightSampler::environment_many(const Vec3f* directions, std::size_t count, EnvironmentHit* out) const noexcept {
+  constexpr std::size_t kStage = 64;
+  std::array<EnvironmentSampler::Value, kStage> values;
+  for (std::size_t begin = 0; begin < count; begin += kStage) {
+    const std::size_t n = std::min(kStage, count - begin);
+    environment_.value_many(directions + begin, n, values.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      out[begin + i] = {values[i].radiance, values[i].pdf * environment_probability_};
+    }
+  }
+}
+
 LightSample LightSampler::sample_environment(const Vec3f& normal, const Vec2f& u) const noexcept {
   const EnvironmentSampler::Sample chosen = environment_.sample(u);
   LightSample result;

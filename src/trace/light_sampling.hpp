@@ -57,12 +57,17 @@ class LightSampler {
   [[nodiscard]] LightSample sample(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
                                    float u_select) const noexcept;
 
+  // The same for many at once, with the same results.
+  void sample_many(std::size_t count, const Vec3f* position, const Vec3f* normal, const Vec2f* u, const float* u_select,
+                   LightSample* out) const noexcept;
+
   // Radiance and density seen by a ray that leaves the scene; zero without an environment.
   struct EnvironmentHit {
     Vec3f radiance;
     float pdf = 0;
   };
   [[nodiscard]] EnvironmentHit environment(const Vec3f& direction) const noexcept;
+  void environment_many(const Vec3f* directions, std::size_t count, EnvironmentHit* out) const noexcept;
   [[nodiscard]] Vec3f environment_radiance(const Vec3f& direction) const noexcept;
   [[nodiscard]] float pdf_environment(const Vec3f& direction) const noexcept;
 

@@ -69,22 +69,42 @@ struct TextureCoordinates {
   }
 };
 
+// Where a hit's data are; asks the memory for them.
+struct HitPlace {
+  std::uint32_t triangle;
+  std::uint32_t instance;  // index into RenderScene::instances, kNoId: none
+};
+
 template <KernelFeatures kFeatures>
-SurfaceHit resolve_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, const Vec3f& direction,
-                       float cone_width, float cone_spread) {
-  SurfaceHit hit;
-  const float u = hits.u[k];
-  const float v = hits.v[k];
-  const float w = 1.0F - u - v;
-  const ShadingInstance* instance = nullptr;
+HitPlace place_of_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k) {
+  HitPlace place{0, kNoId};
   std::uint32_t record = hits.geometry[k];
   if constexpr (kFeatures.instances) {
     if (hits.instance[k] != kNoId) {
-      instance = &scene.instances[hits.instance[k] - scene.first_instance_id];
-      record += instance->first_geometry;
+      place.instance = hits.instance[k] - scene.first_instance_id;
+      record += scene.instances[place.instance].first_geometry;
     }
   }
-  const ShadingTriangle& triangle = scene.triangles[scene.geometries[record].first_triangle + hits.primitive[k]];
+  place.triangle = scene.geometries[record].first_triangle + hits.primitive[k];
+  const auto* data = reinterpret_cast<const char*>(&scene.triangles[place.triangle]);
+  __builtin_prefetch(data);
+  __builtin_prefetch(data + 64);
+  return place;
+}
+
+template <KernelFeatures kFeatures>
+void resolve_hit(const RenderScene& scene, const HitPlace& place, const HitBatch& hits, std::size_t k,
+                 const Vec3f& direction, float cone_width, float cone_spread, SurfaceHit& hit) {
+  const float u = hits.u[k];
+  const float v = hits.v[k];
+  const float w = 1.0F - u - v;
+  const ShadingTriangle& triangle = scene.triangles[place.triangle];
+  const ShadingInstance* instance = nullptr;
+  if constexpr (kFeatures.instances) {
+    if (place.instance != kNoId) {
+      instance = &scene.instances[place.instance];
+    }
+  }
   const auto& p = triangle.position;
   hit.position = interpolate(p, w, u, v);
   // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
@@ -188,7 +208,6 @@ SurfaceHit resolve_hit(const RenderScene& scene, const HitBatch& hits, std::size
     }
   }
   hit.shading = bend_normal(shading * side, hit.geometric, -direction);
-  return hit;
 }
 
 }  // namespace gazetrace

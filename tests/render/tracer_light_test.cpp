@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes whose radiance is known in closed form.
+#include <gtest/gtest.h>
+
+#include "render/tracer_scenes.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+TEST(TracerLight, AConstantEnvironmentSeenDirectlyIsExact) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.environment = constant_environment({0.25F, 0.5F, 2.0F});
+  const PathTracer tracer(scene, threads(1));
+  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, uniform_map(16, 8, 4), {});
+  ASSERT_EQ(frame.sum.size(), 128U);
+  for (std::size_t i = 0; i < frame.sum.size(); ++i) {
+    EXPECT_EQ(frame.count[i], 4U);
+    EXPECT_EQ(frame.sum[i], (Vec3f{1.0F, 2.0F, 8.0F}));
+  }
+  EXPECT_EQ(frame.stats.samples, 512U);
+  EXPECT_EQ(frame.stats.rays_primary, 512U);
+  EXPECT_EQ(frame.stats.rays_bounce + frame.stats.rays_shadow, 0U);
+  EXPECT_EQ(frame.stats.rejected_rays, 0U);
+  EXPECT_EQ(frame.stats.non_finite_samples, 0U);
+}
+
+// Inside a box whose white walls emit 1 and reflect everything, every scattering event adds the same radiance again:
+// L = 1 + max_bounces, whatever the lobes, the light sampling and the place.
+TEST(TracerLight, AWhiteGlowingBoxAddsOneForEveryBounce) {
+  for (const DiffuseModel diffuse : {DiffuseModel::burley, DiffuseModel::lambert}) {
+    Scene scene;
+    scene.materials.push_back(diffuse_material({1, 1, 1}, {1, 1, 1}));
+    add_mesh(scene, box(1.5F, true, 0));
+    const PathTracer tracer(scene, threads(2));
+    const SamplingMap map = uniform_map(16, 16, 256);
+    for (const int bounces : {0, 1, 5}) {
+      TraceSettings settings;
+      settings.diffuse = diffuse;
+      settings.max_bounces = bounces;
+      settings.light_sampling = LightSampling::bsdf_only;
+      const Vec3d mean = mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
+      // The albedo tables' interpolation error (2e-3 an event, bsdf_test) is all that is left.
+      EXPECT_NEAR(mean.y, 1 + bounces, 2e-3 * bounces * (bounces + 1) / 2 + 1e-6) << bounces;
+      settings.light_sampling = LightSampling::mis;
+      const Vec3d mixed = mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
+      EXPECT_NEAR(mixed.y, 1 + bounces, 0.01 * bounces + 1e-6) << bounces;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
