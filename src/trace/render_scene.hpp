@@ -62,6 +62,7 @@ class RenderScene : private AlphaSource {
   std::vector<GeometryRecord> geometries;
   std::vector<ShadingInstance> instances;
   std::uint32_t first_instance_id = 0;
+  TexelStore texels;
   std::vector<ShadingMaterial> materials;
   SceneFeatures features;
   std::unique_ptr<RayScene> rays;

@@ -54,18 +54,17 @@ struct TextureCoordinates {
   float w = 0, u = 0, v = 0;
 
   template <KernelFeatures kFeatures>
-  [[nodiscard]] Vec4f read(const ShadingTexture& texture) const {
-    Vec2f at = uv;
+  [[nodiscard]] Vec2f at(const ShadingTexture& texture) const {
     if constexpr (kFeatures.extras) {
       if (texture.own_uv && extra != nullptr) {
         const auto& set = texture.uv_set == 1 ? extra->uv1 : extra->uv0;
         const float x = w * set[0].x + u * set[1].x + v * set[2].x;
         const float y = w * set[0].y + u * set[1].y + v * set[2].y;
         const auto& m = texture.transform;
-        at = {m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5]};
+        return {m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5]};
       }
     }
-    return read_texture(*texture.texture, at.x, at.y, lod + texture.half_log2_texels);
+    return uv;
   }
 };
 
@@ -169,17 +168,17 @@ void resolve_hit(const RenderScene& scene, const HitPlace& place, const HitBatch
     coordinates.v = v;
     const float slant = std::max(std::fabs(dot(geometric, direction)), 0.05F);
     coordinates.lod = lod + rough_log2(std::max(hit.cone_width, 1e-30F) / slant);
-    if (material.base.texture != nullptr) {
-      const Vec4f c = coordinates.read<kFeatures>(material.base);
-      hit.surface.base_color *= Vec3f{c.x, c.y, c.z};
+    TexelValues texel;
+    for (std::size_t g = 0; g < material.group_count; ++g) {
+      const TexelGroup& group = material.groups[g];
+      const Vec2f at = coordinates.at<kFeatures>(group.coordinates);
+      read_group(group, at.x, at.y, coordinates.lod + group.half_log2_texels, texel);
     }
-    if (material.metal_rough.texture != nullptr) {
-      const Vec4f c = coordinates.read<kFeatures>(material.metal_rough);
-      hit.surface.roughness *= c.y;
-      hit.surface.metallic *= c.z;
-    }
+    hit.surface.base_color *= texel.base;
+    hit.surface.roughness *= texel.roughness;
+    hit.surface.metallic *= texel.metallic;
     if (material.normal.texture != nullptr) {
-      const Vec4f c = coordinates.read<kFeatures>(material.normal);
+      const Vec3f& c = texel.normal;
       Vec3f tangent = decode_octahedral(triangle.tangent[0]) * w + decode_octahedral(triangle.tangent[1]) * u +
                       decode_octahedral(triangle.tangent[2]) * v;
       float sign = (triangle.material_and_sign & 1U) != 0 ? -1.0F : 1.0F;
@@ -202,7 +201,9 @@ void resolve_hit(const RenderScene& scene, const HitPlace& place, const HitBatch
     }
     if constexpr (kFeatures.emission) {
       if (material.emit.texture != nullptr && shines) {
-        const Vec4f c = coordinates.read<kFeatures>(material.emit);
+        const Vec2f at = coordinates.at<kFeatures>(material.emit);
+        const Vec4f c =
+            read_texture(*material.emit.texture, at.x, at.y, coordinates.lod + material.emit.half_log2_texels);
         hit.emission *= Vec3f{c.x, c.y, c.z};
       }
     }

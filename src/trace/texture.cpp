@@ -16,65 +16,117 @@ std::array<float, 256> srgb_table() {
   return table;
 }
 
-int wrap_texel(int i, int size, TextureWrap wrap) {
-  switch (wrap) {
-    case TextureWrap::clamp:
-      return std::clamp(i, 0, size - 1);
-    case TextureWrap::mirror: {
-      const int m = ((i % (2 * size)) + 2 * size) % (2 * size);
-      return m < size ? m : 2 * size - 1 - m;
-    }
-    case TextureWrap::repeat:
-      break;
-  }
-  const int m = i % size;
-  return m < 0 ? m + size : m;
-}
-
 bool same_coordinates(const TextureRef& a, const TextureRef& b) {
   return a.uv_set == b.uv_set && a.has_transform == b.has_transform && (!a.has_transform || a.transform == b.transform);
 }
 
 }  // namespace
 
+namespace {
+
+const std::array<float, 256> kSrgbToLinear = srgb_table();
+const std::array<float, 256> kUnorm = [] {
+  std::array<float, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table[i] = static_cast<float>(static_cast<double>(i) / 255.0);
+  }
+  return table;
+}();
+
+struct Axis {
+  int low, high;    // neighbouring texels
+  float fraction;  // weight of `high`
+};
+
+// Coordinates are first brought into one period: any finite one is as good as another.
+inline Axis locate(float c, int size, TextureWrap wrap, bool nearest) {
+  c = std::fabs(c) < 1e9F ? c : 0.0F;
+  if (wrap == TextureWrap::repeat) {
+    c -= std::floor(c);
+  } else if (wrap == TextureWrap::clamp) {
+    c = std::clamp(c, 0.0F, 1.0F);
+  } else {
+    c = std::fabs(c - 2.0F * std::floor(0.5F * c + 0.5F));  // a triangle wave of period 2
+  }
+  const float x = c * static_cast<float>(size) - (nearest ? 0.0F : 0.5F);
+  const float whole = std::floor(x);
+  int low = static_cast<int>(whole);
+  int high = low + 1;
+  if (wrap == TextureWrap::repeat) {
+    low = low < 0 ? size - 1 : low;
+    low = low >= size ? 0 : low;
+    high = high >= size ? 0 : high;
+  } else {
+    low = std::clamp(low, 0, size - 1);
+    high = std::clamp(high, 0, size - 1);
+  }
+  return {low, high, nearest ? 0.0F : x - whole};
+}
+
+}  // namespace
+
+void read_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
+  const auto index = static_cast<std::size_t>(std::clamp(level, 0.0F, group.last_level));
+  const TexelGroup::Level& image = group.levels[index];
+  const Axis x = locate(u, image.width_px, group.wrap_u, group.nearest);
+  const Axis y = locate(v, image.height_px, group.wrap_v, group.nearest);
+  const std::size_t bytes = group.wide ? 8 : 4;
+  const auto pitch = static_cast<std::size_t>(image.width_px) * bytes;
+  const std::uint8_t* low_row = image.texels + static_cast<std::size_t>(y.low) * pitch;
+  const std::uint8_t* high_row = image.texels + static_cast<std::size_t>(y.high) * pitch;
+  const std::uint8_t* a = low_row + static_cast<std::size_t>(x.low) * bytes;
+  const std::uint8_t* b = low_row + static_cast<std::size_t>(x.high) * bytes;
+  const std::uint8_t* c = high_row + static_cast<std::size_t>(x.low) * bytes;
+  const std::uint8_t* d = high_row + static_cast<std::size_t>(x.high) * bytes;
+  const float wd = x.fraction * y.fraction;
+  const float wb = x.fraction - wd;
+  const float wc = y.fraction - wd;
+  const float wa = 1.0F - x.fraction - wc;
+  const auto blend = [&](const std::array<float, 256>& table, std::size_t channel) {
+    return wa * table[a[channel]] + wb * table[b[channel]] + wc * table[c[channel]] + wd * table[d[channel]];
+  };
+  if (group.base) {
+    const std::array<float, 256>& table = group.srgb ? kSrgbToLinear : kUnorm;
+    out.base = {blend(table, 0), blend(table, 1), blend(table, 2)};
+  }
+  if (group.metal_rough) {
+    out.roughness = blend(kUnorm, group.wide ? 3 : 1);
+    out.metallic = blend(kUnorm, group.wide ? 4 : 2);
+  }
+  if (group.normal) {
+    const std::size_t first = group.wide ? 5 : 0;
+    out.normal = {blend(kUnorm, first), blend(kUnorm, first + 1), blend(kUnorm, first + 2)};
+  }
+}
+
 Vec4f read_texture(const Texture& texture, float u, float v, float level) {
-  static const std::array<float, 256> kLinear = srgb_table();
   const auto last = static_cast<float>(texture.levels.size() - 1);
   const auto index = static_cast<std::size_t>(std::clamp(level, 0.0F, last));
   const Texture::Level& image = texture.levels[index];
   const auto texel = [&](int x, int y) -> Vec4f {
-    const auto i = 4 * (static_cast<std::size_t>(wrap_texel(y, image.height_px, texture.wrap_v)) *
-                            static_cast<std::size_t>(image.width_px) +
-                        static_cast<std::size_t>(wrap_texel(x, image.width_px, texture.wrap_u)));
+    const std::size_t i =
+        4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(x));
     const std::uint8_t* p = image.rgba.data() + i;
     const float alpha = static_cast<float>(p[3]) * (1.0F / 255.0F);
     if (texture.srgb) {
-      return {kLinear[p[0]], kLinear[p[1]], kLinear[p[2]], alpha};
+      return {kSrgbToLinear[p[0]], kSrgbToLinear[p[1]], kSrgbToLinear[p[2]], alpha};
     }
     const float s = 1.0F / 255.0F;
     return {static_cast<float>(p[0]) * s, static_cast<float>(p[1]) * s, static_cast<float>(p[2]) * s, alpha};
   };
-  // Beyond 2^20 tiles float has no digits left inside one; any texel is as good.
-  const auto bounded = [](float c) { return std::fabs(c) < 1048576.0F ? c : 0.0F; };
-  const float x = bounded(u) * static_cast<float>(image.width_px);
-  const float y = bounded(v) * static_cast<float>(image.height_px);
+  const Axis x = locate(u, image.width_px, texture.wrap_u, texture.nearest);
+  const Axis y = locate(v, image.height_px, texture.wrap_v, texture.nearest);
+  const Vec4f a = texel(x.low, y.low);
   if (texture.nearest) {
-    return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+    return a;
   }
-  const float x0 = std::floor(x - 0.5F);
-  const float y0 = std::floor(y - 0.5F);
-  const float fx = x - 0.5F - x0;
-  const float fy = y - 0.5F - y0;
-  const int ix = static_cast<int>(x0);
-  const int iy = static_cast<int>(y0);
-  const Vec4f a = texel(ix, iy);
-  const Vec4f b = texel(ix + 1, iy);
-  const Vec4f c = texel(ix, iy + 1);
-  const Vec4f d = texel(ix + 1, iy + 1);
-  const auto blend = [&](float p, float q, float r, float s) {
-    const float top = p + fx * (q - p);
-    const float bottom = r + fx * (s - r);
-    return top + fy * (bottom - top);
+  const Vec4f b = texel(x.high, y.low);
+  const Vec4f c = texel(x.low, y.high);
+  const Vec4f d = texel(x.high, y.high);
+  const auto blend = [&](float p, float q, float r, float t) {
+    const float top = p + x.fraction * (q - p);
+    const float bottom = r + x.fraction * (t - r);
+    return top + y.fraction * (bottom - top);
   };
   return {blend(a.x, b.x, c.x, d.x), blend(a.y, b.y, c.y, d.y), blend(a.z, b.z, c.z, d.z), blend(a.w, b.w, c.w, d.w)};
 }
@@ -89,7 +141,113 @@ const TextureRef* shared_coordinates(const Material& material) {
   return nullptr;
 }
 
-std::vector<ShadingMaterial> make_materials(const Scene& scene) {
+namespace {
+
+bool alike(const ShadingTexture& a, const ShadingTexture& b) {
+  const Texture& s = *a.texture;
+  const Texture& t = *b.texture;
+  if (a.own_uv != b.own_uv || a.uv_set != b.uv_set || a.transform != b.transform || s.nearest != t.nearest ||
+      s.wrap_u != t.wrap_u || s.wrap_v != t.wrap_v || s.levels.size() != t.levels.size()) {
+    return false;
+  }
+  for (std::size_t i = 0; i < s.levels.size(); ++i) {
+    if (s.levels[i].width_px != t.levels[i].width_px || s.levels[i].height_px != t.levels[i].height_px) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TexelGroup start_group(const ShadingTexture& texture) {
+  TexelGroup group;
+  group.coordinates = texture;
+  group.half_log2_texels = texture.half_log2_texels;
+  group.last_level = static_cast<float>(texture.texture->levels.size() - 1);
+  group.nearest = texture.texture->nearest;
+  group.wrap_u = texture.texture->wrap_u;
+  group.wrap_v = texture.texture->wrap_v;
+  return group;
+}
+
+// Which scene textures a group interleaves, and the levels made from them: shared between materials.
+struct MadeGroup {
+  std::array<const Texture*, 3> members;
+  const TexelGroup::Level* levels;
+};
+
+const TexelGroup::Level* make_levels(const std::array<const Texture*, 3>& members, TexelStore& store,
+                                     std::vector<MadeGroup>& made) {
+  for (const MadeGroup& group : made) {
+    if (group.members == members) {
+      return group.levels;
+    }
+  }
+  const Texture* single = nullptr;
+  int present = 0;
+  for (const Texture* member : members) {
+    single = member != nullptr ? member : single;
+    present += member != nullptr ? 1 : 0;
+  }
+  const std::size_t count = single->levels.size();
+  auto& levels = store.levels.emplace_back(std::make_unique<TexelGroup::Level[]>(count));
+  for (std::size_t l = 0; l < count; ++l) {
+    const Texture::Level& source = single->levels[l];
+    levels[l] = {source.rgba.data(), source.width_px, source.height_px};
+    if (present == 1) {
+      continue;
+    }
+    const std::size_t texels = source.rgba.size() / 4;
+    auto& wide = store.texels.emplace_back(8 * texels);
+    for (std::size_t i = 0; i < texels; ++i) {
+      std::uint8_t* to = wide.data() + 8 * i;
+      if (members[0] != nullptr) {
+        std::copy_n(members[0]->levels[l].rgba.data() + 4 * i, 3, to);
+      }
+      if (members[1] != nullptr) {
+        std::copy_n(members[1]->levels[l].rgba.data() + 4 * i + 1, 2, to + 3);
+      }
+      if (members[2] != nullptr) {
+        std::copy_n(members[2]->levels[l].rgba.data() + 4 * i, 3, to + 5);
+      }
+    }
+    levels[l].texels = wide.data();
+  }
+  made.push_back({members, levels.get()});
+  return levels.get();
+}
+
+void make_groups(ShadingMaterial& material, TexelStore& store, std::vector<MadeGroup>& made) {
+  const std::array<const ShadingTexture*, 3> textures{&material.base, &material.metal_rough, &material.normal};
+  std::array<bool, 3> done{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (done[i] || textures[i]->texture == nullptr) {
+      continue;
+    }
+    TexelGroup group = start_group(*textures[i]);
+    std::array<const Texture*, 3> members{};
+    int present = 0;
+    for (std::size_t j = i; j < 3; ++j) {
+      if (!done[j] && textures[j]->texture != nullptr && alike(*textures[i], *textures[j])) {
+        members[j] = textures[j]->texture;
+        done[j] = true;
+        ++present;
+      }
+    }
+    group.base = members[0] != nullptr;
+    group.metal_rough = members[1] != nullptr;
+    group.normal = members[2] != nullptr;
+    group.srgb = group.base && members[0]->srgb;
+    group.wide = present > 1;
+    group.levels = make_levels(members, store, made);
+    material.any_own_uv = material.any_own_uv || textures[i]->own_uv;
+    material.groups[material.group_count++] = group;
+  }
+}
+
+}  // namespace
+
+std::vector<ShadingMaterial> make_materials(const Scene& scene, TexelStore& store) {
+  std::vector<MadeGroup> made;
   std::vector<ShadingMaterial> result;
   result.reserve(scene.materials.size());
   for (const Material& source : scene.materials) {
@@ -128,6 +286,7 @@ std::vector<ShadingMaterial> make_materials(const Scene& scene) {
     m.metal_rough = bind(source.metallic_roughness_texture);
     m.normal = bind(source.normal_texture);
     m.emit = bind(source.emissive_texture);
+    make_groups(m, store, made);
     result.push_back(m);
   }
   return result;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "gazetrace/scene.hpp"
@@ -19,6 +20,34 @@ struct ShadingTexture {
   std::array<float, 6> transform{1, 0, 0, 0, 1, 0};
 };
 
+// Textures of one material that share size, wrapping and coordinates, read in one go. Two or three of them are
+// interleaved into texels of 8 bytes: R G B of the base colour, roughness, metalness, X Y Z of the normal map; a single
+// one stays where the scene holds it, 4 bytes a texel.
+struct TexelGroup {
+  struct Level {
+    const std::uint8_t* texels = nullptr;
+    int width_px = 1, height_px = 1;
+  };
+  const Level* levels = nullptr;
+  float last_level = 0;
+  float half_log2_texels = 0;  // 0.5 log2(width * height) of level 0
+  bool base = false, metal_rough = false, normal = false;
+  bool srgb = false;  // of the base colour
+  bool wide = false;  // 8 bytes
+  bool nearest = false;
+  TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+  ShadingTexture coordinates;
+};
+
+struct TexelValues {
+  Vec3f base{1, 1, 1};
+  float roughness = 1, metallic = 1;
+  Vec3f normal{0.5F, 0.5F, 1};
+};
+
+// Fills those of `out` that the group holds.
+void read_group(const TexelGroup& group, float u, float v, float level, TexelValues& out);
+
 struct ShadingMaterial {
   Vec4f base_color{1, 1, 1, 1};
   float metallic = 1, roughness = 1;
@@ -27,13 +56,22 @@ struct ShadingMaterial {
   float alpha_cutoff = 0.5F;
   AlphaMode alpha_mode = AlphaMode::opaque;
   bool double_sided = false, unlit = false, emissive = false, vertex_color = false;
+  bool any_own_uv = false;
+  std::uint8_t group_count = 0;
+  std::array<TexelGroup, 3> groups;
   ShadingTexture base, metal_rough, normal, emit;
+};
+
+// Owns what groups point to, the scene's own texels apart.
+struct TexelStore {
+  std::vector<std::unique_ptr<TexelGroup::Level[]>> levels;
+  std::vector<std::vector<std::uint8_t>> texels;
 };
 
 // The texture whose coordinates ShadingTriangle stores; nullptr without textures.
 const TextureRef* shared_coordinates(const Material& material);
 
-std::vector<ShadingMaterial> make_materials(const Scene& scene);
+std::vector<ShadingMaterial> make_materials(const Scene& scene, TexelStore& store);
 
 // Channels 0..1; RGB of sRGB textures are linearised per texel, before interpolation.
 Vec4f read_texture(const Texture& texture, float u, float v, float level);
