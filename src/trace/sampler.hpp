@@ -38,7 +38,7 @@ constexpr SampleKey make_sample_key(std::uint64_t seed, std::int32_t frame, std:
 
 namespace sampler_detail {
 
-constexpr std::uint32_t reverse_bits(std::uint32_t x) noexcept {
+[[gnu::always_inline]] inline constexpr std::uint32_t reverse_bits(std::uint32_t x) noexcept {
   x = ((x >> 1U) & 0x55555555U) | ((x & 0x55555555U) << 1U);
   x = ((x >> 2U) & 0x33333333U) | ((x & 0x33333333U) << 2U);
   x = ((x >> 4U) & 0x0f0f0f0fU) | ((x & 0x0f0f0f0fU) << 4U);
@@ -47,7 +47,7 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) noexcept {
 
 // Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it (Laine and Karras 2011,
 // with the constants of Vegdahl, "Building a Better LK Hash", 2021).
-constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) noexcept {
+[[gnu::always_inline]] inline constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) noexcept {
   x ^= x * 0x3d20adeaU;
   x += seed;
   x *= (seed >> 16U) | 1U;
@@ -58,7 +58,7 @@ constexpr std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) n
 
 // The second Sobol dimension's generator is Pascal's triangle modulo 2, a Kronecker power of [1 1; 0 1]: five butterfly
 // steps. The result is bit-reversed, as scramble_reversed wants it.
-constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) noexcept {
+[[gnu::always_inline]] inline constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) noexcept {
   index ^= (index & 0xaaaaaaaaU) >> 1U;
   index ^= (index & 0xccccccccU) >> 2U;
   index ^= (index & 0xf0f0f0f0U) >> 4U;
@@ -68,14 +68,14 @@ constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) noexcept {
 }
 
 // 24 bits, so that the result is exact and strictly below 1.
-constexpr float to_unit_float(std::uint32_t x) noexcept {
+[[gnu::always_inline]] inline constexpr float to_unit_float(std::uint32_t x) noexcept {
   return static_cast<float>(x >> 8U) * 0x1p-24F;
 }
 
 struct DimensionSeeds {
   std::uint32_t shuffle, x, y;
 };
-constexpr DimensionSeeds seeds_of(SampleKey key, std::uint32_t dimension) noexcept {
+[[gnu::always_inline]] inline constexpr DimensionSeeds seeds_of(SampleKey key, std::uint32_t dimension) noexcept {
   const std::uint64_t h = hash64(key.value + dimension * 0xd1342543de82ef95ULL);
   const auto low = static_cast<std::uint32_t>(h);
   const auto high = static_cast<std::uint32_t>(h >> 32U);
@@ -87,7 +87,7 @@ constexpr DimensionSeeds seeds_of(SampleKey key, std::uint32_t dimension) noexce
 
 // Two stratified numbers in [0, 1). Any power-of-two block of consecutive sample indices that starts at a multiple of
 // its length is a (0, m, 2)-net.
-constexpr Vec2f sample_2d(SampleKey key, std::uint32_t sample_index, std::uint32_t dimension) noexcept {
+[[gnu::always_inline]] inline constexpr Vec2f sample_2d(SampleKey key, std::uint32_t sample_index, std::uint32_t dimension) noexcept {
   using namespace sampler_detail;
   const DimensionSeeds seeds = seeds_of(key, dimension);
   const std::uint32_t index = reverse_bits(scramble_reversed(reverse_bits(sample_index), seeds.shuffle));
