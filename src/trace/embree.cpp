@@ -399,7 +399,10 @@ RayRecorder::RayRecorder() : impl_(std::make_unique<Impl>()) {}
 RayRecorder::~RayRecorder() = default;
 
 void RayRecorder::record(const RayBatch& rays, int count, RayShape shape, bool occlusion) {
-  Impl::Call call{shape, occlusion, count, shape == RayShape::single ? impl_->singles.size() : impl_->packets.size(),
+  Impl::Call call{shape,
+                  occlusion,
+                  count,
+                  shape == RayShape::single ? impl_->singles.size() : impl_->packets.size(),
                   {rays.alpha_key.data, rays.alpha_key.data + count}};
   if (shape == RayShape::single) {
     for (int i = 0; i < count; ++i) {

@@ -87,7 +87,8 @@ struct DimensionSeeds {
 
 // Two stratified numbers in [0, 1). Any power-of-two block of consecutive sample indices that starts at a multiple of
 // its length is a (0, m, 2)-net.
-[[gnu::always_inline]] inline constexpr Vec2f sample_2d(SampleKey key, std::uint32_t sample_index, std::uint32_t dimension) noexcept {
+[[gnu::always_inline]] inline constexpr Vec2f sample_2d(SampleKey key, std::uint32_t sample_index,
+                                                        std::uint32_t dimension) noexcept {
   using namespace sampler_detail;
   const DimensionSeeds seeds = seeds_of(key, dimension);
   const std::uint32_t index = reverse_bits(scramble_reversed(reverse_bits(sample_index), seeds.shuffle));

@@ -34,7 +34,7 @@ const std::array<float, 256> kUnorm = [] {
 }();
 
 struct Axis {
-  int low, high;    // neighbouring texels
+  int low, high;   // neighbouring texels
   float fraction;  // weight of `high`
 };
 

@@ -192,8 +192,7 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   const NamedKernel& variant =
       choose_kernel(kernel_features(features, impl_->render_scene), impl_->options.all_features);
 
-  const FrameContext context =
-      make_frame_context(*impl_->scene, impl_->render_scene, impl_->lights, rays, settings);
+  const FrameContext context = make_frame_context(*impl_->scene, impl_->render_scene, impl_->lights, rays, settings);
 
   SparseFrame out;
   out.width_px = map.width_px;

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Estimators that must agree in the mean: ways to find light, ways to spread samples.
+#include <gtest/gtest.h>
+
+#include "render/tracer_scenes.hpp"
+#include "render/tracer_statistics.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+constexpr int kRepeats = 32;
+
+Repeats repeat(const PathTracer& tracer, const Camera& camera, const SamplingMap& map, TraceSettings settings) {
+  Repeats result;
+  for (int i = 0; i < kRepeats; ++i) {
+    settings.seed = static_cast<std::uint64_t>(i + 1);
+    result.means.push_back(mean_radiance(tracer.trace(camera, 1, map, settings)).y);
+  }
+  return result;
+}
+
+Scene corner(bool area_light, bool sky) {
+  Scene scene;
+  scene.materials.push_back(diffuse_material({0.7F, 0.6F, 0.5F}));
+  scene.materials.push_back(diffuse_material({0.9F, 0.7F, 0.4F}));
+  scene.materials[1].metallic = 1;
+  scene.materials[1].roughness = 0.4F;
+  add_mesh(scene, {quad({{{-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}}}, 0),
+                   quad({{{-3, 0, -2}, {3, 0, -2}, {3, 4, -2}, {-3, 4, -2}}}, 0)});
+  add_mesh(scene, box(0.5F, false, 1), make_affine({0.3, 0.5, 0}, {0, 0.3, 0, 0.954}, {1, 1, 1}));
+  if (area_light) {
+    scene.materials.push_back(diffuse_material({0.5F, 0.5F, 0.5F}, {4, 4, 4}));
+    add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 2)});
+  }
+  if (sky) {
+    scene.environment = builtin_sky();
+  }
+  return scene;
+}
+
+TEST(TracerMean, MisLightOnlyAndBsdfOnlyAgree) {
+  struct Case {
+    const char* name;
+    bool area_light, sky;
+  };
+  for (const Case& c : {Case{"area light", true, false}, Case{"sky", false, true}, Case{"both", true, true}}) {
+    const Scene scene = corner(c.area_light, c.sky);
+    const PathTracer tracer(scene, threads(2));
+    const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
+    const SamplingMap map = uniform_map(24, 16, 16);
+    TraceSettings settings;
+    const Repeats mis = repeat(tracer, camera, map, settings);
+    settings.light_sampling = LightSampling::light_only;
+    const Repeats light = repeat(tracer, camera, map, settings);
+    settings.light_sampling = LightSampling::bsdf_only;
+    const Repeats bsdf = repeat(tracer, camera, map, settings);
+    EXPECT_LT(std::fabs(welch_t(mis, light)), kCriticalT) << c.name << mis.mean() << " " << light.mean();
+    EXPECT_LT(std::fabs(welch_t(mis, bsdf)), kCriticalT) << c.name << mis.mean() << " " << bsdf.mean();
+    EXPECT_LT(std::sqrt(mis.variance_of_mean()), 0.01 * mis.mean()) << "too noisy to mean anything";
+  }
+}
+
+TEST(TracerMean, RussianRouletteKeepsTheMean) {
+  const Scene scene = corner(true, true);
+  const PathTracer tracer(scene, threads(2));
+  const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
+  const SamplingMap map = uniform_map(24, 16, 16);
+  TraceSettings settings;
+  settings.max_bounces = 8;
+  const Repeats all = repeat(tracer, camera, map, settings);
+  settings.russian_roulette = true;
+  const Repeats some = repeat(tracer, camera, map, settings);
+  EXPECT_LT(std::fabs(welch_t(all, some)), kCriticalT) << all.mean() << " " << some.mean();
+}
+
+// Sites of n x n pixels, straddling blocks included, against every pixel sampled: the frame's integral is the same.
+TEST(TracerMean, AFoveatedFrameHasTheUniformFramesMean) {
+  const Scene scene = corner(true, true);
+  const PathTracer tracer(scene, threads(2));
+  const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
+  const auto integral = [](const SparseFrame& frame, const SamplingMap& map) {
+    double sum = 0;
+    for (std::size_t i = 0; i < frame.sum.size(); ++i) {
+      sum += static_cast<double>(frame.sum[i].y) / frame.count[i] * map.sites[i].pixels;
+    }
+    return sum / (map.width_px * map.height_px);
+  };
+  FoveationSettings foveated;
+  foveated.region_angles_deg = {10, 25};
+  const SamplingMap sparse =
+      make_sampling_map(foveated, view_of_perspective(50 * kRadPerDeg, 61, 43), Vec3d{0.15, -0.1, -1});
+  const SamplingMap dense = uniform_map(61, 43, 4);
+  for (const PixelFilter filter : {PixelFilter::box, PixelFilter::blackman_harris}) {
+    Repeats a;
+    Repeats b;
+    TraceSettings settings;
+    settings.filter = filter;
+    for (int i = 0; i < kRepeats; ++i) {
+      settings.seed = static_cast<std::uint64_t>(i + 1);
+      a.means.push_back(integral(tracer.trace(camera, 1, sparse, settings), sparse));
+      b.means.push_back(integral(tracer.trace(camera, 1, dense, settings), dense));
+    }
+    EXPECT_LT(std::fabs(welch_t(a, b)), kCriticalT) << a.mean() << " " << b.mean();
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
