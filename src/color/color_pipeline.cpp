@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <mutex>
 
+#include "color/baked_view.hpp"
 #include "color/ocio.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/color.hpp"
@@ -38,8 +40,30 @@ std::uint64_t expose(const Vec3f* radiance, std::size_t count, float scale, floa
 }  // namespace
 
 struct ColorPipeline::Impl {
-  explicit Impl(const ColorSettings& settings) : view(settings) {}
+  explicit Impl(const ColorSettings& settings) : view(settings), precision(settings.precision) {}
+
+  // Depends on nothing but settings and frame size: a frame looks the same wherever in a sequence it is rendered.
+  [[nodiscard]] bool wants_table(std::size_t pixels, int bits) const {
+    constexpr std::size_t kMinPixels = 250'000;  // below, baking takes longer than it saves in most jobs
+    switch (precision) {
+      case ViewPrecision::exact:
+        return false;
+      case ViewPrecision::baked:
+        return bits == 8;
+      case ViewPrecision::automatic:
+        return bits == 8 && view.is_builtin_aces() && pixels >= kMinPixels;
+    }
+    return false;
+  }
+  const BakedView& table(int threads) {
+    std::call_once(baked_once, [&] { baked = std::make_unique<BakedView>(view, threads); });
+    return *baked;
+  }
+
   OcioView view;
+  ViewPrecision precision;
+  std::once_flag baked_once;
+  std::unique_ptr<BakedView> baked;
 };
 
 ColorPipeline::ColorPipeline(const ColorSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -60,6 +84,7 @@ DisplayImage ColorPipeline::apply(const ImageRgb& radiance, double ev, int bits,
   const std::size_t pixels = radiance.pixels.size();
   image.bytes.resize(pixels * bytes_per_pixel);
 
+  const BakedView* table = impl_->wants_table(pixels, bits) ? &impl_->table(threads) : nullptr;
   const auto scale = static_cast<float>(std::exp2(ev));
   std::atomic<std::uint64_t> clamped{0};
   parallel_for((pixels + kBandPixels - 1) / kBandPixels, threads, [&](std::size_t band) {
@@ -68,7 +93,9 @@ DisplayImage ColorPipeline::apply(const ImageRgb& radiance, double ev, int bits,
     std::vector<float> rgb(3 * count);
     clamped += expose(&radiance.pixels[first], count, scale, rgb.data());
     std::uint8_t* out = &image.bytes[first * bytes_per_pixel];
-    if (bits == 8) {
+    if (table != nullptr) {
+      table->apply_8(rgb.data(), count, out);
+    } else if (bits == 8) {
       impl_->view.apply_8(rgb.data(), count, out);
     } else {
       std::vector<std::uint16_t> wide(3 * count);
@@ -80,6 +107,12 @@ DisplayImage ColorPipeline::apply(const ImageRgb& radiance, double ev, int bits,
     *clamped_pixels = clamped;
   }
   return image;
+}
+
+void ColorPipeline::prepare(int width_px, int height_px, int bits, int threads) const {
+  if (impl_->wants_table(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), bits)) {
+    impl_->table(threads);
+  }
 }
 
 const std::vector<ViewInfo>& ColorPipeline::views() const {

@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kRec709Name = "Linear Rec.709";
 constexpr const char* kBuiltinDisplay = "sRGB";
+constexpr const char* kAcesView = "ACES SDR";
 
 // Linear Rec.709 (D65) -> ACES2065-1 (AP0, its own white), Bradford adaptation. Derived from the primaries in
 // tests/unit/color_builtin_test.cpp; the same figures stand in the public ACES configurations.
@@ -118,7 +119,7 @@ ocio::ConstConfigRcPtr make_builtin_config() {
   const auto add_view = [&](const char* name, const char* transform) {
     config->addDisplayView(kBuiltinDisplay, name, transform, "sRGB - Display", "", "", "");
   };
-  add_view("ACES SDR", "ACES 1.x SDR");
+  add_view(kAcesView, "ACES 1.x SDR");
   add_view("sRGB", "Plain");
   add_view("Reinhard", "Reinhard 2002");
   config->addDisplayView(kBuiltinDisplay, "Raw", "Raw", "");
@@ -241,6 +242,7 @@ std::string enter_config(const LoadedConfig& loaded, const ColorSettings& settin
 struct OcioView::Impl {
   std::vector<ViewInfo> views;
   std::string description;
+  bool is_builtin_aces = false;
   ocio::ConstCPUProcessorRcPtr to_8, to_16, to_float;
 };
 
@@ -294,6 +296,7 @@ OcioView::OcioView(const ColorSettings& settings) : impl_(std::make_unique<Impl>
     throw Error(ErrorKind::input, place,
                 "view '" + view + "' of display '" + display + "' cannot be built: " + e.what(), {});
   }
+  impl_->is_builtin_aces = loaded.path.empty() && view == kAcesView;
   impl_->description = (loaded.path.empty() ? "built-in" : loaded.path) + ": display " + display + ", view " + view +
                        (settings.look.empty() ? "" : ", look " + settings.look);
 }
@@ -305,6 +308,9 @@ const std::vector<ViewInfo>& OcioView::views() const {
 }
 const std::string& OcioView::description() const {
   return impl_->description;
+}
+bool OcioView::is_builtin_aces() const {
+  return impl_->is_builtin_aces;
 }
 
 namespace {

@@ -28,6 +28,7 @@ class OcioView {
 
   [[nodiscard]] const std::vector<ViewInfo>& views() const;
   [[nodiscard]] const std::string& description() const;
+  [[nodiscard]] bool is_builtin_aces() const;
 
  private:
   struct Impl;
