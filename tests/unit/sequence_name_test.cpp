@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+TEST(SequenceName, Table) {
+  struct Row {
+    const char* pattern;
+    std::int32_t frame;
+    const char* name;
+  };
+  constexpr Row kRows[]{
+      {"beauty.####.exr", 7, "beauty.0007.exr"},
+      {"beauty.####.exr", 12345, "beauty.12345.exr"},
+      {"beauty.#.exr", 7, "beauty.7.exr"},
+      {"beauty.%04d.exr", 7, "beauty.0007.exr"},
+      {"beauty.%4d.exr", 7, "beauty.0007.exr"},
+      {"beauty.%d.exr", 7, "beauty.7.exr"},
+      {"beauty.<frame>.exr", 7, "beauty.7.exr"},
+      {"out#1/50%/beauty.%03d.exr", 7, "out#1/50%/beauty.007.exr"},
+      {"100%%.%02d.png", 7, "100%.07.png"},
+      {"still.png", 7, "still.png"},
+      {"####", 0, "0000"},
+      {"a.%06d", 2147483647, "a.2147483647"},
+  };
+  for (const Row& row : kRows) {
+    EXPECT_EQ(frame_file_name(row.pattern, row.frame), row.name) << row.pattern;
+  }
+  EXPECT_TRUE(has_frame_number("a.##.png"));
+  EXPECT_FALSE(has_frame_number("a.png"));
+  EXPECT_FALSE(has_frame_number("100%%.png"));
+  EXPECT_FALSE(has_frame_number("shot_%d/a.png"));
+}
+
+void expect_usage(const std::string& pattern, std::int32_t frame, bool require_number, const char* text) {
+  try {
+    frame_file_name(pattern, frame, require_number);
+    FAIL() << pattern;
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::usage);
+    EXPECT_THAT(e.what(), testing::HasSubstr(text)) << pattern;
+    EXPECT_THAT(e.what(), testing::HasSubstr(pattern));
+  }
+}
+
+TEST(SequenceName, WhatIsRefused) {
+  expect_usage("a.##.##.png", 1, false, "more than one place");
+  expect_usage("a.%d.<frame>.png", 1, false, "more than one place");
+  expect_usage("a.png", 1, true, "same file");
+  expect_usage("a.%s.png", 1, false, "stands in front of");
+  expect_usage("a.%", 1, false, "stands in front of");
+  expect_usage("a.##.png", -1, false, "negative");
+}
+
+TEST(SequenceName, SettingsAreCheckedBeforeTheFirstRay) {
+  OutputSettings good;
+  good.exr.pattern = "a.####.exr";
+  good.exr.aovs = {"albedo", "eccentricity"};
+  good.display.pattern = "a.####.jpg";
+  good.map_pattern = "map.####.exr";
+  EXPECT_NO_THROW(check_output_settings(good, true));
+  const auto refused = [&](auto change, const char* text) {
+    OutputSettings bad = good;
+    change(bad);
+    try {
+      check_output_settings(bad, true);
+      FAIL() << text;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.kind(), ErrorKind::usage);
+      EXPECT_THAT(e.what(), testing::HasSubstr(text));
+    }
+  };
+  refused([](OutputSettings& s) { s.exr.pattern = "a.####.tif"; }, "must end in .exr");
+  refused([](OutputSettings& s) { s.exr.pattern = "a.exr"; }, "same file");
+  refused([](OutputSettings& s) { s.exr.compression = "zipp"; }, "did you mean 'zip'");
+  refused([](OutputSettings& s) { s.exr.aovs = {"albdo"}; }, "did you mean 'albedo'");
+  refused([](OutputSettings& s) { s.map_pattern = "map.####"; }, "must end in .exr");
+  refused([](OutputSettings& s) { s.display.pattern = "a.####.gif"; }, ".png, .jpg");
+  refused([](OutputSettings& s) { s.display.pattern = "a.####"; }, "needs a suffix");
+  refused([](OutputSettings& s) { s.display.bits = 16; }, "JPEG holds 8 bits");
+  refused([](OutputSettings& s) { s.display.bits = 12; }, "8 or 16 bits");
+  refused([](OutputSettings& s) { s.display.quality = 0; }, "1..100");
+}
+
+TEST(SequenceName, BitsToAskFor) {
+  DisplaySettings settings;
+  settings.pattern = "a.PNG";
+  EXPECT_EQ(display_image_bits(settings), 8);
+  settings.bits = 16;
+  EXPECT_EQ(display_image_bits(settings), 16);
+  settings.bits = 8;
+  settings.pattern = "a.dpx";
+  EXPECT_EQ(display_image_bits(settings), 16);
+}
+
+}  // namespace
+}  // namespace gazetrace
