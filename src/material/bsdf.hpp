@@ -2,7 +2,8 @@
 // glTF 2.0's metallic-roughness surface as an energy-conserving, reciprocal BSDF.
 //   f = GGX lobe with Schlick's Fresnel, f0 = mix(0.04, base colour, metallic)              (glTF 2.0, appendix B)
 //     + multiple scattering between its facets: m (1 - e(o)) (1 - e(i)) / (pi (1 - e_avg))  (Kulla and Conty 2017)
-//         m = F^2 e_avg / (1 - F (1 - e_avg)),  F = f0 + (1 - f0) / 21, dielectric and metal part each with its own f0
+//         m = F^2 e_avg / (1 - F (1 - e_avg)),  F = f0 + (1 - f0) / 21, dielectric and metal part each with its own f0,
+//         faded out on smooth surfaces (repeated_share)
 //     + (1 - metallic) base colour / pi * s(o) s(i) * shape(o, i)                       (albedo_tables.hpp explains s)
 //         shape = 1 (Lambert) or (1 + t (1-o.z)^5) (1 + t (1-i.z)^5), t = roughness (1 + o.i) - 0.5
 //         (Burley, "Physically Based Shading at Disney", 2012, section 5.3, with 2 cos^2 theta_d = 1 + o.i)
@@ -52,9 +53,10 @@ class Bsdf {
     const AlbedoTerms terms = albedo_terms(row_, std::clamp(wo.z, 0.0F, 1.0F));
     const float e_average = albedo_average(row_);
     const float lost_average = 1.0F - e_average;
+    const float kept = e_average * repeated_share(lost_average);
     const auto repeated = [=](float f0) {
       const float f = f0 + (1.0F - f0) * (1.0F / 21.0F);
-      return f * f * e_average / (1.0F - f * lost_average);
+      return f * f * kept / (1.0F - f * lost_average);
     };
     const float dielectric = repeated(kDielectricF0) * (1.0F - surface.metallic);
     const Vec3f& c = surface.base_color;

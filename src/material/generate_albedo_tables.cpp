@@ -25,10 +25,11 @@ double node_mu(std::size_t k) {
 }
 
 // Averages of G2 / G1 and of G2 / G1 (1 - v.h)^5 over visible-normal samples: midpoint rule over the unit square, half
-// of it in azimuth because of mirror symmetry. The square root folded into u.y resolves the lobe's centre.
+// of it in azimuth because of mirror symmetry. The quintic crowds points at both ends of u.y: the lobe's centre, and
+// its tail of steep facets, which lies within alpha^2 of 1.
 void lobe_albedo(double mu, double roughness, double& e, double& b) {
   constexpr int kAzimuths = 48;
-  constexpr int kRings = 192;
+  constexpr int kRings = 256;
   const double alpha = alpha_of_roughness(roughness);
   const Vec3d wo{std::sqrt(1 - mu * mu), 0, mu};
   const double smith_o = smith_length(wo.z, alpha * alpha);
@@ -37,13 +38,14 @@ void lobe_albedo(double mu, double roughness, double& e, double& b) {
   for (int i = 0; i < kAzimuths; ++i) {
     for (int j = 0; j < kRings; ++j) {
       const double t = (j + 0.5) / kRings;
-      const Vec3d h = sample_visible_normal(wo, alpha, Vec2d{0.5 * (i + 0.5) / kAzimuths, t * t});
+      const double ring = t * t * t * (10 - 15 * t + 6 * t * t);
+      const Vec3d h = sample_visible_normal(wo, alpha, Vec2d{0.5 * (i + 0.5) / kAzimuths, ring});
       const Vec3d wi = reflect(wo, h);
       if (wi.z <= 0) {
         continue;
       }
       const double smith_i = smith_length(wi.z, alpha * alpha);
-      const double g = wi.z * (wo.z + smith_o) / (wo.z * smith_i + wi.z * smith_o) * 2 * t;
+      const double g = wi.z * (wo.z + smith_o) / (wo.z * smith_i + wi.z * smith_o) * 30 * t * t * (1 - t) * (1 - t);
       e += g;
       b += g * schlick_weight(dot(wo, h));
     }
@@ -130,7 +132,7 @@ bool write_tables(std::FILE* out) {
     averages[j] = cosine_average(q, e);
     const double f0 = kDielectricF0;
     const double f = f0 + (1 - f0) / 21;
-    const double repeats = f * f * averages[j] / (1 - f * (1 - averages[j]));
+    const double repeats = repeated_share(1 - averages[j]) * f * f * averages[j] / (1 - f * (1 - averages[j]));
     Row passed{};  // what the dielectric's specular lobes leave for the diffuse one
     for (std::size_t k = 0; k < kNodes; ++k) {
       passed[k] = 1 - (f0 * (e[k] - b[k]) + b[k] + (1 - e[k]) * repeats);
