@@ -16,7 +16,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kMaxSide_px = 65536;
+constexpr int kMaxSidePx = 65536;
 
 // OpenImageIO multiplies PNG colour by alpha unless told not to; colour under alpha 0 would be lost.
 OIIO::ImageSpec keep_alpha_unassociated() {
@@ -31,8 +31,8 @@ std::string reason(const std::string& message) {
 
 const OIIO::ImageSpec& check_size(const OIIO::ImageInput& input, const std::string& place) {
   const OIIO::ImageSpec& spec = input.spec();
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kMaxSide_px ||
-      spec.height > kMaxSide_px || spec.depth > 1) {
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kMaxSidePx || spec.height > kMaxSidePx ||
+      spec.depth > 1) {
     throw Error(ErrorKind::input, place,
                 "a picture of " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels and " +
                     std::to_string(spec.nchannels) + " channels cannot be used");
@@ -71,7 +71,8 @@ ImageRgba8 read_rgba8(OIIO::ImageInput& input, const std::string& place) {
   const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
   std::vector<std::uint8_t> pixels(count * static_cast<std::size_t>(channels));
   if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, pixels.data())) {
-    throw Error(ErrorKind::input, place, "the picture is damaged: " + reason(input.geterror()), "export it again");
+    const std::string message = reason(input.geterror());
+    throw Error(ErrorKind::input, place, "the picture is damaged: " + message, "export it again");
   }
   image.rgba = to_rgba(std::move(pixels), count, channels);
   if (channels == 2 || channels == 4) {

@@ -10,7 +10,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kSkyWidth_px = 512, kSkyHeight_px = 256;
+constexpr int kSkyWidthPx = 512, kSkyHeightPx = 256;
 
 Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
   return a * (1 - t) + b * t;
@@ -75,14 +75,14 @@ Environment constant_environment(const Vec3f& radiance) {
 
 Environment builtin_sky(double rotation_deg, double exposure_ev) {
   Environment environment;
-  environment.radiance = ImageRgb(kSkyWidth_px, kSkyHeight_px);
+  environment.radiance = ImageRgb(kSkyWidthPx, kSkyHeightPx);
   environment.rotation_rad = rotation_deg * kRadPerDeg;
   environment.source = "built-in sky";
   const double scale = std::exp2(exposure_ev);
-  for (int y = 0; y < kSkyHeight_px; ++y) {
-    const double theta = (y + 0.5) / kSkyHeight_px * kPi;
-    for (int x = 0; x < kSkyWidth_px; ++x) {
-      const double azimuth = ((x + 0.5) / kSkyWidth_px - 0.5) * 2 * kPi;  // from -z towards +x
+  for (int y = 0; y < kSkyHeightPx; ++y) {
+    const double theta = (y + 0.5) / kSkyHeightPx * kPi;
+    for (int x = 0; x < kSkyWidthPx; ++x) {
+      const double azimuth = ((x + 0.5) / kSkyWidthPx - 0.5) * 2 * kPi;  // from -z towards +x
       const Vec3d direction{std::sin(theta) * std::sin(azimuth), std::cos(theta), -std::sin(theta) * std::cos(azimuth)};
       environment.radiance(x, y) = to_float(sky_radiance(direction) * scale);
     }

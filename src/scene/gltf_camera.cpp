@@ -14,7 +14,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kMaxTime_s = 9e9;  // int64 nanoseconds end at 9.2e9 s
+constexpr double kMaxTimeS = 9e9;  // int64 nanoseconds end at 9.2e9 s
 
 std::string animation_place(const GltfDocument& document, std::size_t animation, int sampler) {
   return document.path + ": animations[" + std::to_string(animation) + "].samplers[" + std::to_string(sampler) + "]";
@@ -23,7 +23,7 @@ std::string animation_place(const GltfDocument& document, std::size_t animation,
 std::vector<std::int64_t> read_times(const GltfDocument& document, int accessor, const std::string& place) {
   std::vector<std::int64_t> times_ns;
   for (const float time_s : read_floats(document, accessor, 1, place)) {
-    if (std::abs(static_cast<double>(time_s)) > kMaxTime_s) {
+    if (std::abs(static_cast<double>(time_s)) > kMaxTimeS) {
       throw Error(ErrorKind::input, place, "a key time of " + std::to_string(time_s) + " s is out of range");
     }
     times_ns.push_back(std::llround(static_cast<double>(time_s) * 1e9));

@@ -15,7 +15,7 @@ namespace gazetrace {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
+constexpr int kTriangles = 4, kStrip = 5;  // else 6, a fan
 
 std::string primitive_place(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
   return document.path + ": meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";

@@ -87,10 +87,11 @@ std::vector<Texture> TextureTable::load(int threads, Warnings& warnings) const {
     ImageRgba8 image = decode(picture, image_place(document_, picture.image));
     reduced[i] = image.reduced_to_8_bit ? 1 : 0;
     const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
+    std::vector<ImageRgba8> images(picture.entries.size() - 1, image);  // most have one entry: nothing is copied
+    images.push_back(std::move(image));
     for (std::size_t k = 0; k < picture.entries.size(); ++k) {
       const Entry& entry = entries_[picture.entries[k]];
-      const bool is_last = k + 1 == picture.entries.size();
-      Texture texture = make_texture(is_last ? std::move(image) : ImageRgba8(image), entry.use);
+      Texture texture = make_texture(std::move(images[k]), entry.use);
       texture.name = !source.name.empty() ? source.name : is_data_uri(source.uri) ? std::string("data:") : source.uri;
       texture.nearest = entry.sampler.mag_filter == kNearest;
       texture.wrap_u = wrap_mode(entry.sampler.wrap_s);

@@ -24,6 +24,11 @@ float linear_to_srgb(float linear) {
   return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
 }
 
+std::uint8_t to_byte(float value) {
+  const float scaled = std::clamp(value, 0.0F, 1.0F) * 255.0F;
+  return static_cast<std::uint8_t>(scaled + 0.5F);  // NOLINT(bugprone-incorrect-roundings): never negative
+}
+
 struct SrgbTables {
   static constexpr std::size_t kEncodeSteps = 1U << 14U;
   std::array<float, 256> decode{};
@@ -34,17 +39,13 @@ struct SrgbTables {
     }
     for (std::size_t i = 0; i < encode.size(); ++i) {
       const float encoded = linear_to_srgb(static_cast<float>(i) / static_cast<float>(kEncodeSteps));
-      encode[i] = static_cast<std::uint8_t>(encoded * 255.0F + 0.5F);
+      encode[i] = to_byte(encoded);
     }
   }
 };
 const SrgbTables& srgb_tables() {
   static const SrgbTables tables;
   return tables;
-}
-
-std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 1.0F) * 255.0F + 0.5F);
 }
 
 Texel decode_texel(const std::uint8_t* p, TextureUse use, const SrgbTables& tables) {
@@ -61,7 +62,7 @@ void encode_texel(const Texel& texel, TextureUse use, const SrgbTables& tables, 
   if (use == TextureUse::color) {
     const float scale = static_cast<float>(SrgbTables::kEncodeSteps) / texel.w;
     const auto encode = [&](float weighted) {
-      const auto step = static_cast<std::size_t>(weighted * scale + 0.5F);
+      const auto step = static_cast<std::size_t>(weighted * scale + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
       return tables.encode[std::min(step, SrgbTables::kEncodeSteps)];
     };
     p[0] = encode(texel.x);
