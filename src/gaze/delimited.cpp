@@ -287,10 +287,9 @@ class RowReader {
   GazeSample read_row(std::string_view line) {
     split_row(line, table_, needed_, cells_);
     if (cells_.size() < needed_) {
-      fail(fmt::format("{} where column '{}' is the {}.",
-                       cells_.size() == 1 ? "1 cell" : fmt::format("{} cells", cells_.size()),
-                       table_.headings[needed_ - 1].text, needed_),
-           "the row is short or cut off; remove or mend it");
+      fail(fmt::format("the row has {} of the {} cells that reach to column '{}'", cells_.size(), needed_,
+                       table_.headings[needed_ - 1].text),
+           "it is short or cut off; remove or mend it");
     }
     GazeSample sample;
     sample.row = line_;
@@ -434,7 +433,11 @@ void finish_positions(GazeLog& log, const ColumnPlan& plan, const GazeFile& file
                     place, evidence, to_string(unit)));
   }
   const auto display = conversion_display(table, options, place, log.warnings);
-  convert_positions(log, unit, plan.origin, unit == PositionUnit::fraction ? std::nullopt : display, place);
+  // Fractions of gazetrace CSV count from the top left by definition.
+  const bool defined = style == ValidityStyle::names && unit == PositionUnit::fraction;
+  const PositionOrigin origin =
+      defined && plan.origin == PositionOrigin::automatic ? PositionOrigin::top_left : plan.origin;
+  convert_positions(log, unit, origin, unit == PositionUnit::fraction ? std::nullopt : display, place);
   // A log that names the state of each sample has said so itself.
   if (style == ValidityStyle::any || !plan.validity) {
     mark_off_screen(log.samples);

@@ -215,7 +215,8 @@ PositionUnit guess_position_unit(const std::vector<GazeSample>& samples, std::st
   if (s.count == 0 || s.share_normalized >= 0.95) {
     return PositionUnit::fraction;
   }
-  const bool both_signs = s.share_negative > 0.05 && s.share_negative < 0.999;
+  const auto has_both_signs = [](const Range& range) { return range.low < 0 && range.high > 0; };
+  const bool both_signs = has_both_signs(s.x) || has_both_signs(s.y);
   return s.share_small >= 0.95 && both_signs ? PositionUnit::deg : PositionUnit::px;
 }
 

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "gazetrace/plan.hpp"
+
+namespace gazetrace {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr std::int64_t kMs = 1'000'000;
+
+PlanSettings paper_settings() {
+  PlanSettings settings;
+  settings.frames = {1, 2, 3};
+  settings.fps = {24, 1};
+  settings.width_px = 1920;
+  settings.height_px = 1080;
+  settings.display = display_by_name("paper");
+  return settings;
+}
+
+CameraPath still() {
+  return static_camera(look_at({1, 2, 3}, {1, 2, 0}, {0, 1, 0}), {});
+}
+
+CameraPath moving(std::int64_t begin_ns, std::int64_t end_ns) {
+  CameraPath path = still();
+  path.source = "walk.txt";
+  path.is_static = false;
+  path.begin_ns = begin_ns;
+  path.end_ns = end_ns;
+  path.pose_at = [begin_ns, end_ns](std::int64_t t) {
+    EXPECT_TRUE(t >= begin_ns && t <= end_ns) << t;
+    return CameraPose{{static_cast<double>(t), 0, 0}, {}};
+  };
+  return path;
+}
+
+GazeLog screen_log() {
+  GazeLog log;
+  log.source = "gaze.csv";
+  for (int i = 0; i < 40; ++i) {
+    GazeSample sample;
+    sample.t_ns = 5'000 * kMs + i * 4 * kMs;
+    sample.u = 0.25 + 0.0125 * i;
+    sample.v = 0.5;
+    sample.row = i + 2;
+    log.samples.push_back(sample);
+  }
+  return log;
+}
+
+std::string message_of(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings, ErrorKind kind) {
+  try {
+    plan_frames(camera, log, settings);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), kind);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(PlanFrames, TimesAreMidExposureRoundedDown) {
+  PlanSettings settings = paper_settings();
+  settings.frames = {1, 2, 3, 100, 2147483647};
+  settings.fps = {24000, 1001};
+  settings.start_ns = -7;
+  std::vector<std::int64_t> times;
+  for (const FrameRequest& request : plan_frames(still(), nullptr, settings).frames) {
+    times.push_back(request.t_video_ns);
+  }
+  // (2 k - 1) * 1001e9 / 48000 by hand: 20854166.67, 62562500, 104270833.33, 4149979166.67; the last by Python's
+  // integers
+  EXPECT_THAT(times, ElementsAre(20'854'166 - 7, 62'562'500 - 7, 104'270'833 - 7, 4'149'979'166 - 7,
+                                 89'567'963'756'104'166 - 7));
+}
+
+TEST(PlanFrames, GazeBecomesADirectionFromTheEye) {
+  const GazeLog log = screen_log();
+  const FramePlan plan = plan_frames(still(), &log, paper_settings());
+  ASSERT_EQ(plan.frames.size(), 3U);
+  const FrameRequest& first = plan.frames[0];
+  EXPECT_EQ(first.t_video_ns, 20'833'333);
+  // 20.8 ms after the first sample: the sixth, of 20 ms.
+  EXPECT_EQ(first.gaze_true.row_before, 7);
+  EXPECT_EQ(first.gaze_true.age_ns, 833'333);
+  EXPECT_NEAR(first.gaze_true.u, 0.3125, 1e-15);
+  ASSERT_TRUE(first.gaze_direction_true.has_value());
+  const double angle = std::atan2((0.5 - 0.3125) * 70.848, 60.0);
+  EXPECT_NEAR(first.gaze_direction_true->x, -std::sin(angle), 1e-15);
+  EXPECT_NEAR(first.gaze_direction_true->y, 0, 1e-15);
+  EXPECT_NEAR(length(*first.gaze_direction_true), 1, 1e-15);
+  // The pixel that is looked at, in the frame: 0.3125 of 1920.
+  EXPECT_NEAR(first.view.pixel(*first.gaze_direction_true).x, 600, 1e-9);
+  EXPECT_EQ(first.camera.pose.position_m, (Vec3d{1, 2, 3}));
+  EXPECT_THAT(plan.warnings, IsEmpty());
+}
+
+TEST(PlanFrames, LatencyChangesTheSteeringGazeOnly) {
+  const GazeLog log = screen_log();
+  PlanSettings settings = paper_settings();
+  settings.gaze_latency_ns = 50 * kMs;
+  const FramePlan plan = plan_frames(still(), &log, settings);
+  const FrameRequest& second = plan.frames[1];  // at 62.5 ms
+  EXPECT_EQ(second.gaze_true.row_before, 2 + 15);
+  EXPECT_EQ(second.gaze_render.row_before, 2 + 3);
+  EXPECT_EQ(second.gaze_render.t_log_ns + 50 * kMs, second.gaze_true.t_log_ns);
+  // Before the log: takes the first row.
+  EXPECT_EQ(plan.frames[0].gaze_render.row_after, 2);
+  EXPECT_EQ(plan.frames[0].gaze_render.state, GazeState::held);
+  EXPECT_THAT(plan_as_table(plan), HasSubstr("true gaze"));
+}
+
+TEST(PlanFrames, CameraMustCoverTheFrames) {
+  PlanSettings settings = paper_settings();
+  EXPECT_EQ(
+      message_of(moving(0, 70 * kMs), nullptr, settings, ErrorKind::input),
+      "walk.txt: the camera path runs from 0.000 s to 0.070 s, and frame 3 is at 0.104 s; render other frames, or use "
+      "--camera-extrapolation hold");
+  EXPECT_EQ(
+      message_of(moving(30 * kMs, 60 * kMs), nullptr, settings, ErrorKind::input),
+      "walk.txt: the camera path runs from 0.030 s to 0.060 s, and frame 1 is at 0.021 s (3 of 3 frames are outside); "
+      "render other frames, or use --camera-extrapolation hold");
+  settings.camera_extrapolation = CameraExtrapolation::hold;
+  const FramePlan plan = plan_frames(moving(30 * kMs, 70 * kMs), nullptr, settings);
+  EXPECT_EQ(plan.frames[0].camera.pose.position_m.x, 30e6);
+  EXPECT_EQ(plan.frames[1].camera.pose.position_m.x, 62.5e6);
+  EXPECT_EQ(plan.frames[2].camera.pose.position_m.x, 70e6);
+  ASSERT_EQ(plan.warnings.size(), 1U);
+  EXPECT_THAT(plan.warnings[0], HasSubstr("its first or last pose is held"));
+  settings.camera_extrapolation = CameraExtrapolation::error;
+  EXPECT_NO_THROW(plan_frames(moving(20'833'333, 104'166'666), nullptr, settings));
+  EXPECT_THROW(plan_frames(moving(20'833'334, 104'166'666), nullptr, settings), Error);
+}
+
+TEST(PlanFrames, ScreenGazeNeedsTheScreensGeometry) {
+  const GazeLog log = screen_log();
+  PlanSettings settings = paper_settings();
+  const std::string remedy = "; give --screen NAME, or --screen-px W,H --screen-cm W,H --screen-distance-cm D";
+  settings.display.reset();
+  EXPECT_EQ(message_of(still(), &log, settings, ErrorKind::input),
+            "gaze.csv: gaze on a screen means no angle without the screen's size and distance" + remedy);
+  settings.display = display_by_name("paper");
+  settings.display->distance_cm = 0;
+  EXPECT_EQ(
+      message_of(still(), &log, settings, ErrorKind::input),
+      "gaze.csv: gaze on a screen means no angle without its geometry: the display's distance from the eye in cm is "
+      "not stated; give the eye's distance in cm" +
+          remedy);
+}
+
+TEST(PlanFrames, DirectionsUseTheCamerasOwnView) {
+  GazeLog log = screen_log();
+  log.kind = GazeKind::direction;
+  for (GazeSample& sample : log.samples) {
+    sample.direction = normalize(Vec3d{0.1, 0.2, -1});
+  }
+  PlanSettings settings = paper_settings();
+  settings.display.reset();
+  CameraPath camera = still();
+  camera.projection.yfov_rad = 90 * kRadPerDeg;
+  const FramePlan plan = plan_frames(camera, &log, settings);
+  const Vec2d pixel = plan.frames[0].view.pixel(*plan.frames[0].gaze_direction_render);
+  EXPECT_NEAR(pixel.x, 960 + 0.1 * 540, 1e-9);  // 540 px are one unit at 90 degrees
+  EXPECT_NEAR(pixel.y, 540 - 0.2 * 540, 1e-9);
+  EXPECT_THAT(plan_as_table(plan), HasSubstr("gaze x y z"));
+  settings.display = display_by_name("paper");
+  EXPECT_THAT(plan_frames(camera, &log, settings).warnings,
+              ElementsAre("gaze.csv: gaze directions need no display; the given one is not used"));
+  camera.projection.kind = ProjectionKind::orthographic;
+  EXPECT_EQ(
+      message_of(camera, &log, settings, ErrorKind::input),
+      "gaze.csv: gaze directions need a perspective camera: an orthographic one has no eye; use a perspective camera, "
+      "or a log of gaze on a screen");
+}
+
+TEST(PlanFrames, PoliciesForFramesWithoutGaze) {
+  const GazeLog log = screen_log();
+  PlanSettings settings = paper_settings();
+  settings.frames = {40};  // 1.6 s after the start; the log ends after 0.16 s
+  settings.gaze.no_gaze = NoGazePolicy::uniform;
+  FramePlan plan = plan_frames(still(), &log, settings);
+  EXPECT_FALSE(plan.frames[0].gaze_direction_render.has_value());
+  EXPECT_EQ(plan.frames[0].gaze_render.state, GazeState::none);
+  // The center is that of the frame, wherever it lies on the display.
+  settings.gaze.no_gaze = NoGazePolicy::center;
+  settings.frame_rect = {1920, 1080, 1920, 1080};
+  plan = plan_frames(still(), &log, settings);
+  EXPECT_EQ(plan.frames[0].gaze_render.state, GazeState::center);
+  EXPECT_NEAR(plan.frames[0].gaze_render.u, 0.75, 1e-12);
+  EXPECT_NEAR(plan.frames[0].gaze_render.v, 0.75, 1e-12);
+  const Vec2d pixel = plan.frames[0].view.pixel(*plan.frames[0].gaze_direction_render);
+  EXPECT_NEAR(pixel.x, 960, 1e-9);
+  EXPECT_NEAR(pixel.y, 540, 1e-9);
+  settings.gaze.no_gaze = NoGazePolicy::error;
+  EXPECT_THAT(message_of(still(), &log, settings, ErrorKind::input), HasSubstr("gaze.csv: no gaze at log time"));
+}
+
+TEST(PlanFrames, RecordingAndViewingGeometryAreCompared) {
+  GazeLog log = screen_log();
+  log.recording_geometry = display_by_name("tx300");
+  const FramePlan plan = plan_frames(still(), &log, paper_settings());
+  ASSERT_EQ(plan.warnings.size(), 1U);
+  // (70.848 / 60) / (50.9174 / 65) = 1.5074
+  EXPECT_EQ(plan.warnings[0],
+            "gaze.csv: recorded on a display 42.8 deg wide and shown on one 61.1 deg wide; gaze is carried over as a "
+            "fraction "
+            "of the display, so angles near its center change by a factor of 1.51");
+  PlanSettings settings = paper_settings();
+  settings.display->height_cm *= 1.22;
+  EXPECT_THAT(plan_frames(still(), nullptr, settings).warnings,
+              ElementsAre("the display's pixels are not square: height to width 1.220"));
+}
+
+TEST(PlanFrames, SettingsThatCannotBe) {
+  PlanSettings settings = paper_settings();
+  settings.frames.clear();
+  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "there is no frame to render; give --frames");
+  settings.frames = {0};
+  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "frames are numbered from 1; give --frames");
+  settings.frames = {1};
+  settings.gaze_latency_ns = -1;
+  EXPECT_THAT(message_of(still(), nullptr, settings, ErrorKind::usage), HasSubstr("would look ahead"));
+  settings.gaze_latency_ns = 0;
+  settings.fps = {0, 1};
+  EXPECT_THAT(message_of(still(), nullptr, settings, ErrorKind::usage), HasSubstr("a frame rate of 0 is not positive"));
+  settings.fps = {1, 1'000'000'000'000};
+  settings.frames = {2147483647};
+  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage),
+            "frame 2147483647 lies beyond int64 nanoseconds; check --frames, --fps and --start");
+}
+
+TEST(PrintPlan, TableIsAligned) {
+  const GazeLog log = screen_log();
+  PlanSettings settings = paper_settings();
+  settings.frames = {1, 20};
+  settings.gaze.max_age_ns = 300 * kMs;
+  settings.gaze.no_gaze = NoGazePolicy::uniform;
+  EXPECT_EQ(
+      plan_as_table(plan_frames(still(), &log, settings)),
+      "frame    time s         position m       gaze u v  state     rows  age ms  reason\n"
+      "    1  0.020833  1.000 2.000 3.000  0.3125 0.5000  measured     7   0.833  hold: row 7\n"
+      "   20  0.812500  1.000 2.000 3.000              -  none         -       -  no gaze (656 ms after the log's last "
+      "row, last usable row 41 is 656 ms old (limit 300 ms)): uniform\n");
+}
+
+TEST(PrintPlan, JsonHoldsExactTimesAndUnits) {
+  const GazeLog log = screen_log();
+  PlanSettings settings = paper_settings();
+  settings.frames = {1};
+  settings.gaze.event_ns = 4'999'999'999;
+  const auto json = nlohmann::json::parse(plan_as_json(plan_frames(still(), &log, settings)));
+  const auto& frame = json.at("frames").at(0);
+  EXPECT_EQ(frame.at("frame"), 1);
+  EXPECT_EQ(frame.at("t_video_ns").get<std::int64_t>(), 20'833'333);
+  EXPECT_EQ(frame.at("gaze_true").at("t_log_ns").get<std::int64_t>(), 5'020'833'332);
+  EXPECT_EQ(frame.at("gaze_render").at("row_before"), 7);
+  EXPECT_TRUE(frame.at("gaze_render").at("row_after").is_null());
+  EXPECT_EQ(frame.at("gaze_render").at("age_ns"), 833'332);
+  EXPECT_EQ(frame.at("gaze_render").at("state"), "measured");
+  EXPECT_EQ(frame.at("camera").at("position_m"), (std::vector<double>{1, 2, 3}));
+  const auto none = nlohmann::json::parse(plan_as_json(plan_frames(still(), nullptr, settings)));
+  EXPECT_TRUE(none.at("frames").at(0).at("gaze_render").at("direction").is_null());
+  EXPECT_EQ(none.at("frames").at(0).at("gaze_render").at("reason"), "no gaze log");
+}
+
+}  // namespace
+}  // namespace gazetrace
