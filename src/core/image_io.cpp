@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -189,10 +190,23 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
   // TIFF would otherwise carry the time of writing, and the same frame would not give the same bytes.
   spec.attribute("DateTime", "0000:00:00 00:00:00");
 
+  std::vector<std::uint16_t> reduced;
+  const void* pixels = rgb.data();
+  if (bits == 16 && options.file_bits == 10) {
+    // OpenImageIO cuts the lower bits off: give it values whose upper ten are the nearest ones.
+    reduced.resize(rgb.size() / 2);
+    std::memcpy(reduced.data(), rgb.data(), rgb.size());
+    for (std::uint16_t& value : reduced) {
+      const unsigned nearest = (value * 1023U + 32767U) / 65535U;
+      value = static_cast<std::uint16_t>(nearest << 6U | nearest >> 4U);
+    }
+    pixels = reduced.data();
+  }
+
   // Through memory, because a full disk is noticed only by the one who writes the file; see output/atomic_file.cpp.
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput writer(bytes);
-  if (!output->set_ioproxy(&writer) || !output->open(path, spec) || !output->write_image(type, rgb.data()) ||
+  if (!output->set_ioproxy(&writer) || !output->open(path, spec) || !output->write_image(type, pixels) ||
       !output->close()) {
     fail(output->geterror());
   }

@@ -76,11 +76,11 @@ TEST(SequenceName, SettingsAreCheckedBeforeTheFirstRay) {
   };
   refused([](OutputSettings& s) { s.exr.pattern = "a.####.tif"; }, "must end in .exr");
   refused([](OutputSettings& s) { s.exr.pattern = "a.exr"; }, "same file");
-  refused([](OutputSettings& s) { s.exr.compression = "zipp"; }, "did you mean 'zip'");
+  refused([](OutputSettings& s) { s.exr.compression = "pizz"; }, "did you mean 'piz'");
   refused([](OutputSettings& s) { s.exr.aovs = {"albdo"}; }, "did you mean 'albedo'");
   refused([](OutputSettings& s) { s.map_pattern = "map.####"; }, "must end in .exr");
   refused([](OutputSettings& s) { s.display.pattern = "a.####.gif"; }, ".png, .jpg");
-  refused([](OutputSettings& s) { s.display.pattern = "a.####"; }, "needs a suffix");
+  refused([](OutputSettings& s) { s.display.pattern = "a_####"; }, "needs a suffix");
   refused([](OutputSettings& s) { s.display.bits = 16; }, "JPEG holds 8 bits");
   refused([](OutputSettings& s) { s.display.bits = 12; }, "8 or 16 bits");
   refused([](OutputSettings& s) { s.display.quality = 0; }, "1..100");
