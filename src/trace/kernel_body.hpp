@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "core/hash.hpp"
+#include "material/bsdf.hpp"
 #include "trace/surface_hit.hpp"
 
 namespace gazetrace {
@@ -20,8 +21,6 @@ inline float power_heuristic(float chosen, float other) {
   const float ratio = other / chosen;
   return 1.0F / (1.0F + ratio * ratio);
 }
-
-inline constexpr std::size_t kChunk = 64;
 
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 class PathKernel {
@@ -176,13 +175,13 @@ class PathKernel {
     return static_cast<int>(next_count_);
   }
 
-  // In steps over a few dozen rays, so that each step's reads from memory overlap and its code stays small.
+  // In steps over a few dozen rays, so that each step's reads from memory overlap and its arithmetic runs in vectors.
   void shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths, std::size_t begin, std::size_t end) {
+    const RenderScene& scene = *frame_.scene;
+    ChunkHits& chunk = work_.chunk;
     std::array<std::uint16_t, kChunk> sky;
-    std::array<std::uint16_t, kChunk> found;
-    std::array<HitPlace, kChunk> places;
     std::size_t sky_count = 0;
-    std::size_t found_count = 0;
+    std::size_t count = 0;
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t geometry = work_.hits.geometry[k];
       if (geometry == kRejected) {
@@ -190,119 +189,126 @@ class PathKernel {
       } else if (geometry == kNoId) {
         sky[sky_count++] = static_cast<std::uint16_t>(k);
       } else {
-        places[found_count] = place_of_hit<kFeatures>(*frame_.scene, work_.hits, k);
-        found[found_count++] = static_cast<std::uint16_t>(k);
+        locate_hit<kFeatures>(scene, work_.hits, k, chunk, count++);
       }
     }
     add_sky(vertex, rays, paths, sky.data(), sky_count);
-
-    ChunkHits chunk;
-    chunk.count = 0;
-    for (std::size_t i = 0; i < found_count; ++i) {
-      const std::size_t k = found[i];
-      const Vec3f direction{rays.dx[k], rays.dy[k], rays.dz[k]};
-      SurfaceHit& hit = chunk.hits[chunk.count];
-      resolve_hit<kFeatures>(*frame_.scene, places[i], work_.hits, k, direction, paths.cone_width[k],
-                             paths.cone_spread[k], hit);
-      if (hit.good && goes_on(vertex, k, hit, direction, paths)) {
-        chunk.path[chunk.count++] = static_cast<std::uint16_t>(k);
-      }
+    if (count == 0) {
+      return;
     }
-    if (chunk.count > 0) {
-      scatter_chunk(vertex, rays, paths, chunk);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t k = chunk.path[i];
+      chunk.direction.set(i, {rays.dx[k], rays.dy[k], rays.dz[k]});
+      chunk.u[i] = work_.hits.u[k];
+      chunk.v[i] = work_.hits.v[k];
+      chunk.t[i] = work_.hits.t[k];
+      chunk.cone_width[i] = paths.cone_width[k];
+      chunk.cone_spread[i] = paths.cone_spread[k];
+    }
+    gather_triangles<kFeatures>(scene, chunk, count);
+    place_hits<kFeatures>(chunk, count);
+    read_materials<kFeatures>(scene, chunk, count);
+    finish_normals<kFeatures>(chunk, count);
+
+    std::array<std::uint16_t, kChunk> active;
+    std::size_t active_count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      active[active_count] = static_cast<std::uint16_t>(i);
+      active_count += chunk.good[i] != 0 && goes_on(vertex, i, paths) ? 1 : 0;
+    }
+    if (active_count > 0) {
+      scatter_chunk(vertex, paths, count, active.data(), active_count);
     }
   }
 
-  struct ChunkHits {
-    std::size_t count;
-    std::array<SurfaceHit, kChunk> hits;
-    std::array<std::uint16_t, kChunk> path;
-  };
-
   // Takes what the surface itself shines; true where the path scatters.
-  bool goes_on(int vertex, std::size_t k, const SurfaceHit& hit, const Vec3f& direction, const PathBatch& paths) {
+  bool goes_on(int vertex, std::size_t i, const PathBatch& paths) {
+    const ChunkHits& chunk = work_.chunk;
+    const std::size_t k = chunk.path[i];
     const std::size_t slot = paths.slot[k];
-    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
     if (vertex == 0 && frame_.settings.guides) {
-      record_guides(slot, hit, direction, work_.hits.t[k]);
+      record_guides(slot, i);
     }
     if constexpr (kFeatures.emission) {
-      if (hit.material->unlit) {
-        add(slot, throughput * hit.surface.base_color);
+      const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+      const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
+      if (material.unlit) {
+        add(slot, throughput * chunk.base_color.get(i));
         return false;
       }
-      if (hit.emission.x + hit.emission.y + hit.emission.z > 0) {
-        add_emission(vertex, k, slot, throughput, hit, direction, paths.pdf[k]);
+      if (material.emissive && (chunk.side[i] > 0 || material.double_sided)) {
+        add_emission(vertex, i, slot, throughput, material, paths.pdf[k]);
       }
     }
     return vertex < frame_.settings.max_bounces;
   }
 
-  void scatter_chunk(int vertex, const RayBatch& rays, const PathBatch& paths, const ChunkHits& chunk) {
+  void scatter_chunk(int vertex, const PathBatch& paths, std::size_t count, const std::uint16_t* active,
+                     std::size_t active_count) {
+    const ChunkHits& chunk = work_.chunk;
     std::array<SampleKey, kChunk> key;
     std::array<std::uint32_t, kChunk> index;
     std::array<Vec2f, kChunk> select;
     std::array<Vec2f, kChunk> light_uv;
     std::array<Vec2f, kChunk> bsdf_uv;
-    const std::size_t n = chunk.count;
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t slot = paths.slot[chunk.path[i]];
+    for (std::size_t i = 0; i < kChunk; ++i) {
+      const std::size_t slot = i < count ? paths.slot[chunk.path[i]] : 0;
       key[i] = work_.samples.key[slot];
       index[i] = work_.samples.sample[slot];
     }
     const bool lit = frame_.lights->any();
     const bool bounces = vertex + 1 < frame_.settings.max_bounces || frame_.last_ray_finds_light;
-    fill_2d(key, index, n, dimension_of(vertex, BounceDimension::select), select);
+    fill_2d(key, index, count, dimension_of(vertex, BounceDimension::select), select);
     if (lit) {
-      fill_2d(key, index, n, dimension_of(vertex, BounceDimension::light_uv), light_uv);
+      fill_2d(key, index, count, dimension_of(vertex, BounceDimension::light_uv), light_uv);
     }
     if (bounces) {
-      fill_2d(key, index, n, dimension_of(vertex, BounceDimension::bsdf_uv), bsdf_uv);
+      fill_2d(key, index, count, dimension_of(vertex, BounceDimension::bsdf_uv), bsdf_uv);
     }
     std::array<LightSample, kChunk> lights;
     if (lit) {
       std::array<Vec3f, kChunk> positions;
       std::array<Vec3f, kChunk> normals;
       std::array<float, kChunk> choice;
-      for (std::size_t i = 0; i < n; ++i) {
-        positions[i] = chunk.hits[i].position;
-        normals[i] = chunk.hits[i].geometric;
+      for (std::size_t i = 0; i < count; ++i) {
+        positions[i] = chunk.position.get(i);
+        normals[i] = chunk.geometric.get(i);
         choice[i] = select[i].x;
       }
-      frame_.lights->sample_many(n, positions.data(), normals.data(), light_uv.data(), choice.data(), lights.data());
+      frame_.lights->sample_many(count, positions.data(), normals.data(), light_uv.data(), choice.data(),
+                                 lights.data());
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t k = chunk.path[i];
-      const SurfaceHit& hit = chunk.hits[i];
-      const LocalFrame local(hit.shading);
-      const Bsdf<kDiffuse> bsdf(hit.surface, local.to_local(Vec3f{-rays.dx[k], -rays.dy[k], -rays.dz[k]}));
+    for (std::size_t a = 0; a < active_count; ++a) {
+      const std::size_t i = active[a];
+      const LocalFrame local(chunk.shading.get(i));
+      const Surface surface{chunk.base_color.get(i), chunk.metallic[i], chunk.roughness[i]};
+      const Bsdf<kDiffuse> bsdf(surface, local.to_local(-chunk.direction.get(i)));
       if (lit && lights[i].valid) {
-        take_light_sample(vertex, k, hit, local, bsdf, lights[i], paths);
+        take_light_sample(vertex, i, local, bsdf, lights[i], paths);
       }
       if (bounces) {
-        take_bsdf_sample(vertex, k, hit, local, bsdf, bsdf_uv[i], select[i].y, paths);
+        take_bsdf_sample(vertex, i, local, bsdf, bsdf_uv[i], select[i].y, paths);
       }
     }
   }
 
   static void fill_2d(const std::array<SampleKey, kChunk>& key, const std::array<std::uint32_t, kChunk>& index,
                       std::size_t count, std::uint32_t dimension, std::array<Vec2f, kChunk>& out) {
-    // Separate arrays, all entries: the compiler computes 16 at a time.
+    // Separate arrays: the compiler computes 16 at a time.
     alignas(64) std::array<float, kChunk> x;
     alignas(64) std::array<float, kChunk> y;
-    static_cast<void>(count);
-    for (std::size_t i = 0; i < kChunk; ++i) {
+    for_lanes(count, [&](std::size_t i) {
       const Vec2f u = sample_2d(key[i], index[i], dimension);
       x[i] = u.x;
       y[i] = u.y;
-    }
-    for (std::size_t i = 0; i < kChunk; ++i) {
+    });
+    for (std::size_t i = 0; i < count; ++i) {
       out[i] = {x[i], y[i]};
     }
   }
 
-  void take_light_sample(int vertex, std::size_t k, const SurfaceHit& hit, const LocalFrame& local,
-                         const Bsdf<kDiffuse>& bsdf, const LightSample& light, const PathBatch& paths) {
+  void take_light_sample(int vertex, std::size_t i, const LocalFrame& local, const Bsdf<kDiffuse>& bsdf,
+                         const LightSample& light, const PathBatch& paths) {
     const LightSampling mode = frame_.settings.light_sampling;
     if (!light.delta && mode == LightSampling::bsdf_only) {
       return;
@@ -312,23 +318,26 @@ class PathKernel {
     if (!light.delta && mode == LightSampling::mis) {
       weight *= power_heuristic(light.pdf, eval.pdf);
     }
+    const std::size_t k = work_.chunk.path[i];
     const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
     const Vec3f arriving = throughput * eval.f_cos * (light_radiance(light) * weight);
     if (arriving.x + arriving.y + arriving.z != 0) {
-      queue_shadow(vertex, paths.slot[k], hit, light, arriving);
+      queue_shadow(vertex, paths.slot[k], i, light, arriving);
     }
   }
 
-  void take_bsdf_sample(int vertex, std::size_t k, const SurfaceHit& hit, const LocalFrame& local,
-                        const Bsdf<kDiffuse>& bsdf, const Vec2f& u, float u_lobe, const PathBatch& paths) {
+  void take_bsdf_sample(int vertex, std::size_t i, const LocalFrame& local, const Bsdf<kDiffuse>& bsdf, const Vec2f& u,
+                        float u_lobe, const PathBatch& paths) {
+    const ChunkHits& chunk = work_.chunk;
     const BsdfSample sample = bsdf.sample(u, u_lobe);
     if (!sample.valid) {
       return;
     }
     const Vec3f next = fast_normalize(local.to_world(sample.direction));
-    if (dot(next, hit.geometric) <= 0) {
+    if (dot(next, chunk.geometric.get(i)) <= 0) {
       return;
     }
+    const std::size_t k = chunk.path[i];
     const std::size_t slot = paths.slot[k];
     Vec3f weight = Vec3f{paths.r[k], paths.g[k], paths.b[k]} * sample.weight;
     if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 0) {
@@ -343,41 +352,49 @@ class PathKernel {
     RayBatch& out = work_.rays[to];
     PathBatch& state = work_.paths[to];
     const std::size_t n = next_count_++;
-    set_ray(out, n, hit.position + hit.geometric * hit.offset, next, 0.0F, std::numeric_limits<float>::infinity());
+    set_ray(out, n, chunk.origin.get(i), next, 0.0F, std::numeric_limits<float>::infinity());
     out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));
     state.slot[n] = static_cast<std::uint32_t>(slot);
     state.r[n] = weight.x;
     state.g[n] = weight.y;
     state.b[n] = weight.z;
     state.pdf[n] = sample.pdf;
-    state.cone_width[n] = hit.cone_width;
+    state.cone_width[n] = chunk.cone_width[i];
     state.cone_spread[n] =
-        paths.cone_spread[k] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * sample.pdf);
+        chunk.cone_spread[i] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * sample.pdf);
   }
 
-  void add_emission(int vertex, std::size_t k, std::size_t slot, const Vec3f& throughput, const SurfaceHit& hit,
-                    const Vec3f& direction, float pdf_bsdf) {
+  void add_emission(int vertex, std::size_t i, std::size_t slot, const Vec3f& throughput,
+                    const ShadingMaterial& material, float pdf_bsdf) {
+    const ChunkHits& chunk = work_.chunk;
+    Vec3f emission = material.emission;
+    if (material.emit.texture != nullptr) {
+      const Vec2f at = coordinates_at<kFeatures>(*frame_.scene, chunk, i, material.emit);
+      const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, chunk.lod[i] + material.emit.half_log2_texels);
+      emission *= Vec3f{c.x, c.y, c.z};
+    }
     float weight = 1;
     if (vertex > 0) {
       float pdf_light = 0;
-      const std::uint32_t emitter = emitter_of(k);
+      const std::uint32_t emitter = emitter_of(i);
       if (emitter != kNoEmitter) {
         // The geometric normal is turned towards the ray; the sampler wants the sign of the front face.
-        const float cosine = -dot(hit.geometric, direction) * (hit.front ? 1.0F : -1.0F);
-        pdf_light = frame_.lights->pdf_triangle(emitter, cosine, work_.hits.t[k] * work_.hits.t[k]);
+        const float cosine = -dot(chunk.geometric.get(i), chunk.direction.get(i)) * chunk.side[i];
+        pdf_light = frame_.lights->pdf_triangle(emitter, cosine, chunk.t[i] * chunk.t[i]);
       }
       weight = weight_of_found_light(vertex, pdf_bsdf, pdf_light);
     }
-    add(slot, throughput * hit.emission * weight);
+    add(slot, throughput * emission * weight);
   }
 
-  [[nodiscard]] std::uint32_t emitter_of(std::size_t k) const {
+  [[nodiscard]] std::uint32_t emitter_of(std::size_t i) const {
     const RenderScene& scene = *frame_.scene;
+    const std::size_t k = work_.chunk.path[i];
     std::uint32_t record = work_.hits.geometry[k];
     std::uint32_t scene_instance = kNoId;
     if constexpr (kFeatures.instances) {
-      if (work_.hits.instance[k] != kNoId) {
-        const ShadingInstance& instance = scene.instances[work_.hits.instance[k] - scene.first_instance_id];
+      if (work_.chunk.instance[i] != kNoId) {
+        const ShadingInstance& instance = scene.instances[work_.chunk.instance[i]];
         record += instance.first_geometry;
         scene_instance = instance.scene_instance;
       }
@@ -387,15 +404,16 @@ class PathKernel {
     return frame_.lights->emitter_of(scene_instance, geometry.scene_geometry, work_.hits.primitive[k]);
   }
 
-  void record_guides(std::size_t slot, const SurfaceHit& hit, const Vec3f& direction, float t) {
+  void record_guides(std::size_t slot, std::size_t i) {
+    const ChunkHits& chunk = work_.chunk;
     GuideBatch& guides = work_.guides;
-    guides.albedo_r[slot] = hit.surface.base_color.x;
-    guides.albedo_g[slot] = hit.surface.base_color.y;
-    guides.albedo_b[slot] = hit.surface.base_color.z;
-    guides.normal_x[slot] = hit.shading.x;
-    guides.normal_y[slot] = hit.shading.y;
-    guides.normal_z[slot] = hit.shading.z;
-    guides.depth[slot] = t * dot(direction, frame_.camera->forward());
+    guides.albedo_r[slot] = chunk.base_color.x[i];
+    guides.albedo_g[slot] = chunk.base_color.y[i];
+    guides.albedo_b[slot] = chunk.base_color.z[i];
+    guides.normal_x[slot] = chunk.shading.x[i];
+    guides.normal_y[slot] = chunk.shading.y[i];
+    guides.normal_z[slot] = chunk.shading.z[i];
+    guides.depth[slot] = chunk.t[i] * dot(chunk.direction.get(i), frame_.camera->forward());
     guides.hit[slot] = 1;
   }
 
@@ -431,13 +449,13 @@ class PathKernel {
     return {c.x, c.y, c.z};
   }
 
-  void queue_shadow(int vertex, std::size_t slot, const SurfaceHit& hit, const LightSample& light,
-                    const Vec3f& arriving) {
+  void queue_shadow(int vertex, std::size_t slot, std::size_t i, const LightSample& light, const Vec3f& arriving) {
+    const ChunkHits& chunk = work_.chunk;
     ShadowBatch& shadows = work_.shadows;
     const std::size_t n = shadow_count_++;
     // Stops short of the light by what rounding may move either end, so that an emitter does not shadow itself.
-    const float tfar = light.distance * (1.0F - 1e-4F) - 2 * hit.offset;
-    set_ray(shadows.rays, n, hit.position + hit.geometric * hit.offset, light.direction, 0.0F, tfar);
+    const float tfar = light.distance * (1.0F - 1e-4F) - 2 * chunk.offset[i];
+    set_ray(shadows.rays, n, chunk.origin.get(i), light.direction, 0.0F, tfar);
     shadows.rays.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex) + 1U);
     shadows.slot[n] = static_cast<std::uint32_t>(slot);
     shadows.r[n] = arriving.x;

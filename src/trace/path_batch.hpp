@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "gazetrace/math.hpp"
+#include "trace/chunk.hpp"
 #include "trace/ray_batch.hpp"
 #include "trace/sampler.hpp"
 
@@ -54,6 +55,7 @@ struct Workspace {
   HitBatch hits;
   ShadowBatch shadows;
   BatchArray<std::uint8_t> occluded;
+  ChunkHits chunk;
 };
 
 }  // namespace gazetrace

@@ -37,13 +37,18 @@ inline Vec3f bend_normal(const Vec3f& shading, const Vec3f& geometric, const Vec
   const float height = dot(mirrored, geometric);
   // The lowest mirror direction allowed lies as far above the surface as the view may lie low.
   const float least = std::min(0.01F, 0.5F * dot(view, geometric));
-  if (cosine > 0 && height >= least) {
-    return shading;
-  }
-  const Vec3f raised = fast_normalize(mirrored + geometric * (least - height));
-  const Vec3f bent = raised + view;
+  const bool keep = (static_cast<int>(cosine > 0) & static_cast<int>(height >= least)) != 0;
+  const Vec3f raised = mirrored + geometric * (least - height);
+  const Vec3f bent = raised * (1.0F / std::sqrt(std::max(dot(raised, raised), 1e-20F))) + view;
   const float len2 = dot(bent, bent);
-  return len2 > 1e-12F ? bent * (1.0F / std::sqrt(len2)) : geometric;
+  const bool sound = len2 > 1e-12F;
+  const float scale = 1.0F / std::sqrt(sound ? len2 : 1.0F);
+  const auto choose = [&](float kept, float bent_one, float flat) {
+    const float other = sound ? bent_one * scale : flat;
+    return keep ? kept : other;
+  };
+  return {choose(shading.x, bent.x, geometric.x), choose(shading.y, bent.y, geometric.y),
+          choose(shading.z, bent.z, geometric.z)};
 }
 
 // Points on a triangle carry rounding errors of a few ulps of its largest coordinate (interpolation, and the ray

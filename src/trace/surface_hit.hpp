@@ -7,24 +7,12 @@
 #include <cmath>
 #include <cstdint>
 
-#include "material/bsdf.hpp"
+#include "trace/chunk.hpp"
 #include "trace/kernel.hpp"
 #include "trace/octahedral.hpp"
 #include "trace/shading_frame.hpp"
 
 namespace gazetrace {
-
-struct SurfaceHit {
-  Vec3f position;
-  Vec3f geometric, shading;  // unit, on the side the ray came from
-  float offset = 0;          // how far along `geometric` the next ray starts
-  bool front = true;
-  bool good = true;  // false: the triangle is too thin for a normal
-  const ShadingMaterial* material = nullptr;
-  Surface surface;
-  Vec3f emission;  // towards the ray, zero on dark sides
-  float cone_width = 0;
-};
 
 // log2 to 0.01, for mip levels.
 inline float rough_log2(float x) {
@@ -34,8 +22,8 @@ inline float rough_log2(float x) {
   return exponent + ((-1.0F / 3.0F) * mantissa + 2.0F) * mantissa - 2.0F / 3.0F;
 }
 
-inline Vec3f interpolate(const std::array<Vec3f, 3>& a, float w, float u, float v) {
-  return a[0] * w + a[1] * u + a[2] * v;
+inline Vec3f interpolate(const std::array<ChunkVec3, 3>& a, std::size_t i, float w, float u, float v) {
+  return a[0].get(i) * w + a[1].get(i) * u + a[2].get(i) * v;
 }
 
 inline Vec3f apply_columns(const std::array<Vec3f, 3>& columns, const Vec3f& p) {
@@ -46,169 +34,216 @@ inline float largest(const Vec3f& a) {
   return std::max(std::max(std::fabs(a.x), std::fabs(a.y)), std::fabs(a.z));
 }
 
-// Reads one texture at the hit.
-struct TextureCoordinates {
-  Vec2f uv;
-  float lod = 0;  // texture size apart
-  const TriangleExtra* extra = nullptr;
-  float w = 0, u = 0, v = 0;
-
-  template <KernelFeatures kFeatures>
-  [[nodiscard]] Vec2f at(const ShadingTexture& texture) const {
-    if constexpr (kFeatures.extras) {
-      if (texture.own_uv && extra != nullptr) {
-        const auto& set = texture.uv_set == 1 ? extra->uv1 : extra->uv0;
-        const float x = w * set[0].x + u * set[1].x + v * set[2].x;
-        const float y = w * set[0].y + u * set[1].y + v * set[2].y;
-        const auto& m = texture.transform;
-        return {m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5]};
-      }
-    }
-    return uv;
-  }
-};
-
-// Where a hit's data are; asks the memory for them.
-struct HitPlace {
-  std::uint32_t triangle;
-  std::uint32_t instance;  // index into RenderScene::instances, kNoId: none
-};
-
+// Where a lane's hit lies in a texture.
 template <KernelFeatures kFeatures>
-HitPlace place_of_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k) {
-  HitPlace place{0, kNoId};
-  std::uint32_t record = hits.geometry[k];
-  if constexpr (kFeatures.instances) {
-    if (hits.instance[k] != kNoId) {
-      place.instance = hits.instance[k] - scene.first_instance_id;
-      record += scene.instances[place.instance].first_geometry;
+Vec2f coordinates_at(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const ShadingTexture& texture) {
+  if constexpr (kFeatures.extras) {
+    if (texture.own_uv && chunk.extra[i] != kNoId) {
+      const TriangleExtra& extra = scene.extras[chunk.extra[i]];
+      const auto& set = texture.uv_set == 1 ? extra.uv1 : extra.uv0;
+      const float u = chunk.u[i];
+      const float v = chunk.v[i];
+      const float w = 1.0F - u - v;
+      const float x = w * set[0].x + u * set[1].x + v * set[2].x;
+      const float y = w * set[0].y + u * set[1].y + v * set[2].y;
+      const auto& m = texture.transform;
+      return {m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5]};
     }
   }
-  place.triangle = scene.geometries[record].first_triangle + hits.primitive[k];
-  const auto* data = reinterpret_cast<const char*>(&scene.triangles[place.triangle]);
-  __builtin_prefetch(data);
-  __builtin_prefetch(data + 64);
-  return place;
+  return chunk.uv.get(i);
 }
 
+// Finds the data of hit k of the packed batch and asks the memory for them.
 template <KernelFeatures kFeatures>
-void resolve_hit(const RenderScene& scene, const HitPlace& place, const HitBatch& hits, std::size_t k,
-                 const Vec3f& direction, float cone_width, float cone_spread, SurfaceHit& hit) {
-  const float u = hits.u[k];
-  const float v = hits.v[k];
-  const float w = 1.0F - u - v;
-  const ShadingTriangle& triangle = scene.triangles[place.triangle];
-  const ShadingInstance* instance = nullptr;
+void locate_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, ChunkHits& chunk, std::size_t i) {
+  std::uint32_t record = hits.geometry[k];
+  chunk.instance[i] = kNoId;
   if constexpr (kFeatures.instances) {
-    if (place.instance != kNoId) {
-      instance = &scene.instances[place.instance];
+    if (hits.instance[k] != kNoId) {
+      chunk.instance[i] = hits.instance[k] - scene.first_instance_id;
+      record += scene.instances[chunk.instance[i]].first_geometry;
     }
   }
-  const auto& p = triangle.position;
-  hit.position = interpolate(p, w, u, v);
-  // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
-  const Vec3f e1 = p[1] - p[0];
-  const Vec3f e2 = p[2] - p[0];
-  const float edge = 1.0F / std::max(std::max(largest(e1), largest(e2)), 1e-30F);
-  Vec3f geometric = cross(e1 * edge, e2 * edge);
-  const Vec3f reach{std::max(std::max(std::fabs(p[0].x), std::fabs(p[1].x)), std::fabs(p[2].x)),
-                    std::max(std::max(std::fabs(p[0].y), std::fabs(p[1].y)), std::fabs(p[2].y)),
-                    std::max(std::max(std::fabs(p[0].z), std::fabs(p[1].z)), std::fabs(p[2].z))};
-  Vec3f shading = fast_normalize(decode_octahedral(triangle.normal[0])) * w +
-                  fast_normalize(decode_octahedral(triangle.normal[1])) * u +
-                  fast_normalize(decode_octahedral(triangle.normal[2])) * v;
-  float lod = triangle.lod;
-  hit.offset = std::max(std::max(reach.x, reach.y), reach.z) * kOffsetUlps;
-  if constexpr (kFeatures.instances) {
-    if (instance != nullptr) {
-      hit.position = apply_columns(instance->axes, hit.position) + instance->translation;
-      geometric = apply_columns(instance->normal_axes, geometric);
-      shading = apply_columns(instance->normal_axes, shading);
-      const auto absolute = [](const Vec3f& a) { return Vec3f{std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; };
-      const Vec3f far = absolute(instance->axes[0]) * reach.x + absolute(instance->axes[1]) * reach.y +
-                        absolute(instance->axes[2]) * reach.z + absolute(instance->translation);
-      // The ray goes into the mesh's space and back: twice the roundings.
-      hit.offset = 2 * std::max(std::max(far.x, far.y), far.z) * kOffsetUlps;
-      lod += instance->lod_offset;
-    }
-  }
-  const float length2 = dot(geometric, geometric);
-  const float shading2 = dot(shading, shading);
-  hit.good = length2 > 1e-30F;
-  geometric = geometric * (1.0F / std::sqrt(length2));
-  hit.material = &scene.materials[triangle.material_and_sign >> 1U];
-  const ShadingMaterial& material = *hit.material;
-  hit.front = dot(geometric, direction) < 0;
-  const float side = hit.front ? 1.0F : -1.0F;
-  hit.geometric = geometric * side;
-  shading = shading2 > 1e-12F ? shading * (1.0F / std::sqrt(shading2)) : geometric;
+  const std::uint32_t triangle = scene.geometries[record].first_triangle + hits.primitive[k];
+  chunk.triangle[i] = triangle;
+  chunk.path[i] = static_cast<std::uint32_t>(k);
+  const auto* data = reinterpret_cast<const char*>(&scene.triangles[triangle]);
+  __builtin_prefetch(data);
+  __builtin_prefetch(data + 64);
+}
 
-  hit.surface.base_color = {material.base_color.x, material.base_color.y, material.base_color.z};
-  hit.surface.metallic = material.metallic;
-  hit.surface.roughness = material.roughness;
-  hit.cone_width = cone_width + cone_spread * hits.t[k];
-  const bool shines = hit.front || material.double_sided;
-  if constexpr (kFeatures.emission) {
-    hit.emission = shines ? material.emission : Vec3f{};
+// From records to lanes. Instanced triangles are brought to world space here.
+template <KernelFeatures kFeatures>
+void gather_triangles(const RenderScene& scene, ChunkHits& chunk, std::size_t count) {
+  std::array<ChunkArray<std::uint32_t>, 3> normal_code;
+  std::array<ChunkArray<std::uint32_t>, 3> tangent_code;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ShadingTriangle& triangle = scene.triangles[chunk.triangle[i]];
+    for (std::size_t c = 0; c < 3; ++c) {
+      chunk.corner[c].set(i, triangle.position[c]);
+      chunk.corner_uv[c].set(i, triangle.uv[c]);
+      normal_code[c][i] = triangle.normal[c];
+      tangent_code[c][i] = triangle.tangent[c];
+    }
+    chunk.lod[i] = triangle.lod;
+    chunk.material[i] = triangle.material_and_sign >> 1U;
+    chunk.bitangent_sign[i] = (triangle.material_and_sign & 1U) != 0 ? -1.0F : 1.0F;
+    chunk.extra[i] = triangle.extra;
+    chunk.winding[i] = 1;
+    chunk.instance_reach[i] = 0;
   }
-  TextureCoordinates coordinates;
-  if constexpr (kFeatures.extras) {
-    if (triangle.extra != kNoId) {
-      coordinates.extra = &scene.extras[triangle.extra];
-      const auto& c = coordinates.extra->color;
-      hit.surface.base_color *= Vec3f{w * c[0].x + u * c[1].x + v * c[2].x, w * c[0].y + u * c[1].y + v * c[2].y,
-                                      w * c[0].z + u * c[1].z + v * c[2].z};
+  const std::size_t padded = std::min((count + kLanes - 1) / kLanes * kLanes, kChunk);
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::fill(normal_code[c].data + count, normal_code[c].data + padded, 0U);
+    std::fill(tangent_code[c].data + count, tangent_code[c].data + padded, 0U);
+    for_lanes(count, [&](std::size_t i) {
+      chunk.corner_normal[c].set(i, fast_normalize(decode_octahedral(normal_code[c][i])));
+    });
+    if constexpr (kFeatures.textures) {
+      for_lanes(count, [&](std::size_t i) { chunk.corner_tangent[c].set(i, decode_octahedral(tangent_code[c][i])); });
     }
   }
-  if constexpr (kFeatures.textures) {
-    coordinates.uv = {w * triangle.uv[0].x + u * triangle.uv[1].x + v * triangle.uv[2].x,
-                      w * triangle.uv[0].y + u * triangle.uv[1].y + v * triangle.uv[2].y};
-    coordinates.w = w;
-    coordinates.u = u;
-    coordinates.v = v;
-    const float slant = std::max(std::fabs(dot(geometric, direction)), 0.05F);
-    coordinates.lod = lod + rough_log2(std::max(hit.cone_width, 1e-30F) / slant);
-    TexelValues texel;
-    for (std::size_t g = 0; g < material.group_count; ++g) {
-      const TexelGroup& group = material.groups[g];
-      const Vec2f at = coordinates.at<kFeatures>(group.coordinates);
-      read_group(group, at.x, at.y, coordinates.lod + group.half_log2_texels, texel);
-    }
-    hit.surface.base_color *= texel.base;
-    hit.surface.roughness *= texel.roughness;
-    hit.surface.metallic *= texel.metallic;
-    if (material.normal.texture != nullptr) {
-      const Vec3f& c = texel.normal;
-      Vec3f tangent = decode_octahedral(triangle.tangent[0]) * w + decode_octahedral(triangle.tangent[1]) * u +
-                      decode_octahedral(triangle.tangent[2]) * v;
-      float sign = (triangle.material_and_sign & 1U) != 0 ? -1.0F : 1.0F;
-      if constexpr (kFeatures.instances) {
-        if (instance != nullptr) {
-          tangent = apply_columns(instance->axes, tangent);
-          sign *= instance->flip;
-        }
+  if constexpr (kFeatures.instances) {
+    const auto absolute = [](const Vec3f& a) { return Vec3f{std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; };
+    for (std::size_t i = 0; i < count; ++i) {
+      if (chunk.instance[i] == kNoId) {
+        continue;
       }
+      const ShadingInstance& instance = scene.instances[chunk.instance[i]];
+      Vec3f reach;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Vec3f own = chunk.corner[c].get(i);
+        const Vec3f far = absolute(own);
+        reach = {std::max(reach.x, far.x), std::max(reach.y, far.y), std::max(reach.z, far.z)};
+        chunk.corner[c].set(i, apply_columns(instance.axes, own) + instance.translation);
+        chunk.corner_normal[c].set(i, apply_columns(instance.normal_axes, chunk.corner_normal[c].get(i)));
+        chunk.corner_tangent[c].set(i, apply_columns(instance.axes, chunk.corner_tangent[c].get(i)));
+      }
+      const Vec3f far = absolute(instance.axes[0]) * reach.x + absolute(instance.axes[1]) * reach.y +
+                        absolute(instance.axes[2]) * reach.z + absolute(instance.translation);
+      // The ray goes into the mesh's space and back: twice the roundings.
+      chunk.instance_reach[i] = 2 * largest(far);
+      chunk.winding[i] = instance.flip;
+      chunk.bitangent_sign[i] *= instance.flip;
+      chunk.lod[i] += instance.lod_offset;
+    }
+  }
+}
+
+// Position, normals, coordinates and texture level of every lane.
+template <KernelFeatures kFeatures>
+void place_hits(ChunkHits& chunk, std::size_t count) {
+  for_lanes(count, [&](std::size_t i) {
+    const float u = chunk.u[i];
+    const float v = chunk.v[i];
+    const float w = 1.0F - u - v;
+    const Vec3f p0 = chunk.corner[0].get(i);
+    const Vec3f p1 = chunk.corner[1].get(i);
+    const Vec3f p2 = chunk.corner[2].get(i);
+    const Vec3f position = p0 * w + p1 * u + p2 * v;
+    const float reach = std::max(std::max(largest(p0), largest(p1)), std::max(largest(p2), chunk.instance_reach[i]));
+    // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
+    const Vec3f e1 = p1 - p0;
+    const Vec3f e2 = p2 - p0;
+    const float edge = chunk.winding[i] / std::max(std::max(largest(e1), largest(e2)), 1e-30F);
+    const Vec3f face = cross(e1 * edge, e2 * std::fabs(edge));
+    const float face2 = dot(face, face);
+    const Vec3f flat = face * (1.0F / std::sqrt(std::max(face2, 1e-30F)));
+    const Vec3f smooth = interpolate(chunk.corner_normal, i, w, u, v);
+    const float smooth2 = dot(smooth, smooth);
+    const bool has_smooth = smooth2 > 1e-12F;
+    const float scale = 1.0F / std::sqrt(has_smooth ? smooth2 : 1.0F);
+    const Vec3f direction = chunk.direction.get(i);
+    const float cosine = dot(flat, direction);
+    const float side = cosine < 0 ? 1.0F : -1.0F;
+    const Vec3f geometric = flat * side;
+    const float offset = reach * kOffsetUlps;
+    chunk.good[i] = face2 > 1e-30F ? 1.0F : 0.0F;
+    chunk.side[i] = side;
+    chunk.offset[i] = offset;
+    chunk.position.set(i, position);
+    chunk.geometric.set(i, geometric);
+    chunk.origin.set(i, position + geometric * offset);
+    chunk.shading.set(i, {has_smooth ? smooth.x * scale : flat.x, has_smooth ? smooth.y * scale : flat.y,
+                          has_smooth ? smooth.z * scale : flat.z});
+    const float width = chunk.cone_width[i] + chunk.cone_spread[i] * chunk.t[i];
+    chunk.cone_width[i] = width;
+    if constexpr (kFeatures.textures) {
+      const float slant = std::max(std::fabs(cosine), 0.05F);
+      chunk.lod[i] += rough_log2(std::max(width, 1e-30F) / slant);
+      const Vec2f a = chunk.corner_uv[0].get(i);
+      const Vec2f b = chunk.corner_uv[1].get(i);
+      const Vec2f c = chunk.corner_uv[2].get(i);
+      chunk.uv.set(i, {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y});
+      chunk.tangent.set(i, interpolate(chunk.corner_tangent, i, w, u, v));
+    }
+  });
+}
+
+// Material values, textures included.
+template <KernelFeatures kFeatures>
+void read_materials(const RenderScene& scene, ChunkHits& chunk, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const ShadingMaterial& material = scene.materials[chunk.material[i]];
+    Vec3f base{material.base_color.x, material.base_color.y, material.base_color.z};
+    float metallic = material.metallic;
+    float roughness = material.roughness;
+    chunk.has_normal[i] = 0;
+    if constexpr (kFeatures.extras) {
+      if (chunk.extra[i] != kNoId) {
+        const auto& c = scene.extras[chunk.extra[i]].color;
+        const float u = chunk.u[i];
+        const float v = chunk.v[i];
+        const float w = 1.0F - u - v;
+        base *= Vec3f{w * c[0].x + u * c[1].x + v * c[2].x, w * c[0].y + u * c[1].y + v * c[2].y,
+                      w * c[0].z + u * c[1].z + v * c[2].z};
+      }
+    }
+    if constexpr (kFeatures.textures) {
+      TexelValues texel;
+      for (std::size_t g = 0; g < material.group_count; ++g) {
+        const TexelGroup& group = material.groups[g];
+        const Vec2f at = coordinates_at<kFeatures>(scene, chunk, i, group.coordinates);
+        read_group(group, at.x, at.y, chunk.lod[i] + group.half_log2_texels, texel);
+      }
+      base *= texel.base;
+      metallic *= texel.metallic;
+      roughness *= texel.roughness;
+      if (material.normal.texture != nullptr) {
+        chunk.has_normal[i] = 1;
+        chunk.texel_normal.set(i,
+                               {(2.0F * texel.normal.x - 1.0F) * material.normal_scale,
+                                (2.0F * texel.normal.y - 1.0F) * material.normal_scale, 2.0F * texel.normal.z - 1.0F});
+      }
+    }
+    chunk.base_color.set(i, base);
+    chunk.metallic[i] = metallic;
+    chunk.roughness[i] = roughness;
+  }
+}
+
+// Bumps the normal, turns it to the ray's side and keeps its mirror direction above the surface.
+template <KernelFeatures kFeatures>
+void finish_normals(ChunkHits& chunk, std::size_t count) {
+  for_lanes(count, [&](std::size_t i) {
+    Vec3f shading = chunk.shading.get(i);
+    if constexpr (kFeatures.textures) {
+      const Vec3f tangent = chunk.tangent.get(i);
       const Vec3f across = tangent - shading * dot(tangent, shading);
       const float across2 = dot(across, across);
-      if (across2 > 1e-20F) {
-        const Vec3f t = across * (1.0F / std::sqrt(across2));
-        const Vec3f b = cross(shading, t) * sign;
-        const Vec3f bumped = t * ((2.0F * c.x - 1.0F) * material.normal_scale) +
-                             b * ((2.0F * c.y - 1.0F) * material.normal_scale) + shading * (2.0F * c.z - 1.0F);
-        const float bumped2 = dot(bumped, bumped);
-        shading = bumped2 > 1e-12F ? bumped * (1.0F / std::sqrt(bumped2)) : shading;
-      }
+      const Vec3f t = across * (1.0F / std::sqrt(std::max(across2, 1e-20F)));
+      const Vec3f b = cross(shading, t) * chunk.bitangent_sign[i];
+      const Vec3f texel = chunk.texel_normal.get(i);
+      const Vec3f bumped = t * texel.x + b * texel.y + shading * texel.z;
+      const float bumped2 = dot(bumped, bumped);
+      const float scale = 1.0F / std::sqrt(std::max(bumped2, 1e-20F));
+      const bool take = (static_cast<int>(chunk.has_normal[i] != 0) & static_cast<int>(across2 > 1e-20F) &
+                         static_cast<int>(bumped2 > 1e-12F)) != 0;
+      shading = {take ? bumped.x * scale : shading.x, take ? bumped.y * scale : shading.y,
+                 take ? bumped.z * scale : shading.z};
     }
-    if constexpr (kFeatures.emission) {
-      if (material.emit.texture != nullptr && shines) {
-        const Vec2f at = coordinates.at<kFeatures>(material.emit);
-        const Vec4f c =
-            read_texture(*material.emit.texture, at.x, at.y, coordinates.lod + material.emit.half_log2_texels);
-        hit.emission *= Vec3f{c.x, c.y, c.z};
-      }
-    }
-  }
-  hit.shading = bend_normal(shading * side, hit.geometric, -direction);
+    chunk.shading.set(i, bend_normal(shading * chunk.side[i], chunk.geometric.get(i), -chunk.direction.get(i)));
+  });
 }
 
 }  // namespace gazetrace

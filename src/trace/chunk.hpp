@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hits of a few dozen rays as a structure of arrays, so that the compiler computes sixteen at a time. Loops over lanes
+// are written for one lane and without branches; lanes past the count hold stale but initialised values.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "gazetrace/math.hpp"
+
+namespace gazetrace {
+
+inline constexpr std::size_t kChunk = 64;
+inline constexpr std::size_t kLanes = 16;
+
+template <class T>
+struct alignas(64) ChunkArray {
+  T data[kChunk];
+  T& operator[](std::size_t i) { return data[i]; }
+  const T& operator[](std::size_t i) const { return data[i]; }
+};
+
+struct ChunkVec3 {
+  ChunkArray<float> x, y, z;
+  [[nodiscard]] Vec3f get(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void set(std::size_t i, const Vec3f& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+  }
+};
+
+struct ChunkVec2 {
+  ChunkArray<float> x, y;
+  [[nodiscard]] Vec2f get(std::size_t i) const { return {x[i], y[i]}; }
+  void set(std::size_t i, const Vec2f& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+  }
+};
+
+// body(i) for i in [0, count) and on to the next multiple of the lanes.
+template <class Body>
+[[gnu::always_inline]] inline void for_lanes(std::size_t count, const Body& body) {
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      body(first + lane);
+    }
+  }
+}
+
+struct ChunkHits {
+  // The ray, and where its hit's data are.
+  ChunkVec3 direction;
+  ChunkArray<float> u, v, t, cone_width, cone_spread;
+  ChunkArray<std::uint32_t> path;      // index into the packed batch
+  ChunkArray<std::uint32_t> triangle;  // into RenderScene::triangles
+  ChunkArray<std::uint32_t> instance;  // into RenderScene::instances, kNoId: none
+
+  // The triangle: world space once gather_triangles is through.
+  std::array<ChunkVec3, 3> corner;
+  std::array<ChunkVec3, 3> corner_normal;   // unit in their own space, any length in the world
+  std::array<ChunkVec3, 3> corner_tangent;  // any length
+  std::array<ChunkVec2, 3> corner_uv;
+  ChunkArray<float> lod, bitangent_sign, winding, instance_reach;
+  ChunkArray<std::uint32_t> material, extra;
+
+  // The point.
+  ChunkVec3 position, geometric, shading;  // unit, on the ray's side
+  ChunkVec3 origin;                        // of rays that leave: position moved off the surface
+  ChunkVec3 tangent;
+  ChunkVec2 uv;
+  ChunkArray<float> offset, side, good;
+  ChunkVec3 base_color;
+  ChunkArray<float> metallic, roughness;
+  ChunkVec3 texel_normal;  // -1..1, scaled
+  ChunkArray<float> has_normal;
+};
+
+}  // namespace gazetrace
