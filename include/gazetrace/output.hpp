@@ -70,7 +70,7 @@ struct FrameHeader {
 };
 
 // Scene-linear EXR through OpenEXR. The file appears under its name only when complete. Returns the number of values
-// clamped to half's range.
+// clamped to half's range. Without `eccentricity_deg` (a frame without gaze) that AOV is NaN.
 std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
                               const FrameHeader& header, const ExrSettings& settings, int threads = 0);
 void write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg);

@@ -175,9 +175,14 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
   const OIIO::TypeDesc type = bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8;
   OIIO::ImageSpec spec(width_px, height_px, 3, options.file_bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:BitsPerSample", options.file_bits);
-  spec.attribute("Software", options.software);
-  spec.attribute("ImageDescription", options.note);
-  spec.attribute("DocumentName", options.note);  // DPX cuts descriptions after 100 characters, project names after 200
+  const auto add_text = [&](const char* name, const std::string& value) {
+    if (!value.empty()) {  // JPEG's writer ends the process over an empty text
+      spec.attribute(name, value);
+    }
+  };
+  add_text("Software", options.software);
+  add_text("ImageDescription", options.note);
+  add_text("DocumentName", options.note);  // DPX cuts descriptions after 100 characters, project names after 200
   // PNG's filter 64 (the mean of left and upper neighbour) leaves noise with little to gain from a search for repeats:
   // run lengths and Huffman codes alone give files a tenth larger than zlib's level 1 in three quarters of its time.
   if (output->format_name() == std::string_view("png")) {

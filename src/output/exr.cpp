@@ -101,6 +101,10 @@ class ExrPicture {
   void add_float(const std::string& name, const ImageGray& image) {
     insert(name, Imf::FLOAT, reinterpret_cast<const char*>(image.pixels.data()), sizeof(float));
   }
+  void add_constant(const std::string& name, float value) {
+    const ImageGray& image = constants_.emplace_back(width_px_, height_px_, value);
+    add_float(name, image);
+  }
   void add_float_rgb(const std::array<std::string, 3>& names, const ImageRgb& image) {
     for (std::size_t c = 0; c < 3; ++c) {
       insert(names[c], Imf::FLOAT, reinterpret_cast<const char*>(image.pixels.data()) + c * sizeof(float),
@@ -152,7 +156,8 @@ class ExrPicture {
 
   Imf::Header header_;
   Imf::FrameBuffer buffer_;
-  std::deque<std::vector<half>> halves_;  // a deque: the buffers must not move
+  std::deque<std::vector<half>> halves_;  // deques: the buffers must not move
+  std::deque<ImageGray> constants_;
   int width_px_, height_px_, threads_;
   std::uint64_t clamped_ = 0;
 };
@@ -264,7 +269,7 @@ std::array<std::string, 3> names_of(const std::string& layer, const char* letter
 void require(const std::string& aov, bool present) {
   if (!present) {
     throw Error(ErrorKind::usage, "", "AOV '" + aov + "' was asked for, but this frame does not carry it",
-                aov == "eccentricity" ? "it needs a gaze" : "trace with guides on");
+                "trace with guides on");
   }
 }
 
@@ -281,8 +286,12 @@ void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, co
   } else if (aov == "variance") {
     picture.add_float("variance", frame.variance);
   } else if (aov == "eccentricity") {
-    require(aov, eccentricity_deg != nullptr);
-    picture.add_float("eccentricity", *eccentricity_deg);
+    if (eccentricity_deg != nullptr) {
+      picture.add_float("eccentricity", *eccentricity_deg);
+    } else {
+      // A frame without gaze has none; the channel stays, so that all frames of a sequence have the same ones.
+      picture.add_constant("eccentricity", std::numeric_limits<float>::quiet_NaN());
+    }
   } else {
     throw Error(ErrorKind::usage, "", unknown_name_message("AOV", aov, aov_names()));
   }

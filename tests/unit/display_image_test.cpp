@@ -92,6 +92,14 @@ TEST(DisplayImage, TheSameBytesAgain) {
   }
 }
 
+TEST(DisplayImage, EmptyTextsAreLeftOut) {
+  for (const char* name : {"a.png", "a.jpg", "a.tif", "a.dpx"}) {
+    const TemporaryFolder folder;
+    EXPECT_NO_THROW(write_display_image(folder / name, example_image(8), FrameHeader{}, settings(8))) << name;
+    EXPECT_EQ(read_settings_digest(folder / name), "") << name;
+  }
+}
+
 TEST(DisplayImage, QualityIsThatOfTheSettings) {
   const TemporaryFolder folder;
   DisplaySettings low = settings(8);

@@ -122,7 +122,7 @@ TEST(ExrFrame, MissingLayersAreNamed) {
   const TemporaryFolder folder;
   Frame frame = example_frame(4, 4);
   frame.albedo = {};
-  for (const char* aov : {"albedo", "eccentricity", "colour"}) {
+  for (const char* aov : {"albedo", "colour"}) {
     try {
       write_frame_exr(folder / "a.exr", frame, nullptr, example_header(), settings(ExrPixels::half, "zip", {aov}));
       FAIL() << aov;
@@ -131,6 +131,14 @@ TEST(ExrFrame, MissingLayersAreNamed) {
     }
   }
   EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(ExrFrame, AFrameWithoutGazeKeepsTheChannel) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.exr";
+  write_frame_exr(path, example_frame(4, 4), nullptr, example_header(),
+                  settings(ExrPixels::half, "zip", {"eccentricity"}));
+  EXPECT_TRUE(std::isnan(exr_value(path, "eccentricity", 3, 3)));
 }
 
 TEST(ExrFrame, TheHeaderSaysHowItWasMade) {
