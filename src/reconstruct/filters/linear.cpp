@@ -109,27 +109,37 @@ class LinearFilter {
     Column own = column(grid, bx, by, other_by, t);
     for (; bx <= last; ++bx) {
       const Column right = column(grid, bx + 1, by, other_by, t);
-      const float density = own_density(grid, bx, by);
       const int first_x = bx * block;
+      const int half_x = first_x + block / 2;  // from here on pixel centres are not left of the block's
+      const int begin_x = std::max(x0, first_x);
       const int end_x = std::min(x1, first_x + block);
-      for (int x = std::max(x0, first_x); x < end_x; ++x) {
-        const std::size_t i = frame_.radiance.index(x, y);
-        frame_.sample_count.pixels[i] = density;
-        const float right_of_center = static_cast<float>(x - first_x) + 0.5F - 0.5F * size;
-        const Column& side = right_of_center < 0 ? left : right;
-        if (own.count > 0 && side.count == own.count) {
-          const float s = std::abs(right_of_center) / size;
-          frame_.radiance.pixels[i] = mix(own.radiance, side.radiance, s);
-          frame_.variance.pixels[i] = mix_variance(own.variance, side.variance, s);
-        } else {
-          fill_pixel(grid, stencil(grid, x, y), i);
-        }
-        if (guides) {
-          fill_guides(grid, stencil(grid, x, y), grid.guides[grid.index(bx, by)].hit_share > 0, i);
-        }
+      fill_half(grid, own, left, begin_x, std::min(half_x, end_x), y);
+      fill_half(grid, own, right, std::max(half_x, begin_x), end_x, y);
+      const float density = own_density(grid, bx, by);
+      std::fill_n(&frame_.sample_count(begin_x, y), end_x - begin_x, density);
+      for (int x = begin_x; guides && x < end_x; ++x) {
+        fill_guides(grid, stencil(grid, x, y), grid.guides[grid.index(bx, by)].hit_share > 0,
+                    frame_.radiance.index(x, y));
       }
       left = own;
       own = right;
+    }
+  }
+
+  // Pixels [x0, x1) on one side of their block's centre, between its column and the next one on that side.
+  void fill_half(const CellGrid& grid, const Column& own, const Column& side, int x0, int x1, int y) const {
+    if (own.count > 0 && side.count == own.count) {
+      const auto size = static_cast<float>(grid.block_px);
+      const float center = (static_cast<float>(x0 / grid.block_px) + 0.5F) * size;
+      for (int x = x0; x < x1; ++x) {
+        const float s = std::abs(static_cast<float>(x) + 0.5F - center) / size;
+        frame_.radiance(x, y) = mix(own.radiance, side.radiance, s);
+        frame_.variance(x, y) = mix_variance(own.variance, side.variance, s);
+      }
+    } else {
+      for (int x = x0; x < x1; ++x) {
+        fill_pixel(grid, stencil(grid, x, y), frame_.radiance.index(x, y));
+      }
     }
   }
 

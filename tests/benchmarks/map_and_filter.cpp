@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// CPU time per 3840x2160 frame of what foveation adds around tracing: the sampling map, the filters, accumulation.
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/reconstruct.hpp"
+#include "gazetrace/temporal.hpp"
+
+namespace gazetrace {
+namespace {
+
+SamplingMap paper_map(bool foveated, AngleReading reading) {
+  const PlanarView view = view_of_display(display_by_name("paper"), {}, 3840, 2160);
+  FoveationSettings settings;
+  settings.reading = reading;
+  return make_sampling_map(settings, view, foveated ? std::optional(view.direction(1700.3, 900.7)) : std::nullopt);
+}
+
+SparseFrame sparse_frame(const SamplingMap& map) {
+  SparseFrame sparse;
+  sparse.width_px = map.width_px;
+  sparse.height_px = map.height_px;
+  for (const Site& site : map.sites) {
+    const auto n = static_cast<float>(site.samples);
+    const float value = 0.001F * static_cast<float>((site.block_x * 7 + site.block_y * 3) % 1000);
+    sparse.sum.push_back(Vec3f{n * value, n * value, n});
+    sparse.sum_square_luminance.push_back(n);
+    sparse.count.push_back(site.samples);
+  }
+  return sparse;
+}
+
+void bench_map(benchmark::State& state, bool foveated, AngleReading reading) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(paper_map(foveated, reading));
+  }
+}
+
+void bench_filter(benchmark::State& state, bool foveated, AngleReading reading, const char* filter) {
+  const SamplingMap map = paper_map(foveated, reading);
+  const SparseFrame sparse = sparse_frame(map);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(reconstruct(sparse, map, filter, 1));
+  }
+}
+
+void bench_accumulate(benchmark::State& state) {
+  const SamplingMap map = paper_map(true, AngleReading::full_angle);
+  Frame frame = reconstruct(sparse_frame(map), map, "none", 1);
+  TemporalHistory history;
+  for (auto _ : state) {
+    frame = accumulate(std::move(frame), {}, {AccumulateMode::running}, history, 1);
+  }
+}
+
+constexpr auto kDiameter = AngleReading::full_angle;
+constexpr auto kRadius = AngleReading::eccentricity;
+BENCHMARK_CAPTURE(bench_map, diameter, true, kDiameter)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bench_map, radius, true, kRadius)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bench_map, uniform, false, kDiameter)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bench_filter, none_diameter, true, kDiameter, "none")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bench_filter, linear_diameter, true, kDiameter, "linear")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bench_filter, linear_radius, true, kRadius, "linear")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bench_filter, linear_uniform, false, kDiameter, "linear")->Unit(benchmark::kMillisecond);
+BENCHMARK(bench_accumulate)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace gazetrace
