@@ -16,8 +16,8 @@ struct Frame {
   ImageRgb radiance;        // linear Rec.709
   ImageGray sample_count;   // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
   ImageGray variance;       // of the pixel's mean luminance, from the samples' spread; 0 for a single sample
-  ImageRgb albedo, normal;  // first hit; normal in world space, zero where nothing was hit
-  ImageGray depth_m;        // +Inf where nothing was hit
+  ImageRgb albedo, normal;  // first hit, means over all samples; normal in world space, zero where nothing was hit
+  ImageGray depth_m;        // mean over the hits; +Inf where the pixel's site hit nothing
 };
 
 struct FilterInfo {

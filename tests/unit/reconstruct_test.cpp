@@ -212,6 +212,20 @@ TEST(Reconstruct, VarianceOfTheMeanAndOfItsCombinations) {
   EXPECT_NEAR(reconstruct(sparse, map, "linear", 1).variance(1, 0), 0.625, 1e-6);
 }
 
+TEST(Reconstruct, VarianceInsideEvenlySampledBlocks) {
+  const SamplingMap map = map_from_picture(std::vector<std::string>(8, "11111111"));
+  SparseFrame sparse = sample(map, [](double, double) { return 0; });
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {  // 16 samples, half 0 and half 2: spread 16 / 15
+    sparse.sum[i] = {16, 16, 16};
+    sparse.sum_square_luminance[i] = 32;
+  }
+  // Along each axis the weights are 3/4 and 1/4.
+  const double expected = 0.625 * 0.625 * (16.0 / 15.0) / 16.0;
+  for (const auto& [x, y] : {PixelIndex{3, 3}, PixelIndex{4, 3}, PixelIndex{3, 4}, PixelIndex{4, 4}}) {
+    EXPECT_NEAR(reconstruct(sparse, map, "linear", 1).variance(x, y), expected, 1e-6 * expected);
+  }
+}
+
 TEST(Reconstruct, GuidesAreInterpolatedAndAMissStaysAtInfinity) {
   const SamplingMap map = map_from_picture({"111111", "111111"});
   SparseFrame sparse = sample(map, [](double, double) { return 1; });

@@ -248,6 +248,25 @@ TEST(SamplingMap, GazeBehindTheEye) {
   }
 }
 
+TEST(SamplingMap, BordersBelongToTheInnerRegion) {
+  // Angles of zero, the gaze on a pixel's centre: that pixel's distance is 0 exactly.
+  const PlanarView view = view_of_perspective(1.0, 41, 31);
+  FoveationSettings settings;
+  for (const RegionShape shape : {RegionShape::cone, RegionShape::disc}) {
+    settings.shape = shape;
+    settings.region_angles_deg = {0, 0};
+    const SamplingMap both = make_sampling_map(settings, view, view.direction(7.5, 20.5));
+    EXPECT_EQ(both.region(7, 20), 0);
+    EXPECT_EQ(both.regions[0].pixels, 1U);
+    EXPECT_EQ(both.regions[1].pixels, 0U);
+    EXPECT_EQ(both.regions[2].pixels, 41U * 31U - 1);
+  }
+  // The whole sphere: 180 degrees are inside.
+  settings.shape = RegionShape::cone;
+  settings.region_angles_deg = {0, 360};
+  EXPECT_EQ(make_sampling_map(settings, view, -view.direction(7.5, 20.5)).regions[1].pixels, 41U * 31U);
+}
+
 TEST(SamplingMap, EccentricityImageIsTheAngleAtThePixelCentre) {
   const PlanarView view = paper_view();
   const ImageGray image = eccentricity_image(view, view.direction(0, 0));
