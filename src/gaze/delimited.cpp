@@ -372,7 +372,7 @@ int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& tabl
       }
     }
   }
-  const auto exponent = guess_time_exponent(std::move(times));
+  const auto exponent = guess_time_exponent(times);
   if (!exponent) {
     throw Error(ErrorKind::input, place,
                 fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps",
@@ -546,8 +546,7 @@ GazeLog read_table(const GazeFile& file, const DelimitedTable& table, const Gaze
   }
   const int exponent =
       plan.time_exponent ? *plan.time_exponent : time_exponent_by_statistics(file, table, plan.time, log.warnings);
-  const std::size_t first_row = std::min(table.body.find('\n'), table.body.size()) + 1;
-  log.samples.reserve(table.body.size() / std::max<std::size_t>(first_row, 8) + 16);
+  log.samples.reserve(static_cast<std::size_t>(std::count(table.body.begin(), table.body.end(), '\n')) + 1);
   RowReader rows(file, table, plan, options, style, exponent);
   rows.read_all(log.samples);
   if (log.kind == GazeKind::screen) {

@@ -185,16 +185,18 @@ std::string time_unit_text(int exponent) {
   }
 }
 
-std::optional<int> guess_time_exponent(std::vector<double> raw_times) {
-  if (raw_times.size() < 2) {
+std::optional<int> guess_time_exponent(const std::vector<double>& raw_times) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < raw_times.size(); ++i) {
+    if (raw_times[i] != raw_times[i - 1]) {  // rows of the other eye
+      steps.push_back(std::abs(raw_times[i] - raw_times[i - 1]));
+    }
+  }
+  if (steps.empty()) {
     return std::nullopt;
   }
-  for (std::size_t i = 0; i + 1 < raw_times.size(); ++i) {
-    raw_times[i] = std::abs(raw_times[i + 1] - raw_times[i]);
-  }
-  raw_times.pop_back();
-  const auto middle = raw_times.begin() + static_cast<std::ptrdiff_t>(raw_times.size() / 2);
-  std::nth_element(raw_times.begin(), middle, raw_times.end());
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
   const double step = *middle;
   if (step >= 1e-3 && step <= 0.05) {
     return 9;

@@ -18,8 +18,8 @@ std::string_view to_string(PositionOrigin origin);
 std::optional<int> time_exponent_of(TimeUnit unit);
 std::string time_unit_text(int exponent);
 
-// From the median step between raw stamps; empty where the values fit no unit. Always a guess.
-std::optional<int> guess_time_exponent(std::vector<double> raw_times);
+// From the median step between raw stamps that differ; empty where the values fit no unit. Always a guess.
+std::optional<int> guess_time_exponent(const std::vector<double>& raw_times);
 
 // From the values of usable samples; `evidence` says what was seen. Always a guess.
 PositionUnit guess_position_unit(const std::vector<GazeSample>& samples, std::string& evidence);

@@ -179,6 +179,8 @@ TEST_F(GazeRead, UnitsFromStatisticsAreCalledGuesses) {
                                               c.unit));
     EXPECT_THAT(warnings(log)[1], HasSubstr("that the positions are in fraction; state it with --gaze-unit"));
   }
+  // Rows of two eyes: every other step is zero.
+  EXPECT_EQ(read("time,u,v,eye\n0,0,0,l\n0,0,0,r\n4,0,0,l\n4,0,0,r\n").samples[1].t_ns, 4'000'000);
   const GazeLog px = read(table(4, 1000), full_hd());
   EXPECT_THAT(warnings(px)[1],
               "log.csv:1: guessed from its values (x 200 to 690, y 500 to 500) that the positions are in "
