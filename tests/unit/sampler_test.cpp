@@ -197,8 +197,9 @@ TEST(Sampler, IntegratesSmoothFunctionsFarBetterThanRandomNumbers) {
   EXPECT_LT(squares / kPlaces, random_variance / 100);
 }
 
-// Two dimensions of one place's samples must not share their order: the product of both is then integrated as well as
-// by independent numbers (without the shuffles, 64 samples do no better than two or three).
+// Two dimensions of one place's samples must not share their order. The mean of a product of both has nearly the
+// variance of independent numbers: shuffling by Owen's scramble keeps samples 2k and 2k + 1 in opposite halves of each
+// dimension, which costs at most a factor of two. Without the shuffles it is tens of times larger.
 TEST(Sampler, PairsOfDimensionsAreShuffledApart) {
   constexpr std::uint32_t kSamples = 64;
   constexpr int kPlaces = 2000;
@@ -206,14 +207,17 @@ TEST(Sampler, PairsOfDimensionsAreShuffledApart) {
     double squares = 0;
     for (std::uint32_t place = 0; place < kPlaces; ++place) {
       const SampleKey key = make_sample_key(6, 0, place);
-      double sum = 0;
+      double first = 0;
+      double second = 0;
       for (std::uint32_t i = 0; i < kSamples; ++i) {
-        sum +=
-            (static_cast<double>(sample_1d(key, i, 0)) - 0.5) * (static_cast<double>(sample_2d(key, i, other).y) - 0.5);
+        const Vec2f p = sample_2d(key, i, 0);
+        const Vec2f q = sample_2d(key, i, other);
+        first += (static_cast<double>(p.x) - 0.5) * (static_cast<double>(q.x) - 0.5);
+        second += (static_cast<double>(p.y) - 0.5) * (static_cast<double>(q.y) - 0.5);
       }
-      squares += std::pow(sum / kSamples, 2);
+      squares += 0.5 * (std::pow(first / kSamples, 2) + std::pow(second / kSamples, 2));
     }
-    EXPECT_LT(squares / kPlaces, 1.2 / 144 / kSamples) << other;
+    EXPECT_LT(squares / kPlaces, 2.0 / 144 / kSamples) << other;
   }
 }
 
