@@ -43,15 +43,20 @@ template <DiffuseModel kDiffuse>
 class Bsdf {
  public:
   Bsdf(const Surface& surface, const Vec3f& wo) noexcept
+      : Bsdf(surface, wo, table_row(surface), albedo_terms(table_row(surface), std::clamp(wo.z, 0.0F, 1.0F)),
+             albedo_average(table_row(surface))) {}
+
+  // In steps, for loops over many hits: table reads apart from arithmetic, which then runs in vectors. `terms` are
+  // those at wo.z, `e_average` the row's.
+  Bsdf(const Surface& surface, const Vec3f& wo, const AlbedoRow& row, const AlbedoTerms& terms,
+       float e_average) noexcept
       : wo_(wo),
-        row_(albedo_row(std::clamp(surface.roughness, 0.0F, 1.0F))),
+        row_(row),
         roughness_(surface.roughness),
         alpha_(alpha_of_roughness(surface.roughness)),
         f0_(Vec3f{kDielectricF0, kDielectricF0, kDielectricF0} * (1.0F - surface.metallic) +
             surface.base_color * surface.metallic),
         smith_o_(smith_length(wo.z, alpha_ * alpha_)) {
-    const AlbedoTerms terms = albedo_terms(row_, std::clamp(wo.z, 0.0F, 1.0F));
-    const float e_average = albedo_average(row_);
     const float lost_average = 1.0F - e_average;
     const float kept = e_average * repeated_share(lost_average);
     const auto repeated = [=](float f0) {
@@ -78,53 +83,64 @@ class Bsdf {
     specular_probability_ = sum > 0 ? specular / sum : 1.0F;
   }
 
-  [[nodiscard]] BsdfEval evaluate(const Vec3f& wi) const noexcept {
-    if (!(wo_.z > 0) || !(wi.z > 0)) {
-      return {};
-    }
-    const Vec3f half = wo_ + wi;
-    const float length2 = dot(half, half);
-    return evaluate_half(wi, half * (1.0F / std::sqrt(length2)));
+  static AlbedoRow table_row(const Surface& surface) noexcept {
+    return albedo_row(std::clamp(surface.roughness, 0.0F, 1.0F));
   }
 
-  [[nodiscard]] BsdfSample sample(const Vec2f& u, float u_lobe) const noexcept {
-    if (!(wo_.z > 0)) {
-      return {};
-    }
+  [[nodiscard]] BsdfEval evaluate(const Vec3f& wi) const noexcept {
+    return evaluate(wi, albedo_terms(row_, std::clamp(wi.z, 0.0F, 1.0F)));
+  }
+  [[nodiscard]] BsdfEval evaluate(const Vec3f& wi, const AlbedoTerms& terms) const noexcept {
+    const Vec3f half = wo_ + wi;
+    const BsdfEval above = evaluate_half(wi, half * (1.0F / std::sqrt(std::max(dot(half, half), 1e-20F))), terms);
+    const bool valid = (static_cast<int>(wo_.z > 0) & static_cast<int>(wi.z > 0)) != 0;
+    return {{valid ? above.f_cos.x : 0.0F, valid ? above.f_cos.y : 0.0F, valid ? above.f_cos.z : 0.0F},
+            valid ? above.pdf : 0.0F};
+  }
+
+  struct Direction {
+    Vec3f direction, half;
+  };
+  // Both lobes are sampled and one is taken: no branches.
+  [[nodiscard]] Direction sample_direction(const Vec2f& u, float u_lobe) const noexcept {
+    const bool specular = u_lobe < specular_probability_;
+    const Vec3f facet = sample_visible_normal(wo_, alpha_, u);
+    const Vec3f mirrored = reflect(wo_, facet);
+    const Vec3f diffuse = sample_cosine_hemisphere(u);
+    const Vec3f middle = wo_ + diffuse;
+    const float scale = 1.0F / std::sqrt(std::max(dot(middle, middle), 1e-20F));
+    const auto choose = [specular](const Vec3f& a, const Vec3f& b) {
+      return Vec3f{specular ? a.x : b.x, specular ? a.y : b.y, specular ? a.z : b.z};
+    };
+    return {choose(mirrored, diffuse), choose(facet, middle * scale)};
+  }
+  [[nodiscard]] BsdfSample weigh(const Direction& chosen, const AlbedoTerms& terms) const noexcept {
+    const BsdfEval eval = evaluate_half(chosen.direction, chosen.half, terms);
     BsdfSample result;
-    Vec3f half;
-    if (u_lobe < specular_probability_) {
-      half = sample_visible_normal(wo_, alpha_, u);
-      result.direction = reflect(wo_, half);
-    } else {
-      result.direction = sample_cosine_hemisphere(u);
-      half = normalize(wo_ + result.direction);
-    }
-    if (!(result.direction.z > 0)) {
-      return {};
-    }
-    const BsdfEval eval = evaluate_half(result.direction, half);
-    if (!(eval.pdf > 0)) {
-      return {};
-    }
+    result.direction = chosen.direction;
     result.pdf = eval.pdf;
     result.weight = eval.f_cos * (1.0F / eval.pdf);
-    result.valid = result.weight.x + result.weight.y + result.weight.z > 0;
+    result.valid =
+        (static_cast<int>(wo_.z > 0) & static_cast<int>(chosen.direction.z > 0) & static_cast<int>(eval.pdf > 0) &
+         static_cast<int>(result.weight.x + result.weight.y + result.weight.z > 0)) != 0;
     return result;
+  }
+  [[nodiscard]] BsdfSample sample(const Vec2f& u, float u_lobe) const noexcept {
+    const Direction chosen = sample_direction(u, u_lobe);
+    return weigh(chosen, albedo_terms(row_, std::clamp(chosen.direction.z, 0.0F, 1.0F)));
   }
 
  private:
   static constexpr float kInvPi = static_cast<float>(1 / kPi);
   static constexpr float luminance(const Vec3f& c) noexcept { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
 
-  [[nodiscard]] BsdfEval evaluate_half(const Vec3f& wi, const Vec3f& half) const noexcept {
+  [[nodiscard]] BsdfEval evaluate_half(const Vec3f& wi, const Vec3f& half, const AlbedoTerms& terms) const noexcept {
     const float distribution = ggx_distribution(half, alpha_);
     const float smith_i = smith_length(wi.z, alpha_ * alpha_);
     const float visible = 0.5F / (wo_.z * smith_i + wi.z * smith_o_);
     const float fresnel = schlick_weight(dot(wo_, half));
     const Vec3f reflectance = f0_ + (Vec3f{1, 1, 1} - f0_) * fresnel;
 
-    const AlbedoTerms terms = albedo_terms(row_, std::min(wi.z, 1.0F));
     float shape = terms.lambert;
     if constexpr (kDiffuse == DiffuseModel::burley) {
       const float t = roughness_ * (1.0F + dot(wo_, wi)) - 0.5F;

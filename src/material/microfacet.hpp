@@ -40,7 +40,7 @@ T smith_length(T cosine, T alpha2) noexcept {
 // Half-vector distributed as the visible normals of `wo` (Dupuy and Benyoub, "Sampling Visible GGX Normals with
 // Spherical Caps", 2023, listing 3): a point on the cap of reflected directions in the stretched, unit-roughness space.
 template <class T>
-Vec3<T> sample_visible_normal(const Vec3<T>& wo, T alpha, const Vec2<T>& u) noexcept {
+[[gnu::always_inline]] inline Vec3<T> sample_visible_normal(const Vec3<T>& wo, T alpha, const Vec2<T>& u) noexcept {
   const Vec3<T> stretched = normalize(Vec3<T>{wo.x * alpha, wo.y * alpha, wo.z});
   // The half-vector's z is the sum (1 - u.y) (1 + stretched.z): never zero, and exact where the cap's own z is near -1.
   const T rise = (T(1) - u.y) * (T(1) + stretched.z);

@@ -76,6 +76,20 @@ struct ChunkHits {
   ChunkArray<float> metallic, roughness;
   ChunkVec3 texel_normal;  // -1..1, scaled
   ChunkArray<float> has_normal;
+
+  // The scattering event; directions in the local frame about `shading` until they leave it.
+  ChunkVec3 view;
+  ChunkVec3 light;  // direction of the light sample, world, then local
+  ChunkArray<float> table_fraction, e_average;
+  ChunkArray<std::int32_t> table_row;
+  std::array<ChunkArray<float>, 4> view_terms, light_terms, next_terms;  // AlbedoTerms e, b, lambert, burley
+  ChunkVec3 half;
+  ChunkVec3 light_f_cos;
+  ChunkArray<float> light_pdf;  // of the BSDF, towards the light
+  ChunkVec2 random;
+  ChunkArray<float> random_lobe;
+  ChunkVec3 next, next_weight;  // the BSDF sample
+  ChunkArray<float> next_pdf, next_good;
 };
 
 }  // namespace gazetrace

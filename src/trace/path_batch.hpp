@@ -45,7 +45,7 @@ struct ShadowBatch {
   BatchArray<float> r, g, b;  // what arrives if nothing is in the way
 };
 
-// One a thread, about 0.7 MiB.
+// One a thread, about 0.4 MiB.
 struct Workspace {
   SampleBatch samples;
   RadianceBatch radiance;

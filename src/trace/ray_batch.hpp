@@ -8,12 +8,13 @@
 namespace gazetrace {
 
 // Paths that travel together. All arrays of a batch (about 160 bytes a path with its shadow ray) stay in a 1 MiB L2.
-inline constexpr int kBatchSize = 2048;
+inline constexpr int kBatchSize = 1024;
 inline constexpr std::uint32_t kNoId = 0xffffffffU;
 
+// Sixteen entries longer than needed: arrays whose distance is a power of two would compete for the same cache sets.
 template <class T>
 struct alignas(64) BatchArray {
-  T data[kBatchSize];
+  T data[kBatchSize + 16];
   T& operator[](std::size_t i) { return data[i]; }
   const T& operator[](std::size_t i) const { return data[i]; }
 };

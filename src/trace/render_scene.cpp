@@ -241,7 +241,7 @@ bool RenderScene::transparent(std::uint32_t tag, std::uint32_t primitive, float 
     const float s = w * triangle.uv[0].x + u * triangle.uv[1].x + v * triangle.uv[2].x;
     const float t = w * triangle.uv[0].y + u * triangle.uv[1].y + v * triangle.uv[2].y;
     // Level 0 always: averaged coverage under a threshold would thin out or thicken foliage with distance.
-    alpha *= read_texture(*material.base.texture, s, t, 0.0F).w;
+    alpha *= read_alpha(*material.base.texture, s, t);
   }
   if (triangle.extra != kNoId) {
     const auto& color = extras[triangle.extra].color;

@@ -96,11 +96,15 @@ void gather_triangles(const RenderScene& scene, ChunkHits& chunk, std::size_t co
   for (std::size_t c = 0; c < 3; ++c) {
     std::fill(normal_code[c].data + count, normal_code[c].data + padded, 0U);
     std::fill(tangent_code[c].data + count, tangent_code[c].data + padded, 0U);
-    for_lanes(count, [&](std::size_t i) {
-      chunk.corner_normal[c].set(i, fast_normalize(decode_octahedral(normal_code[c][i])));
-    });
+    for_lanes(
+        count, [&](std::size_t i) __attribute__((always_inline)) {
+          chunk.corner_normal[c].set(i, fast_normalize(decode_octahedral(normal_code[c][i])));
+        });
     if constexpr (kFeatures.textures) {
-      for_lanes(count, [&](std::size_t i) { chunk.corner_tangent[c].set(i, decode_octahedral(tangent_code[c][i])); });
+      for_lanes(
+          count, [&](std::size_t i) __attribute__((always_inline)) {
+            chunk.corner_tangent[c].set(i, decode_octahedral(tangent_code[c][i]));
+          });
     }
   }
   if constexpr (kFeatures.instances) {
@@ -133,51 +137,53 @@ void gather_triangles(const RenderScene& scene, ChunkHits& chunk, std::size_t co
 // Position, normals, coordinates and texture level of every lane.
 template <KernelFeatures kFeatures>
 void place_hits(ChunkHits& chunk, std::size_t count) {
-  for_lanes(count, [&](std::size_t i) {
-    const float u = chunk.u[i];
-    const float v = chunk.v[i];
-    const float w = 1.0F - u - v;
-    const Vec3f p0 = chunk.corner[0].get(i);
-    const Vec3f p1 = chunk.corner[1].get(i);
-    const Vec3f p2 = chunk.corner[2].get(i);
-    const Vec3f position = p0 * w + p1 * u + p2 * v;
-    const float reach = std::max(std::max(largest(p0), largest(p1)), std::max(largest(p2), chunk.instance_reach[i]));
-    // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
-    const Vec3f e1 = p1 - p0;
-    const Vec3f e2 = p2 - p0;
-    const float edge = chunk.winding[i] / std::max(std::max(largest(e1), largest(e2)), 1e-30F);
-    const Vec3f face = cross(e1 * edge, e2 * std::fabs(edge));
-    const float face2 = dot(face, face);
-    const Vec3f flat = face * (1.0F / std::sqrt(std::max(face2, 1e-30F)));
-    const Vec3f smooth = interpolate(chunk.corner_normal, i, w, u, v);
-    const float smooth2 = dot(smooth, smooth);
-    const bool has_smooth = smooth2 > 1e-12F;
-    const float scale = 1.0F / std::sqrt(has_smooth ? smooth2 : 1.0F);
-    const Vec3f direction = chunk.direction.get(i);
-    const float cosine = dot(flat, direction);
-    const float side = cosine < 0 ? 1.0F : -1.0F;
-    const Vec3f geometric = flat * side;
-    const float offset = reach * kOffsetUlps;
-    chunk.good[i] = face2 > 1e-30F ? 1.0F : 0.0F;
-    chunk.side[i] = side;
-    chunk.offset[i] = offset;
-    chunk.position.set(i, position);
-    chunk.geometric.set(i, geometric);
-    chunk.origin.set(i, position + geometric * offset);
-    chunk.shading.set(i, {has_smooth ? smooth.x * scale : flat.x, has_smooth ? smooth.y * scale : flat.y,
-                          has_smooth ? smooth.z * scale : flat.z});
-    const float width = chunk.cone_width[i] + chunk.cone_spread[i] * chunk.t[i];
-    chunk.cone_width[i] = width;
-    if constexpr (kFeatures.textures) {
-      const float slant = std::max(std::fabs(cosine), 0.05F);
-      chunk.lod[i] += rough_log2(std::max(width, 1e-30F) / slant);
-      const Vec2f a = chunk.corner_uv[0].get(i);
-      const Vec2f b = chunk.corner_uv[1].get(i);
-      const Vec2f c = chunk.corner_uv[2].get(i);
-      chunk.uv.set(i, {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y});
-      chunk.tangent.set(i, interpolate(chunk.corner_tangent, i, w, u, v));
-    }
-  });
+  for_lanes(
+      count, [&](std::size_t i) __attribute__((always_inline)) {
+        const float u = chunk.u[i];
+        const float v = chunk.v[i];
+        const float w = 1.0F - u - v;
+        const Vec3f p0 = chunk.corner[0].get(i);
+        const Vec3f p1 = chunk.corner[1].get(i);
+        const Vec3f p2 = chunk.corner[2].get(i);
+        const Vec3f position = p0 * w + p1 * u + p2 * v;
+        const float reach =
+            std::max(std::max(largest(p0), largest(p1)), std::max(largest(p2), chunk.instance_reach[i]));
+        // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
+        const Vec3f e1 = p1 - p0;
+        const Vec3f e2 = p2 - p0;
+        const float edge = chunk.winding[i] / std::max(std::max(largest(e1), largest(e2)), 1e-30F);
+        const Vec3f face = cross(e1 * edge, e2 * std::fabs(edge));
+        const float face2 = dot(face, face);
+        const Vec3f flat = face * (1.0F / std::sqrt(std::max(face2, 1e-30F)));
+        const Vec3f smooth = interpolate(chunk.corner_normal, i, w, u, v);
+        const float smooth2 = dot(smooth, smooth);
+        const bool has_smooth = smooth2 > 1e-12F;
+        const float scale = 1.0F / std::sqrt(has_smooth ? smooth2 : 1.0F);
+        const Vec3f direction = chunk.direction.get(i);
+        const float cosine = dot(flat, direction);
+        const float side = cosine < 0 ? 1.0F : -1.0F;
+        const Vec3f geometric = flat * side;
+        const float offset = reach * kOffsetUlps;
+        chunk.good[i] = face2 > 1e-30F ? 1.0F : 0.0F;
+        chunk.side[i] = side;
+        chunk.offset[i] = offset;
+        chunk.position.set(i, position);
+        chunk.geometric.set(i, geometric);
+        chunk.origin.set(i, position + geometric * offset);
+        chunk.shading.set(i, {has_smooth ? smooth.x * scale : flat.x, has_smooth ? smooth.y * scale : flat.y,
+                              has_smooth ? smooth.z * scale : flat.z});
+        const float width = chunk.cone_width[i] + chunk.cone_spread[i] * chunk.t[i];
+        chunk.cone_width[i] = width;
+        if constexpr (kFeatures.textures) {
+          const float slant = std::max(std::fabs(cosine), 0.05F);
+          chunk.lod[i] += rough_log2(std::max(width, 1e-30F) / slant);
+          const Vec2f a = chunk.corner_uv[0].get(i);
+          const Vec2f b = chunk.corner_uv[1].get(i);
+          const Vec2f c = chunk.corner_uv[2].get(i);
+          chunk.uv.set(i, {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y});
+          chunk.tangent.set(i, interpolate(chunk.corner_tangent, i, w, u, v));
+        }
+      });
 }
 
 // Material values, textures included.
@@ -225,25 +231,26 @@ void read_materials(const RenderScene& scene, ChunkHits& chunk, std::size_t coun
 // Bumps the normal, turns it to the ray's side and keeps its mirror direction above the surface.
 template <KernelFeatures kFeatures>
 void finish_normals(ChunkHits& chunk, std::size_t count) {
-  for_lanes(count, [&](std::size_t i) {
-    Vec3f shading = chunk.shading.get(i);
-    if constexpr (kFeatures.textures) {
-      const Vec3f tangent = chunk.tangent.get(i);
-      const Vec3f across = tangent - shading * dot(tangent, shading);
-      const float across2 = dot(across, across);
-      const Vec3f t = across * (1.0F / std::sqrt(std::max(across2, 1e-20F)));
-      const Vec3f b = cross(shading, t) * chunk.bitangent_sign[i];
-      const Vec3f texel = chunk.texel_normal.get(i);
-      const Vec3f bumped = t * texel.x + b * texel.y + shading * texel.z;
-      const float bumped2 = dot(bumped, bumped);
-      const float scale = 1.0F / std::sqrt(std::max(bumped2, 1e-20F));
-      const bool take = (static_cast<int>(chunk.has_normal[i] != 0) & static_cast<int>(across2 > 1e-20F) &
-                         static_cast<int>(bumped2 > 1e-12F)) != 0;
-      shading = {take ? bumped.x * scale : shading.x, take ? bumped.y * scale : shading.y,
-                 take ? bumped.z * scale : shading.z};
-    }
-    chunk.shading.set(i, bend_normal(shading * chunk.side[i], chunk.geometric.get(i), -chunk.direction.get(i)));
-  });
+  for_lanes(
+      count, [&](std::size_t i) __attribute__((always_inline)) {
+        Vec3f shading = chunk.shading.get(i);
+        if constexpr (kFeatures.textures) {
+          const Vec3f tangent = chunk.tangent.get(i);
+          const Vec3f across = tangent - shading * dot(tangent, shading);
+          const float across2 = dot(across, across);
+          const Vec3f t = across * (1.0F / std::sqrt(std::max(across2, 1e-20F)));
+          const Vec3f b = cross(shading, t) * chunk.bitangent_sign[i];
+          const Vec3f texel = chunk.texel_normal.get(i);
+          const Vec3f bumped = t * texel.x + b * texel.y + shading * texel.z;
+          const float bumped2 = dot(bumped, bumped);
+          const float scale = 1.0F / std::sqrt(std::max(bumped2, 1e-20F));
+          const bool take = (static_cast<int>(chunk.has_normal[i] != 0) & static_cast<int>(across2 > 1e-20F) &
+                             static_cast<int>(bumped2 > 1e-12F)) != 0;
+          shading = {take ? bumped.x * scale : shading.x, take ? bumped.y * scale : shading.y,
+                     take ? bumped.z * scale : shading.z};
+        }
+        chunk.shading.set(i, bend_normal(shading * chunk.side[i], chunk.geometric.get(i), -chunk.direction.get(i)));
+      });
 }
 
 }  // namespace gazetrace

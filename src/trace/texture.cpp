@@ -131,6 +131,25 @@ Vec4f read_texture(const Texture& texture, float u, float v, float level) {
   return {blend(a.x, b.x, c.x, d.x), blend(a.y, b.y, c.y, d.y), blend(a.z, b.z, c.z, d.z), blend(a.w, b.w, c.w, d.w)};
 }
 
+float read_alpha(const Texture& texture, float u, float v) {
+  const Texture::Level& image = texture.levels[0];
+  const Axis x = locate(u, image.width_px, texture.wrap_u, texture.nearest);
+  const Axis y = locate(v, image.height_px, texture.wrap_v, texture.nearest);
+  const auto texel = [&](int column, int row) {
+    const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width_px) +
+                          static_cast<std::size_t>(column);
+    return static_cast<float>(image.rgba[4 * i + 3]);
+  };
+  const float a = texel(x.low, y.low);
+  if (texture.nearest) {
+    return a * (1.0F / 255.0F);
+  }
+  const float top = a + x.fraction * (texel(x.high, y.low) - a);
+  const float c = texel(x.low, y.high);
+  const float bottom = c + x.fraction * (texel(x.high, y.high) - c);
+  return (top + y.fraction * (bottom - top)) * (1.0F / 255.0F);
+}
+
 const TextureRef* shared_coordinates(const Material& material) {
   for (const TextureRef* ref : {&material.base_color_texture, &material.metallic_roughness_texture,
                                 &material.normal_texture, &material.emissive_texture}) {

@@ -75,5 +75,6 @@ std::vector<ShadingMaterial> make_materials(const Scene& scene, TexelStore& stor
 
 // Channels 0..1; RGB of sRGB textures are linearised per texel, before interpolation.
 Vec4f read_texture(const Texture& texture, float u, float v, float level);
+float read_alpha(const Texture& texture, float u, float v);  // of level 0
 
 }  // namespace gazetrace
