@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # One frame twice: uniform at 32 samples a pixel, and foveated as in the source paper with the map of where its samples
-# went. Writes EXR and PNG to out/compare/ and prints what was saved. FRAME=n chooses the frame (1-48).
+# went. Writes EXR and PNG to out/compare/ and prints what was saved. FRAME=n chooses the frame, SIZE=WxH its size.
 set -euo pipefail
 source "$(dirname "$0")/find_gazetrace.sh"
-frame=${FRAME:-30}
-common=(render --config examples/example.toml --frames "$frame" --overwrite --quiet)
+frame=${FRAME:-8}
+common=(render --config examples/example.toml --frames "$frame" --size "${SIZE:-640x360}" --overwrite --quiet)
 
 mkdir -p out/compare/uniform out/compare/foveated
 "$gazetrace" "${common[@]}" --falloff uniform --spp 32 \

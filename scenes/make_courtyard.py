@@ -50,7 +50,7 @@ def make_materials(out):
         "earth": out.material("earth", base=(0.30, 0.21, 0.14), roughness=1.0),
         "hills": out.material("hills", base=(0.13, 0.135, 0.11), roughness=1.0),
         "water": out.material(
-            "water", base=(0.008, 0.030, 0.034), roughness=0.06,
+            "water", base=(0.008, 0.030, 0.034), roughness=0.2,
             normalTexture=out.texture_info(texture["ripples_normal"], (1.4, 1.4), scale=0.25),
         ),
         "brass": out.material("brass", base=(0.90, 0.66, 0.30), roughness=0.16, metallic=1.0),
