@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -20,7 +21,7 @@ class TextFiles {
     for (char& c : name) {
       c = c == '/' ? '_' : c;
     }
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("gazetrace-" + name);
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("gazetrace-" + name + "." + std::to_string(getpid()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }
