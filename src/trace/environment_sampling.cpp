@@ -149,8 +149,8 @@ EnvironmentSampler::Choice EnvironmentSampler::invert(const float* cumulative, c
   return {i, (u - low) / (cumulative[i] - low)};
 }
 
-EnvironmentSampler::Place EnvironmentSampler::place_of(const Vec3f& d) const noexcept {
-  float u = 0.5F + atan2_turns(d.x, -d.z) - rotation_turns_;
+inline EnvironmentSampler::Place EnvironmentSampler::place_of(const Vec3f& d, float rotation_turns) noexcept {
+  float u = 0.5F + atan2_turns(d.x, -d.z) - rotation_turns;
   u -= std::floor(u);
   return {std::min(u, 0x1.fffffep-1F), 2.0F * atan2_turns(std::sqrt(d.x * d.x + d.z * d.z), d.y)};
 }
@@ -172,25 +172,31 @@ Vec3f EnvironmentSampler::lookup(const Place& at) const noexcept {
   return (p(x0, y0) * (1 - fx) + p(x1, y0) * fx) * (1 - fy) + (p(x0, y1) * (1 - fx) + p(x1, y1) * fx) * fy;
 }
 
-EnvironmentSampler::Direction EnvironmentSampler::direction_of(const Choice& row, const Choice& column) const noexcept {
+EnvironmentSampler::CellPoint EnvironmentSampler::point_in_cell(const Choice& row,
+                                                                const Choice& column) const noexcept {
   // In double: near the poles a float cosine cannot tell directions apart.
   const double upper = row_edges_[row.index];
   const double cosine = upper + (row_edges_[row.index + 1] - upper) * static_cast<double>(row.fraction);
-  const auto y = static_cast<float>(cosine);
-  const float sine = std::sqrt(std::max(static_cast<float>((1 - cosine) * (1 + cosine)), 0.0F));
   const float left = column_edges_[column.index];
-  const float place_u = left + (column_edges_[column.index + 1] - left) * column.fraction;
-  float azimuth = place_u + 0.5F + rotation_turns_;  // 0.5 + 1 turns less
+  return {static_cast<float>(cosine), static_cast<float>((1 - cosine) * (1 + cosine)),
+          left + (column_edges_[column.index + 1] - left) * column.fraction};
+}
+
+inline EnvironmentSampler::Direction EnvironmentSampler::direction_of(const CellPoint& point,
+                                                                      float rotation_turns) noexcept {
+  const float sine = std::sqrt(std::max(point.sine_squared, 0.0F));
+  float azimuth = point.u + 0.5F + rotation_turns;  // 0.5 + 1 turns less
   azimuth -= std::floor(azimuth);
   const Vec2f circle = cos_sin_2pi(azimuth);
-  return {{sine * circle.y, y, -sine * circle.x}, {std::min(place_u, 0x1.fffffep-1F), 2.0F * atan2_turns(sine, y)}};
+  return {{sine * circle.y, point.cosine, -sine * circle.x},
+          {std::min(point.u, 0x1.fffffep-1F), 2.0F * atan2_turns(sine, point.cosine)}};
 }
 
 EnvironmentSampler::Sample EnvironmentSampler::sample(const Vec2f& u) const noexcept {
   const Choice row = invert(row_cumulative_.data(), row_guide_.data(), rows_, u.y);
   const std::size_t first = static_cast<std::size_t>(row.index) * columns_;
   const Choice column = invert(cell_cumulative_.data() + first, cell_guide_.data() + first, columns_, u.x);
-  const Direction chosen = direction_of(row, column);
+  const Direction chosen = direction_of(point_in_cell(row, column), rotation_turns_);
   return {chosen.direction, lookup(chosen.place), cell_pdf_[first + column.index]};
 }
 
@@ -214,23 +220,30 @@ void EnvironmentSampler::prefetch(const Place& at) const noexcept {
   __builtin_prefetch(&picture_->pixels[pixel + row < picture_->pixels.size() ? pixel + row : pixel]);
 }
 
-void EnvironmentSampler::sample_many(const Vec2f* u, std::size_t count, Sample* out) const noexcept {
+[[gnu::flatten]] void EnvironmentSampler::sample_many(const Vec2f* u, std::size_t count, Sample* out) const noexcept {
   constexpr std::size_t kStage = 32;
+  alignas(64) std::array<float, kStage> cosine{};
+  alignas(64) std::array<float, kStage> sine_squared{};
+  alignas(64) std::array<float, kStage> place_u{};
+  alignas(64) std::array<float, kStage> x;
+  alignas(64) std::array<float, kStage> z;
+  alignas(64) std::array<float, kStage> place_v;
+  std::array<Choice, kStage> row;
+  std::array<std::size_t, kStage> cell;
+  const float rotation = rotation_turns_;
+  const auto guide_at = [&](float c) {
+    return std::min(static_cast<std::uint32_t>(c * static_cast<float>(columns_)), columns_ - 1);
+  };
   for (std::size_t begin = 0; begin < count; begin += kStage) {
     const std::size_t n = std::min(kStage, count - begin);
-    std::array<Choice, kStage> row;
-    std::array<Place, kStage> place;
-    std::array<std::size_t, kStage> cell;
     for (std::size_t i = 0; i < n; ++i) {
       row[i] = invert(row_cumulative_.data(), row_guide_.data(), rows_, u[begin + i].y);
       const std::size_t first = static_cast<std::size_t>(row[i].index) * columns_;
-      const auto at = static_cast<std::size_t>(u[begin + i].x * static_cast<float>(columns_));
-      __builtin_prefetch(&cell_guide_[first + std::min<std::size_t>(at, columns_ - 1)]);
+      __builtin_prefetch(&cell_guide_[first + guide_at(u[begin + i].x)]);
     }
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t first = static_cast<std::size_t>(row[i].index) * columns_;
-      const auto at = static_cast<std::size_t>(u[begin + i].x * static_cast<float>(columns_));
-      __builtin_prefetch(&cell_cumulative_[first + cell_guide_[first + std::min<std::size_t>(at, columns_ - 1)]]);
+      __builtin_prefetch(&cell_cumulative_[first + cell_guide_[first + guide_at(u[begin + i].x)]]);
     }
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t first = static_cast<std::size_t>(row[i].index) * columns_;
@@ -238,34 +251,58 @@ void EnvironmentSampler::sample_many(const Vec2f* u, std::size_t count, Sample* 
           invert(cell_cumulative_.data() + first, cell_guide_.data() + first, columns_, u[begin + i].x);
       cell[i] = first + column.index;
       __builtin_prefetch(&cell_pdf_[cell[i]]);
-      const Direction chosen = direction_of(row[i], column);
-      out[begin + i].direction = chosen.direction;
-      place[i] = chosen.place;
-      prefetch(chosen.place);
+      const CellPoint point = point_in_cell(row[i], column);
+      cosine[i] = point.cosine;
+      sine_squared[i] = point.sine_squared;
+      place_u[i] = point.u;
+    }
+    for (std::size_t i = 0; i < kStage; ++i) {
+      const Direction chosen = direction_of({cosine[i], sine_squared[i], place_u[i]}, rotation);
+      x[i] = chosen.direction.x;
+      z[i] = chosen.direction.z;
+      place_u[i] = chosen.place.u;
+      place_v[i] = chosen.place.v;
     }
     for (std::size_t i = 0; i < n; ++i) {
-      out[begin + i].radiance = lookup(place[i]);
-      out[begin + i].pdf = cell_pdf_[cell[i]];
+      prefetch({place_u[i], place_v[i]});
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      out[begin + i] = {{x[i], cosine[i], z[i]}, lookup({place_u[i], place_v[i]}), cell_pdf_[cell[i]]};
     }
   }
 }
 
-void EnvironmentSampler::value_many(const Vec3f* directions, std::size_t count, Value* out) const noexcept {
+[[gnu::flatten]] void EnvironmentSampler::value_many(const Vec3f* directions, std::size_t count,
+                                                     Value* out) const noexcept {
   constexpr std::size_t kStage = 32;
+  if (picture_ == nullptr) {
+    std::fill_n(out, count, Value{});
+    return;
+  }
+  alignas(64) std::array<float, kStage> x{};
+  alignas(64) std::array<float, kStage> y{};
+  alignas(64) std::array<float, kStage> z{};
+  alignas(64) std::array<float, kStage> place_u;
+  alignas(64) std::array<float, kStage> place_v;
+  const float rotation = rotation_turns_;
   for (std::size_t begin = 0; begin < count; begin += kStage) {
     const std::size_t n = std::min(kStage, count - begin);
-    if (picture_ == nullptr) {
-      std::fill_n(out + begin, n, Value{});
-      continue;
-    }
-    std::array<Place, kStage> place;
     for (std::size_t i = 0; i < n; ++i) {
-      place[i] = place_of(directions[begin + i]);
-      prefetch(place[i]);
-      __builtin_prefetch(&cell_pdf_[cell_at(place[i])]);
+      x[i] = directions[begin + i].x;
+      y[i] = directions[begin + i].y;
+      z[i] = directions[begin + i].z;
+    }
+    for (std::size_t i = 0; i < kStage; ++i) {
+      const Place at = place_of({x[i], y[i], z[i]}, rotation);
+      place_u[i] = at.u;
+      place_v[i] = at.v;
     }
     for (std::size_t i = 0; i < n; ++i) {
-      out[begin + i] = {lookup(place[i]), cell_pdf(place[i])};
+      prefetch({place_u[i], place_v[i]});
+      __builtin_prefetch(&cell_pdf_[cell_at({place_u[i], place_v[i]})]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      out[begin + i] = {lookup({place_u[i], place_v[i]}), cell_pdf({place_u[i], place_v[i]})};
     }
   }
 }
@@ -274,16 +311,16 @@ EnvironmentSampler::Value EnvironmentSampler::value(const Vec3f& direction) cons
   if (picture_ == nullptr) {
     return {};
   }
-  const Place at = place_of(direction);
+  const Place at = place_of(direction, rotation_turns_);
   return {lookup(at), cell_pdf(at)};
 }
 
 Vec3f EnvironmentSampler::radiance(const Vec3f& direction) const noexcept {
-  return picture_ == nullptr ? Vec3f{} : lookup(place_of(direction));
+  return picture_ == nullptr ? Vec3f{} : lookup(place_of(direction, rotation_turns_));
 }
 
 float EnvironmentSampler::pdf(const Vec3f& direction) const noexcept {
-  return picture_ == nullptr ? 0.0F : cell_pdf(place_of(direction));
+  return picture_ == nullptr ? 0.0F : cell_pdf(place_of(direction, rotation_turns_));
 }
 
 }  // namespace gazetrace

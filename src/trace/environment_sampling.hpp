@@ -51,7 +51,7 @@ class EnvironmentSampler {
     std::uint32_t index;
     float fraction;  // of the way through the chosen interval
   };
-  [[nodiscard]] Place place_of(const Vec3f& direction) const noexcept;
+  [[nodiscard]] static Place place_of(const Vec3f& direction, float rotation_turns) noexcept;
   [[nodiscard]] Vec3f lookup(const Place& at) const noexcept;
   [[nodiscard]] float cell_pdf(const Place& at) const noexcept;
   [[nodiscard]] std::size_t cell_at(const Place& at) const noexcept;
@@ -60,7 +60,11 @@ class EnvironmentSampler {
     Vec3f direction;  // world
     Place place;
   };
-  [[nodiscard]] Direction direction_of(const Choice& row, const Choice& column) const noexcept;
+  struct CellPoint {
+    float cosine, sine_squared, u;  // of the polar angle; place in the picture
+  };
+  [[nodiscard]] CellPoint point_in_cell(const Choice& row, const Choice& column) const noexcept;
+  [[nodiscard]] static Direction direction_of(const CellPoint& point, float rotation_turns) noexcept;
   static Choice invert(const float* cumulative, const std::uint16_t* guide, std::uint32_t count, float u) noexcept;
 
   const ImageRgb* picture_ = nullptr;
