@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gazetrace/color.hpp"
@@ -23,29 +25,52 @@ struct PipelineSettings {
   std::string filter = "linear";
   AccumulateSettings accumulate;
   ExposureSettings exposure;
-  OutputSettings output;
+  OutputSettings output;  // without any pattern nothing is written, timing and run record included
   FrameRate fps;
   std::string settings_digest;
   int threads = 0;
+  // The plan is a part of a longer sequence: timing.csv and run.json carry the frame range in their names.
+  bool is_part = false;
 };
 
-// Called from the rendering thread.
+// Called from the rendering thread. Any of them may be empty.
 struct PipelineObserver {
   std::function<void(const FrameRequest&)> frame_begins;
+  // The dense linear frame after accumulation and its exposure in stops, before anything is written.
+  std::function<void(const FrameRequest&, const Frame&, double exposure_ev)> frame_ready;
   std::function<void(const TimingRow&, bool skipped)> frame_done;
 };
 
 struct SequenceResult {
-  std::vector<TimingRow> rows;  // of this run, skipped frames left out
-  std::vector<std::int32_t> skipped;
+  std::vector<TimingRow> rows;        // of this run, skipped frames left out
+  std::vector<std::int32_t> skipped;  // complete before this run began
   std::vector<BadSample> bad_samples;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
   Warnings warnings;
 };
 
 // Renders the frames of a plan in order. With OutputSettings::resume, frames whose files carry this settings digest are
-// skipped, unless history (accumulation, exposure smoothing) needs them rendered again.
+// skipped; where history (accumulation, exposure smoothing) needs them they are rendered again, but not written.
+// timing.csv grows by a row with each finished frame, so that a killed run keeps what it measured.
 SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer);
+
+// A frame depends on those before it.
+bool uses_history(const PipelineSettings& settings);
+
+// Every file that rendering these frames would write, in order; run record and timing come first.
+std::vector<std::string> output_files(const OutputSettings& output, const std::vector<std::int32_t>& frames,
+                                      bool is_part);
+
+// The scene file and every buffer and image it names, in the order of the file; Error(input) when the file is missing.
+std::vector<std::string> scene_files(const std::string& path);
+// Content hash of each file. Error(input) for one that cannot be read.
+std::map<std::string, std::string> digest_files(const std::vector<std::string>& paths, int threads = 0);
+// One digest for everything that reaches into pixels: (name, value) pairs in a fixed order.
+std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings);
+
+double peak_memory_mib();         // of this process so far
+std::string build_description();  // compiler and build type
+std::string instruction_set();    // what the library was compiled for
 
 }  // namespace gazetrace

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// map -> trace -> reconstruct -> accumulate -> exposure -> colour -> files, frame by frame. Only the history and the
+// timing log outlive a frame.
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/stopwatch.hpp"
+#include "gazetrace/pipeline.hpp"
+#include "gazetrace/version.hpp"
+#include "pipeline/resume.hpp"
+#include "pipeline/timing_log.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Adds the wall time of a stage to `ms` and passes its result through.
+template <class Stage>
+auto timed(double& ms, Stage&& stage) {
+  const Stopwatch watch;
+  auto result = stage();
+  ms += watch.elapsed_ms();
+  return result;
+}
+
+struct RenderedFrame {
+  SamplingMap map;
+  Frame frame;
+  double exposure_ev = 0;
+};
+
+void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row) {
+  row.samples = stats.samples;
+  row.rays_primary = stats.rays_primary;
+  row.rays_bounce = stats.rays_bounce;
+  row.rays_shadow = stats.rays_shadow;
+  row.rejected_rays = stats.rejected_rays;
+  row.non_finite_samples = stats.non_finite_samples;
+  for (std::size_t i = 0; i < std::min(map.regions.size(), row.region_pixels.size()); ++i) {
+    row.region_pixels[i] = map.regions[i].pixels;
+  }
+  for (std::size_t i = 0; i < std::min(stats.regions.size(), row.region_samples.size()); ++i) {
+    row.region_samples[i] = stats.regions[i].samples;
+    row.region_cpu_ms[i] = static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
+    row.trace_cpu_ms += row.region_cpu_ms[i];
+  }
+}
+
+RenderedFrame render_frame(const PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
+                           TemporalHistory& history, TimingRow& row, SequenceResult& result) {
+  RenderedFrame rendered;
+  rendered.map = timed(
+      row.plan_ms, [&] { return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render); });
+  const SparseFrame sparse =
+      timed(row.trace_ms, [&] { return tracer.trace(request.camera, request.frame, rendered.map, settings.trace); });
+  Frame dense =
+      timed(row.reconstruct_ms, [&] { return reconstruct(sparse, rendered.map, settings.filter, settings.threads); });
+  rendered.frame =
+      timed(row.temporal_ms, [&] { return accumulate(std::move(dense), request, settings.accumulate, history); });
+  rendered.exposure_ev = timed(row.exposure_ms, [&] {
+    return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
+  });
+  row.exposure_ev = rendered.exposure_ev;
+  count_trace(sparse.stats, rendered.map, row);
+  result.bad_samples.insert(result.bad_samples.end(), sparse.stats.bad_samples.begin(), sparse.stats.bad_samples.end());
+  return rendered;
+}
+
+FrameHeader header_of(const FrameRequest& request, const PipelineSettings& settings, double exposure_ev) {
+  FrameHeader header;
+  header.frame = request.frame;
+  header.t_video_ns = request.t_video_ns;
+  header.fps = settings.fps;
+  header.camera = request.camera;
+  header.gaze_render = request.gaze_render;
+  header.gaze_true = request.gaze_true;
+  header.exposure_ev = exposure_ev;
+  header.seed = settings.trace.seed;
+  header.settings_digest = settings.settings_digest;
+  header.software = std::string("gazetrace ") + kVersion;
+  return header;
+}
+
+// The map first and the linear picture last: the file that says a frame is there comes when everything else is.
+void write_files(const FrameRequest& request, const RenderedFrame& rendered, const ColorPipeline& color,
+                 const PipelineSettings& settings, TimingRow& row, SequenceResult& result) {
+  const OutputSettings& output = settings.output;
+  const FrameHeader header = header_of(request, settings, rendered.exposure_ev);
+  const auto& aovs = output.exr.aovs;
+  const bool wants_eccentricity =
+      !output.map_pattern.empty() || std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end();
+  std::optional<ImageGray> eccentricity;
+  const Stopwatch map_watch;
+  if (wants_eccentricity && request.gaze_direction_true) {
+    eccentricity = eccentricity_image(request.view, *request.gaze_direction_true);
+  }
+  const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;
+  if (!output.map_pattern.empty()) {
+    write_sampling_map_exr(frame_file_name(output.map_pattern, request.frame), rendered.map, eccentricity_deg);
+  }
+  row.write_ms += map_watch.elapsed_ms();
+  if (!output.display.pattern.empty()) {
+    std::uint64_t clamped = 0;
+    const DisplayImage image = timed(row.color_ms, [&] {
+      return color.apply(rendered.frame.radiance, rendered.exposure_ev, display_image_bits(output.display),
+                         settings.threads, &clamped);
+    });
+    const Stopwatch watch;
+    write_display_image(frame_file_name(output.display.pattern, request.frame), image, header, output.display);
+    row.write_ms += watch.elapsed_ms();
+    result.clamped_view_pixels += clamped;
+  }
+  if (!output.exr.pattern.empty()) {
+    result.clamped_half_values += timed(row.write_ms, [&] {
+      return write_frame_exr(frame_file_name(output.exr.pattern, request.frame), rendered.frame, eccentricity_deg,
+                             header, output.exr, settings.threads);
+    });
+  }
+}
+
+bool writes_anything(const OutputSettings& output) {
+  return !output.exr.pattern.empty() || !output.display.pattern.empty() || !output.map_pattern.empty();
+}
+
+std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settings) {
+  if (!writes_anything(settings.output)) {
+    return {};
+  }
+  std::vector<std::int32_t> frames;
+  for (const FrameRequest& request : plan.frames) {
+    frames.push_back(request.frame);
+  }
+  return timing_file_name(settings.output.run_directory, format_frame_list(frames), settings.is_part);
+}
+
+}  // namespace
+
+SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
+                               const PipelineSettings& settings, const PipelineObserver& observer) {
+  SequenceResult result;
+  TemporalHistory history;
+  const std::string timing_path = timing_path_of(plan, settings);
+  const ResumePlan resume = plan_resume(plan, settings, timing_path);
+  result.warnings = resume.warnings;
+  TimingLog timing(timing_path, resume.kept_rows);
+
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    const FrameRequest& request = plan.frames[i];
+    TimingRow row;
+    row.frame = request.frame;
+    row.gaze_state = to_string(request.gaze_render.state);
+    row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
+    if (resume.work[i] != FrameWork::skip) {
+      if (observer.frame_begins) {
+        observer.frame_begins(request);
+      }
+      const Stopwatch total;
+      const RenderedFrame rendered = render_frame(tracer, request, settings, history, row, result);
+      if (observer.frame_ready) {
+        observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
+      }
+      if (resume.work[i] == FrameWork::render) {
+        write_files(request, rendered, color, settings, row, result);
+        row.total_ms = total.elapsed_ms();
+        row.peak_memory_mib = peak_memory_mib();
+        timing.add(row);
+        result.rows.push_back(row);
+      }
+    }
+    const bool skipped = resume.work[i] != FrameWork::render;
+    if (skipped) {
+      result.skipped.push_back(request.frame);
+    }
+    if (observer.frame_done) {
+      observer.frame_done(row, skipped);
+    }
+  }
+  timing.finish();
+  return result;
+}
+
+std::vector<std::string> output_files(const OutputSettings& output, const std::vector<std::int32_t>& frames,
+                                      bool is_part) {
+  std::vector<std::string> files;
+  if (!writes_anything(output)) {
+    return files;
+  }
+  const std::string text = format_frame_list(frames);
+  files.push_back(run_record_file_name(output.run_directory, text, is_part));
+  files.push_back(timing_file_name(output.run_directory, text, is_part));
+  for (const std::int32_t frame : frames) {
+    for (const std::string& pattern : {output.map_pattern, output.display.pattern, output.exr.pattern}) {
+      if (!pattern.empty()) {
+        files.push_back(frame_file_name(pattern, frame));
+      }
+    }
+  }
+  return files;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/resume.hpp"
+
+#include <filesystem>
+#include <string>
+
+#include "pipeline/timing_log.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool files_are_complete(const OutputSettings& output, std::int32_t frame, const std::string& digest) {
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
+    if (!pattern.empty()) {
+      const std::string path = frame_file_name(pattern, frame);
+      if (!fs::exists(path) || read_settings_digest(path) != digest) {
+        return false;
+      }
+    }
+  }
+  // A sampling map has no digest of its own; it appears before the frame's other files and only when complete.
+  return output.map_pattern.empty() || fs::exists(frame_file_name(output.map_pattern, frame));
+}
+
+}  // namespace
+
+bool uses_history(const PipelineSettings& settings) {
+  return settings.accumulate.mode != AccumulateMode::off ||
+         (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
+}
+
+ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path) {
+  ResumePlan resume;
+  resume.work.assign(plan.frames.size(), FrameWork::render);
+  const OutputSettings& output = settings.output;
+  if (!output.resume || (output.exr.pattern.empty() && output.display.pattern.empty())) {
+    return resume;
+  }
+  const bool has_timing = fs::exists(timing_path);
+  resume.kept_rows = read_earlier_rows(timing_path);
+  std::size_t last_to_render = plan.frames.size();
+  std::size_t without_row = 0;
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    const std::int32_t frame = plan.frames[i].frame;
+    const bool has_row = resume.kept_rows.contains(frame);
+    // Killed between the last file and the row of timing.csv: once more, so that the row is not missing for good.
+    if (files_are_complete(output, frame, settings.settings_digest) && (has_row || !has_timing)) {
+      resume.work[i] = FrameWork::skip;
+      without_row += has_row ? 0 : 1;
+    } else {
+      resume.kept_rows.erase(frame);
+      last_to_render = i;
+    }
+  }
+  if (uses_history(settings) && last_to_render != plan.frames.size()) {
+    for (std::size_t i = 0; i < last_to_render; ++i) {
+      if (resume.work[i] == FrameWork::skip) {
+        resume.work[i] = FrameWork::replay;
+      }
+    }
+  }
+  if (without_row > 0) {
+    resume.warnings.push_back(std::to_string(without_row) + " complete frames have no row in " + timing_path +
+                              "; they are skipped and stay without timing");
+  }
+  return resume;
+}
+
+}  // namespace gazetrace
