@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/settings_options.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct ListArguments {
+  std::string family;
+  ColorSettings color;
+  OptionTable table;
+  bool json = false;
+};
+
+struct Member {
+  std::string name, description;
+};
+
+struct Family {
+  std::string name;
+  std::string option;  // the option that takes its names
+  std::function<std::vector<Member>(const ListArguments&)> members;
+};
+
+template <class Infos>
+std::vector<Member> members_of(const Infos& infos) {
+  std::vector<Member> members;
+  for (const auto& info : infos) {
+    members.push_back({info.name, info.description});
+  }
+  return members;
+}
+
+std::vector<Member> view_members(const ListArguments& arguments) {
+  std::vector<Member> members;
+  const ColorPipeline color(arguments.color);
+  for (const ViewInfo& view : color.views()) {
+    members.push_back({view.view, "on display '" + view.display + "'" + (view.is_default ? ", the default" : "")});
+  }
+  return members;
+}
+
+std::vector<Family> families() {
+  return {
+      {"falloffs", "--falloff", [](const auto&) { return members_of(falloffs()); }},
+      {"filters", "--filter", [](const auto&) { return members_of(reconstruction_filters()); }},
+      {"gaze-formats", "--gaze-format", [](const auto&) { return members_of(gaze_formats()); }},
+      {"camera-formats", "--camera-format", [](const auto&) { return members_of(camera_formats()); }},
+      {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},
+      {"views", "--view", view_members},
+      {"aovs", "--aov",
+       [](const auto&) {
+         std::vector<Member> members;
+         for (const std::string& name : aov_names()) {
+           members.push_back({name, ""});
+         }
+         return members;
+       }},
+  };
+}
+
+std::string family_text(const Family& family, const std::vector<Member>& members) {
+  std::size_t width = 0;
+  for (const Member& member : members) {
+    width = std::max(width, member.name.size());
+  }
+  std::string text = fmt::format("{} ({})\n", family.name, family.option);
+  for (const Member& member : members) {
+    const std::string line = fmt::format("  {:<{}}  {}", member.name, width, member.description);
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+int run_list(const ListArguments& arguments) {
+  std::vector<std::string> known;
+  std::string text;
+  nlohmann::ordered_json json;
+  for (const Family& family : families()) {
+    known.push_back(family.name);
+    if (!arguments.family.empty() && arguments.family != family.name) {
+      continue;
+    }
+    const std::vector<Member> members = family.members(arguments);
+    text += (text.empty() ? "" : "\n") + family_text(family, members);
+    json[family.name] = nlohmann::ordered_json::array();
+    for (const Member& member : members) {
+      json[family.name].push_back({{"name", member.name}, {"description", member.description}});
+    }
+  }
+  if (text.empty()) {
+    throw Error(ErrorKind::usage, "list", unknown_name_message("family", arguments.family, known));
+  }
+  print_result(arguments.json ? json.dump(2) + "\n" : text);
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_list_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<ListArguments>();
+  std::string names;
+  for (const Family& family : families()) {
+    names += (names.empty() ? "" : "|") + family.name;
+  }
+  app.add_option("family", arguments->family, "What to list; default: everything")->type_name(names);
+  arguments->table.group("Options");
+  add_ocio_config_options(arguments->table, arguments->color);
+  bind_options(app, arguments->table);
+  app.add_flag("--json", arguments->json, "As JSON");
+  return {[arguments] { return run_list(*arguments); }, nullptr};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/inputs.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/foveation.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct PlanArguments {
+  JobSettings job;
+  OptionTable table;
+  bool counts = false;
+  bool json = false;
+};
+
+struct FrameCounts {
+  std::int32_t frame = 0;
+  std::vector<MapRegion> regions;
+  double uniform_samples = 0, nominal_samples = 0;
+  std::uint64_t traced_samples = 0;
+
+  [[nodiscard]] double nominal_ratio() const { return nominal_samples > 0 ? uniform_samples / nominal_samples : 0; }
+  [[nodiscard]] double traced_ratio() const {
+    return traced_samples > 0 ? uniform_samples / static_cast<double>(traced_samples) : 0;
+  }
+};
+
+FrameCounts count_samples(const FrameRequest& request, const FoveationSettings& settings) {
+  const SamplingMap map = make_sampling_map(settings, request.view, request.gaze_direction_render);
+  FrameCounts counts;
+  counts.frame = request.frame;
+  counts.regions = map.regions;
+  counts.traced_samples = map.samples();
+  for (const MapRegion& region : map.regions) {
+    counts.uniform_samples += static_cast<double>(region.pixels) * settings.uniform_spp;
+    counts.nominal_samples += region.nominal_samples;
+  }
+  return counts;
+}
+
+std::string counts_as_table(const std::vector<FrameCounts>& frames, std::uint32_t uniform_spp) {
+  std::string text;
+  for (const FrameCounts& counts : frames) {
+    text += fmt::format("frame {}\n  {:<14}{:>12}{:>12}{:>16}{:>14}\n", counts.frame, "region", "pixels", "sites",
+                        "nominal", "traced");
+    for (const MapRegion& region : counts.regions) {
+      text += fmt::format("  {:<14}{:>12}{:>12}{:>16.2f}{:>14}\n", region.name, region.pixels, region.sites,
+                          region.nominal_samples, region.samples);
+    }
+    text += fmt::format("  {:<14}{:>12}{:>12}{:>16.2f}{:>14}\n", "all", "", "", counts.nominal_samples,
+                        counts.traced_samples);
+    text += fmt::format("  {:<38}{:>16.2f}{:>14.2f}\n", fmt::format("ratio to uniform {} spp", uniform_spp),
+                        counts.nominal_ratio(), counts.traced_ratio());
+  }
+  return text +
+         "nominal: samples of a block divided by its size, for every pixel of the region; traced: what the "
+         "blocks really get,\nwith those that straddle a border or an edge having one site for each region in "
+         "them\n";
+}
+
+std::string counts_as_json(const std::vector<FrameCounts>& frames, std::uint32_t uniform_spp) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const FrameCounts& counts : frames) {
+    nlohmann::ordered_json regions = nlohmann::ordered_json::array();
+    for (const MapRegion& region : counts.regions) {
+      regions.push_back({{"name", region.name},
+                         {"block_px", region.block_px},
+                         {"pixels", region.pixels},
+                         {"sites", region.sites},
+                         {"nominal_samples", region.nominal_samples},
+                         {"traced_samples", region.samples}});
+    }
+    json.push_back({{"frame", counts.frame},
+                    {"uniform_spp", uniform_spp},
+                    {"uniform_samples", counts.uniform_samples},
+                    {"nominal_samples", counts.nominal_samples},
+                    {"traced_samples", counts.traced_samples},
+                    {"nominal_ratio", counts.nominal_ratio()},
+                    {"traced_ratio", counts.traced_ratio()},
+                    {"regions", regions}});
+  }
+  return json.dump(2) + "\n";
+}
+
+int run_plan(const PlanArguments& arguments) {
+  const JobSettings& job = arguments.job;
+  check_settings(job);
+  if (job.scene.empty() && job.camera_path.empty() && !job.eye && !arguments.counts) {
+    throw Error(ErrorKind::usage, "", "no scene and no camera were given",
+                "name a scene, or give --camera-path or --eye and --target");
+  }
+  const Inputs inputs = load_inputs(job, InputScope::plan_only);
+  print_warnings(inputs.warnings);
+  if (!arguments.counts) {
+    print_result(arguments.json ? plan_as_json(inputs.plan) : plan_as_table(inputs.plan));
+    return exit_done;
+  }
+  std::vector<FrameCounts> counts;
+  for (const FrameRequest& request : inputs.plan.frames) {
+    counts.push_back(count_samples(request, job.foveation));
+  }
+  const std::uint32_t spp = job.foveation.uniform_spp;
+  print_result(arguments.json ? counts_as_json(counts, spp) : counts_as_table(counts, spp));
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<PlanArguments>();
+  add_job_options(arguments->table, arguments->job);
+  bind_options(app, arguments->table);
+  app.footer(std::string(kConfigHelp) + kExitCodesHelp);
+  app.add_flag("--counts", arguments->counts,
+               "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");
+  app.add_flag("--json", arguments->json, "As JSON");
+  return {[arguments] { return run_plan(*arguments); },
+          std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+}
+
+}  // namespace gazetrace

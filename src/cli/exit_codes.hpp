@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace gazetrace {
+
+enum ExitCode : int {
+  exit_done = 0,
+  exit_over_threshold = 1,  // a comparison was made and is over its threshold
+  exit_bad_input = 2,       // usage or input; nothing was rendered
+  exit_failed = 3,          // failed while running
+};
+
+inline constexpr const char* kExitCodesHelp =
+    "Exit codes: 0 done; 1 compared and over the threshold (reserved for comparisons); 2 usage or input, before the "
+    "first ray; 3 failed while running.";
+
+inline constexpr const char* kConfigHelp =
+    "--config FILE reads any of these options from a TOML file (frames = \"1-100\"); what stands on the command line "
+    "wins, and 'gazetrace render --print-config' writes every option with its value.\n";
+
+}  // namespace gazetrace

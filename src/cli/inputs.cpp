@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+[[noreturn]] void usage(const std::string& place, const std::string& problem, const std::string& remedy = {}) {
+  throw Error(ErrorKind::usage, place, problem, remedy);
+}
+
+void append(Warnings& to, const Warnings& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+// A gaze that never moves is a log of one sample that never grows old.
+GazeLog fixed_gaze(const Vec2d& at) {
+  GazeLog log;
+  log.source = "--gaze-at";
+  log.format = "fixed";
+  GazeSample sample;
+  sample.u = at.x;
+  sample.v = at.y;
+  log.samples.push_back(sample);
+  return log;
+}
+
+GazeMapping gaze_mapping(const JobSettings& job) {
+  GazeMapping mapping;
+  if (job.gaze_at) {
+    mapping.max_age_ns = std::numeric_limits<std::int64_t>::max();
+    mapping.offset_ns = job.start.ns;
+    return mapping;
+  }
+  mapping.interpolation = job.gaze_mode;
+  mapping.no_gaze = job.gaze_missing;
+  mapping.max_age_ns = job.gaze_max_age.ns;
+  mapping.max_interpolation_gap_ns = job.gaze_max_gap.ns;
+  mapping.scale = job.gaze_scale;
+  mapping.offset_ns = job.gaze_offset.ns;
+  if (job.gaze_start) {
+    mapping.event_ns = job.gaze_start->ns;
+  }
+  return mapping;
+}
+
+std::int64_t frames_until(std::int64_t end_ns, const JobSettings& job) {
+  // The last frame whose middle, start + (n - 1/2) / fps, is not after the end.
+  const double span_s = static_cast<double>(end_ns - job.start.ns) * 1e-9;
+  const double frames = span_s * static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
+  return static_cast<std::int64_t>(std::floor(frames + 0.5));
+}
+
+std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
+                                        std::string& decision) {
+  if (job.frames) {
+    decision = format_frame_list(job.frames->frames);
+    return job.frames->frames;
+  }
+  std::int64_t count = 1;
+  std::string reason = "nothing moves";
+  if (!camera.is_static) {
+    count = frames_until(camera.end_ns, job);
+    reason = "as long as the camera's path";
+  } else if (log != nullptr && log->samples.size() > 1) {
+    const double span_ns = static_cast<double>(log->samples.back().t_ns - log->samples.front().t_ns);
+    count = frames_until(static_cast<std::int64_t>(span_ns * job.gaze_scale) + job.gaze_offset.ns, job);
+    reason = "as long as the gaze log";
+  }
+  count = std::clamp<std::int64_t>(count, 1, 10'000'000);
+  std::vector<std::int32_t> frames(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i] = static_cast<std::int32_t>(i) + 1;
+  }
+  decision = fmt::format("{} ({}; --frames changes it)", format_frame_list(frames), reason);
+  return frames;
+}
+
+PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_t>& frames, const GazeLog* log,
+                           std::vector<std::pair<std::string, std::string>>& decisions) {
+  PlanSettings settings;
+  settings.frames = frames;
+  settings.fps = job.fps;
+  settings.start_ns = job.start.ns;
+  settings.camera_extrapolation = job.camera_extrapolation;
+  settings.gaze = gaze_mapping(job);
+  settings.gaze_latency_ns = job.gaze_at ? 0 : job.gaze_latency.ns;
+  settings.width_px = job.size.width;
+  settings.height_px = job.size.height;
+  settings.display = screen_geometry(job.screen);
+  if (settings.display) {
+    decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
+  } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {
+    settings.display = log->recording_geometry;
+    decisions.emplace_back("screen", "that of the recording, as the gaze log states it");
+  }
+  if (job.frame_rect) {
+    settings.frame_rect = *job.frame_rect;
+  }
+  if (log != nullptr && log->kind == GazeKind::screen) {
+    if (!settings.display) {
+      throw Error(ErrorKind::input, log->source, "gaze on a screen needs the screen's size and distance",
+                  "give --screen NAME, or --screen-px, --screen-cm and --screen-distance-cm");
+    }
+    check_display(*settings.display);
+  }
+  return settings;
+}
+
+bool camera_needs_scene(const JobSettings& job) {
+  return job.camera_path.empty() && !job.eye;
+}
+
+}  // namespace
+
+std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
+  const bool any = screen.size_px || screen.size_cm || screen.distance_cm || screen.eye_cm;
+  if (screen.name.empty() && !any) {
+    return std::nullopt;
+  }
+  DisplayGeometry geometry;
+  if (!screen.name.empty()) {
+    geometry = display_by_name(screen.name);
+  }
+  if (screen.size_px) {
+    const Vec2d& px = *screen.size_px;
+    if (px.x != std::floor(px.x) || px.y != std::floor(px.y) || std::abs(px.x) > 1e6 || std::abs(px.y) > 1e6) {
+      usage("--screen-px", "a resolution is two whole numbers, such as 3840,2160");
+    }
+    geometry.width_px = static_cast<int>(px.x);
+    geometry.height_px = static_cast<int>(px.y);
+  }
+  if (screen.size_cm) {
+    geometry.width_cm = screen.size_cm->x;
+    geometry.height_cm = screen.size_cm->y;
+  }
+  geometry.distance_cm = screen.distance_cm.value_or(geometry.distance_cm);
+  if (screen.eye_cm) {
+    geometry.eye_x_cm = screen.eye_cm->x;
+    geometry.eye_y_cm = screen.eye_cm->y;
+  }
+  check_display(geometry);
+  return geometry;
+}
+
+GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
+  GazeReadOptions options = gaze.read;
+  options.display = screen_geometry(screen);
+  options.unordered = gaze.sort ? UnorderedPolicy::sort : UnorderedPolicy::error;
+  return load_gaze_log(gaze.path, options);
+}
+
+Inputs load_inputs(const JobSettings& job, InputScope scope) {
+  Inputs inputs;
+  std::string decision;
+  // What is quick to read first: a wrong name must not cost the loading of a scene.
+  if (job.gaze_at) {
+    if (!job.gaze.path.empty()) {
+      usage("--gaze-at", "a fixed gaze and a gaze log exclude each other", "give one of --gaze and --gaze-at");
+    }
+    inputs.gaze = fixed_gaze(*job.gaze_at);
+  } else if (!job.gaze.path.empty()) {
+    inputs.gaze = read_gaze_file(job.gaze, job.screen);
+  }
+  const GazeLog* log = inputs.gaze ? &*inputs.gaze : nullptr;
+  {
+    std::vector<std::pair<std::string, std::string>> unused;
+    plan_settings(job, {1}, log, unused);
+  }
+  CameraPath camera;
+  if (!camera_needs_scene(job)) {
+    camera = choose_camera(job, nullptr, decision);
+  }
+  if (scope == InputScope::render || (camera_needs_scene(job) && !job.scene.empty())) {
+    if (job.scene.empty()) {
+      usage("", "no scene was given", "name a .gltf or .glb file");
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    SceneReadOptions options;
+    options.threads = job.threads;
+    inputs.scene = std::make_unique<Scene>(load_scene(job.scene, options));
+    if (scope == InputScope::render) {
+      inputs.decisions.emplace_back("environment", set_environment(job, *inputs.scene));
+    }
+    inputs.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    append(inputs.warnings, inputs.scene->warnings);
+    for (const std::string& text : inputs.scene->ignored) {
+      inputs.warnings.push_back(job.scene + ": ignored: " + text);
+    }
+  }
+  if (camera_needs_scene(job)) {
+    camera = choose_camera(job, inputs.scene.get(), decision);
+  }
+  inputs.decisions.emplace_back("camera", decision);
+  inputs.frames = choose_frames(job, camera, log, decision);
+  inputs.decisions.emplace_back("frames", decision);
+  const PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
+  inputs.plan = plan_frames(camera, log, settings);
+
+  append(inputs.warnings, camera.warnings);
+  if (log != nullptr) {
+    append(inputs.warnings, log->warnings);
+  }
+  append(inputs.warnings, inputs.plan.warnings);
+  return inputs;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// From what was typed to loaded inputs: everything that can be checked is checked here, before the first ray.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/settings_options.hpp"
+#include "gazetrace/color.hpp"
+#include "gazetrace/pipeline.hpp"
+#include "gazetrace/plan.hpp"
+#include "gazetrace/scene.hpp"
+
+namespace gazetrace {
+
+// A run's inputs. `scene` is empty where the plan alone was asked for and the camera does not come from it.
+struct Inputs {
+  std::unique_ptr<Scene> scene;
+  std::optional<GazeLog> gaze;
+  FramePlan plan;
+  std::vector<std::int32_t> frames;
+  // What was decided where the settings left a choice: "environment" -> "built-in sky, ...".
+  std::vector<std::pair<std::string, std::string>> decisions;
+  Warnings warnings;
+  double load_s = 0;  // scene and environment
+};
+
+enum class InputScope {
+  plan_only,  // the scene is read only when the camera comes from it, and may be missing when nothing needs it
+  render,
+};
+
+// Error(usage or input). Every warning of a part (scene, camera, log, plan) is in Inputs::warnings.
+Inputs load_inputs(const JobSettings& job, InputScope scope);
+
+// Pipeline settings from options; checks names, patterns, folders. Without the settings digest.
+PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames);
+// The pattern and range checks alone, for before anything is loaded.
+void check_settings(const JobSettings& job);
+// Error(input) naming the first output that exists, unless --overwrite or --resume; then makes the folders and tries
+// whether files can be made in them.
+void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
+
+// Content hashes of all files that the job reads.
+std::map<std::string, std::string> digest_job_files(const JobSettings& job);
+// One digest of what reaches into pixels: options, file contents, version and, where frames depend on those before
+// them, the frame list. The same files under other names give the same digest.
+std::string digest_job(const OptionTable& table, const JobSettings& job, const PipelineSettings& settings,
+                       const std::vector<std::int32_t>& frames, const std::map<std::string, std::string>& files);
+
+// Parts of load_inputs that `gaze` and `scene` use as well.
+std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen);
+GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen);
+// "auto" is resolved by the scene; returns what was taken, in words.
+std::string set_environment(const JobSettings& job, Scene& scene);
+CameraPath choose_camera(const JobSettings& job, const Scene* scene, std::string& decision);
+
+}  // namespace gazetrace

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Output settings, folders, and the digest that says whether a finished frame is still the one that is wanted.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "cli/inputs.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/version.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Infos>
+void check_registry_name(const char* option, const char* what, const std::string& name, const Infos& infos) {
+  std::vector<std::string> known;
+  for (const auto& info : infos) {
+    known.push_back(info.name);
+  }
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    throw Error(ErrorKind::usage, option, unknown_name_message(what, name, known));
+  }
+}
+
+OutputSettings output_settings(const JobSettings& job) {
+  OutputSettings output;
+  output.exr = job.exr;
+  output.display = job.picture;
+  output.map_pattern = job.map_pattern;
+  output.overwrite = job.overwrite;
+  output.resume = job.resume;
+  for (const std::string& pattern : job.outputs) {
+    std::string& place = pattern.ends_with(".exr") ? output.exr.pattern : output.display.pattern;
+    if (!place.empty()) {
+      throw Error(ErrorKind::usage, "--output", fmt::format("'{}' and '{}' are of one kind", place, pattern),
+                  "give one linear picture (.exr) and one display picture (.png .jpg .tif .dpx)");
+    }
+    place = pattern;
+  }
+  const std::string& first = !job.outputs.empty() ? job.outputs.front() : job.map_pattern;
+  output.run_directory = first.empty() ? std::string() : fs::path(first).parent_path().string();
+  if (!first.empty() && output.run_directory.empty()) {
+    output.run_directory = ".";
+  }
+  return output;
+}
+
+// Stops at the first folder above that exists, so that a mistyped place is said before a scene is loaded.
+void check_folder(const fs::path& folder) {
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  std::error_code ignored;
+  while (!fs::exists(existing, ignored) && existing.has_relative_path()) {
+    existing = existing.parent_path();
+  }
+  if (!fs::is_directory(existing, ignored)) {
+    throw Error(ErrorKind::input, folder.string(), fmt::format("'{}' is not a folder", existing.string()),
+                "choose another output folder");
+  }
+  if (access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw Error(ErrorKind::input, folder.string(), fmt::format("'{}' is not writable", existing.string()),
+                "choose another output folder");
+  }
+}
+
+// Permissions lie on network and read-only file systems: only a file that was made proves anything.
+void prove_writable(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code && !fs::is_directory(folder)) {
+    throw Error(ErrorKind::input, folder.string(), "the folder cannot be made: " + code.message(),
+                "choose another output folder");
+  }
+  std::string probe = (folder / ".gazetrace.XXXXXX").string();
+  const int file = mkstemp(probe.data());
+  if (file < 0) {
+    throw Error(ErrorKind::input, folder.string(), std::string("no file can be made in it: ") + std::strerror(errno),
+                "choose another output folder");
+  }
+  close(file);
+  unlink(probe.c_str());
+}
+
+std::set<fs::path> output_folders(const OutputSettings& output) {
+  std::set<fs::path> folders;
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
+    if (!pattern.empty()) {
+      const fs::path parent = fs::path(pattern).parent_path();
+      folders.insert(parent.empty() ? fs::path(".") : parent);
+    }
+  }
+  return folders;
+}
+
+std::string ocio_file(const JobSettings& job) {
+  if (!job.color.config.empty()) {
+    return job.color.config;
+  }
+  const char* variable = std::getenv("OCIO");
+  return variable == nullptr ? std::string() : variable;
+}
+
+std::vector<std::string> existing(const std::vector<std::string>& paths) {
+  std::vector<std::string> found;
+  std::error_code ignored;
+  for (const std::string& path : paths) {
+    if (!path.empty() && fs::is_regular_file(path, ignored)) {
+      found.push_back(path);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+void check_settings(const JobSettings& job) {
+  check_registry_name("--falloff", "falloff", job.foveation.falloff, falloffs());
+  check_foveation(job.foveation);
+  check_registry_name("--filter", "filter", job.filter, reconstruction_filters());
+  if (job.trace.max_bounces < 0 || job.trace.max_bounces > 1000) {
+    throw Error(ErrorKind::usage, "--bounces", fmt::format("{} is outside 0..1000", job.trace.max_bounces));
+  }
+  if (job.threads < 0) {
+    throw Error(ErrorKind::usage, "--threads", fmt::format("{} is negative", job.threads), "0 takes all");
+  }
+  if (job.exr.zip_level < 1 || job.exr.zip_level > 9) {
+    throw Error(ErrorKind::usage, "--exr-zip-level", fmt::format("{} is outside 1..9", job.exr.zip_level));
+  }
+  if (!(job.exposure.key > 0)) {
+    throw Error(ErrorKind::usage, "--exposure-key", "the key must be positive");
+  }
+  if (job.exposure_smoothing.ns < 0) {
+    throw Error(ErrorKind::usage, "--exposure-smoothing", "a time constant cannot be negative");
+  }
+  if (job.gaze_max_age.ns < 0 || job.gaze_max_gap.ns < 0) {
+    throw Error(ErrorKind::usage, job.gaze_max_age.ns < 0 ? "--gaze-max-age" : "--gaze-max-gap",
+                "an age cannot be negative");
+  }
+  if (!(job.gaze_scale > 0)) {
+    throw Error(ErrorKind::usage, "--gaze-scale", "the scale must be positive");
+  }
+  if (job.only_pixel && (job.only_pixel->x >= job.size.width || job.only_pixel->y >= job.size.height)) {
+    throw Error(
+        ErrorKind::usage, "--only-pixel",
+        fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height));
+  }
+  if (job.progress != "auto" && job.progress != "always" && job.progress != "never") {
+    throw Error(ErrorKind::usage, "--progress",
+                unknown_name_message("progress mode", job.progress, {"auto", "always", "never"}));
+  }
+  const OutputSettings output = output_settings(job);
+  check_output_settings(output, job.frames && job.frames->frames.size() > 1);
+  if (job.overwrite && job.resume) {
+    throw Error(ErrorKind::usage, "--resume", "--overwrite starts over and --resume goes on", "give one of them");
+  }
+  for (const fs::path& folder : output_folders(output)) {
+    check_folder(folder);
+  }
+}
+
+PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames) {
+  PipelineSettings settings;
+  settings.foveation = job.foveation;
+  settings.trace = job.trace;
+  settings.trace.only_pixel = job.only_pixel;
+  settings.filter = job.filter;
+  settings.accumulate.mode = job.accumulate;
+  settings.exposure = job.exposure;
+  settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  settings.output = output_settings(job);
+  settings.fps = job.fps;
+  settings.threads = job.threads;
+  settings.is_part = job.part;
+  const auto& aovs = job.exr.aovs;
+  settings.trace.guides = std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
+    return aov == "albedo" || aov == "normal" || aov == "depth";
+  });
+  check_output_settings(settings.output, frames.size() > 1);
+  return settings;
+}
+
+void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
+  if (!settings.output.overwrite && !settings.output.resume) {
+    for (const std::string& path : output_files(settings.output, frames, settings.is_part)) {
+      if (fs::exists(path)) {
+        const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
+        throw Error(ErrorKind::input, path, "this output exists already",
+                    is_record && !settings.is_part
+                        ? "give --overwrite, --resume, --part for one part of a sequence, or another folder"
+                        : "give --overwrite, --resume or another name");
+      }
+    }
+  }
+  for (const fs::path& folder : output_folders(settings.output)) {
+    prove_writable(folder);
+  }
+}
+
+std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
+  std::vector<std::string> files = existing({job.environment, job.camera_path, job.gaze.path, ocio_file(job)});
+  if (!job.scene.empty()) {
+    const std::vector<std::string> scene = scene_files(job.scene);
+    files.insert(files.end(), scene.begin(), scene.end());
+  }
+  return digest_files(files, job.threads);
+}
+
+std::string digest_job(const OptionTable& table, const JobSettings& job, const PipelineSettings& settings,
+                       const std::vector<std::int32_t>& frames, const std::map<std::string, std::string>& files) {
+  std::vector<std::pair<std::string, std::string>> parts{{"version", kVersion}};
+  const auto digest_of = [&](const std::string& path) {
+    const auto found = files.find(path);
+    return found == files.end() ? std::string("missing") : found->second;
+  };
+  for (const OptionEntry& entry : table.entries()) {
+    const std::vector<std::string> values = entry.values();
+    const std::string text = values.empty() ? std::string() : fmt::format("{}", fmt::join(values, "\n"));
+    if (entry.influence == Influence::file && files.contains(text)) {
+      parts.emplace_back(entry.name, digest_of(text));
+    } else if (entry.influence != Influence::none) {
+      parts.emplace_back(entry.name, text);
+    }
+  }
+  for (const std::string& path : job.scene.empty() ? std::vector<std::string>() : scene_files(job.scene)) {
+    parts.emplace_back("scene file", digest_of(path));
+  }
+  parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
+  if (uses_history(settings)) {
+    parts.emplace_back("frames", format_frame_list(frames));
+  }
+  return digest_settings(parts);
+}
+
+}  // namespace gazetrace

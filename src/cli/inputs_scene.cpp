@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene, environment and camera of a run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "cli/inputs.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kDefaultYfovDeg = 50.0;
+
+double checked_yfov_rad(double yfov_deg) {
+  if (!(yfov_deg > 0 && yfov_deg < 180)) {
+    throw Error(ErrorKind::usage, "--yfov", fmt::format("{} degrees is outside 0..180", yfov_deg));
+  }
+  return yfov_deg * kRadPerDeg;
+}
+
+Projection perspective(const JobSettings& job) {
+  Projection projection;
+  projection.yfov_rad = checked_yfov_rad(job.yfov_deg.value_or(kDefaultYfovDeg));
+  return projection;
+}
+
+// A view of everything, for files without a camera: from in front, a little to the right and above, with the bounding
+// sphere inside the narrower angle.
+CameraPath framing_camera(const JobSettings& job, const Scene& scene) {
+  const SceneSummary summary = summarize(scene);
+  Vec3d center{0, 0, 0};
+  double radius_m = 1.0;
+  if (summary.bounds_min.x <= summary.bounds_max.x) {
+    center = (summary.bounds_min + summary.bounds_max) * 0.5;
+    radius_m = std::max(0.5 * length(summary.bounds_max - summary.bounds_min), 1e-30);
+  }
+  const Projection projection = perspective(job);
+  const double aspect = static_cast<double>(job.size.width) / static_cast<double>(job.size.height);
+  const double half_v = projection.yfov_rad / 2;
+  const double half_h = std::atan(std::tan(half_v) * aspect);
+  const Vec3d direction = normalize(Vec3d{0.5, 0.35, 1.0});
+  const Vec3d eye = center + direction * (radius_m / std::sin(std::min(half_v, half_h)));
+  return static_camera(look_at(eye, center, {0, 1, 0}), projection);
+}
+
+const SceneCamera& camera_by_name(const JobSettings& job, const Scene& scene) {
+  std::size_t index = 0;
+  const char* end = job.camera.data() + job.camera.size();
+  std::vector<std::string> known;
+  for (const SceneCamera& camera : scene.cameras) {
+    if (camera.name == job.camera) {
+      return camera;
+    }
+    known.push_back(camera.name);
+  }
+  if (const auto [stop, code] = std::from_chars(job.camera.data(), end, index); code == std::errc() && stop == end) {
+    if (index < scene.cameras.size()) {
+      return scene.cameras[index];
+    }
+    throw Error(ErrorKind::usage, "--camera",
+                fmt::format("there is no camera {}, {} has {}", index, job.scene, known.size()),
+                "cameras are counted from 0; 'gazetrace scene' lists them");
+  }
+  if (known.empty()) {
+    throw Error(ErrorKind::usage, "--camera", job.scene + " has no cameras",
+                "give --camera-path, or --eye and --target");
+  }
+  throw Error(ErrorKind::usage, "--camera", unknown_name_message("camera", job.camera, known));
+}
+
+CameraPath still_camera(const JobSettings& job) {
+  if (!job.target) {
+    throw Error(ErrorKind::usage, "--eye", "a still camera needs --target as well");
+  }
+  if (*job.eye == *job.target) {
+    throw Error(ErrorKind::usage, "--target", "the camera stands on its target");
+  }
+  return static_camera(look_at(*job.eye, *job.target, job.up), perspective(job));
+}
+
+}  // namespace
+
+CameraPath choose_camera(const JobSettings& job, const Scene* scene, std::string& decision) {
+  const int ways = (job.camera.empty() ? 0 : 1) + (job.camera_path.empty() ? 0 : 1) + (job.eye || job.target ? 1 : 0);
+  if (ways > 1) {
+    throw Error(ErrorKind::usage, "", "--camera, --camera-path and --eye exclude each other", "give one of them");
+  }
+  if (job.target && !job.eye) {
+    throw Error(ErrorKind::usage, "--target", "a still camera needs --eye as well");
+  }
+  if (job.eye) {
+    decision = "still, from --eye";
+    return still_camera(job);
+  }
+  if (!job.camera_path.empty()) {
+    CameraReadOptions options = job.camera_read;
+    options.projection = perspective(job);
+    decision = job.camera_path;
+    return load_camera_path(job.camera_path, options);
+  }
+  CameraPath camera;
+  if (scene == nullptr) {
+    if (!job.camera.empty()) {
+      throw Error(ErrorKind::usage, "--camera", "no scene was given", "name a .gltf or .glb file");
+    }
+    decision = "none: no scene was given";
+    camera = static_camera(CameraPose{}, perspective(job));
+  } else if (job.camera.empty() && scene->cameras.empty()) {
+    decision = "a view of the whole scene (the file has no camera; --eye and --target choose another)";
+    camera = framing_camera(job, *scene);
+  } else {
+    const SceneCamera& chosen = job.camera.empty() ? scene->cameras.front() : camera_by_name(job, *scene);
+    decision = fmt::format("'{}' of {}{}", chosen.name, job.scene, chosen.path.is_static ? "" : ", animated");
+    camera = chosen.path;
+    if (job.yfov_deg) {
+      if (camera.projection.kind != ProjectionKind::perspective) {
+        throw Error(ErrorKind::usage, "--yfov", fmt::format("camera '{}' is orthographic", chosen.name));
+      }
+      camera.projection.yfov_rad = checked_yfov_rad(*job.yfov_deg);
+    }
+  }
+  return camera;
+}
+
+std::string set_environment(const JobSettings& job, Scene& scene) {
+  const std::string& wanted = job.environment;
+  const auto gain = static_cast<float>(std::exp2(job.environment_ev));
+  if (wanted == "none") {
+    return "none";
+  }
+  if (wanted == "auto") {
+    const SceneFeatures features = features_of(scene);
+    if (features.emissive_triangles || features.punctual_lights || scene.environment.present()) {
+      return "none (the scene brings its own light; --env chooses)";
+    }
+    scene.environment = builtin_sky(job.environment_rotation_deg, job.environment_ev);
+    return "the built-in sky (the scene has no light of its own; --env chooses)";
+  }
+  if (wanted == "sky") {
+    scene.environment = builtin_sky(job.environment_rotation_deg, job.environment_ev);
+    return "the built-in sky";
+  }
+  if (wanted.starts_with("constant:")) {
+    Vec3d radiance;
+    parse_value(wanted.substr(9), "--env constant:R,G,B", radiance);
+    if (radiance.x < 0 || radiance.y < 0 || radiance.z < 0) {
+      throw Error(ErrorKind::usage, "--env", "a radiance cannot be negative");
+    }
+    scene.environment = constant_environment(to_float(radiance) * gain);
+    return wanted;
+  }
+  scene.environment = load_environment(wanted, job.environment_rotation_deg, job.environment_ev);
+  return wanted;
+}
+
+}  // namespace gazetrace

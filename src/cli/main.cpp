@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program: parse, run one command, turn the one exception type into one line and an exit code.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/toml_config.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/version.hpp"
+
+namespace gazetrace {
+namespace {
+
+int report(const std::string& message, int exit_code) {
+  std::string line = message;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  std::fprintf(stderr, "gazetrace: error: %s\n", line.c_str());
+  return exit_code;
+}
+
+const CLI::App* chosen_command(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  return parsed.empty() ? nullptr : parsed.front();
+}
+
+// CLI11's message, with the nearest name where an option is unknown.
+std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = chosen_command(app);
+  const std::string help = command == nullptr ? "gazetrace --help" : "gazetrace " + command->get_name() + " --help";
+  std::string text = error.what();
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with('-') && command != nullptr) {
+      continue;
+    }
+    std::vector<std::string> known;
+    if (command == nullptr) {
+      for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
+        known.push_back(sub->get_name());
+      }
+    } else {
+      for (const CLI::Option* option : command->get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+          known.push_back("--" + name);
+        }
+      }
+      known.emplace_back("--config");
+    }
+    text = unknown_name_message(command == nullptr ? "command" : "option", word.substr(0, word.find('=')), known);
+    text.resize(std::min(text.size(), text.find(" Known:")));
+    break;
+  }
+  return text + "; see '" + help + "'";
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"gazetrace renders what a person looked at: foveated path tracing along a recorded gaze", "gazetrace"};
+  app.set_version_flag("--version", std::string("gazetrace ") + kVersion, "Print the version and exit");
+  app.require_subcommand(1);
+  app.fallthrough(false);
+  app.footer(kExitCodesHelp);
+
+  const Invocation invocation{{argv, argv + argc}};
+  std::map<std::string, Command> commands;
+#define GAZETRACE_COMMAND(name, help)                         \
+  {                                                           \
+    CLI::App* sub = app.add_subcommand(#name, help);          \
+    sub->fallthrough();                                       \
+    sub->footer(kExitCodesHelp);                              \
+    commands[#name] = add_##name##_command(*sub, invocation); \
+  }
+#include "cli/commands.def"
+#undef GAZETRACE_COMMAND
+
+  CLI::Option* config = app.set_config("--config", "",
+                                       "A TOML file with options of 'render' or 'plan'; what stands on "
+                                       "the command line wins ('gazetrace render --print-config' writes one)");
+  config->type_name("FILE");
+  app.config_formatter(std::make_shared<TomlConfig>([&] {
+    const CLI::App* command = chosen_command(app);
+    TomlConfig::Target target;
+    if (command != nullptr) {
+      target.command = command->get_name();
+      target.table = commands.at(target.command).options.get();
+    }
+    target.path = config->as<std::string>();
+    return target;
+  }));
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    print_result("");
+    return app.exit(help_or_version);
+  } catch (const CLI::FileError&) {
+    throw Error(ErrorKind::input, config->as<std::string>(), "the settings file cannot be read", "check the path");
+  } catch (const CLI::ParseError& error) {
+    return report(parse_error_text(app, error), exit_bad_input);
+  }
+  return commands.at(chosen_command(app)->get_name()).run();
+}
+
+}  // namespace
+}  // namespace gazetrace
+
+int main(int argc, char** argv) {
+  using namespace gazetrace;
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of stdout that goes away is no error: see print_result
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    return report(error.what(), error.kind() == ErrorKind::runtime ? exit_failed : exit_bad_input);
+  } catch (const std::bad_alloc&) {
+    return report("out of memory", exit_failed);
+  } catch (const std::exception& error) {
+    return report(error.what(), exit_failed);
+  }
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a run is: a bar on a terminal, plain lines elsewhere. Always on stderr.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace gazetrace {
+
+enum class ProgressStyle { none, bar, lines };
+
+// auto: a bar on a terminal, else lines.
+ProgressStyle progress_style(const std::string& choice, bool quiet);
+
+class Progress {
+ public:
+  Progress(ProgressStyle style, std::size_t frames);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // A frame is done; skipped ones say nothing about the speed.
+  void frame_done(std::int32_t frame, double frame_ms, bool skipped);
+  void finish();  // ends the bar's line
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw_bar() const;
+  void print_line(std::int32_t frame, double frame_ms);
+  [[nodiscard]] std::string time_left() const;
+
+  ProgressStyle style_;
+  std::size_t frames_;
+  std::size_t done_ = 0, rendered_ = 0;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_line_ = start_;
+  bool open_ = false;  // the bar's line has not ended
+};
+
+// "47 s", "3 min 20 s", "2 h 05 min".
+std::string duration_text(double seconds);
+
+}  // namespace gazetrace

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/settings_options.hpp"
+
+#include <fmt/format.h>
+
+namespace gazetrace {
+namespace {
+
+constexpr Influence kPixels = Influence::pixels;
+constexpr Influence kFile = Influence::file;
+
+template <class E>
+std::string choices() {
+  return fmt::format("{}", fmt::join(enum_names<E>(), "|"));
+}
+
+void add_scene_options(OptionTable& table, JobSettings& job) {
+  table.group("Scene and light");
+  table.value("scene", job.scene, "FILE", "glTF 2.0 scene, .gltf or .glb", kFile);
+  table.value("--env", job.environment, "FILE|sky|constant:R,G,B|none|auto",
+              "Light from all around: a lat-long .hdr or .exr, the built-in sky, a constant radiance, or none; auto is "
+              "the sky for a scene without light of its own, otherwise none",
+              kFile);
+  table.value("--env-rotation", job.environment_rotation_deg, "DEG", "Turns the environment about +y, degrees",
+              kPixels);
+  table.value("--env-ev", job.environment_ev, "STOPS", "Multiplies the environment by 2^STOPS", kPixels);
+}
+
+void add_camera_options(OptionTable& table, JobSettings& job) {
+  table.group("Scene camera (what is pictured)");
+  table.value("--camera", job.camera, "NAME|INDEX",
+              "Camera of the glTF file by name or number from 0; default: the "
+              "first one, or a view of the whole scene when it has none",
+              kPixels);
+  table.value("--camera-path", job.camera_path, "FILE",
+              "Timestamped poses, gazetrace CSV (t[s],x[m],y[m],z[m],qx,qy,qz,qw) or TUM", kFile);
+  table.value("--camera-format", job.camera_read.format, "NAME", "Format of --camera-path; default: by its content",
+              kPixels);
+  table.value("--camera-axes", job.camera_read.axes, choices<CameraAxes>(),
+              "Axes of the poses: gl looks along -z with y up, cv along +z with y down, unity left-handed along +z",
+              kPixels);
+  table.value("--camera-interpolation", job.camera_read.interpolation, choices<PathInterpolation>(),
+              "Between two poses of the path", kPixels);
+  table.value("--camera-extrapolation", job.camera_extrapolation, choices<CameraExtrapolation>(),
+              "For frames before or after the path", kPixels);
+  table.flag("--camera-keep-time", job.camera_read.keep_time,
+             "Stamps of the path are video times; otherwise its first stamp is video time 0", kPixels);
+  table.value("--eye", job.eye, "X,Y,Z", "A still camera at this point, metres", kPixels);
+  table.value("--target", job.target, "X,Y,Z", "The point that --eye looks at, metres", kPixels);
+  table.value("--up", job.up, "X,Y,Z", "Up for --eye", kPixels);
+  table.value(
+      "--yfov", job.yfov_deg, "DEG",
+      "Vertical field of view in degrees for --eye and --camera-path (50 when not set); replaces that of a glTF "
+      "camera when set",
+      kPixels);
+}
+
+void add_gaze_mapping_options(OptionTable& table, JobSettings& job) {
+  table.group("Gaze in time");
+  table.value("--gaze-at", job.gaze_at, "U,V",
+              "A fixed gaze in fractions of the screen from its top left, in place of "
+              "a log",
+              kPixels);
+  table.value("--gaze-mode", job.gaze_mode, choices<GazeInterpolation>(), "Which samples of the log a frame gets",
+              kPixels);
+  table.value("--gaze-missing", job.gaze_missing, choices<NoGazePolicy>(),
+              "For frames without usable gaze: hold the last, look at the centre, render uniformly, or stop", kPixels);
+  table.value("--gaze-max-age", job.gaze_max_age, "DURATION", "An older sample counts as no gaze", kPixels);
+  table.value("--gaze-max-gap", job.gaze_max_gap, "DURATION", "The longest gap that --gaze-mode linear bridges",
+              kPixels);
+  table.value("--gaze-offset", job.gaze_offset, "DURATION", "t_video = scale (t_log - start) + offset", kPixels);
+  table.value("--gaze-scale", job.gaze_scale, "FACTOR", "Clock rate of video over that of the log", kPixels);
+  table.value("--gaze-start", job.gaze_start, "DURATION",
+              "Time on the log's clock that is video time --gaze-offset; default: its first sample", kPixels);
+  table.value("--gaze-latency", job.gaze_latency, "DURATION",
+              "Sampling follows the gaze of this long ago; measurements keep the true gaze", kPixels);
+}
+
+void add_frame_options(OptionTable& table, JobSettings& job) {
+  table.group("Frames");
+  table.value("--size", job.size, "WxH", "Size of the pictures in pixels", kPixels);
+  table.value("--fps", job.fps, "RATE", "Frames a second: 24, 23.976 or 24000/1001", kPixels);
+  table.value("--frames,--only-frame", job.frames, "LIST",
+              "Which frames, counted from 1: 1-100, 1-100x2, 3,7,9-12; default: as long as the animated camera, else "
+              "the gaze log, else frame 1");
+  table.value("--start", job.start, "DURATION", "Video time at which frame 1 begins", kPixels);
+  table.flag("--part", job.part,
+             "The frames are a part of a sequence that other runs share: timing and run record carry the range in "
+             "their names, 'gazetrace merge' joins them");
+  table.value("--frame-rect", job.frame_rect, "X,Y,W,H",
+              "Where the frame lies on the screen, in screen pixels; default: it fills the screen", kPixels);
+}
+
+void add_foveation_options(OptionTable& table, JobSettings& job) {
+  FoveationSettings& fov = job.foveation;
+  table.group("Where the samples go");
+  table.value("--falloff", fov.falloff, "NAME", "How sampling falls off with eccentricity ('gazetrace list falloffs')",
+              kPixels);
+  table.value("--spp", fov.uniform_spp, "N", "Samples a pixel of uniform frames; plan --counts compares with it",
+              kPixels);
+  table.value("--region-samples", fov.region_samples, "N,N,N", "Samples in fovea, intermediate region and periphery",
+              kPixels);
+  table.value("--region-blocks", fov.region_blocks_px, "N,N",
+              "Block sizes of intermediate region and periphery, pixels", kPixels);
+  table.value("--region-angles", fov.region_angles_deg, "DEG,DEG", "Where fovea and intermediate region end, degrees",
+              kPixels);
+  table.value("--angle-reading", fov.reading, choices<AngleReading>(),
+              "The angles are diameters (full-angle) or eccentricities", kPixels);
+  table.value("--sample-unit", fov.unit, choices<SampleUnit>(), "Samples count for a block or for each of its pixels",
+              kPixels);
+  table.value("--region-shape", fov.shape, choices<RegionShape>(),
+              "cone: by the angle between rays; disc: the paper's circle in pixels", kPixels);
+  table.value("--filter", job.filter, "NAME", "Fills pixels between samples ('gazetrace list filters')", kPixels);
+  table.value("--accumulate", job.accumulate, choices<AccumulateMode>(),
+              "running: mean over frames while the camera stands still", kPixels);
+}
+
+void add_trace_options(OptionTable& table, JobSettings& job) {
+  table.group("Light transport");
+  table.value("--bounces", job.trace.max_bounces, "N", "Scattering events on a path; 0 shows emission only", kPixels);
+  table.flag("--russian-roulette", job.trace.russian_roulette, "Ends dim paths early, without bias", kPixels);
+  table.value("--diffuse", job.trace.diffuse, choices<DiffuseModel>(), "Diffuse lobe", kPixels);
+  table.value("--light-sampling", job.trace.light_sampling, choices<LightSampling>(),
+              "Lights and surfaces together (mis), or one of them alone", kPixels);
+  table.value("--pixel-filter", job.trace.filter, choices<PixelFilter>(), "Spread of the samples of a pixel", kPixels);
+  table.value("--seed", job.trace.seed, "N", "Same seed, same pictures, for any number of threads", kPixels);
+  table.value("--bvh", job.bvh, choices<BvhQuality>(), "Build quality of the ray tracing tree");
+  table.value("--threads", job.threads, "N", "0: as many as the machine has; pictures do not depend on it");
+  table.value("--only-pixel", job.only_pixel, "X,Y",
+              "Traces only the samples of this pixel, for replaying a bad one; without --output it is printed",
+              kPixels);
+}
+
+void add_color_options(OptionTable& table, JobSettings& job) {
+  table.group("Exposure and colour");
+  table.value("--exposure", job.exposure, "STOPS|auto", "Stops, or auto for the log-average, with a shift: auto+0.5",
+              kPixels);
+  table.value("--exposure-key", job.exposure.key, "LUMINANCE", "Luminance that auto brings the log-average to",
+              kPixels);
+  table.value("--exposure-smoothing", job.exposure_smoothing, "DURATION", "Time constant over video time; 0s: off",
+              kPixels);
+  add_ocio_config_options(table, job.color);
+  table.value("--display", job.color.display, "NAME",
+              "OpenColorIO display; default: the config's ('gazetrace list "
+              "views')",
+              kPixels);
+  table.value("--view", job.color.view, "NAME", "OpenColorIO view; default: the display's", kPixels);
+  table.value("--look", job.color.look, "NAME", "OpenColorIO look; default: the view's", kPixels);
+}
+
+void add_output_options(OptionTable& table, JobSettings& job) {
+  table.group("Files");
+  table.repeated(
+      "-o,--output", job.outputs, "PATTERN",
+      "Linear pictures (.exr) and display pictures (.png .jpg .tif .dpx), one option each; the frame's number "
+      "stands where ####, %04d or <frame> is");
+  table.value("--exr-pixels", job.exr.pixels, choices<ExrPixels>(), "Type of the colour channels", kPixels);
+  table.value("--exr-compression", job.exr.compression, "NAME",
+              "none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab", kPixels);
+  table.value("--exr-zip-level", job.exr.zip_level, "1..9",
+              "Of zip and zips: 1 fast, 9 small; lossless at every level");
+  table.value("--aov", job.exr.aovs, "NAME,NAME", "More channels of the .exr ('gazetrace list aovs')", kPixels);
+  table.value("--map", job.map_pattern, "PATTERN", "Sampling maps (.exr): region, samples a pixel, eccentricity");
+  table.value("--bits", job.picture.bits, "8|16", "Bits a channel of .png and .tif", kPixels);
+  table.value("--jpeg-quality", job.picture.quality, "1..100", "Quality of .jpg", kPixels);
+  table.flag("--overwrite", job.overwrite, "Replaces files that are there");
+  table.flag("--resume", job.resume, "Keeps finished frames of the same settings and renders the rest");
+  table.group("Talk");
+  table.value("--progress", job.progress, "auto|always|never",
+              "A bar on a terminal, plain lines elsewhere (auto); "
+              "always: the bar");
+  table.flag("--quiet", job.quiet, "No progress and no summary; warnings and errors stay");
+}
+
+}  // namespace
+
+void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze) {
+  GazeColumns& columns = gaze.read.columns;
+  table.group("Gaze log");
+  table.value("--gaze-format", gaze.read.format, "NAME", "Default: by its content ('gazetrace list gaze-formats')",
+              kPixels);
+  table.value("--gaze-time-column", columns.time, "NAME", "Column of the stamps", kPixels);
+  table.value("--gaze-x-column", columns.x, "NAME", "Column of the horizontal position, or direction x", kPixels);
+  table.value("--gaze-y-column", columns.y, "NAME", "Column of the vertical position, or direction y", kPixels);
+  table.value("--gaze-z-column", columns.z, "NAME", "Column of direction z", kPixels);
+  table.value("--gaze-validity-column", columns.validity, "NAME", "Column that says which samples are good", kPixels);
+  table.value("--gaze-valid-values", columns.valid_values, "TEXT,TEXT",
+              "What good samples have in it; default: 1, true, ok, valid", kPixels);
+  table.value("--gaze-confidence-column", columns.confidence, "NAME", "Column of the confidence", kPixels);
+  table.value("--gaze-pupil-column", columns.pupil, "NAME", "Column of the pupil's size", kPixels);
+  table.value("--gaze-eye-column", columns.eye, "NAME", "Column of the eye", kPixels);
+  table.value("--gaze-time-unit", columns.time_unit, choices<TimeUnit>(), "Unit of the stamps", kPixels);
+  table.value("--gaze-unit", columns.position_unit, choices<PositionUnit>(), "Unit of the positions", kPixels);
+  table.value("--gaze-origin", columns.origin, choices<PositionOrigin>(), "Where (0, 0) is", kPixels);
+  table.flag("--gaze-sort", gaze.sort, "Sorts unordered stamps and keeps the last of equal ones", kPixels);
+}
+
+void add_screen_options(OptionTable& table, ScreenSettings& screen) {
+  table.group("Screen (where the eye is)");
+  table.value("--screen", screen.name, "NAME",
+              "A known screen and its distance ('gazetrace list screens'); default: what the gaze log states", kPixels);
+  table.value("--screen-px", screen.size_px, "W,H", "Resolution of the screen", kPixels);
+  table.value("--screen-cm", screen.size_cm, "W,H", "Size of its active area, centimetres", kPixels);
+  table.value("--screen-distance-cm", screen.distance_cm, "CM", "Eye to screen, centimetres", kPixels);
+  table.value("--screen-eye-cm", screen.eye_cm, "X,Y",
+              "Where the eye's perpendicular meets the screen, from its centre, right and up, centimetres", kPixels);
+}
+
+void add_ocio_config_options(OptionTable& table, ColorSettings& color) {
+  table.value("--ocio", color.config, "FILE", "OpenColorIO config; default: $OCIO, else the built-in one", kFile);
+  table.value("--ocio-input", color.input, "NAME",
+              "The config's name of linear Rec.709, where it has no aces_interchange role", kPixels);
+}
+
+void add_job_options(OptionTable& table, JobSettings& job) {
+  add_scene_options(table, job);
+  add_camera_options(table, job);
+  table.group("Gaze log");
+  table.value("--gaze", job.gaze.path, "FILE", "Where the viewer looked, over time", kFile);
+  add_gaze_file_options(table, job.gaze);
+  add_gaze_mapping_options(table, job);
+  add_screen_options(table, job.screen);
+  add_frame_options(table, job);
+  add_foveation_options(table, job);
+  add_trace_options(table, job);
+  add_color_options(table, job);
+  add_output_options(table, job);
+}
+
+}  // namespace gazetrace

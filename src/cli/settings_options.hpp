@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be asked of a run, as typed; inputs.hpp makes loaded and checked things of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/option_codecs.hpp"
+#include "cli/option_table.hpp"
+#include "gazetrace/camera.hpp"
+#include "gazetrace/pipeline.hpp"
+
+namespace gazetrace {
+
+// Where the viewer's eye is.
+struct ScreenSettings {
+  std::string name;
+  std::optional<Vec2d> size_px, size_cm;
+  std::optional<double> distance_cm;
+  std::optional<Vec2d> eye_cm;
+};
+
+struct GazeFileSettings {
+  std::string path;
+  GazeReadOptions read;
+  bool sort = false;
+};
+
+struct JobSettings {
+  // Scene and light
+  std::string scene;
+  std::string environment = "auto";
+  double environment_rotation_deg = 0;
+  double environment_ev = 0;
+
+  // Scene camera
+  std::string camera;
+  std::string camera_path;
+  CameraReadOptions camera_read;
+  CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
+  std::optional<Vec3d> eye, target;
+  Vec3d up{0, 1, 0};
+  std::optional<double> yfov_deg;
+
+  // Gaze and screen
+  GazeFileSettings gaze;
+  std::optional<Vec2d> gaze_at;
+  GazeInterpolation gaze_mode = GazeInterpolation::hold;
+  NoGazePolicy gaze_missing = NoGazePolicy::hold;
+  DurationNs gaze_max_age{500'000'000};
+  DurationNs gaze_max_gap{75'000'000};
+  DurationNs gaze_offset;
+  double gaze_scale = 1.0;
+  std::optional<DurationNs> gaze_start;
+  DurationNs gaze_latency;
+  ScreenSettings screen;
+  std::optional<FrameRect> frame_rect;
+
+  // Frames
+  SizePx size{1280, 720};
+  FrameRate fps;
+  std::optional<FrameList> frames;
+  DurationNs start;
+  bool part = false;
+
+  // How it is rendered
+  FoveationSettings foveation;
+  TraceSettings trace;
+  BvhQuality bvh = BvhQuality::high;
+  std::string filter = "linear";
+  AccumulateMode accumulate = AccumulateMode::off;
+  std::optional<PixelIndex> only_pixel;
+  int threads = 0;
+
+  // Exposure, colour, files
+  ExposureSettings exposure;
+  DurationNs exposure_smoothing;
+  ColorSettings color;
+  std::vector<std::string> outputs;
+  ExrSettings exr;
+  DisplaySettings picture;
+  std::string map_pattern;
+  bool overwrite = false;
+  bool resume = false;
+
+  // Talk
+  std::string progress = "auto";
+  bool quiet = false;
+};
+
+// The options of `render` and `plan`. The table refers to `job`, which must outlive it.
+void add_job_options(OptionTable& table, JobSettings& job);
+
+// Shared with `gaze`.
+void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze);
+void add_screen_options(OptionTable& table, ScreenSettings& screen);
+
+// Shared with `list views`.
+void add_ocio_config_options(OptionTable& table, ColorSettings& color);
+
+}  // namespace gazetrace

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bad input ends in one line that names the thing, exit code 2, and leaves nothing behind."""
+
+import json
+import struct
+
+import harness
+
+OUT = ["-o", "out/f.####.exr", "--size", "64x36"]
+
+
+def glb(gltf, binary):
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    binary += b"\0" * (-len(binary) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
+
+
+class BadScenes(harness.CliTest):
+    def refuse(self, name, words):
+        self.assert_refused(["render", name, *OUT], words)
+        self.assert_refused(["scene", name], words)
+
+    def test_missing_file(self):
+        self.refuse("nowhere.gltf", ["nowhere.gltf"])
+
+    def test_folder_as_scene(self):
+        (self.folder / "folder.gltf").mkdir()
+        self.refuse("folder.gltf", ["folder.gltf"])
+
+    def test_truncated_glb(self):
+        whole = glb({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 400}]}, bytes(400))
+        for length in (0, 3, 12, 19, 40, len(whole) - 200):
+            with self.subTest(length=length):
+                self.write("cut.glb", whole[:length])
+                self.refuse("cut.glb", ["cut.glb"])
+
+    def test_not_json(self):
+        self.write("text.gltf", "{ this is not JSON")
+        self.refuse("text.gltf", ["text.gltf"])
+
+    def test_accessor_out_of_bounds(self):
+        gltf = harness.box_gltf()
+        gltf["accessors"][0]["count"] = 1000
+        self.write("wide.gltf", json.dumps(gltf))
+        self.refuse("wide.gltf", ["wide.gltf", "accessors[0]"])
+
+    def test_index_beyond_vertices(self):
+        gltf = harness.box_gltf()
+        gltf["accessors"][0]["count"] = 4
+        self.write("index.gltf", json.dumps(gltf))
+        self.refuse("index.gltf", ["index.gltf"])
+
+    def test_required_extension(self):
+        gltf = harness.box_gltf()
+        gltf["extensionsRequired"] = ["VENDOR_unheard_of"]
+        self.write("extension.gltf", json.dumps(gltf))
+        self.refuse("extension.gltf", ["extension.gltf", "VENDOR_unheard_of"])
+
+    def test_missing_buffer(self):
+        gltf = harness.box_gltf()
+        gltf["buffers"][0]["uri"] = "gone.bin"
+        self.write("buffer.gltf", json.dumps(gltf))
+        self.refuse("buffer.gltf", ["gone.bin"])
+
+    def test_missing_environment(self):
+        self.assert_refused(["render", "box.gltf", *OUT, "--env", "gone.hdr"], ["gone.hdr"])
+
+    def test_broken_environment(self):
+        self.write("broken.exr", "no picture")
+        self.assert_refused(["render", "box.gltf", *OUT, "--env", "broken.exr"], ["broken.exr"])
+
+
+class BadGaze(harness.CliTest):
+    def refuse(self, content, words, more=(), name="log.csv"):
+        self.write(name, content)
+        self.assert_refused(["render", "box.gltf", *OUT, "--gaze", name, *more], words)
+        if not more:
+            self.assert_refused(["gaze", name], words)
+
+    def test_missing_file(self):
+        self.assert_refused(["render", "box.gltf", *OUT, "--gaze", "gone.csv"], ["gone.csv"])
+        self.assert_refused(["gaze", "gone.csv"], ["gone.csv"])
+
+    def test_without_time(self):
+        self.refuse(harness.gaze_csv(["0.5,0.5,ok,left"], "u[1],v[1],valid,eye"), ["log.csv", "time"])
+
+    def test_unordered_stamps(self):
+        rows = ["0,0.5,0.5,ok,left", "20,0.5,0.5,ok,left", "10,0.5,0.5,ok,left"]
+        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--gaze-sort"])
+
+    def test_duplicated_stamps(self):
+        rows = ["0,0.5,0.5,ok,left", "10,0.5,0.5,ok,left", "10,0.6,0.5,ok,left"]
+        self.refuse(harness.gaze_csv(rows), ["log.csv:8", "--gaze-sort"])
+
+    def test_empty_log(self):
+        self.refuse(harness.gaze_csv([]), ["log.csv", "no sample"])
+        self.refuse("", ["log.csv"])
+
+    def test_unknown_column(self):
+        self.refuse("when,where_x,where_y\n0,0.5,0.5\n1,0.5,0.5\n", ["log.csv", "time"])
+        self.refuse("t[ns],u[1],v[1]\n0,0.5,0.5\n", ["log.csv", "uu"], more=["--gaze-x-column", "uu"])
+
+    def test_screen_log_without_geometry(self):
+        rows = "t[ns],u[1],v[1],valid,eye\n0,0.5,0.5,ok,left\n10,0.5,0.5,ok,left\n"
+        self.refuse(rows, ["log.csv", "--screen"], more=["--frames", "1"])
+        self.refuse(rows, ["distance"], more=["--screen-px", "64,36", "--screen-cm", "64,36"])
+        self.refuse(rows, ["width"], more=["--screen-px", "64,36", "--screen-distance-cm", "60"])
+        self.refuse(rows, ["nothing-like-it", "paper"], more=["--screen", "nothing-like-it"])
+
+    def test_gaze_at_without_geometry(self):
+        self.assert_refused(["render", "box.gltf", *OUT, "--gaze-at", "0.5,0.5"], ["--gaze-at", "--screen"])
+
+    def test_two_gazes(self):
+        self.write("log.csv", harness.moving_gaze())
+        self.assert_refused(["render", "box.gltf", *OUT, "--gaze", "log.csv", "--gaze-at", "0.5,0.5"], ["--gaze-at"])
+
+    def test_gap_under_the_error_policy(self):
+        self.write("log.csv", harness.gaze_csv(["0,0.5,0.5,ok,left", "10000000,0.5,0.5,ok,left"]))
+        self.assert_refused(
+            ["render", "box.gltf", *OUT, "--gaze", "log.csv", "--frames", "100", "--gaze-missing", "error"], ["log.csv"])
+
+    def test_screen_of_another_shape(self):
+        self.assert_refused(
+            ["render", "box.gltf", "-o", "f.exr", "--size", "64x64", "--gaze-at", "0.5,0.5", *harness.SCREEN], ["shape"])
+
+
+class BadCameras(harness.CliTest):
+    def test_path_does_not_cover_the_frames(self):
+        self.write("path.csv", "t[s],x[m],y[m],z[m],qx,qy,qz,qw\n0,0,0,4,0,0,0,1\n1,0,0,5,0,0,0,1\n")
+        arguments = ["render", "box.gltf", *OUT, "--camera-path", "path.csv", "--fps", "24"]
+        self.assert_refused([*arguments, "--frames", "20-30"], ["path.csv", "frame 25"])
+        self.run_ok(*arguments, "--frames", "24-30", "--camera-extrapolation", "hold", "--spp", "1")
+
+    def test_animated_camera_does_not_cover_the_frames(self):
+        self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
+        self.assert_refused(["render", "glide.gltf", *OUT, "--frames", "1-30"], ["frame 25"])
+
+    def test_unknown_names(self):
+        arguments = ["render", "box.gltf", *OUT]
+        self.assert_refused([*arguments, "--camera", "mian"], ["--camera", "mian", "did you mean 'main'"])
+        self.assert_refused([*arguments, "--camera", "7"], ["--camera", "7"])
+        self.assert_refused([*arguments, "--camera-path", "gone.csv"], ["gone.csv"])
+        self.assert_refused([*arguments, "--eye", "0,0,4"], ["--target"])
+        self.assert_refused([*arguments, "--eye", "0,0,4", "--target", "0,0,4"], ["--target"])
+        self.assert_refused([*arguments, "--eye", "0,0,4", "--target", "0,0,0", "--camera", "main"], ["--camera"])
+
+
+class BadOutputs(harness.CliTest):
+    def test_unwritable_folder(self):
+        self.write("file", "not a folder")
+        self.assert_refused(["render", "box.gltf", "-o", "file/f.exr", "--size", "64x36"], ["file", "not a folder"])
+        self.assert_refused(["render", "box.gltf", "-o", "/proc/f.exr", "--size", "64x36"], ["/proc"])
+
+    def test_existing_output(self):
+        arguments = ["render", "box.gltf", *OUT, "--frames", "1-3", "--spp", "1"]
+        self.write("out/f.0002.exr", "precious")
+        self.assert_refused(arguments, ["out/f.0002.exr", "exists", "--overwrite"])
+        self.assertEqual((self.folder / "out/f.0002.exr").read_text(), "precious")
+        self.run_ok(*arguments, "--overwrite")
+        self.assertNotEqual((self.folder / "out/f.0002.exr").read_bytes(), b"precious")
+        self.assert_refused(arguments, ["exists"])
+
+    def test_converting_over_a_file(self):
+        self.write("log.csv", harness.moving_gaze())
+        self.write("out.csv", "precious")
+        self.assert_refused(["gaze", "log.csv", "--convert", "out.csv"], ["out.csv", "exists"])
+
+    def test_names(self):
+        def refuse(output, words):
+            self.assert_refused(["render", "box.gltf", "--size", "64x36", "--frames", "1-2", *output], words)
+
+        refuse([], ["output"])
+        refuse(["-o", "f.exr"], ["f.exr", "####"])
+        refuse(["-o", "f.####.bmpp"], ["f.####.bmpp"])
+        refuse(["-o", "a.####.exr", "-o", "b.####.exr"], ["a.####.exr", "b.####.exr"])
+        refuse(["-o", "a.####.exr", "--aov", "albdeo"], ["albdeo", "albedo"])
+        refuse(["-o", "a.####.exr", "--exr-compression", "zap"], ["zap"])
+
+    def test_unknown_view(self):
+        arguments = ["render", "box.gltf", "-o", "f.png", "--size", "64x36"]
+        self.assert_refused([*arguments, "--view", "ACES SDX"], ["ACES SDX", "ACES SDR"])
+        self.assert_refused([*arguments, "--display", "none such"], ["none such"])
+        self.assert_refused([*arguments, "--look", "none such"], ["none such"])
+        self.assert_refused([*arguments, "--ocio", "gone.ocio"], ["gone.ocio"])
+        self.assert_refused(arguments, ["gone.ocio"], environment={"OCIO": "gone.ocio"})
+
+
+class BadOptions(harness.CliTest):
+    def test_values(self):
+        for option, value, words in [
+            ("--size", "0x10", ["--size"]), ("--size", "64", ["--size", "1920x1080"]),
+            ("--fps", "0", ["--fps"]), ("--fps", "fast", ["--fps"]),
+            ("--frames", "5-1", ["--frames"]), ("--frames", "0", ["--frames"]), ("--frames", "x", ["--frames"]),
+            ("--gaze-max-age", "50", ["--gaze-max-age", "unit"]), ("--gaze-max-age", "1.5ns", ["nanosecond"]),
+            ("--gaze-max-age", "-1s", ["--gaze-max-age"]), ("--gaze-mode", "holdd", ["hold"]),
+            ("--region-samples", "1,2", ["--region-samples"]), ("--region-angles", "17,5.2", ["angle"]),
+            ("--region-blocks", "0,4", ["block"]), ("--falloff", "region", ["regions"]), ("--filter", "liner", ["linear"]),
+            ("--bounces", "-1", ["--bounces"]), ("--threads", "-1", ["--threads"]), ("--seed", "-1", ["--seed"]),
+            ("--exposure", "bright", ["--exposure"]), ("--yfov", "180", ["--yfov"]), ("--env", "constant:1,2", ["--env"]),
+            ("--env", "constant:-1,0,0", ["negative"]), ("--only-pixel", "64,0", ["--only-pixel", "64x36"]),
+            ("--progress", "sometimes", ["auto"]), ("--bits", "12", ["12"]), ("--exr-zip-level", "0", ["--exr-zip-level"]),
+            ("--gaze-scale", "0", ["--gaze-scale"]),
+        ]:
+            with self.subTest(option=option, value=value):
+                size = [] if option == "--size" else ["--size", "64x36"]
+                self.assert_refused(["render", "box.gltf", "-o", "f.####.exr", "-o", "f.####.png", *size, option, value], words)
+
+    def test_usage(self):
+        self.assert_refused([], ["command"])
+        self.assert_refused(["rendr"], ["rendr", "render"])
+        self.assert_refused(["render"], ["scene"])
+        self.assert_refused(["render", "box.gltf", "--gase", "x"], ["--gase", "--gaze"])
+        self.assert_refused(["render", "box.gltf", "more.gltf"], ["more.gltf"])
+        self.assert_refused(["render", "box.gltf", "--size"], ["--size"])
+        self.assert_refused(["render", "box.gltf", "--size", "1x1", "--size", "2x2"], ["--size"])
+        self.assert_refused(["render", "box.gltf", *OUT, "--overwrite", "--resume"], ["--resume"])
+        self.assert_refused(["scene"], ["scene"])
+        self.assert_refused(["gaze"], ["log"])
+        self.assert_refused(["merge", "."], ["parts"])
+        self.assert_refused(["list", "falofs"], ["falloffs"])
+        self.assert_refused(["plan"], ["scene"])
+
+
+if __name__ == "__main__":
+    harness.main()

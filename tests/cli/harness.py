@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the program and makes tiny inputs for it. Needs nothing but Python."""
+
+import base64
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["GAZETRACE"]
+SHARED = Path(os.environ.get("GAZETRACE_SHARED_DIR", "/nonexistent"))
+SOURCE = Path(os.environ.get("GAZETRACE_SOURCE_DIR", Path(__file__).parents[2]))
+
+SCREEN = ["--screen-px", "64,36", "--screen-cm", "64,36", "--screen-distance-cm", "60"]
+
+
+def box_gltf(camera_seconds=None):
+    """A floor, a box above it and a point light; with `camera_seconds` its camera glides sideways that long."""
+    corners = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    faces = [(0, 2, 1, 1, 2, 3), (4, 5, 6, 5, 7, 6), (0, 1, 4, 1, 5, 4), (2, 6, 3, 3, 6, 7), (0, 4, 2, 2, 4, 6), (1, 3, 5, 3, 7, 5)]
+    indices = [i for face in faces for i in face]
+    positions = b"".join(struct.pack("<3f", *corner) for corner in corners)
+    buffer = positions + struct.pack("<36H", *indices)
+    views = [
+        {"buffer": 0, "byteOffset": 0, "byteLength": 96},
+        {"buffer": 0, "byteOffset": 96, "byteLength": 72},
+    ]
+    accessors = [
+        {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]},
+        {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
+    ]
+    gltf = {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1, 2, 3]}],
+        "nodes": [
+            {"mesh": 0, "scale": [0.5, 0.5, 0.5]},
+            {"mesh": 0, "translation": [0, -1, 0], "scale": [4, 0.1, 4]},
+            {"camera": 0, "translation": [0, 0.5, 4]},
+            {"translation": [1, 3, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.6, 0.4, 1], "metallicFactor": 0.2, "roughnessFactor": 0.4}}],
+        "cameras": [{"name": "main", "type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.01}}],
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 40}]}},
+    }
+    if camera_seconds is not None:
+        keys = struct.pack("<2f", 0, camera_seconds) + struct.pack("<6f", -0.5, 0.5, 4, 0.5, 0.5, 4)
+        views += [
+            {"buffer": 0, "byteOffset": 168, "byteLength": 8},
+            {"buffer": 0, "byteOffset": 176, "byteLength": 24},
+        ]
+        accessors += [
+            {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [camera_seconds]},
+            {"bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3"},
+        ]
+        buffer += keys
+        gltf["animations"] = [
+            {"channels": [{"sampler": 0, "target": {"node": 2, "path": "translation"}}], "samplers": [{"input": 2, "output": 3}]}
+        ]
+    uri = "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()
+    gltf.update(buffers=[{"byteLength": len(buffer), "uri": uri}], bufferViews=views, accessors=accessors)
+    return gltf
+
+
+def gaze_csv(rows, header="t[ns],u[1],v[1],valid,eye"):
+    preamble = "# gazetrace-gaze 1\n# display_px 64 36\n# display_mm 640 360\n# distance_mm 600\n"
+    return preamble + header + "\n" + "".join(row + "\n" for row in rows)
+
+
+def moving_gaze(samples=100, step_ns=10_000_000):
+    return gaze_csv(f"{i * step_ns},{0.2 + 0.6 * i / samples:.4f},0.5,ok,cyclopean" for i in range(samples))
+
+
+class CliTest(unittest.TestCase):
+    """A test with a folder of its own, in which the program is started."""
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="gazetrace_cli_"))
+        self.addCleanup(shutil.rmtree, self.folder, True)
+        self.write("box.gltf", json.dumps(box_gltf()))
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, str):
+            content = content.encode()
+        path.write_bytes(content)
+        return path
+
+    def run_program(self, *arguments, timeout=300, environment=None):
+        variables = {name: value for name, value in os.environ.items() if name != "OCIO"}
+        result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=timeout,
+                                env={**variables, **(environment or {})}, check=False)
+        # Not text=True, which would turn the carriage returns of a progress bar into line ends.
+        result.stdout, result.stderr = (stream.decode(errors="replace") for stream in (result.stdout, result.stderr))
+        return result
+
+    def run_ok(self, *arguments, **more):
+        result = self.run_program(*arguments, **more)
+        self.assertEqual(result.returncode, 0, f"{arguments}\n{result.stdout}\n{result.stderr}")
+        return result
+
+    def assert_refused(self, arguments, words, **more):
+        """Exit code 2, one line on stderr with all the words, nothing on stdout, no picture or record left."""
+        before = set(self.files())
+        result = self.run_program(*arguments, **more)
+        self.assertEqual(result.returncode, 2, f"{arguments}\n{result.stdout}\n{result.stderr}")
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("gazetrace: error: "), lines[0])
+        for word in words:
+            self.assertIn(word.lower(), lines[0].lower())
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(set(self.files()), before)
+
+    def files(self, folder="."):
+        root = self.folder / folder
+        return sorted(str(path.relative_to(root)) for path in root.rglob("*") if path.is_file())
+
+    def pictures(self, folder):
+        root = self.folder / folder
+        return {path.name: path.read_bytes() for path in root.iterdir() if path.suffix in (".exr", ".png")}
+
+
+def main():
+    program = unittest.main(exit=False)
+    result = program.result
+    for _, reason in result.skipped:
+        print("skipped:", reason)
+    if result.wasSuccessful() and result.testsRun and len(result.skipped) == result.testsRun:
+        sys.exit(77)
+    sys.exit(0 if result.wasSuccessful() else 1)
