@@ -46,6 +46,7 @@ DisplayGeometry display_by_name(std::string_view name) {
       std::find_if(displays.begin(), displays.end(), [&](const NamedDisplay& d) { return d.name == name; });
   if (found == displays.end()) {
     std::vector<std::string> names;
+    names.reserve(displays.size());
     for (const NamedDisplay& display : displays) {
       names.push_back(display.name);
     }

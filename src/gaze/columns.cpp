@@ -32,6 +32,7 @@ bool is_known_unit(std::string_view text) {
 
 std::string listing(const std::vector<ColumnHeading>& headings) {
   std::vector<std::string> texts;
+  texts.reserve(headings.size());
   for (const ColumnHeading& heading : headings) {
     texts.push_back(heading.text);
   }

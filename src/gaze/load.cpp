@@ -36,6 +36,10 @@ const GazeFormat& choose_format(const GazeFile& file, const std::string& name) {
   if (!name.empty()) {
     throw Error(ErrorKind::usage, "", unknown_name_message("gaze format", name, names));
   }
+  if (file.text.starts_with("\x1F\x8B")) {
+    throw Error(ErrorKind::input, file.path, "is compressed with gzip, which is not read here",
+                "unpack it first: gunzip");
+  }
   const GazeFormat* best = nullptr;
   double sure = 0;
   for (const GazeFormat& format : formats()) {

@@ -174,6 +174,8 @@ std::string time_unit_text(int exponent) {
   switch (exponent) {
     case 0:
       return "ns";
+    case 2:
+      return "100 ns";
     case 3:
       return "us";
     case 6:
