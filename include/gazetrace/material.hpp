@@ -11,7 +11,9 @@
 namespace gazetrace {
 
 // Shape of the diffuse lobe; both are balanced so that a white surface loses no light.
-enum class DiffuseModel : std::uint8_t { burley, lambert };
+// matte: every surface is the ideal Lambertian one, base colour / pi, without any specular lobe; for closed forms and
+// for comparison with renderers that have nothing else.
+enum class DiffuseModel : std::uint8_t { burley, lambert, matte };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 

@@ -9,7 +9,8 @@
 //         (Burley, "Physically Based Shading at Disney", 2012, section 5.3, with 2 cos^2 theta_d = 1 + o.i)
 // A white surface reflects exactly the light it receives, up to the tables' interpolation (bsdf_test states the bound).
 // Burley's own lobe absorbs light at grazing angles when smooth and makes light when rough; s takes both out and leaves
-// the angular shape. Directions point away from the surface; z is the shading normal.
+// the angular shape. DiffuseModel::matte is base colour / pi alone. Directions point away from the surface; z is the
+// shading normal.
 #pragma once
 
 #include "gazetrace/material.hpp"
@@ -57,6 +58,11 @@ class Bsdf {
         f0_(Vec3f{kDielectricF0, kDielectricF0, kDielectricF0} * (1.0F - surface.metallic) +
             surface.base_color * surface.metallic),
         smith_o_(smith_length(wo.z, alpha_ * alpha_)) {
+    if constexpr (kDiffuse == DiffuseModel::matte) {
+      diffuse_ = surface.base_color * kInvPi;
+      specular_probability_ = 0;
+      return;
+    }
     const float lost_average = 1.0F - e_average;
     const float kept = e_average * repeated_share(lost_average);
     const auto repeated = [=](float f0) {
@@ -135,6 +141,9 @@ class Bsdf {
   static constexpr float luminance(const Vec3f& c) noexcept { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
 
   [[nodiscard]] BsdfEval evaluate_half(const Vec3f& wi, const Vec3f& half, const AlbedoTerms& terms) const noexcept {
+    if constexpr (kDiffuse == DiffuseModel::matte) {
+      return {diffuse_ * wi.z, kInvPi * wi.z};
+    }
     const float distribution = ggx_distribution(half, alpha_);
     const float smith_i = smith_length(wi.z, alpha_ * alpha_);
     const float visible = 0.5F / (wo_.z * smith_i + wi.z * smith_o_);

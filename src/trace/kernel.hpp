@@ -45,7 +45,7 @@ using Kernel = void (*)(const FrameContext&, Workspace&, int count, KernelCounts
 struct NamedKernel {
   const char* name;
   KernelFeatures features;
-  Kernel burley, lambert;
+  Kernel burley, lambert, matte;
 };
 
 KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene);

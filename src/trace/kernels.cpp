@@ -9,7 +9,7 @@ namespace {
 template <KernelFeatures kFeatures>
 constexpr NamedKernel named(const char* name) {
   return {name, kFeatures, PathKernel<kFeatures, DiffuseModel::burley>::run,
-          PathKernel<kFeatures, DiffuseModel::lambert>::run};
+          PathKernel<kFeatures, DiffuseModel::lambert>::run, PathKernel<kFeatures, DiffuseModel::matte>::run};
 }
 
 constexpr KernelFeatures kPlain{};

@@ -136,8 +136,8 @@ float read_alpha(const Texture& texture, float u, float v) {
   const Axis x = locate(u, image.width_px, texture.wrap_u, texture.nearest);
   const Axis y = locate(v, image.height_px, texture.wrap_v, texture.nearest);
   const auto texel = [&](int column, int row) {
-    const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width_px) +
-                          static_cast<std::size_t>(column);
+    const std::size_t i =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(column);
     return static_cast<float>(image.rgba[4 * i + 3]);
   };
   const float a = texel(x.low, y.low);

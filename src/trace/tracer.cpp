@@ -214,7 +214,9 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   }
   std::vector<TileResult> results(ranges.size());
   WorkspacePool pool;
-  const Kernel kernel = settings.diffuse == DiffuseModel::burley ? variant.burley : variant.lambert;
+  const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
+                        : settings.diffuse == DiffuseModel::lambert ? variant.lambert
+                                                                    : variant.matte;
   parallel_for(ranges.size(), impl_->options.threads, [&](std::size_t i) {
     const FlushDenormals flush;
     auto work = pool.take();

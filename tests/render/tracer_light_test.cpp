@@ -2,7 +2,11 @@
 // Scenes whose radiance is known in closed form.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+
 #include "render/tracer_scenes.hpp"
+#include "render/tracer_statistics.hpp"
 
 namespace gazetrace {
 namespace {
@@ -48,6 +52,36 @@ TEST(TracerLight, AWhiteGlowingBoxAddsOneForEveryBounce) {
       const Vec3d mixed = mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
       EXPECT_NEAR(mixed.y, 1 + bounces, 0.01 * bounces + 1e-6) << bounces;
     }
+  }
+}
+
+// Inside a closed box whose ideally diffuse walls emit 1 and reflect a, L = 1 + a + a^2 + ... = 1 / (1 - a).
+TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
+  for (const float albedo : {0.2F, 0.5F, 0.8F}) {
+    Scene scene;
+    scene.materials.push_back(diffuse_material({albedo, albedo, albedo}, {1, 1, 1}));
+    add_mesh(scene, box(1.5F, true, 0));
+    const PathTracer tracer(scene, threads(2));
+    const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});
+    TraceSettings settings;
+    settings.diffuse = DiffuseModel::matte;
+    settings.max_bounces = 96;  // 0.8^97 < 4e-10
+    const double expected = 1.0 / (1.0 - static_cast<double>(albedo));
+
+    // Cosine sampling of a cosine lobe has no variance here: exact up to float sums.
+    settings.light_sampling = LightSampling::bsdf_only;
+    const SamplingMap one = uniform_map(8, 8, 16);
+    EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, one, settings)).y, expected, 2e-5 * expected) << albedo;
+
+    settings.light_sampling = LightSampling::mis;
+    settings.russian_roulette = true;
+    Repeats repeats;
+    for (std::uint64_t seed = 0; seed < 32; ++seed) {
+      settings.seed = seed;
+      repeats.means.push_back(mean_radiance(tracer.trace(camera, 1, one, settings)).y);
+    }
+    EXPECT_LT(std::fabs(repeats.mean() - expected), kCriticalT * std::sqrt(repeats.variance_of_mean())) << albedo;
+    EXPECT_LT(std::sqrt(repeats.variance_of_mean()), 0.01 * expected) << albedo;
   }
 }
 
