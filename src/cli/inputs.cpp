@@ -128,6 +128,13 @@ std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
   }
   DisplayGeometry geometry;
   if (!screen.name.empty()) {
+    std::vector<std::string> known;
+    for (const NamedDisplay& display : named_displays()) {
+      known.push_back(display.name);
+    }
+    if (std::find(known.begin(), known.end(), screen.name) == known.end()) {
+      usage("--screen", unknown_name_message("screen", screen.name, known));
+    }
     geometry = display_by_name(screen.name);
   }
   if (screen.size_px) {
@@ -204,6 +211,10 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
   inputs.decisions.emplace_back("frames", decision);
   const PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
   inputs.plan = plan_frames(camera, log, settings);
+  const auto& aovs = job.exr.aovs;
+  if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
+    usage("--aov", "there is no eccentricity without gaze", "give --gaze or --gaze-at");
+  }
 
   append(inputs.warnings, camera.warnings);
   if (log != nullptr) {

@@ -2,7 +2,7 @@
 // map -> trace -> reconstruct -> accumulate -> exposure -> colour -> files, frame by frame. Only the history and the
 // timing log outlive a frame.
 #include <algorithm>
-#include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -96,6 +96,9 @@ void write_files(const FrameRequest& request, const RenderedFrame& rendered, con
   const Stopwatch map_watch;
   if (wants_eccentricity && request.gaze_direction_true) {
     eccentricity = eccentricity_image(request.view, *request.gaze_direction_true);
+  } else if (wants_eccentricity) {
+    // Without gaze there is none, and a sequence keeps its channels through a gap.
+    eccentricity = ImageGray(request.width_px, request.height_px, std::numeric_limits<float>::quiet_NaN());
   }
   const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;
   if (!output.map_pattern.empty()) {

@@ -107,7 +107,7 @@ class BadGaze(harness.CliTest):
         self.refuse(rows, ["log.csv", "--screen"], more=["--frames", "1"])
         self.refuse(rows, ["distance"], more=["--screen-px", "64,36", "--screen-cm", "64,36"])
         self.refuse(rows, ["width"], more=["--screen-px", "64,36", "--screen-distance-cm", "60"])
-        self.refuse(rows, ["nothing-like-it", "paper"], more=["--screen", "nothing-like-it"])
+        self.refuse(rows, ["--screen", "nothing-like-it", "paper"], more=["--screen", "nothing-like-it"])
 
     def test_gaze_at_without_geometry(self):
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze-at", "0.5,0.5"], ["--gaze-at", "--screen"])
@@ -176,6 +176,7 @@ class BadOutputs(harness.CliTest):
         refuse(["-o", "f.####.bmpp"], ["f.####.bmpp"])
         refuse(["-o", "a.####.exr", "-o", "b.####.exr"], ["a.####.exr", "b.####.exr"])
         refuse(["-o", "a.####.exr", "--aov", "albdeo"], ["albdeo", "albedo"])
+        refuse(["-o", "a.####.exr", "--aov", "eccentricity"], ["eccentricity", "--gaze"])
         refuse(["-o", "a.####.exr", "--exr-compression", "zap"], ["zap"])
 
     def test_unknown_view(self):

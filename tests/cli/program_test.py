@@ -99,6 +99,15 @@ class Talk(harness.CliTest):
         self.assertIn("hold", self.run_ok(*arguments).stdout)
         self.assertEqual(self.files(), ["box.gltf", "log.csv"])
 
+    def test_eccentricity_survives_a_gap_in_the_gaze(self):
+        rows = [f"{i * 10_000_000},0.5,0.5,{'ok' if i < 20 else 'lost'},left" for i in range(100)]
+        self.write("log.csv", harness.gaze_csv(rows))
+        result = self.run_ok("render", "box.gltf", "--gaze", "log.csv", "--gaze-missing", "uniform", "--gaze-max-age", "50ms",
+                             "--frames", "1-12x11", "--fps", "24", "--size", "64x36", "--spp", "1", "--aov", "eccentricity",
+                             "-o", "f.####.exr", "--map", "m.####.exr")
+        self.assertIn("1 frames without gaze", result.stderr)
+        self.assertEqual(len(self.pictures(".")), 4)
+
     def test_scenes_without_light_get_the_sky(self):
         gltf = harness.box_gltf()
         gltf["nodes"][3].pop("extensions")
