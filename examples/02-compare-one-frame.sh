@@ -4,7 +4,7 @@
 # went. Writes EXR and PNG to out/compare/ and prints what was saved. FRAME=n chooses the frame, SIZE=WxH its size.
 set -euo pipefail
 source "$(dirname "$0")/find_gazetrace.sh"
-frame=${FRAME:-8}
+frame=${FRAME:-7}
 common=(render --config examples/example.toml --frames "$frame" --size "${SIZE:-640x360}" --overwrite --quiet)
 
 mkdir -p out/compare/uniform out/compare/foveated

@@ -9,6 +9,6 @@ source "$(dirname "$0")/find_gazetrace.sh"
 echo
 "$gazetrace" gaze gazelogs/tx300_left.csv
 echo
-"$gazetrace" plan --config examples/example.toml --frames 25-36
+"$gazetrace" plan --config examples/example.toml --frames 21-30
 echo
-"$gazetrace" plan --config examples/example.toml --frames 25-36 --counts
+"$gazetrace" plan --config examples/example.toml --frames 21-30 --counts

@@ -5,7 +5,8 @@ gazetrace=${1:-}
 [ -z "$gazetrace" ] || gazetrace=$(realpath "$gazetrace")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 if [ -z "$gazetrace" ]; then
-  gazetrace=$(find build build-* -maxdepth 4 -type f -name gazetrace -perm -u+x -printf '%T@ %p\n' 2>/dev/null |
+  # find fails where build* matches nothing, which is no error here
+  gazetrace=$({ find build* -maxdepth 4 -type f -name gazetrace -perm -u+x -printf '%T@ %p\n' 2>/dev/null || true; } |
     sort -rn | head -n 1 | cut -d' ' -f2-)
 fi
 [ -n "$gazetrace" ] || gazetrace=$(command -v gazetrace || true)

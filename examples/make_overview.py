@@ -75,7 +75,7 @@ def mark_gaze(picture, at):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("gazetrace", nargs="?", default="")
-    parser.add_argument("--frame", type=int, default=8)
+    parser.add_argument("--frame", type=int, default=7)
     parser.add_argument("--out", default=os.path.join(ROOT, "examples", "images", "overview.jpg"))
     args = parser.parse_args()
     command = [os.path.join(ROOT, "examples", "02-compare-one-frame.sh")] + ([args.gazetrace] if args.gazetrace else [])
