@@ -105,8 +105,7 @@ GAZETRACE_ENUM_NAMES(GazeInterpolation, "gaze mode", {E::hold, "hold"}, {E::near
 GAZETRACE_ENUM_NAMES(NoGazePolicy, "policy for missing gaze", {E::hold, "hold"}, {E::center, "center"},
                      {E::uniform, "uniform"}, {E::error, "error"})
 GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"})
-GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"},
-                     {E::matte, "matte"})
+GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})
 GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light_only, "light"}, {E::bsdf_only, "bsdf"})
 GAZETRACE_ENUM_NAMES(PixelFilter, "pixel filter", {E::box, "box"}, {E::blackman_harris, "blackman-harris"})
 GAZETRACE_ENUM_NAMES(BvhQuality, "BVH quality", {E::high, "high"}, {E::medium, "medium"})
