@@ -149,6 +149,10 @@ SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, 
   const ResumePlan resume = plan_resume(plan, settings, timing_path);
   result.warnings = resume.warnings;
   TimingLog timing(timing_path, resume.kept_rows);
+  if (!settings.output.display.pattern.empty() && !plan.frames.empty()) {
+    const FrameRequest& first = plan.frames.front();
+    color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
+  }
 
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const FrameRequest& request = plan.frames[i];
