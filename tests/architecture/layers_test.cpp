@@ -65,7 +65,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(tbb/|oneapi/)", R"(src/core/parallel\.cpp)"},
     {R"(CLI/)", R"(src/cli/.*)"},
     {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_config\.cpp)"},
-    {R"(nlohmann/)", R"(src/.*\.cpp)"},
+    {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf_walker\.hpp))"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
     {R"(zlib\.h)", R"(src/gaze/.*\.cpp)"},
 };
