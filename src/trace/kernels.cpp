@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
-#include "trace/kernel_body.hpp"
+#include "trace/kernel/emission.hpp"
+#include "trace/kernel/generate.hpp"
+#include "trace/kernel/path_kernel.hpp"
+#include "trace/kernel/scatter.hpp"
+#include "trace/kernel/shade.hpp"
+#include "trace/kernel/shadow.hpp"
+#include "trace/kernel/sky.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light from surfaces: found by a ray, and the texture of a light sample.
+#pragma once
+
+#include <vector>
+
+#include "trace/kernel/path_kernel.hpp"
+#include "trace/surface_hit.hpp"
+
+namespace gazetrace {
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_t i, std::size_t slot,
+                                                          const Vec3f& throughput, const ShadingMaterial& material,
+                                                          float pdf_bsdf) {
+  const ChunkHits& chunk = work_.chunk;
+  Vec3f emission = material.emission;
+  if (material.emit.texture != nullptr) {
+    const Vec2f at = coordinates_at<kFeatures>(*frame_.scene, chunk, i, material.emit);
+    const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, chunk.lod[i] + material.emit.half_log2_texels);
+    emission *= Vec3f{c.x, c.y, c.z};
+  }
+  float weight = 1;
+  if (vertex > 0) {
+    float pdf_light = 0;
+    const std::uint32_t emitter = emitter_of(i);
+    if (emitter != kNoEmitter) {
+      // The geometric normal is turned towards the ray; the sampler wants the sign of the front face.
+      const float cosine = -dot(chunk.geometric.get(i), chunk.direction.get(i)) * chunk.side[i];
+      pdf_light = frame_.lights->pdf_triangle(emitter, cosine, chunk.t[i] * chunk.t[i]);
+    }
+    weight = weight_of_found_light(vertex, pdf_bsdf, pdf_light);
+  }
+  add(slot, throughput * emission * weight);
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline std::uint32_t PathKernel<kFeatures, kDiffuse>::emitter_of(std::size_t i) const {
+  const RenderScene& scene = *frame_.scene;
+  const std::size_t k = work_.chunk.path[i];
+  std::uint32_t record = work_.hits.geometry[k];
+  std::uint32_t scene_instance = kNoId;
+  if constexpr (kFeatures.instances) {
+    if (work_.chunk.instance[i] != kNoId) {
+      const ShadingInstance& instance = scene.instances[work_.chunk.instance[i]];
+      record += instance.first_geometry;
+      scene_instance = instance.scene_instance;
+    }
+  }
+  const GeometryRecord& geometry = scene.geometries[record];
+  scene_instance = scene_instance == kNoId ? geometry.scene_instance : scene_instance;
+  return frame_.lights->emitter_of(scene_instance, geometry.scene_geometry, work_.hits.primitive[k]);
+}
+
+// A light sample on a textured emitter brings its place instead of the texture's value.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline Vec3f PathKernel<kFeatures, kDiffuse>::light_radiance(const LightSample& light) const {
+  if constexpr (kFeatures.emission) {
+    if (light.emitter != kNoEmitter) {
+      const EmissiveTriangle& emitter = frame_.lights->triangle(light.emitter);
+      const ShadingMaterial& material = frame_.scene->materials[static_cast<std::size_t>(emitter.material)];
+      if (material.emit.texture != nullptr) {
+        return light.radiance * emitted_texel(emitter, material, light.barycentric);
+      }
+    }
+  }
+  return light.radiance;
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline Vec3f PathKernel<kFeatures, kDiffuse>::emitted_texel(const EmissiveTriangle& emitter,
+                                                            const ShadingMaterial& material, const Vec2f& at) const {
+  const Instance& instance = frame_.source->instances[static_cast<std::size_t>(emitter.instance)];
+  const Geometry& geometry = frame_.source->meshes[static_cast<std::size_t>(instance.mesh)]
+                                 .geometries[static_cast<std::size_t>(emitter.geometry)];
+  const auto& corner = geometry.triangles[static_cast<std::size_t>(emitter.primitive)];
+  const std::vector<Vec2f>& set = material.emit.uv_set == 1 ? geometry.uv1 : geometry.uv0;
+  if (set.size() != geometry.positions.size()) {
+    return {1, 1, 1};
+  }
+  const float w = 1.0F - at.x - at.y;
+  const float x = w * set[corner[0]].x + at.x * set[corner[1]].x + at.y * set[corner[2]].x;
+  const float y = w * set[corner[0]].y + at.x * set[corner[1]].y + at.y * set[corner[2]].y;
+  const auto& m = material.emit.transform;
+  const Vec4f c = read_texture(*material.emit.texture, m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5], 0.0F);
+  return {c.x, c.y, c.z};
+}
+
+}  // namespace gazetrace

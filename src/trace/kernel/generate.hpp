@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first stage: a camera ray for every sample of the batch.
+#pragma once
+
+#include "trace/kernel/path_kernel.hpp"
+
+namespace gazetrace {
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
+  RayBatch& rays = work_.rays[0];
+  PathBatch& paths = work_.paths[0];
+  const CameraRays& camera = *frame_.camera;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const CameraRays::Ray ray = camera.ray(work_.samples.x[i], work_.samples.y[i]);
+    set_ray(rays, i, ray.origin, ray.direction, ray.tnear, ray.tfar);
+    rays.alpha_key[i] = alpha_key(i, 0);
+    paths.slot[i] = static_cast<std::uint32_t>(i);
+    paths.r[i] = 1;
+    paths.g[i] = 1;
+    paths.b[i] = 1;
+    paths.pdf[i] = 0;
+    paths.cone_width[i] = camera.cone_width();
+    paths.cone_spread[i] = ray.cone_spread;
+    work_.radiance.r[i] = 0;
+    work_.radiance.g[i] = 0;
+    work_.radiance.b[i] = 0;
+    work_.radiance.rejected[i] = 0;
+  }
+  if (frame_.settings.guides) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      work_.guides.hit[i] = 0;
+    }
+  }
+}
+
+}  // namespace gazetrace

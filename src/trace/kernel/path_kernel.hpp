@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The batch path tracer. A batch goes through generate -> intersect -> shade -> shadow, bounce by bounce; each stage
+// reads and writes packed arrays in order. The estimator at every scattering event, with f the BSDF:
+//   L += throughput * f cos(wi) * L_light / p_light * w_light      (one light sample, a shadow ray)
+//   throughput *= f cos(wi) / p_bsdf                                (one BSDF sample, the next ray), and where it ends:
+//   L += throughput * L_e * w_bsdf                                  w = power heuristic, exponent 2 (Veach 1997, 9.2)
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/hash.hpp"
+#include "material/bsdf.hpp"
+#include "trace/chunk.hpp"
+#include "trace/kernel.hpp"
+
+namespace gazetrace {
+
+// From the ratio of the densities: never squares a density, so nothing overflows before the result is 0 or 1.
+inline float power_heuristic(float chosen, float other) {
+  const float ratio = other / chosen;
+  return 1.0F / (1.0F + ratio * ratio);
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+class PathKernel {
+ public:
+  static void run(const FrameContext& frame, Workspace& work, int count, KernelCounts& counts) {
+    PathKernel(frame, work, counts).trace(count);
+  }
+
+ private:
+  PathKernel(const FrameContext& frame, Workspace& work, KernelCounts& counts)
+      : frame_(frame), work_(work), counts_(counts) {}
+
+  void trace(int count) {
+    start(count);
+    int alive = count;
+    const int last = frame_.settings.max_bounces;
+    for (int vertex = 0; alive > 0; ++vertex) {
+      RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
+      (vertex == 0 ? counts_.rays_primary : counts_.rays_bounce) += static_cast<std::uint64_t>(alive);
+      if (vertex == last && vertex > 0 && !frame_.last_ray_needs_surface) {
+        see_sky(vertex, alive);
+        return;
+      }
+      const RayShape shape = vertex == 0 ? RayShape::coherent_packet : RayShape::single;
+      record(rays, alive, shape, false);
+      counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
+      shadow_count_ = 0;
+      alive = shade(vertex, alive);
+      trace_shadows(vertex);
+    }
+  }
+
+  void record(const RayBatch& rays, int count, RayShape shape, bool occlusion) const {
+    if (frame_.recorder != nullptr) {
+      frame_.recorder->record(rays, count, shape, occlusion);
+    }
+  }
+
+  static void set_ray(RayBatch& rays, std::size_t i, const Vec3f& origin, const Vec3f& direction, float tnear,
+                      float tfar) {
+    rays.ox[i] = origin.x;
+    rays.oy[i] = origin.y;
+    rays.oz[i] = origin.z;
+    rays.dx[i] = direction.x;
+    rays.dy[i] = direction.y;
+    rays.dz[i] = direction.z;
+    rays.tnear[i] = tnear;
+    rays.tfar[i] = tfar;
+  }
+
+  // `segment`: twice the vertex, plus one for shadow rays.
+  [[nodiscard]] std::uint32_t alpha_key(std::size_t slot, std::uint32_t segment) const {
+    const std::uint64_t key = work_.samples.key[slot].value;
+    return hash32(static_cast<std::uint32_t>(key >> 32U) ^
+                  hash32(work_.samples.sample[slot] ^ hash32(segment + 0x9e3779b9U)));
+  }
+
+  void add(std::size_t slot, const Vec3f& radiance) {
+    work_.radiance.r[slot] += radiance.x;
+    work_.radiance.g[slot] += radiance.y;
+    work_.radiance.b[slot] += radiance.z;
+  }
+
+  // generate.hpp
+  void start(int count);
+
+  // sky.hpp
+  [[nodiscard]] float weight_of_found_light(int vertex, float pdf_bsdf, float pdf_light) const;
+  void add_sky(int vertex, const RayBatch& rays, const PathBatch& paths, const std::uint16_t* list, std::size_t count);
+  void see_sky(int vertex, int count);
+
+  // shade.hpp
+  int shade(int vertex, int count);
+  void shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths, std::size_t begin, std::size_t end);
+  bool goes_on(int vertex, std::size_t i, const PathBatch& paths);
+  void record_guides(std::size_t slot, std::size_t i);
+
+  // emission.hpp
+  void add_emission(int vertex, std::size_t i, std::size_t slot, const Vec3f& throughput,
+                    const ShadingMaterial& material, float pdf_bsdf);
+  [[nodiscard]] std::uint32_t emitter_of(std::size_t i) const;
+  [[nodiscard]] Vec3f light_radiance(const LightSample& light) const;
+  [[nodiscard]] Vec3f emitted_texel(const EmissiveTriangle& emitter, const ShadingMaterial& material,
+                                    const Vec2f& at) const;
+
+  // scatter.hpp
+  void scatter_chunk(int vertex, const PathBatch& paths, std::size_t count, const std::uint16_t* active,
+                     std::size_t active_count);
+  static void fill_2d(const std::array<SampleKey, kChunk>& key, const std::array<std::uint32_t, kChunk>& index,
+                      std::size_t count, std::uint32_t dimension, std::array<Vec2f, kChunk>& out);
+  static AlbedoTerms terms_of(const std::array<ChunkArray<float>, 4>& terms, std::size_t i);
+  static void read_terms(const ChunkHits& chunk, std::size_t count, const ChunkArray<float>& cosine,
+                         std::array<ChunkArray<float>, 4>& out);
+  static Surface surface_of(const ChunkHits& chunk, std::size_t i);
+  static Bsdf<kDiffuse> bsdf_of(const ChunkHits& chunk, std::size_t i);
+  [[gnu::flatten, gnu::noinline]] static void evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit,
+                                                             bool bounces);
+  void take_light_sample(int vertex, std::size_t i, const LightSample& light, const PathBatch& paths);
+  void take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths);
+
+  // shadow.hpp
+  void queue_shadow(int vertex, std::size_t slot, std::size_t i, const LightSample& light, const Vec3f& arriving);
+  void trace_shadows(int vertex);
+
+  const FrameContext& frame_;
+  Workspace& work_;
+  KernelCounts& counts_;
+  std::size_t next_count_ = 0, shadow_count_ = 0;
+};
+
+}  // namespace gazetrace

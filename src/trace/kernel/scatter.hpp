@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scattering event: one light sample and one BSDF sample for every hit of a chunk.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/hash.hpp"
+#include "material/bsdf.hpp"
+#include "trace/kernel/path_kernel.hpp"
+#include "trace/shading_frame.hpp"
+
+namespace gazetrace {
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const PathBatch& paths, std::size_t count,
+                                                           const std::uint16_t* active, std::size_t active_count) {
+  const ChunkHits& chunk = work_.chunk;
+  std::array<SampleKey, kChunk> key;
+  std::array<std::uint32_t, kChunk> index;
+  std::array<Vec2f, kChunk> select;
+  std::array<Vec2f, kChunk> light_uv;
+  std::array<Vec2f, kChunk> bsdf_uv;
+  for (std::size_t i = 0; i < kChunk; ++i) {
+    const std::size_t slot = i < count ? paths.slot[chunk.path[i]] : 0;
+    key[i] = work_.samples.key[slot];
+    index[i] = work_.samples.sample[slot];
+  }
+  const bool lit = frame_.lights->any();
+  const bool bounces = vertex + 1 < frame_.settings.max_bounces || frame_.last_ray_finds_light;
+  fill_2d(key, index, count, dimension_of(vertex, BounceDimension::select), select);
+  if (lit) {
+    fill_2d(key, index, count, dimension_of(vertex, BounceDimension::light_uv), light_uv);
+  }
+  if (bounces) {
+    fill_2d(key, index, count, dimension_of(vertex, BounceDimension::bsdf_uv), bsdf_uv);
+  }
+  std::array<LightSample, kChunk> lights;
+  if (lit) {
+    std::array<Vec3f, kChunk> positions;
+    std::array<Vec3f, kChunk> normals;
+    std::array<float, kChunk> choice;
+    for (std::size_t i = 0; i < count; ++i) {
+      positions[i] = chunk.position.get(i);
+      normals[i] = chunk.geometric.get(i);
+      choice[i] = select[i].x;
+    }
+    frame_.lights->sample_many(count, positions.data(), normals.data(), light_uv.data(), choice.data(), lights.data());
+  }
+  if (lit) {
+    for (std::size_t i = 0; i < count; ++i) {
+      work_.chunk.light.set(i, lights[i].direction);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    work_.chunk.random.set(i, bsdf_uv[i]);
+    work_.chunk.random_lobe[i] = select[i].y;
+  }
+  evaluate_lanes(work_.chunk, count, lit, bounces);
+  for (std::size_t a = 0; a < active_count; ++a) {
+    const std::size_t i = active[a];
+    if (lit && lights[i].valid) {
+      take_light_sample(vertex, i, lights[i], paths);
+    }
+    if (bounces && chunk.next_good[i] != 0) {
+      take_bsdf_sample(vertex, i, paths);
+    }
+  }
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::fill_2d(const std::array<SampleKey, kChunk>& key,
+                                                     const std::array<std::uint32_t, kChunk>& index, std::size_t count,
+                                                     std::uint32_t dimension, std::array<Vec2f, kChunk>& out) {
+  // Separate arrays: the compiler computes 16 at a time.
+  alignas(64) std::array<float, kChunk> x;
+  alignas(64) std::array<float, kChunk> y;
+  for_lanes(
+      count, [&](std::size_t i) __attribute__((always_inline)) {
+        const Vec2f u = sample_2d(key[i], index[i], dimension);
+        x[i] = u.x;
+        y[i] = u.y;
+      });
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = {x[i], y[i]};
+  }
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline AlbedoTerms PathKernel<kFeatures, kDiffuse>::terms_of(const std::array<ChunkArray<float>, 4>& terms,
+                                                             std::size_t i) {
+  return {terms[0][i], terms[1][i], terms[2][i], terms[3][i]};
+}
+
+// Table reads do not run in vectors; everything around them does.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::read_terms(const ChunkHits& chunk, std::size_t count,
+                                                        const ChunkArray<float>& cosine,
+                                                        std::array<ChunkArray<float>, 4>& out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const AlbedoTerms terms =
+        albedo_terms({chunk.table_row[i], chunk.table_fraction[i]}, std::clamp(cosine[i], 0.0F, 1.0F));
+    out[0][i] = terms.e;
+    out[1][i] = terms.b;
+    out[2][i] = terms.lambert;
+    out[3][i] = terms.burley;
+  }
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline Surface PathKernel<kFeatures, kDiffuse>::surface_of(const ChunkHits& chunk, std::size_t i) {
+  return {chunk.base_color.get(i), chunk.metallic[i], chunk.roughness[i]};
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline Bsdf<kDiffuse> PathKernel<kFeatures, kDiffuse>::bsdf_of(const ChunkHits& chunk, std::size_t i) {
+  return {surface_of(chunk, i), chunk.view.get(i), AlbedoRow{chunk.table_row[i], chunk.table_fraction[i]},
+          terms_of(chunk.view_terms, i), chunk.e_average[i]};
+}
+
+// The BSDF of every lane: towards its light sample, and a sample of its own.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit, bool bounces) {
+  for_lanes(
+      count, [&](std::size_t i) __attribute__((always_inline)) {
+        const LocalFrame local(chunk.shading.get(i));
+        chunk.view.set(i, local.to_local(-chunk.direction.get(i)));
+        chunk.light.set(i, local.to_local(chunk.light.get(i)));
+        const AlbedoRow row = Bsdf<kDiffuse>::table_row(surface_of(chunk, i));
+        chunk.table_row[i] = row.row;
+        chunk.table_fraction[i] = row.fraction;
+      });
+  for (std::size_t i = 0; i < count; ++i) {
+    chunk.e_average[i] = albedo_average({chunk.table_row[i], chunk.table_fraction[i]});
+  }
+  read_terms(chunk, count, chunk.view.z, chunk.view_terms);
+  if (lit) {
+    read_terms(chunk, count, chunk.light.z, chunk.light_terms);
+    for_lanes(
+        count, [&](std::size_t i) __attribute__((always_inline)) {
+          const BsdfEval eval = bsdf_of(chunk, i).evaluate(chunk.light.get(i), terms_of(chunk.light_terms, i));
+          chunk.light_f_cos.set(i, eval.f_cos);
+          chunk.light_pdf[i] = eval.pdf;
+        });
+  }
+  if (bounces) {
+    for_lanes(
+        count, [&](std::size_t i) __attribute__((always_inline)) {
+          const auto chosen = bsdf_of(chunk, i).sample_direction(chunk.random.get(i), chunk.random_lobe[i]);
+          chunk.next.set(i, chosen.direction);
+          chunk.half.set(i, chosen.half);
+        });
+    read_terms(chunk, count, chunk.next.z, chunk.next_terms);
+    for_lanes(
+        count, [&](std::size_t i) __attribute__((always_inline)) {
+          const BsdfSample sample =
+              bsdf_of(chunk, i).weigh({chunk.next.get(i), chunk.half.get(i)}, terms_of(chunk.next_terms, i));
+          const Vec3f next = LocalFrame(chunk.shading.get(i)).to_world(sample.direction);
+          const Vec3f unit = next * (1.0F / std::sqrt(std::max(dot(next, next), 1e-20F)));
+          const bool above = dot(unit, chunk.geometric.get(i)) > 0;
+          chunk.next.set(i, unit);
+          chunk.next_weight.set(i, sample.weight);
+          chunk.next_pdf[i] = sample.pdf;
+          chunk.next_good[i] = (static_cast<int>(sample.valid) & static_cast<int>(above)) != 0 ? 1.0F : 0.0F;
+        });
+  }
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::take_light_sample(int vertex, std::size_t i, const LightSample& light,
+                                                               const PathBatch& paths) {
+  const LightSampling mode = frame_.settings.light_sampling;
+  if (!light.delta && mode == LightSampling::bsdf_only) {
+    return;
+  }
+  float weight = 1.0F / light.pdf;
+  if (!light.delta && mode == LightSampling::mis) {
+    weight *= power_heuristic(light.pdf, work_.chunk.light_pdf[i]);
+  }
+  const std::size_t k = work_.chunk.path[i];
+  const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+  const Vec3f arriving = throughput * work_.chunk.light_f_cos.get(i) * (light_radiance(light) * weight);
+  if (arriving.x + arriving.y + arriving.z != 0) {
+    queue_shadow(vertex, paths.slot[k], i, light, arriving);
+  }
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths) {
+  const ChunkHits& chunk = work_.chunk;
+  const std::size_t k = chunk.path[i];
+  const std::size_t slot = paths.slot[k];
+  Vec3f weight = Vec3f{paths.r[k], paths.g[k], paths.b[k]} * chunk.next_weight.get(i);
+  if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 0) {
+    const float survive = std::min(std::max(std::max(weight.x, weight.y), weight.z), 0.95F);
+    if (!(sample_1d(work_.samples.key[slot], work_.samples.sample[slot],
+                    dimension_of(vertex, BounceDimension::roulette)) < survive)) {
+      return;
+    }
+    weight = weight * (1.0F / survive);
+  }
+  const std::size_t to = static_cast<std::size_t>(vertex + 1) & 1U;
+  RayBatch& out = work_.rays[to];
+  PathBatch& state = work_.paths[to];
+  const std::size_t n = next_count_++;
+  set_ray(out, n, chunk.origin.get(i), chunk.next.get(i), 0.0F, std::numeric_limits<float>::infinity());
+  out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));
+  state.slot[n] = static_cast<std::uint32_t>(slot);
+  state.r[n] = weight.x;
+  state.g[n] = weight.y;
+  state.b[n] = weight.z;
+  state.pdf[n] = chunk.next_pdf[i];
+  state.cone_width[n] = chunk.cone_width[i];
+  state.cone_spread[n] =
+      chunk.cone_spread[i] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * chunk.next_pdf[i]);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hits become surfaces: gathered, placed, textured and turned to the ray; then they shine or scatter.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "trace/kernel/path_kernel.hpp"
+#include "trace/surface_hit.hpp"
+
+namespace gazetrace {
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline int PathKernel<kFeatures, kDiffuse>::shade(int vertex, int count) {
+  const auto from = static_cast<std::size_t>(vertex & 1);
+  const RayBatch& rays = work_.rays[from];
+  const PathBatch& paths = work_.paths[from];
+  next_count_ = 0;
+  for (std::size_t begin = 0; begin < static_cast<std::size_t>(count); begin += kChunk) {
+    shade_chunk(vertex, rays, paths, begin, std::min(begin + kChunk, static_cast<std::size_t>(count)));
+  }
+  return static_cast<int>(next_count_);
+}
+
+// In steps over a few dozen rays, so that each step's reads from memory overlap and its arithmetic runs in vectors.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths,
+                                                         std::size_t begin, std::size_t end) {
+  const RenderScene& scene = *frame_.scene;
+  ChunkHits& chunk = work_.chunk;
+  std::array<std::uint16_t, kChunk> sky;
+  std::size_t sky_count = 0;
+  std::size_t count = 0;
+  for (std::size_t k = begin; k < end; ++k) {
+    const std::uint32_t geometry = work_.hits.geometry[k];
+    if (geometry == kRejected) {
+      work_.radiance.rejected[paths.slot[k]] = 1;
+    } else if (geometry == kNoId) {
+      sky[sky_count++] = static_cast<std::uint16_t>(k);
+    } else {
+      locate_hit<kFeatures>(scene, work_.hits, k, chunk, count++);
+    }
+  }
+  add_sky(vertex, rays, paths, sky.data(), sky_count);
+  if (count == 0) {
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = chunk.path[i];
+    chunk.direction.set(i, {rays.dx[k], rays.dy[k], rays.dz[k]});
+    chunk.u[i] = work_.hits.u[k];
+    chunk.v[i] = work_.hits.v[k];
+    chunk.t[i] = work_.hits.t[k];
+    chunk.cone_width[i] = paths.cone_width[k];
+    chunk.cone_spread[i] = paths.cone_spread[k];
+  }
+  gather_triangles<kFeatures>(scene, chunk, count);
+  place_hits<kFeatures>(chunk, count);
+  read_materials<kFeatures>(scene, chunk, count);
+  finish_normals<kFeatures>(chunk, count);
+
+  std::array<std::uint16_t, kChunk> active;
+  std::size_t active_count = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    active[active_count] = static_cast<std::uint16_t>(i);
+    active_count += chunk.good[i] != 0 && goes_on(vertex, i, paths) ? 1 : 0;
+  }
+  if (active_count > 0) {
+    scatter_chunk(vertex, paths, count, active.data(), active_count);
+  }
+}
+
+// Takes what the surface itself shines; true where the path scatters.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline bool PathKernel<kFeatures, kDiffuse>::goes_on(int vertex, std::size_t i, const PathBatch& paths) {
+  const ChunkHits& chunk = work_.chunk;
+  const std::size_t k = chunk.path[i];
+  const std::size_t slot = paths.slot[k];
+  if (vertex == 0 && frame_.settings.guides) {
+    record_guides(slot, i);
+  }
+  if constexpr (kFeatures.emission) {
+    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
+    if (material.unlit) {
+      add(slot, throughput * chunk.base_color.get(i));
+      return false;
+    }
+    if (material.emissive && (chunk.side[i] > 0 || material.double_sided)) {
+      add_emission(vertex, i, slot, throughput, material, paths.pdf[k]);
+    }
+  }
+  return vertex < frame_.settings.max_bounces;
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::record_guides(std::size_t slot, std::size_t i) {
+  const ChunkHits& chunk = work_.chunk;
+  GuideBatch& guides = work_.guides;
+  guides.albedo_r[slot] = chunk.base_color.x[i];
+  guides.albedo_g[slot] = chunk.base_color.y[i];
+  guides.albedo_b[slot] = chunk.base_color.z[i];
+  guides.normal_x[slot] = chunk.shading.x[i];
+  guides.normal_y[slot] = chunk.shading.y[i];
+  guides.normal_z[slot] = chunk.shading.z[i];
+  guides.depth[slot] = chunk.t[i] * dot(chunk.direction.get(i), frame_.camera->forward());
+  guides.hit[slot] = 1;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadow rays: collected over the whole batch, then traced at once.
+#pragma once
+
+#include "trace/kernel/path_kernel.hpp"
+
+namespace gazetrace {
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_t slot, std::size_t i,
+                                                          const LightSample& light, const Vec3f& arriving) {
+  const ChunkHits& chunk = work_.chunk;
+  ShadowBatch& shadows = work_.shadows;
+  const std::size_t n = shadow_count_++;
+  // Stops short of the light by what rounding may move either end, so that an emitter does not shadow itself.
+  const float tfar = light.distance * (1.0F - 1e-4F) - 2 * chunk.offset[i];
+  set_ray(shadows.rays, n, chunk.origin.get(i), light.direction, 0.0F, tfar);
+  shadows.rays.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex) + 1U);
+  shadows.slot[n] = static_cast<std::uint32_t>(slot);
+  shadows.r[n] = arriving.x;
+  shadows.g[n] = arriving.y;
+  shadows.b[n] = arriving.z;
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::trace_shadows(int vertex) {
+  const int count = static_cast<int>(shadow_count_);
+  const ShadowBatch& shadows = work_.shadows;
+  const RayShape shape = vertex == 0 ? RayShape::packet : RayShape::single;
+  counts_.rays_shadow += shadow_count_;
+  record(shadows.rays, count, shape, true);
+  counts_.rejected +=
+      static_cast<std::uint64_t>(frame_.scene->rays->occluded(shadows.rays, count, shape, work_.occluded.data));
+  for (std::size_t n = 0; n < shadow_count_; ++n) {
+    if (work_.occluded[n] == 0) {
+      add(shadows.slot[n], {shadows.r[n], shadows.g[n], shadows.b[n]});
+    } else if (work_.occluded[n] == 2) {
+      work_.radiance.rejected[shadows.slot[n]] = 1;
+    }
+  }
+}
+
+}  // namespace gazetrace
