@@ -28,3 +28,5 @@ set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRE
 find_package(OpenEXR REQUIRED)
 find_package(OpenColorIO REQUIRED)
 find_package(TinyGLTF REQUIRED)
+find_package(meshoptimizer REQUIRED)
+find_package(draco REQUIRED)

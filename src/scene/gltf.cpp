@@ -241,7 +241,9 @@ GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked) {
     return GltfSampler{sampler.magFilter, sampler.wrapS, sampler.wrapT};
   });
   convert_all(model.textures, document.textures, [](const tinygltf::Texture& texture) {
-    return GltfTexture{texture.sampler, texture.source};
+    const Value* webp = extension(texture.extensions, "EXT_texture_webp");
+    return GltfTexture{texture.sampler,
+                       static_cast<int>(webp != nullptr ? number(*webp, "source", texture.source) : texture.source)};
   });
   convert_all(model.cameras, document.cameras, camera);
   convert_all(model.lights, document.lights, light);

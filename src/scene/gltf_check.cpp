@@ -11,6 +11,8 @@
 namespace gazetrace {
 namespace {
 
+constexpr std::uint64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
+
 // Deeper JSON than any exporter writes would overflow the stack of parsers that recurse.
 constexpr int kMaxJsonDepth = 200;
 
@@ -41,8 +43,8 @@ bool is_nested_too_deep(std::string_view text) {
 using Step = Walker::Step;
 
 std::string remedy_for_extension(const std::string& name) {
-  if (name == "EXT_meshopt_compression" || name == "KHR_draco_mesh_compression") {
-    return "write the file without compression, for example with gltf-transform copy";
+  if (name == "KHR_texture_basisu") {
+    return "convert its textures to PNG or WebP, for example with gltf-transform";
   }
   if (name == "KHR_materials_pbrSpecularGlossiness") {
     return "convert its materials, for example with gltf-transform metalrough";
@@ -84,7 +86,6 @@ void check_asset(Walker& walker, const Json& root, const std::string& path) {
 }
 
 void check_accessors(Walker& walker, const Json& root) {
-  constexpr std::uint64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
   walker.each_object(root, "bufferViews", [&](const Json& view) {
     walker.reference(view, "buffer", "buffers", true);
     walker.whole(view, "byteOffset");
@@ -176,6 +177,12 @@ void check_materials(Walker& walker, const Json& root) {
   walker.each_object(root, "textures", [&](const Json& texture) {
     walker.reference(texture, "source", "images");
     walker.reference(texture, "sampler", "samplers");
+    if (const Json* extensions = walker.object(texture, "extensions")) {
+      if (const Json* webp = walker.object(*extensions, "EXT_texture_webp")) {
+        const Step step(walker, "extensions.EXT_texture_webp");
+        walker.reference(*webp, "source", "images");
+      }
+    }
   });
   walker.each_object(root, "samplers", [&](const Json& sampler) {
     for (const char* key : {"magFilter", "minFilter", "wrapS", "wrapT"}) {
@@ -293,6 +300,69 @@ void check_cameras_and_animations(Walker& walker, const Json& root) {
   });
 }
 
+// What EXT_meshopt_compression and KHR_draco_mesh_compression pack. The parser gets plain bufferViews and primitives;
+// the values themselves are judged where they are decoded.
+void take_compression(Walker& walker, Json& root, CheckedGltf& checked) {
+  int view_index = 0;
+  walker.each_object(root, "bufferViews", [&](const Json& view) {
+    const Json* extensions = walker.object(view, "extensions");
+    const Json* meshopt = extensions != nullptr ? walker.object(*extensions, "EXT_meshopt_compression") : nullptr;
+    if (meshopt != nullptr) {
+      const Step step(walker, "extensions.EXT_meshopt_compression");
+      walker.reference(*meshopt, "buffer", "buffers", true);
+      walker.text(*meshopt, "mode", true);
+      walker.text(*meshopt, "filter");
+      MeshoptView packed;
+      packed.view = view_index;
+      packed.buffer = (*meshopt)["buffer"].get<int>();
+      packed.offset = walker.whole(*meshopt, "byteOffset").value_or(0);
+      packed.length = walker.whole(*meshopt, "byteLength", true).value_or(0);
+      packed.stride = walker.whole(*meshopt, "byteStride", true, 256).value_or(0);
+      packed.count = walker.whole(*meshopt, "count", true, std::numeric_limits<std::uint32_t>::max()).value_or(0);
+      packed.mode = (*meshopt)["mode"].get<std::string>();
+      packed.filter = meshopt->value("filter", std::string("NONE"));
+      checked.meshopt_views.push_back(std::move(packed));
+    }
+    ++view_index;
+  });
+  int mesh_index = 0;
+  walker.each_object(root, "meshes", [&](const Json& mesh) {
+    int primitive_index = 0;
+    walker.each_object(mesh, "primitives", [&](const Json& primitive) {
+      const Json* extensions = walker.object(primitive, "extensions");
+      const Json* draco = extensions != nullptr ? walker.object(*extensions, "KHR_draco_mesh_compression") : nullptr;
+      if (draco != nullptr) {
+        const Step step(walker, "extensions.KHR_draco_mesh_compression");
+        walker.reference(*draco, "bufferView", "bufferViews", true);
+        DracoPrimitive packed{mesh_index, primitive_index, (*draco)["bufferView"].get<int>(), {}};
+        const Json* attributes = walker.object(*draco, "attributes");
+        if (attributes == nullptr) {
+          walker.fail("'attributes' is missing");
+        }
+        const Step inner(walker, "attributes");
+        for (const auto& [name, value] : attributes->items()) {
+          packed.attributes[name] = walker.whole(*attributes, name.c_str(), true, kMaxIndex).value_or(0);
+          if (!primitive["attributes"].contains(name)) {
+            walker.fail("the primitive itself has no attribute " + name);
+          }
+        }
+        checked.draco_primitives.push_back(std::move(packed));
+      }
+      ++primitive_index;
+    });
+    ++mesh_index;
+  });
+  for (const MeshoptView& packed : checked.meshopt_views) {
+    root["bufferViews"][static_cast<std::size_t>(packed.view)].erase("extensions");
+  }
+  for (const DracoPrimitive& packed : checked.draco_primitives) {
+    Json& primitive =
+        root["meshes"][static_cast<std::size_t>(packed.mesh)]["primitives"][static_cast<std::size_t>(packed.primitive)];
+    primitive.erase("extensions");
+    primitive.erase("indices");  // mostly without a bufferView, which the parser refuses; the stream has its own
+  }
+}
+
 // What the parser must not load itself: it wants buffers of the exact size, decodes pictures one by one and refuses
 // empty ones. It gets a byte in place of each.
 void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
@@ -301,6 +371,10 @@ void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
     GltfBufferSource source;
     source.byte_length = walker.whole(buffer, "byteLength", true).value_or(0);
     source.uri = buffer.value("uri", std::string());
+    if (const Json* extensions = walker.object(buffer, "extensions")) {
+      const Json* meshopt = walker.object(*extensions, "EXT_meshopt_compression");
+      source.fallback = meshopt != nullptr && meshopt->contains("fallback") && (*meshopt)["fallback"] == true;
+    }
     checked.buffers.push_back(std::move(source));
   });
   walker.each_object(root, "images", [&](const Json& image) {
@@ -325,8 +399,20 @@ void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
 
 const std::vector<std::string>& known_gltf_extensions() {
   static const std::vector<std::string> kKnown{
-      "KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_emissive_strength",
-      "KHR_materials_unlit",   "KHR_lights_punctual",   "EXT_mesh_gpu_instancing"};
+      // geometry
+      "KHR_mesh_quantization",
+      "EXT_mesh_gpu_instancing",
+      "EXT_meshopt_compression",
+      "KHR_draco_mesh_compression",
+      // pictures
+      "KHR_texture_transform",
+      "EXT_texture_webp",
+      // lights
+      "KHR_lights_punctual",
+      // materials
+      "KHR_materials_emissive_strength",
+      "KHR_materials_unlit",
+  };
   return kKnown;
 }
 
@@ -352,6 +438,7 @@ CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text)
   check_nodes(walker, root);
   check_cameras_and_animations(walker, root);
   CheckedGltf checked;
+  take_compression(walker, root, checked);
   take_binary_sources(walker, root, checked);
   checked.json = root.dump(-1, ' ', false, Json::error_handler_t::replace);
   return checked;

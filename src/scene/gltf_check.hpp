@@ -8,11 +8,14 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/gltf_compression.hpp"
+
 namespace gazetrace {
 
 struct GltfBufferSource {
   std::string uri;  // empty: the .glb chunk, or no data at all
   std::uint64_t byte_length = 0;
+  bool fallback = false;  // EXT_meshopt_compression: for programs without it; mostly without data
 };
 
 struct GltfImageSource {
@@ -24,6 +27,8 @@ struct CheckedGltf {
   std::string json;  // buffers and images replaced by one-byte placeholders
   std::vector<GltfBufferSource> buffers;
   std::vector<GltfImageSource> images;
+  std::vector<MeshoptView> meshopt_views;
+  std::vector<DracoPrimitive> draco_primitives;
 };
 
 // Extensions that are understood; extensionsRequired may name no others.

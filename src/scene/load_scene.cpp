@@ -6,6 +6,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "scene/gltf_accessor.hpp"
+#include "scene/gltf_compression.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
@@ -28,7 +29,7 @@ std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
       storage.push_back(is_data_uri(source.uri) ? decode_data_uri(source.uri, place)
                                                 : read_whole_file(resolve_uri(file.path, source.uri, place), place));
       bytes = storage.back();
-    } else if (i == 0 && file.is_binary) {
+    } else if (i == 0 && file.is_binary && !source.fallback) {
       bytes = file.bin_chunk;
     } else {
       buffers.emplace_back();  // no data: an error where something reads from it
@@ -50,7 +51,10 @@ void list_extensions(const GltfDocument& document, Scene& scene) {
   for (const std::string& name : document.extensions_used) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       scene.ignored.push_back("extension " + name);
-      scene.warnings.push_back("the scene uses " + name + ", which is not supported and is left out");
+      scene.warnings.push_back("the scene uses " + name +
+                               (name == "KHR_texture_basisu"
+                                    ? ", which cannot be read; textures show their fallback pictures"
+                                    : ", which is not supported and is left out"));
     }
   }
 }
@@ -101,6 +105,8 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   check_gltf_ranges(document, checked.buffers);
   std::vector<std::vector<std::uint8_t>> storage;
   document.buffers = load_buffers(file, checked.buffers, storage);
+  unpack_meshopt(document, checked.meshopt_views, storage, options.threads);
+  unpack_draco(document, checked.draco_primitives, storage, options.threads);
 
   Scene scene;
   scene.source = path;

@@ -59,6 +59,8 @@ const std::map<std::string, std::string> kPublicHeader = {
 const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(embree[34]/)", R"(src/trace/embree\.(hpp|cpp))"},
     {R"(tiny_gltf\.h)", R"(src/scene/gltf\.cpp)"},
+    {R"(meshoptimizer\.h)", R"(src/scene/gltf_meshopt\.cpp)"},
+    {R"(draco/)", R"(src/scene/gltf_draco\.cpp)"},
     {R"(OpenImageIO/)", R"(src/core/image_io\.cpp)"},
     {R"(OpenColorIO/)", R"(src/color/ocio\.cpp)"},
     {R"((OpenEXR/|Imf|Imath|Iex))", R"(src/output/exr\.cpp)"},
