@@ -34,9 +34,14 @@ struct TraceSettings {
   std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
 };
 
+// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each may do to the
+// shaded point. automatic: the tree from a measured number of lights on.
+enum class LightChoice : std::uint8_t { automatic, power, tree };
+
 struct TracerOptions {
   int threads = 0;  // 0: all
   BvhQuality bvh_quality = BvhQuality::high;
+  LightChoice light_choice = LightChoice::automatic;
   // For measurements: use the kernel variant with everything compiled in.
   bool all_features = false;
 };

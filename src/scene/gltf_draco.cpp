@@ -146,8 +146,10 @@ PlainPrimitive unpack(const GltfDocument& document, const DracoPrimitive& packed
     fail(place, "the compressed mesh has no triangles");
   }
   for (const auto& [name, unique_id] : packed.attributes) {
+    std::string attribute_place = place;
+    attribute_place.append(".attributes.").append(name);
     plain.attributes[name] =
-        unpack_attribute(document, *mesh, primitive.attributes.at(name), unique_id, place + ".attributes." + name);
+        unpack_attribute(document, *mesh, primitive.attributes.at(name), unique_id, attribute_place);
   }
   return plain;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 #include "core/hash.hpp"
 #include "trace/emission_average.hpp"
@@ -18,6 +19,10 @@ namespace {
 // near. The same among punctual lights.
 constexpr double kClassFloor = 0.3;
 constexpr double kPunctualFloor = 0.1;
+
+// From this many triangles and point or spot lights on, what the tree saves in noise is worth what it costs to walk;
+// measured by tests/benchmarks/many_lights.cpp.
+constexpr std::size_t kTreeFromLights = 8;
 
 // A triangle smaller than this cannot be told from a line in float.
 constexpr double kSmallestArea = 1e-30;
@@ -105,13 +110,18 @@ double refine(float u, const Vec2f& other) {
   return static_cast<double>(u) + static_cast<double>(digits) * 0x1p-56;
 }
 
+// At some place, so that the tree can bound its effect.
+bool is_local(const PunctualLight& light) {
+  return light.kind != LightKind::directional;
+}
+
 double area_of(const EmissiveTriangle& triangle) {
   return 0.5 * length(cross(to_double(triangle.edge1), to_double(triangle.edge2)));
 }
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene) : environment_(scene.environment) {
+LightSampler::LightSampler(const Scene& scene, LightChoice choice) : environment_(scene.environment) {
   const double radius = scene_radius_m(scene);
   const std::vector<double> triangle_powers = collect_triangles(scene);
   std::vector<double> punctual_powers;
@@ -122,10 +132,21 @@ LightSampler::LightSampler(const Scene& scene) : environment_(scene.environment)
       punctual_powers.push_back(p);
     }
   }
+  std::array<double, 3> powers{environment_.total() * kPi * radius * radius,
+                               std::accumulate(triangle_powers.begin(), triangle_powers.end(), 0.0), 0.0};
+  const auto small_lights =
+      static_cast<std::size_t>(std::count_if(triangle_powers.begin(), triangle_powers.end(), usable)) +
+      static_cast<std::size_t>(std::count_if(punctual_.begin(), punctual_.end(), is_local));
+  if (choice == LightChoice::tree || (choice == LightChoice::automatic && small_lights >= kTreeFromLights)) {
+    build_tree(triangle_powers);
+    for (std::size_t i = 0; i < punctual_.size(); ++i) {
+      if (is_local(punctual_[i])) {
+        powers[1] += std::exchange(punctual_powers[i], 0.0);
+      }
+    }
+  }
+  powers[2] = std::accumulate(punctual_powers.begin(), punctual_powers.end(), 0.0);
 
-  const std::array<double, 3> powers{environment_.total() * kPi * radius * radius,
-                                     std::accumulate(triangle_powers.begin(), triangle_powers.end(), 0.0),
-                                     std::accumulate(punctual_powers.begin(), punctual_powers.end(), 0.0)};
   const double total = powers[0] + powers[1] + powers[2];
   const auto present = static_cast<double>(std::count_if(powers.begin(), powers.end(), usable));
   std::array<double, 3> probability{};
@@ -137,22 +158,58 @@ LightSampler::LightSampler(const Scene& scene) : environment_(scene.environment)
   punctual_probability_ = static_cast<float>(probability[2]);
 
   if (triangle_probability_ > 0) {
-    triangle_choice_ = AliasTable(triangle_powers);
+    if (tree_.empty()) {
+      triangle_choice_ = AliasTable(triangle_powers);
+    }
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       EmissiveTriangle& triangle = triangles_[i];
+      const double share = tree_.empty() ? triangle_powers[i] / powers[1] : 1.0;
       triangle.pdf_area =
-          triangle_powers[i] > 0
-              ? static_cast<float>(probability[1] * (triangle_powers[i] / powers[1]) / area_of(triangle))
-              : 0.0F;
+          triangle_powers[i] > 0 ? static_cast<float>(probability[1] * share / area_of(triangle)) : 0.0F;
     }
   }
   if (punctual_probability_ > 0) {
+    const auto count = static_cast<double>(std::count_if(punctual_powers.begin(), punctual_powers.end(), usable));
     for (double& p : punctual_powers) {
-      p = (1 - kPunctualFloor) * (p / powers[2]) + kPunctualFloor / static_cast<double>(punctual_.size());
+      p = p > 0 ? (1 - kPunctualFloor) * (p / powers[2]) + kPunctualFloor / count : 0;
       punctual_pdf_.push_back(static_cast<float>(p * probability[2]));
     }
     punctual_choice_ = AliasTable(punctual_powers);
   }
+}
+
+void LightSampler::build_tree(const std::vector<double>& triangle_powers) {
+  std::vector<LightBounds> all;
+  all.reserve(triangles_.size() + punctual_.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const EmissiveTriangle& triangle = triangles_[i];
+    const Vec3d a = to_double(triangle.origin);
+    const Vec3d b = a + to_double(triangle.edge1);
+    const Vec3d c = a + to_double(triangle.edge2);
+    LightBounds bounds;
+    bounds.low = {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
+    bounds.high = {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
+    bounds.axis = to_double(triangle.normal);
+    bounds.two_sided = triangle.double_sided;
+    bounds.intensity = triangle_powers[i] / (triangle.double_sided ? 2 * kPi : kPi);
+    all.push_back(bounds);
+  }
+  for (const PunctualLight& light : punctual_) {
+    LightBounds bounds;
+    bounds.low = bounds.high = to_double(light.position_m);
+    bounds.intensity = is_local(light) ? luminance(to_double(light.intensity)) : 0;
+    bounds.normals_rad = kPi;
+    if (light.kind == LightKind::spot) {
+      bounds.axis = to_double(light.direction);
+      bounds.normals_rad = 0;
+      bounds.emission_rad = std::acos(std::clamp(static_cast<double>(light.cos_outer), 0.0, 1.0));
+    }
+    if (light.range_m > 0) {
+      bounds.reach_m = static_cast<double>(light.range_m);
+    }
+    all.push_back(bounds);
+  }
+  tree_ = LightTree(all);
 }
 
 // Fills triangles_ and the maps into it; returns each one's power in watts, 0 for what is never chosen.
@@ -210,9 +267,28 @@ LightSample LightSampler::sample(const Vec3f& position, const Vec3f& normal, con
   }
   choice -= pe;
   if (pt > 0 && (choice < pt || !(pp > 0))) {
-    return sample_triangle(position, normal, u, std::min(choice / pt, 0x1.fffffffffffffp-1));
+    const double rest = std::min(choice / pt, 0x1.fffffffffffffp-1);
+    return tree_.empty() ? sample_triangle(triangle_choice_.choose(rest), 1.0F, position, normal, u)
+                         : sample_tree(position, normal, u, rest);
   }
-  return pp > 0 ? sample_punctual(position, normal, std::min((choice - pt) / pp, 0x1.fffffffffffffp-1)) : LightSample{};
+  if (!(pp > 0)) {
+    return {};
+  }
+  const std::uint32_t chosen = punctual_choice_.choose(std::min((choice - pt) / pp, 0x1.fffffffffffffp-1));
+  return sample_punctual(chosen, punctual_pdf_[chosen], position, normal);
+}
+
+LightSample LightSampler::sample_tree(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
+                                      double u_select) const noexcept {
+  const LightTree::Choice chosen = tree_.choose(position, normal, u_select);
+  if (!(chosen.probability > 0)) {
+    return {};
+  }
+  if (chosen.light < triangles_.size()) {
+    return sample_triangle(chosen.light, chosen.probability, position, normal, u);
+  }
+  const auto light = static_cast<std::uint32_t>(chosen.light - triangles_.size());
+  return sample_punctual(light, chosen.probability * triangle_probability_, position, normal);
 }
 
 void LightSampler::sample_many(std::size_t count, const Vec3f* position, const Vec3f* normal, const Vec2f* u,
@@ -263,10 +339,10 @@ LightSample LightSampler::sample_environment(const Vec3f& normal, const Vec2f& u
   return result;
 }
 
-LightSample LightSampler::sample_triangle(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
-                                          double u_select) const noexcept {
+LightSample LightSampler::sample_triangle(std::uint32_t emitter, float selection, const Vec3f& position,
+                                          const Vec3f& normal, const Vec2f& u) const noexcept {
   LightSample result;
-  result.emitter = triangle_choice_.choose(u_select);
+  result.emitter = emitter;
   const EmissiveTriangle& triangle = triangles_[result.emitter];
   // Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
   float b1 = u.x;
@@ -287,17 +363,17 @@ LightSample LightSampler::sample_triangle(const Vec3f& position, const Vec3f& no
   result.distance = std::sqrt(distance_squared);
   result.direction = way / result.distance;
   result.radiance = triangle.emission;
-  result.pdf = pdf_triangle(result.emitter, -dot(triangle.normal, result.direction), distance_squared);
+  result.pdf = density(triangle, selection, -dot(triangle.normal, result.direction), distance_squared);
   result.valid = result.pdf > 0 && dot(normal, result.direction) > 0;
   return result;
 }
 
-LightSample LightSampler::sample_punctual(const Vec3f& position, const Vec3f& normal, double u_select) const noexcept {
-  const std::uint32_t chosen = punctual_choice_.choose(u_select);
-  const PunctualLight& light = punctual_[chosen];
+LightSample LightSampler::sample_punctual(std::uint32_t index, float probability, const Vec3f& position,
+                                          const Vec3f& normal) const noexcept {
+  const PunctualLight& light = punctual_[index];
   LightSample result;
   result.delta = true;
-  result.pdf = punctual_pdf_[chosen];
+  result.pdf = probability;
   if (light.kind == LightKind::directional) {
     result.direction = -light.direction;
     result.distance = std::numeric_limits<float>::infinity();
@@ -334,10 +410,16 @@ float LightSampler::pdf_environment(const Vec3f& direction) const noexcept {
   return environment_.pdf(direction) * environment_probability_;
 }
 
-float LightSampler::pdf_triangle(std::uint32_t emitter, float cos_at_light, float distance_squared) const noexcept {
-  const EmissiveTriangle& triangle = triangles_[emitter];
+float LightSampler::pdf_triangle(std::uint32_t emitter, float cos_at_light, float distance_squared,
+                                 const Vec3f& position, const Vec3f& normal) const noexcept {
+  const float selection = tree_.empty() ? 1.0F : tree_.probability(emitter, position, normal);
+  return density(triangles_[emitter], selection, cos_at_light, distance_squared);
+}
+
+float LightSampler::density(const EmissiveTriangle& triangle, float selection, float cos_at_light,
+                            float distance_squared) noexcept {
   const float cosine = triangle.double_sided ? std::fabs(cos_at_light) : cos_at_light;
-  return cosine > kGrazing ? triangle.pdf_area * distance_squared / cosine : 0.0F;
+  return cosine > kGrazing ? triangle.pdf_area * selection * distance_squared / cosine : 0.0F;
 }
 
 }  // namespace gazetrace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Next-event estimation over everything in a scene that shines: environment, emissive triangles, punctual lights.
 // One class is chosen with a fixed probability (by power, with a floor for each class that is present), then one light
-// of it. All densities below are over solid angle at the shaded point and include these choices, so that
+// of it: by power, or, where lights are many, by a tree that knows the shaded point; then point and spot lights are in
+// the tree with the triangles and the third class is directional lights alone. All densities below are over solid angle
+// at the shaded point and include these choices, so that
 //   estimate = f cos * radiance / pdf                       (delta: the same, no MIS partner)
 // and a BSDF-sampled ray that finds an emitter weighs against pdf_environment or pdf_triangle.
 #pragma once
@@ -11,8 +13,10 @@
 #include <vector>
 
 #include "gazetrace/scene.hpp"
+#include "gazetrace/trace.hpp"
 #include "trace/alias_table.hpp"
 #include "trace/environment_sampling.hpp"
+#include "trace/light_tree.hpp"
 
 namespace gazetrace {
 
@@ -38,7 +42,8 @@ struct EmissiveTriangle {
   Vec3f origin, edge1, edge2;  // first vertex; to the second and third
   Vec3f normal;                // unit, towards the front face
   Vec3f emission;              // Material::emission
-  float pdf_area = 0;          // selection probability / area; 0: never chosen (no area, or black)
+  // Selection probability / area, without the tree's part of it; 0: never chosen (no area, or black).
+  float pdf_area = 0;
   std::int32_t instance = 0, geometry = 0, primitive = 0, material = 0;
   bool double_sided = false;
 };
@@ -46,12 +51,15 @@ struct EmissiveTriangle {
 class LightSampler {
  public:
   // Keeps a reference to the scene's environment picture, which must outlive it.
-  explicit LightSampler(const Scene& scene);
+  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic);
 
   // False: sample() never returns a valid sample.
   [[nodiscard]] bool any() const noexcept {
     return environment_probability_ + triangle_probability_ + punctual_probability_ > 0;
   }
+
+  // True: densities of triangles depend on the shaded point, and whoever asks for one later must keep it.
+  [[nodiscard]] bool depends_on_place() const noexcept { return !tree_.empty(); }
 
   // `normal` is the side the light must come from: samples below its horizon come back invalid.
   [[nodiscard]] LightSample sample(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
@@ -80,7 +88,9 @@ class LightSampler {
   [[nodiscard]] const EmissiveTriangle& triangle(std::uint32_t emitter) const noexcept { return triangles_[emitter]; }
   // cos_at_light: between the triangle's normal and the direction back to the shaded point; its sign matters for
   // single-sided emitters.
-  [[nodiscard]] float pdf_triangle(std::uint32_t emitter, float cos_at_light, float distance_squared) const noexcept;
+  // `position` and `normal`: those that sample() was given at the shaded point.
+  [[nodiscard]] float pdf_triangle(std::uint32_t emitter, float cos_at_light, float distance_squared,
+                                   const Vec3f& position, const Vec3f& normal) const noexcept;
 
   [[nodiscard]] float environment_probability() const noexcept { return environment_probability_; }
   [[nodiscard]] float triangle_probability() const noexcept { return triangle_probability_; }
@@ -89,15 +99,23 @@ class LightSampler {
 
  private:
   [[nodiscard]] LightSample sample_environment(const Vec3f& normal, const Vec2f& u) const noexcept;
-  [[nodiscard]] LightSample sample_triangle(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
-                                            double u_select) const noexcept;
-  [[nodiscard]] LightSample sample_punctual(const Vec3f& position, const Vec3f& normal, double u_select) const noexcept;
+  // A point of a given triangle, chosen with probability `selection` on top of its pdf_area.
+  [[nodiscard]] LightSample sample_triangle(std::uint32_t emitter, float selection, const Vec3f& position,
+                                            const Vec3f& normal, const Vec2f& u) const noexcept;
+  [[nodiscard]] LightSample sample_punctual(std::uint32_t index, float probability, const Vec3f& position,
+                                            const Vec3f& normal) const noexcept;
+  [[nodiscard]] LightSample sample_tree(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
+                                        double u_select) const noexcept;
+  [[nodiscard]] static float density(const EmissiveTriangle& triangle, float selection, float cos_at_light,
+                                     float distance_squared) noexcept;
 
   std::vector<double> collect_triangles(const Scene& scene);
+  void build_tree(const std::vector<double>& triangle_powers);
 
   EnvironmentSampler environment_;
   std::vector<EmissiveTriangle> triangles_;
   AliasTable triangle_choice_;
+  LightTree tree_;                             // over all triangles, then the punctual lights in their order
   std::vector<std::uint32_t> first_geometry_;  // of each instance, into first_emitter_
   std::vector<std::uint32_t> first_emitter_;
   std::vector<PunctualLight> punctual_;

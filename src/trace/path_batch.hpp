@@ -31,12 +31,23 @@ struct GuideBatch {
   BatchArray<std::uint8_t> hit;
 };
 
+struct BatchVec3 {
+  BatchArray<float> x, y, z;
+  [[nodiscard]] Vec3f get(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  void set(std::size_t i, const Vec3f& v) {
+    x[i] = v.x;
+    y[i] = v.y;
+    z[i] = v.z;
+  }
+};
+
 // Packed like the rays that belong to it.
 struct PathBatch {
   BatchArray<std::uint32_t> slot;
   BatchArray<float> r, g, b;  // throughput
   BatchArray<float> pdf;      // of the ray's direction, over solid angle
   BatchArray<float> cone_width, cone_spread;
+  BatchVec3 normal;  // of the surface the ray left; only where LightSampler::depends_on_place
 };
 
 struct ShadowBatch {

@@ -101,7 +101,10 @@ SiteRange site_of_pixel(const SamplingMap& map, const PixelIndex& pixel) {
 
 struct PathTracer::Impl {
   Impl(const Scene& source, const TracerOptions& tracer_options)
-      : scene(&source), options(tracer_options), render_scene(source, tracer_options), lights(source) {}
+      : scene(&source),
+        options(tracer_options),
+        render_scene(source, tracer_options),
+        lights(source, tracer_options.light_choice) {}
 
   const Scene* scene;
   TracerOptions options;

@@ -62,6 +62,57 @@ TEST(TracerMean, MisLightOnlyAndBsdfOnlyAgree) {
   }
 }
 
+// Several dozen small lights of every kind, in a mirrored instance too, chosen through the tree.
+Scene corner_with_many_lights() {
+  Scene scene = corner(false, true);
+  for (const bool double_sided : {false, true}) {
+    scene.materials.push_back(diffuse_material({0.5F, 0.5F, 0.5F}, double_sided ? Vec3f{2, 6, 4} : Vec3f{9, 6, 3}));
+    scene.materials.back().double_sided = double_sided;
+  }
+  std::vector<Geometry> lamps;
+  for (int i = 0; i < 12; ++i) {
+    const float x = -2.5F + 0.45F * static_cast<float>(i);
+    const float y = 2.0F + 0.1F * static_cast<float>(i % 5);
+    lamps.push_back(
+        quad({{{x, y, -1}, {x + 0.2F, y, -1}, {x + 0.2F, y + 0.1F, -0.8F}, {x, y + 0.1F, -0.8F}}}, 2 + i % 2));
+  }
+  add_mesh(scene, lamps);
+  scene.instances.push_back({scene.instances.back().mesh, make_affine({0, 1, 1}, {0, 0, 0, 1}, {-1, 1, 1})});
+  for (int i = 0; i < 10; ++i) {
+    PunctualLight light;
+    light.kind = i % 2 == 0 ? LightKind::point : LightKind::spot;
+    light.position_m = {-2 + 0.4F * static_cast<float>(i), 1.5F, 1};
+    light.direction = {0.1F, -1, -0.3F};
+    light.intensity = {0.2F, 0.3F, 0.4F};
+    light.range_m = i % 3 == 0 ? 2.5F : 0;
+    scene.lights.push_back(light);
+  }
+  return scene;
+}
+
+TEST(TracerMean, ManyLightsAgreeHoweverTheyAreChosen) {
+  const Scene scene = corner_with_many_lights();
+  const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
+  const SamplingMap map = uniform_map(24, 16, 64);
+  TracerOptions options = threads(2);
+  options.light_choice = LightChoice::tree;
+  const PathTracer tree(scene, options);
+  options.light_choice = LightChoice::power;
+  const PathTracer power(scene, options);
+  TraceSettings settings;
+  const Repeats mis = repeat(tree, camera, map, settings);
+  const Repeats by_power = repeat(power, camera, map, settings);
+  settings.light_sampling = LightSampling::light_only;
+  const Repeats light = repeat(tree, camera, map, settings);
+  settings.light_sampling = LightSampling::bsdf_only;
+  const Repeats bsdf = repeat(tree, camera, map, settings);
+  EXPECT_LT(std::fabs(welch_t(mis, by_power)), kCriticalT) << mis.mean() << " " << by_power.mean();
+  EXPECT_LT(std::fabs(welch_t(mis, light)), kCriticalT) << mis.mean() << " " << light.mean();
+  EXPECT_LT(std::fabs(welch_t(mis, bsdf)), kCriticalT) << mis.mean() << " " << bsdf.mean();
+  EXPECT_LT(std::sqrt(bsdf.variance_of_mean()), 0.01 * mis.mean()) << "too noisy to mean anything";
+  EXPECT_LT(std::sqrt(light.variance_of_mean()), 0.01 * mis.mean()) << "too noisy to mean anything";
+}
+
 TEST(TracerMean, RussianRouletteKeepsTheMean) {
   const Scene scene = corner(true, true);
   const PathTracer tracer(scene, threads(2));

@@ -126,7 +126,7 @@ TEST(TriangleSampling, ChoosesByPower) {
   scene.materials[0].emission = {3, 1, 2};
   scene.meshes = {{"", {geometry}}};
   scene.instances = {{0, {}}};
-  const LightSampler lights(scene);
+  const LightSampler lights(scene, LightChoice::power);
   double sum = 0;
   for (const double p : power) {
     sum += p;

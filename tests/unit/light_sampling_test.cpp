@@ -237,8 +237,8 @@ TEST(Triangles, SampledDensityEqualsTheDensityOfAHit) {
     EXPECT_NEAR(length(hit - (from + chosen.direction * chosen.distance)), 0, 1e-5);
     EXPECT_TRUE(chosen.barycentric.x >= 0 && chosen.barycentric.y >= 0 &&
                 chosen.barycentric.x + chosen.barycentric.y <= 1);
-    const float pdf =
-        lights.pdf_triangle(chosen.emitter, -dot(t.normal, chosen.direction), chosen.distance * chosen.distance);
+    const float pdf = lights.pdf_triangle(chosen.emitter, -dot(t.normal, chosen.direction),
+                                          chosen.distance * chosen.distance, from, kUp);
     EXPECT_NEAR(pdf / chosen.pdf, 1, 1e-5);
     EXPECT_EQ(chosen.radiance, (Vec3f{5, 4, 3}));
   }

@@ -42,8 +42,10 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
     std::array<Vec3f, kChunk> positions;
     std::array<Vec3f, kChunk> normals;
     std::array<float, kChunk> choice;
+    // Where densities depend on the point, it is the one that a ray found later still knows: its origin.
+    const ChunkVec3& point = frame_.lights->depends_on_place() ? chunk.origin : chunk.position;
     for (std::size_t i = 0; i < count; ++i) {
-      positions[i] = chunk.position.get(i);
+      positions[i] = point.get(i);
       normals[i] = chunk.geometric.get(i);
       choice[i] = select[i].x;
     }
@@ -212,6 +214,9 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   state.g[n] = weight.y;
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
+  if (frame_.lights->depends_on_place()) {
+    state.normal.set(n, chunk.geometric.get(i));
+  }
   state.cone_width[n] = chunk.cone_width[i];
   state.cone_spread[n] =
       chunk.cone_spread[i] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * chunk.next_pdf[i]);

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// What it costs to choose among many lights, and what the choice is worth: 1 to 10^5 emissive triangles over a floor
+// with blocks, their powers spread over two decades, chosen by power and by the tree. Prints the time per sample (one
+// thread), the relative mean squared error of a pixel at one sample (variance over independent seeds by the squared
+// mean) and the efficiency 1 / (time * error) of the tree in units of the other's.
+//   gazetrace_many_lights [--lights N,N,...] [--punctual] [--seeds N] [--spp N]
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/hash.hpp"
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/scene.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace {
+
+using namespace gazetrace;
+
+class Random {
+ public:
+  float operator()(float low, float high) {
+    state_ += 0x9e3779b97f4a7c15ULL;
+    return low + (high - low) * static_cast<float>(hash64(state_) >> 40U) * 0x1p-24F;
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+void add_box(Geometry& geometry, const Vec3f& low, const Vec3f& high) {
+  const auto first = static_cast<std::uint32_t>(geometry.positions.size());
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    geometry.positions.push_back({(corner & 1U) != 0 ? high.x : low.x, (corner & 2U) != 0 ? high.y : low.y,
+                                  (corner & 4U) != 0 ? high.z : low.z});
+  }
+  constexpr std::uint32_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  for (const auto& face : kFaces) {
+    geometry.triangles.push_back({first + face[0], first + face[1], first + face[2]});
+    geometry.triangles.push_back({first + face[0], first + face[2], first + face[3]});
+  }
+}
+
+// 40 x 40 m with 60 blocks; the lights hang between 0.3 and 6 m, all of them together of the same power whatever their
+// number.
+Scene city(int lights, bool punctual) {
+  Scene scene;
+  Material gray;
+  gray.base_color = {0.6F, 0.6F, 0.6F, 1};
+  gray.metallic = 0;
+  gray.roughness = 0.7F;
+  scene.materials.push_back(gray);
+  Geometry blocks;
+  add_box(blocks, {-20, -0.1F, -20}, {20, 0, 20});
+  Random random;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3f at{random(-19, 19), 0, random(-19, 19)};
+    add_box(blocks, at, at + Vec3f{random(0.5F, 2), random(0.5F, 4), random(0.5F, 2)});
+  }
+  scene.meshes.push_back({"", {blocks}});
+  for (int i = 0; i < lights; ++i) {
+    const Vec3f at{random(-20, 20), random(0.3F, 6), random(-20, 20)};
+    const float strength = 3000.0F / static_cast<float>(lights) * std::pow(100.0F, random(-0.5F, 0.5F));
+    const Vec3f color{strength * random(0.5F, 1), strength * random(0.5F, 1), strength * random(0.5F, 1)};
+    if (punctual) {
+      PunctualLight light;
+      light.kind = i % 2 == 0 ? LightKind::point : LightKind::spot;
+      light.position_m = at;
+      light.intensity = color * 0.02F;
+      light.direction = {random(-1, 1), -1, random(-1, 1)};
+      scene.lights.push_back(light);
+      continue;
+    }
+    // One of 16 materials, so that a light is a triangle and not a mesh with a material of its own.
+    if (i < 16) {
+      Material shining = gray;
+      shining.emission = color * 40.0F;
+      scene.materials.push_back(shining);
+      scene.meshes[0].geometries.emplace_back().material = i + 1;
+    }
+    Geometry& geometry = scene.meshes[0].geometries[1 + static_cast<std::size_t>(i % 16)];
+    const auto first = static_cast<std::uint32_t>(geometry.positions.size());
+    const auto side = [&] { return Vec3f{random(-0.1F, 0.1F), random(-0.1F, 0.1F), random(-0.1F, 0.1F)}; };
+    geometry.positions.insert(geometry.positions.end(), {at, at + side(), at + side()});
+    geometry.triangles.push_back({first, first + 1, first + 2});
+  }
+  scene.instances = {{0, {}}};
+  return scene;
+}
+
+struct Measured {
+  double us_per_sample = 0, build_ms = 0;
+  std::vector<double> mean, variance;  // of each pixel: of a sample
+};
+
+Measured measure(const Scene& scene, LightChoice choice, int seeds, std::uint32_t spp) {
+  FoveationSettings uniform;
+  uniform.uniform_spp = spp;
+  Camera camera;
+  camera.pose = look_at({14, 7, 16}, {0, 0.5, 0}, {0, 1, 0});
+  const SamplingMap map = make_sampling_map(uniform, view_of_perspective(50 * kRadPerDeg, 160, 90), {});
+  TracerOptions options;
+  options.threads = 1;
+  options.light_choice = choice;
+  const PathTracer tracer(scene, options);
+  TraceSettings settings;
+  Measured result;
+  result.mean.resize(map.sites.size());
+  result.variance.resize(map.sites.size());
+  std::int64_t cpu_ns = 0;
+  std::uint64_t samples = 0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed) + 1;
+    const SparseFrame frame = tracer.trace(camera, 0, map, settings);
+    for (const RegionTraceStats& region : frame.stats.regions) {
+      cpu_ns += region.cpu_ns;
+      samples += region.samples;
+    }
+    for (std::size_t i = 0; i < frame.sum.size(); ++i) {
+      const double y = static_cast<double>(frame.sum[i].y) / frame.count[i];
+      result.mean[i] += y;
+      result.variance[i] += y * y;
+    }
+  }
+  const double n = seeds;
+  for (std::size_t i = 0; i < result.mean.size(); ++i) {
+    result.mean[i] /= n;
+    result.variance[i] = (result.variance[i] / n - result.mean[i] * result.mean[i]) * n / (n - 1) * spp;
+  }
+  result.us_per_sample = static_cast<double>(cpu_ns) * 1e-3 / static_cast<double>(samples);
+  return result;
+}
+
+double relative_error(const Measured& measured, const std::vector<double>& mean) {
+  double typical = 0;
+  for (const double m : mean) {
+    typical += m / static_cast<double>(mean.size());
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    // The floor keeps pixels that hardly anything reaches from deciding alone.
+    sum += measured.variance[i] / (mean[i] * mean[i] + 0.01 * typical * typical);
+  }
+  return sum / static_cast<double>(mean.size());
+}
+
+double average(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) {
+    sum += v;
+  }
+  return sum / static_cast<double>(values.size());
+}
+
+std::vector<int> numbers(std::string_view text) {
+  std::vector<int> list;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    list.push_back(std::atoi(std::string(text.substr(0, comma)).c_str()));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return list;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<int> counts{1, 2, 4, 8, 16, 32, 64, 256, 1000, 10000, 100000};
+  bool punctual = false;
+  int seeds = 16;
+  std::uint32_t spp = 8;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--punctual") {
+      punctual = true;
+    } else if (i + 1 < argc && argument == "--lights") {
+      counts = numbers(argv[++i]);
+    } else if (i + 1 < argc && argument == "--seeds") {
+      seeds = std::atoi(argv[++i]);
+    } else if (i + 1 < argc && argument == "--spp") {
+      spp = static_cast<std::uint32_t>(std::atoi(argv[++i]));
+    } else {
+      fmt::print(stderr, "unknown argument '{}'\n", argument);
+      return 2;
+    }
+  }
+  fmt::print("{:>8} {:>10} {:>10} {:>12} {:>12} {:>11} {:>10}\n", "lights", "power us", "tree us", "power relMSE",
+             "tree relMSE", "efficiency", "mean ratio");
+  for (const int count : counts) {
+    const Scene scene = city(count, punctual);
+    const Measured power = measure(scene, LightChoice::power, seeds, spp);
+    const Measured tree = measure(scene, LightChoice::tree, seeds, spp);
+    const double a = relative_error(power, tree.mean);
+    const double b = relative_error(tree, tree.mean);
+    fmt::print("{:8} {:10.3f} {:10.3f} {:12.4g} {:12.4g} {:11.2f} {:10.4f}\n", count, power.us_per_sample,
+               tree.us_per_sample, a, b, power.us_per_sample * a / (tree.us_per_sample * b),
+               average(tree.mean) / average(power.mean));
+  }
+  return 0;
+}
