@@ -91,7 +91,7 @@ std::string error_of(const std::string& path) {
 
 // --- EXT_meshopt_compression
 
-struct Packed {
+struct Packed {  // NOLINT(bugprone-exception-escape): moving JSON
   Bytes bytes;
   json extension;
   int component_type = 0;
