@@ -25,6 +25,12 @@ struct TraceSettings {
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
+  // Light samples of the environment go where it exceeds half its mean (MIS compensation); heeded with mis only. Less
+  // noise in the open, more where most of the sky is hidden.
+  bool compensate_environment = false;
+  // Upper bound of what one sample may add after more than one scattering event, on its largest channel; takes away
+  // fireflies and the light they stand for. 0: off, no bias.
+  float clamp_indirect = 0;
   // Ray cones open by this angle (times 1 / sqrt(pi pdf): once for a diffuse bounce, hardly for a mirror), so that hits
   // after a bounce read coarser texture levels. 0: full resolution everywhere, slower.
   float bounce_cone_rad = 0.15F;

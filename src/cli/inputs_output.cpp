@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -127,6 +128,10 @@ void check_settings(const JobSettings& job) {
   check_registry_name("--filter", "filter", job.filter, reconstruction_filters());
   if (job.trace.max_bounces < 0 || job.trace.max_bounces > 1000) {
     throw Error(ErrorKind::usage, "--bounces", fmt::format("{} is outside 0..1000", job.trace.max_bounces));
+  }
+  if (!(job.trace.clamp_indirect >= 0) || !std::isfinite(job.trace.clamp_indirect)) {
+    throw Error(ErrorKind::usage, "--clamp-indirect", fmt::format("{} is no radiance", job.trace.clamp_indirect),
+                "give a positive number, or 0 for none");
   }
   if (job.threads < 0) {
     throw Error(ErrorKind::usage, "--threads", fmt::format("{} is negative", job.threads), "0 takes all");

@@ -122,6 +122,11 @@ void add_trace_options(OptionTable& table, JobSettings& job) {
   table.value("--diffuse", job.trace.diffuse, choices<DiffuseModel>(), "Diffuse lobe", kPixels);
   table.value("--light-sampling", job.trace.light_sampling, choices<LightSampling>(),
               "Lights and surfaces together (mis), or one of them alone", kPixels);
+  table.flag("--compensate-environment", job.trace.compensate_environment,
+             "Light samples of the environment go where it stands out: less noise in the open, more indoors", kPixels);
+  table.value("--clamp-indirect", job.trace.clamp_indirect, "RADIANCE",
+              "Most that a sample may add after more than one scattering event: fewer fireflies, with bias; 0: off",
+              kPixels);
   table.value("--pixel-filter", job.trace.filter, choices<PixelFilter>(), "Spread of the samples of a pixel", kPixels);
   table.value("--seed", job.trace.seed, "N", "Same seed, same pictures, for any number of threads", kPixels);
   table.value("--bvh", job.bvh, choices<BvhQuality>(), "Build quality of the ray tracing tree");

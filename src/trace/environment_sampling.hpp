@@ -14,11 +14,18 @@
 
 namespace gazetrace {
 
+// compensated: proportional to what exceeds half the mean radiance, for multiple importance sampling alone: what is
+// even over the sky is found by BSDF samples as well, so light samples are better spent on what stands out (Karlik et
+// al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Zero where nothing
+// does, so that light samples on their own would lose light; and blind to what hides the sky, so that indoors it costs
+// more than it gains.
+enum class EnvironmentDensity : std::uint8_t { plain, compensated };
+
 class EnvironmentSampler {
  public:
   EnvironmentSampler() = default;
   // Keeps a reference to the picture, which must outlive it. An absent environment is black.
-  explicit EnvironmentSampler(const Environment& environment);
+  explicit EnvironmentSampler(const Environment& environment, EnvironmentDensity density = EnvironmentDensity::plain);
 
   struct Value {
     Vec3f radiance;

@@ -121,7 +121,8 @@ double area_of(const EmissiveTriangle& triangle) {
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene, LightChoice choice) : environment_(scene.environment) {
+LightSampler::LightSampler(const Scene& scene, LightChoice choice, EnvironmentDensity density)
+    : environment_(scene.environment, density) {
   const double radius = scene_radius_m(scene);
   const std::vector<double> triangle_powers = collect_triangles(scene);
   std::vector<double> punctual_powers;

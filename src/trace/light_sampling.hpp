@@ -51,7 +51,9 @@ struct EmissiveTriangle {
 class LightSampler {
  public:
   // Keeps a reference to the scene's environment picture, which must outlive it.
-  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic);
+  // A compensated density is for use with MIS only.
+  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic,
+                        EnvironmentDensity density = EnvironmentDensity::plain);
 
   // False: sample() never returns a valid sample.
   [[nodiscard]] bool any() const noexcept {

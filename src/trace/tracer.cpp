@@ -106,10 +106,25 @@ struct PathTracer::Impl {
         render_scene(source, tracer_options),
         lights(source, tracer_options.light_choice) {}
 
+  // Compensated tables are made when they are first asked for; only MIS finds what they leave out.
+  const LightSampler& lights_for(const TraceSettings& settings) {
+    if (!settings.compensate_environment || settings.light_sampling != LightSampling::mis ||
+        !scene->environment.present()) {
+      return lights;
+    }
+    std::call_once(compensated_once, [&] {
+      compensated_lights =
+          std::make_unique<LightSampler>(*scene, options.light_choice, EnvironmentDensity::compensated);
+    });
+    return *compensated_lights;
+  }
+
   const Scene* scene;
   TracerOptions options;
   RenderScene render_scene;
   LightSampler lights;
+  std::once_flag compensated_once;
+  std::unique_ptr<LightSampler> compensated_lights;
 
   void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
                    const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
@@ -195,7 +210,8 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   const NamedKernel& variant =
       choose_kernel(kernel_features(features, impl_->render_scene), impl_->options.all_features);
 
-  const FrameContext context = make_frame_context(*impl_->scene, impl_->render_scene, impl_->lights, rays, settings);
+  const FrameContext context =
+      make_frame_context(*impl_->scene, impl_->render_scene, impl_->lights_for(settings), rays, settings);
 
   SparseFrame out;
   out.width_px = map.width_px;

@@ -33,10 +33,11 @@ class RoundTrip(harness.CliTest):
             "--screen-px", "3840,2160", "--screen-cm", "70.848,39.852", "--size", "640x360", "--fps", "24000/1001",
             "--frames", "1-100x2,301", "--region-samples", "4,2,1", "--region-angles", "5.2,17", "--angle-reading",
             "eccentricity", "--exposure", "auto-0.5", "--seed", "18446744073709551615", "--overwrite", "--aov", "albedo,depth",
-            "--gaze-valid-values", "1,yes", "--frame-rect", "0,0,64,36", "--only-pixel", "3,4", "--russian-roulette")
+            "--gaze-valid-values", "1,yes", "--frame-rect", "0,0,64,36", "--only-pixel", "3,4", "--russian-roulette",
+            "--clamp-indirect", "2.5", "--compensate-environment")
         for line in ['eye = [-9, 2, 0]', 'gaze-max-age = "1500us"', 'gaze-start = "12345678901234567ns"',
                      'seed = "18446744073709551615"', 'aov = ["albedo", "depth"]', 'overwrite = true', 'exposure = "auto-0.5"',
-                     'size = "640x360"', 'scene = "scene.gltf"', 'env-ev = -1.25']:
+                     'size = "640x360"', 'clamp-indirect = 2.5', 'compensate-environment = true', 'scene = "scene.gltf"', 'env-ev = -1.25']:
             self.assertIn("\n" + line + "\n", text)
 
     def test_equal_values_have_equal_text(self):

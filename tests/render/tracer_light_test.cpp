@@ -85,5 +85,41 @@ TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
   }
 }
 
+// The same box: after v events a path finds a^v, which clamping bounds from the second event on.
+TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
+  for (const float albedo : {0.5F, 0.8F}) {
+    Scene scene;
+    scene.materials.push_back(diffuse_material({albedo, albedo, albedo}, {1, 1, 1}));
+    add_mesh(scene, box(1.5F, true, 0));
+    const PathTracer tracer(scene, threads(2));
+    TraceSettings settings;
+    settings.diffuse = DiffuseModel::matte;
+    settings.light_sampling = LightSampling::bsdf_only;
+    settings.max_bounces = 20;
+    for (const float limit : {0.0F, 1e-3F, 0.1F, 0.3F, 0.6F, 10.0F}) {
+      settings.clamp_indirect = limit;
+      const double bound = limit > 0 ? static_cast<double>(limit) : 2.0;
+      double expected = 0;
+      for (int v = 0; v <= settings.max_bounces; ++v) {
+        const double found = std::pow(static_cast<double>(albedo), v);
+        expected += v < 2 ? found : std::min(found, bound);
+      }
+      const Vec3d mean =
+          mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, uniform_map(8, 8, 4), settings));
+      EXPECT_NEAR(mean.y, expected, 2e-5 * expected) << albedo << " " << limit;
+    }
+    // Light samples: with one bounce nothing is indirect, with two the second event's is.
+    settings.light_sampling = LightSampling::light_only;
+    settings.clamp_indirect = 1e-9F;
+    settings.max_bounces = 1;
+    const SamplingMap map = uniform_map(16, 16, 256);
+    const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});
+    const double direct = mean_radiance(tracer.trace(camera, 1, map, settings)).y;
+    EXPECT_NEAR(direct, 1 + static_cast<double>(albedo), 0.01);
+    settings.max_bounces = 2;
+    EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, map, settings)).y, direct, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace gazetrace

@@ -36,6 +36,13 @@ Scene corner(bool area_light, bool sky) {
   }
   if (sky) {
     scene.environment = builtin_sky();
+    // A sun, so that a part of the sky stands out.
+    for (int x = 0; x < 8; ++x) {
+      for (int y = 0; y < 8; ++y) {
+        const ImageRgb& picture = scene.environment.radiance;
+        scene.environment.radiance(picture.width_px / 2 + x, picture.height_px / 5 + y) = {200, 150, 100};
+      }
+    }
   }
   return scene;
 }
@@ -59,6 +66,17 @@ TEST(TracerMean, MisLightOnlyAndBsdfOnlyAgree) {
     EXPECT_LT(std::fabs(welch_t(mis, light)), kCriticalT) << c.name << mis.mean() << " " << light.mean();
     EXPECT_LT(std::fabs(welch_t(mis, bsdf)), kCriticalT) << c.name << mis.mean() << " " << bsdf.mean();
     EXPECT_LT(std::sqrt(mis.variance_of_mean()), 0.01 * mis.mean()) << "too noisy to mean anything";
+    // Light samples alone cannot do with a compensated table: the setting must not reach them.
+    settings.compensate_environment = true;
+    const Repeats bsdf_again = repeat(tracer, camera, map, settings);
+    EXPECT_EQ(bsdf_again.means, bsdf.means);
+    settings.light_sampling = LightSampling::light_only;
+    EXPECT_EQ(repeat(tracer, camera, map, settings).means, light.means);
+    settings.light_sampling = LightSampling::mis;
+    const Repeats compensated = repeat(tracer, camera, map, settings);
+    EXPECT_LT(std::fabs(welch_t(compensated, bsdf)), kCriticalT) << c.name << compensated.mean() << " " << bsdf.mean();
+    EXPECT_LT(std::fabs(welch_t(compensated, mis)), kCriticalT) << c.name << compensated.mean() << " " << mis.mean();
+    EXPECT_EQ(compensated.means == mis.means, !c.sky) << "it must have made a difference where there is a sky";
   }
 }
 

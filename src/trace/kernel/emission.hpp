@@ -35,7 +35,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
     }
     weight = weight_of_found_light(vertex, pdf_bsdf, pdf_light);
   }
-  add(slot, throughput * emission * weight);
+  add(slot, clamped(vertex, throughput * emission * weight));
 }
 
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>

@@ -6,6 +6,7 @@
 //   L += throughput * L_e * w_bsdf                                  w = power heuristic, exponent 2 (Veach 1997, 9.2)
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -83,6 +84,16 @@ class PathKernel {
     work_.radiance.r[slot] += radiance.x;
     work_.radiance.g[slot] += radiance.y;
     work_.radiance.b[slot] += radiance.z;
+  }
+
+  // TraceSettings::clamp_indirect; `events`: scattering events between the light and the camera.
+  [[nodiscard]] Vec3f clamped(int events, const Vec3f& radiance) const {
+    const float limit = frame_.settings.clamp_indirect;
+    if (!(limit > 0) || events < 2) {
+      return radiance;
+    }
+    const float most = std::max(std::max(radiance.x, radiance.y), radiance.z);
+    return most > limit ? radiance * (limit / most) : radiance;
   }
 
   // generate.hpp

@@ -183,7 +183,8 @@ inline void PathKernel<kFeatures, kDiffuse>::take_light_sample(int vertex, std::
   }
   const std::size_t k = work_.chunk.path[i];
   const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
-  const Vec3f arriving = throughput * work_.chunk.light_f_cos.get(i) * (light_radiance(light) * weight);
+  const Vec3f arriving =
+      clamped(vertex + 1, throughput * work_.chunk.light_f_cos.get(i) * (light_radiance(light) * weight));
   if (arriving.x + arriving.y + arriving.z != 0) {
     queue_shadow(vertex, paths.slot[k], i, light, arriving);
   }

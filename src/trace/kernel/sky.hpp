@@ -40,7 +40,8 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = list[i];
     const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
-    add(paths.slot[k], throughput * sky[i].radiance * weight_of_found_light(vertex, paths.pdf[k], sky[i].pdf));
+    const float weight = weight_of_found_light(vertex, paths.pdf[k], sky[i].pdf);
+    add(paths.slot[k], clamped(vertex, throughput * sky[i].radiance * weight));
   }
 }
 
