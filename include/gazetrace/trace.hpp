@@ -30,7 +30,7 @@ struct TraceSettings {
   bool compensate_environment = false;
   // Upper bound of what one sample may add after more than one scattering event, on its largest channel; takes away
   // fireflies and the light they stand for. 0: off, no bias.
-  float clamp_indirect = 0;
+  double clamp_indirect = 0;
   // Ray cones open by this angle (times 1 / sqrt(pi pdf): once for a diffuse bounce, hardly for a mirror), so that hits
   // after a bounce read coarser texture levels. 0: full resolution everywhere, slower.
   float bounce_cone_rad = 0.15F;

@@ -47,7 +47,7 @@ struct PathBatch {
   BatchArray<float> r, g, b;  // throughput
   BatchArray<float> pdf;      // of the ray's direction, over solid angle
   BatchArray<float> cone_width, cone_spread;
-  BatchVec3 normal;  // of the surface the ray left; only where LightSampler::depends_on_place
+  BatchVec3 normal;  // that lights were chosen with where the ray left; only where LightSampler::depends_on_place
 };
 
 struct ShadowBatch {

@@ -97,7 +97,7 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
     settings.light_sampling = LightSampling::bsdf_only;
     settings.max_bounces = 20;
     for (const float limit : {0.0F, 1e-3F, 0.1F, 0.3F, 0.6F, 10.0F}) {
-      settings.clamp_indirect = limit;
+      settings.clamp_indirect = static_cast<double>(limit);
       const double bound = limit > 0 ? static_cast<double>(limit) : 2.0;
       double expected = 0;
       for (int v = 0; v <= settings.max_bounces; ++v) {
@@ -110,7 +110,7 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
     }
     // Light samples: with one bounce nothing is indirect, with two the second event's is.
     settings.light_sampling = LightSampling::light_only;
-    settings.clamp_indirect = 1e-9F;
+    settings.clamp_indirect = 1e-9;
     settings.max_bounces = 1;
     const SamplingMap map = uniform_map(16, 16, 256);
     const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});

@@ -88,7 +88,7 @@ class PathKernel {
 
   // TraceSettings::clamp_indirect; `events`: scattering events between the light and the camera.
   [[nodiscard]] Vec3f clamped(int events, const Vec3f& radiance) const {
-    const float limit = frame_.settings.clamp_indirect;
+    const auto limit = static_cast<float>(frame_.settings.clamp_indirect);
     if (!(limit > 0) || events < 2) {
       return radiance;
     }

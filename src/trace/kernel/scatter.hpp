@@ -49,6 +49,11 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
       normals[i] = chunk.geometric.get(i);
       choice[i] = select[i].x;
     }
+    if (frame_.lights->depends_on_place()) {
+      for (std::size_t i = 0; i < count; ++i) {
+        work_.chunk.lit_normal.set(i, normals[i]);
+      }
+    }
     frame_.lights->sample_many(count, positions.data(), normals.data(), light_uv.data(), choice.data(), lights.data());
   }
   if (lit) {
@@ -216,7 +221,7 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
   if (frame_.lights->depends_on_place()) {
-    state.normal.set(n, chunk.geometric.get(i));
+    state.normal.set(n, chunk.lit_normal.get(i));
   }
   state.cone_width[n] = chunk.cone_width[i];
   state.cone_spread[n] =
