@@ -41,17 +41,22 @@ struct Instance {
 
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
 
-// 8 bits a channel, RGBA interleaved, unassociated alpha, full mip chain; level 0 first.
+// How a channel is stored. Pictures of up to 8 bits stay as they are. Of deeper ones, what is seen as a colour is kept
+// as linear light in half floats (11 bits of precision at any brightness), other integers in 16 bits.
+enum class TexelFormat : std::uint8_t { unorm8, unorm16, half };
+
+// RGBA interleaved, unassociated alpha, full mip chain; level 0 first.
 struct Texture {
   std::string name;
-  bool srgb = false;  // RGB are sRGB-encoded
+  TexelFormat format = TexelFormat::unorm8;
+  bool srgb = false;  // RGB are sRGB-encoded; unorm8 only
   bool has_alpha = false;
   bool nearest = false;  // magFilter NEAREST
   TextureWrap wrap_u = TextureWrap::repeat;
   TextureWrap wrap_v = TextureWrap::repeat;
   struct Level {
     int width_px = 0, height_px = 0;
-    std::vector<std::uint8_t> rgba;
+    std::vector<std::uint8_t> rgba;  // 4 or 8 bytes a texel, in the machine's order
   };
   std::vector<Level> levels;
 };

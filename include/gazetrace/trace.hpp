@@ -85,7 +85,7 @@ struct TraceStats {
 struct SparseFrame {
   int width_px = 0, height_px = 0;
   std::vector<Vec3f> sum;                   // radiance
-  std::vector<float> sum_square_luminance;  // of samples' luminance (Rec.709), for variance
+  std::vector<float> sum_square_luminance;  // of samples' luminance (Rec.709), for variance; at most float's largest
   std::vector<std::uint32_t> count;
   std::vector<GuideSums> guides;  // empty unless TraceSettings::guides
   TraceStats stats;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -42,45 +43,73 @@ const OIIO::ImageSpec& check_size(const OIIO::ImageInput& input, const std::stri
 }
 
 // Spreads `channels` (1 to 4) of each pixel over R, G, B, A in place of a second buffer where there are 4 already.
-std::vector<std::uint8_t> to_rgba(std::vector<std::uint8_t>&& pixels, std::size_t count, int channels) {
+template <class T>
+std::vector<T> to_rgba(std::vector<T>&& pixels, std::size_t count, int channels, T opaque) {
   if (channels == 4) {
     return std::move(pixels);
   }
-  std::vector<std::uint8_t> rgba(count * 4);
+  std::vector<T> rgba(count * 4);
   const auto step = static_cast<std::size_t>(channels);
   const std::size_t green = channels == 3 ? 1 : 0;
   const std::size_t blue = channels == 3 ? 2 : 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* from = &pixels[i * step];
-    std::uint8_t* to = &rgba[i * 4];
+    const T* from = &pixels[i * step];
+    T* to = &rgba[i * 4];
     to[0] = from[0];
     to[1] = from[green];
     to[2] = from[blue];
-    to[3] = channels == 2 ? from[1] : std::uint8_t{255};
+    to[3] = channels == 2 ? from[1] : opaque;
   }
   return rgba;
 }
 
-ImageRgba8 read_rgba8(OIIO::ImageInput& input, const std::string& place) {
-  const OIIO::ImageSpec& spec = check_size(input, place);
-  input.threads(1);  // callers decode many pictures side by side
-  ImageRgba8 image;
-  image.width_px = spec.width;
-  image.height_px = spec.height;
-  image.reduced_to_8_bit = spec.format.size() > 1;
-  const int channels = std::min(spec.nchannels, 4);
+template <class T>
+bool any_transparent(const std::vector<T>& rgba, T opaque) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    if (rgba[i] < opaque) {
+      return true;
+    }
+  }
+  return false;
+}
+
+template <class T>
+std::vector<T> read_channels(OIIO::ImageInput& input, OIIO::TypeDesc type, int channels, T opaque,
+                             const std::string& place) {
+  const OIIO::ImageSpec& spec = input.spec();
   const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  std::vector<std::uint8_t> pixels(count * static_cast<std::size_t>(channels));
-  if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, pixels.data())) {
+  std::vector<T> pixels(count * static_cast<std::size_t>(channels));
+  if (!input.read_image(0, 0, 0, channels, type, pixels.data())) {
     const std::string message = reason(input.geterror());
     throw Error(ErrorKind::input, place, "the picture is damaged: " + message, "export it again");
   }
-  image.rgba = to_rgba(std::move(pixels), count, channels);
-  if (channels == 2 || channels == 4) {
-    for (std::size_t i = 3; i < image.rgba.size() && !image.has_alpha; i += 4) {
-      image.has_alpha = image.rgba[i] != 255;
+  return to_rgba(std::move(pixels), count, channels, opaque);
+}
+
+ImageRgba read_rgba(OIIO::ImageInput& input, const std::string& place) {
+  const OIIO::ImageSpec& spec = check_size(input, place);
+  input.threads(1);  // callers decode many pictures side by side
+  ImageRgba image;
+  image.width_px = spec.width;
+  image.height_px = spec.height;
+  const int channels = std::min(spec.nchannels, 4);
+  if (spec.format.size() == 1) {
+    image.bytes = read_channels<std::uint8_t>(input, OIIO::TypeDesc::UINT8, channels, 255, place);
+    image.has_alpha = channels % 2 == 0 && any_transparent<std::uint8_t>(image.bytes, 255);
+    return image;
+  }
+  image.is_linear = spec.format.is_floating_point();
+  image.floats = read_channels<float>(input, OIIO::TypeDesc::FLOAT, channels, 1, place);
+  for (std::size_t i = 0; i < image.floats.size(); ++i) {
+    if (!std::isfinite(image.floats[i])) {
+      const std::size_t pixel = i / 4;
+      const auto width = static_cast<std::size_t>(spec.width);
+      throw Error(ErrorKind::input, place,
+                  "pixel " + std::to_string(pixel % width) + ", " + std::to_string(pixel / width) + " is not finite",
+                  "repair the picture");
     }
   }
+  image.has_alpha = channels % 2 == 0 && any_transparent(image.floats, 1.0F);
   return image;
 }
 
@@ -109,7 +138,7 @@ const char* name_by_content(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-ImageRgba8 read_image_rgba8(const std::string& path, const std::string& place) {
+ImageRgba read_image_rgba(const std::string& path, const std::string& place) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
@@ -119,10 +148,10 @@ ImageRgba8 read_image_rgba8(const std::string& path, const std::string& place) {
   if (!input) {
     throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(OIIO::geterror()));
   }
-  return read_rgba8(*input, place + " ('" + path + "')");
+  return read_rgba(*input, place + " ('" + path + "')");
 }
 
-ImageRgba8 read_image_rgba8(std::span<const std::uint8_t> file_bytes, const std::string& place) {
+ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place) {
   const char* name = name_by_content(file_bytes);
   if (name == nullptr) {
     throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
@@ -136,7 +165,7 @@ ImageRgba8 read_image_rgba8(std::span<const std::uint8_t> file_bytes, const std:
   if (!input) {
     throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(OIIO::geterror()));
   }
-  return read_rgba8(*input, place);
+  return read_rgba(*input, place);
 }
 
 ImageRgb read_image_rgb_float(const std::string& path) {

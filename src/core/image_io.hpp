@@ -12,18 +12,21 @@
 
 namespace gazetrace {
 
-// 8 bits a channel, RGBA interleaved, unassociated alpha, rows from the top.
-struct ImageRgba8 {
+// RGBA interleaved, unassociated alpha, rows from the top: `bytes` of files with up to 8 bits a channel, `floats` of
+// others (integers as 0..1, floats as they are); the other is empty.
+struct ImageRgba {
   int width_px = 0, height_px = 0;
-  std::vector<std::uint8_t> rgba;
-  bool has_alpha = false;         // some pixel is not opaque
-  bool reduced_to_8_bit = false;  // the file holds more than 8 bits a channel
+  std::vector<std::uint8_t> bytes;
+  bool has_alpha = false;  // some pixel is not opaque
+  std::vector<float> floats;
+  bool is_linear = false;  // the file holds floats: linear light, not encoded
 };
 
-// Grey, grey with alpha, RGB and RGBA all become RGBA; values stay encoded as in the file. Error(input) at `place`.
-ImageRgba8 read_image_rgba8(const std::string& path, const std::string& place);
+// Grey, grey with alpha, RGB and RGBA all become RGBA; values stay encoded as in the file. Error(input) at `place`,
+// also for values that are not finite.
+ImageRgba read_image_rgba(const std::string& path, const std::string& place);
 // The same from a file's bytes in memory.
-ImageRgba8 read_image_rgba8(std::span<const std::uint8_t> file_bytes, const std::string& place);
+ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place);
 
 // Linear floats of an .hdr, .exr or other picture; grey is repeated into RGB, alpha and further channels are left out.
 ImageRgb read_image_rgb_float(const std::string& path);

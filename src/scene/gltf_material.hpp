@@ -24,7 +24,7 @@ class TextureTable {
   std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
 
   // Decodes everything requested so far. Error(input) names the glTF file, the image and the picture file.
-  std::vector<Texture> load(int threads, Warnings& warnings) const;
+  std::vector<Texture> load(int threads) const;
 
  private:
   struct Entry {
@@ -38,7 +38,7 @@ class TextureTable {
     std::vector<std::size_t> entries;
   };
   int picture_of_image(int image);
-  ImageRgba8 decode(const Picture& picture, const std::string& place) const;
+  ImageRgba decode(const Picture& picture, const std::string& place) const;
 
   const GltfDocument& document_;
   std::vector<Entry> entries_;

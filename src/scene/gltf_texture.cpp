@@ -68,26 +68,24 @@ int TextureTable::picture_of_image(int image) {
   return index;
 }
 
-ImageRgba8 TextureTable::decode(const Picture& picture, const std::string& place) const {
+ImageRgba TextureTable::decode(const Picture& picture, const std::string& place) const {
   if (!picture.path.empty()) {
-    return read_image_rgba8(picture.path, place);
+    return read_image_rgba(picture.path, place);
   }
   const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
   if (source.buffer_view >= 0) {
-    return read_image_rgba8(view_bytes(document_, source.buffer_view, place), place);
+    return read_image_rgba(view_bytes(document_, source.buffer_view, place), place);
   }
-  return read_image_rgba8(decode_data_uri(source.uri, place), place);
+  return read_image_rgba(decode_data_uri(source.uri, place), place);
 }
 
-std::vector<Texture> TextureTable::load(int threads, Warnings& warnings) const {
+std::vector<Texture> TextureTable::load(int threads) const {
   std::vector<Texture> textures(entries_.size());
-  std::vector<char> reduced(pictures_.size(), 0);
   parallel_for_first_error(pictures_.size(), threads, [&](std::size_t i) {
     const Picture& picture = pictures_[i];
-    ImageRgba8 image = decode(picture, image_place(document_, picture.image));
-    reduced[i] = image.reduced_to_8_bit ? 1 : 0;
+    ImageRgba image = decode(picture, image_place(document_, picture.image));
     const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
-    std::vector<ImageRgba8> images(picture.entries.size() - 1, image);  // most have one entry: nothing is copied
+    std::vector<ImageRgba> images(picture.entries.size() - 1, image);  // most have one entry: nothing is copied
     images.push_back(std::move(image));
     for (std::size_t k = 0; k < picture.entries.size(); ++k) {
       const Entry& entry = entries_[picture.entries[k]];
@@ -99,12 +97,6 @@ std::vector<Texture> TextureTable::load(int threads, Warnings& warnings) const {
       textures[picture.entries[k]] = std::move(texture);
     }
   });
-  for (std::size_t i = 0; i < pictures_.size(); ++i) {
-    if (reduced[i] != 0) {
-      warnings.push_back("images[" + std::to_string(pictures_[i].image) +
-                         "] holds more than 8 bits a channel; it is used with 8");
-    }
-  }
   return textures;
 }
 

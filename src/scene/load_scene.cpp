@@ -117,7 +117,7 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   TextureTable textures(document);
   scene.materials = make_materials(document, textures, scene.warnings);
   const std::int32_t fallback = default_material(document, scene.materials);
-  scene.textures = textures.load(options.threads, scene.warnings);
+  scene.textures = textures.load(options.threads);
 
   MeshResult meshes = make_meshes(document, scene.materials, fallback, options.threads);
   scene.meshes = std::move(meshes.meshes);

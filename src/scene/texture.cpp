@@ -5,8 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 #include <vector>
+
+#include "core/half.hpp"
+#include "scene/texel.hpp"
 
 namespace gazetrace {
 namespace {
@@ -58,6 +62,13 @@ Texel decode_texel(const std::uint8_t* p, TextureUse use, const SrgbTables& tabl
           static_cast<float>(p[3]) * kScale};
 }
 
+// Of a stored normal, 0..1.
+Vec3f unit_normal(const Vec3f& v) {
+  const Vec3f signed_v = v * 2.0F - Vec3f{1, 1, 1};
+  const float len = length(signed_v);
+  return len > 1e-6F ? (signed_v / len + Vec3f{1, 1, 1}) * 0.5F : v;
+}
+
 void encode_texel(const Texel& texel, TextureUse use, const SrgbTables& tables, std::uint8_t* p) {
   if (use == TextureUse::color) {
     const float scale = static_cast<float>(SrgbTables::kEncodeSteps) / texel.w;
@@ -73,11 +84,7 @@ void encode_texel(const Texel& texel, TextureUse use, const SrgbTables& tables, 
   }
   Vec3f v{texel.x, texel.y, texel.z};
   if (use == TextureUse::normal) {
-    const Vec3f signed_v = v * 2.0F - Vec3f{1, 1, 1};
-    const float len = length(signed_v);
-    if (len > 1e-6F) {
-      v = (signed_v / len + Vec3f{1, 1, 1}) * 0.5F;
-    }
+    v = unit_normal(v);
   }
   p[0] = to_byte(v.x);
   p[1] = to_byte(v.y);
@@ -150,14 +157,57 @@ std::vector<Texel> halved(int width, int height, int half_width, int half_height
   return texels;
 }
 
-}  // namespace
+// What levels are made of: reads a texel of the picture, and stores one of a level.
+struct Codec8 {
+  const std::vector<std::uint8_t>& bytes;
+  TextureUse use;
+  const SrgbTables& tables;
 
-Texture make_texture(ImageRgba8&& image, TextureUse use) {
-  const SrgbTables& tables = srgb_tables();
-  Texture texture;
-  texture.srgb = use == TextureUse::color;
-  texture.has_alpha = image.has_alpha;
-  texture.levels.push_back({image.width_px, image.height_px, std::move(image.rgba)});
+  static constexpr TexelFormat format() { return TexelFormat::unorm8; }
+  [[nodiscard]] Texel read(std::size_t i) const { return decode_texel(&bytes[4 * i], use, tables); }
+  void store(const Texel& texel, std::uint8_t* to) const { encode_texel(texel, use, tables, to); }
+};
+
+struct DeepCodec {
+  const std::vector<float>& floats;
+  TextureUse use;
+  bool is_linear;  // else colours are sRGB-encoded
+
+  [[nodiscard]] TexelFormat format() const {
+    return is_linear || use == TextureUse::color ? TexelFormat::half : TexelFormat::unorm16;
+  }
+  [[nodiscard]] Texel read(std::size_t i) const {
+    const float* p = &floats[4 * i];
+    if (use != TextureUse::color) {
+      return {p[0], p[1], p[2], p[3]};
+    }
+    const float weight = std::max(std::min(p[3], 1.0F), kLeastWeight);
+    const auto light = [&](float v) { return std::max(is_linear ? v : srgb_to_linear(v), 0.0F) * weight; };
+    return {light(p[0]), light(p[1]), light(p[2]), weight};
+  }
+  void store(const Texel& texel, std::uint8_t* to) const {
+    Texel value = texel;
+    if (use == TextureUse::color) {
+      const float scale = 1.0F / texel.w;
+      value = {texel.x * scale, texel.y * scale, texel.z * scale, texel.w <= kLeastWeight ? 0.0F : texel.w};
+    } else if (use == TextureUse::normal) {
+      const Vec3f v = unit_normal({texel.x, texel.y, texel.z});
+      value = {v.x, v.y, v.z, texel.w};
+    }
+    const bool half = format() == TexelFormat::half;
+    const auto code = [half](float v) {
+      // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative
+      return half ? float_to_half(v) : static_cast<std::uint16_t>(std::clamp(v, 0.0F, 1.0F) * 65535.0F + 0.5F);
+    };
+    const std::array<std::uint16_t, 4> codes{code(value.x), code(value.y), code(value.z), code(value.w)};
+    std::memcpy(to, codes.data(), sizeof codes);
+  }
+};
+
+template <class Codec>
+void add_levels(Texture& texture, const Codec& codec) {
+  texture.format = codec.format();
+  const std::size_t bytes = texel_bytes(texture.format);
   std::vector<Texel> above;
   while (texture.levels.back().width_px > 1 || texture.levels.back().height_px > 1) {
     const Texture::Level& last = texture.levels.back();
@@ -168,19 +218,41 @@ Texture make_texture(ImageRgba8&& image, TextureUse use) {
     const auto at = [width](int x, int y) {
       return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
     };
-    std::vector<Texel> texels =
-        texture.levels.size() == 1
-            ? halved(width, last.height_px, level.width_px, level.height_px,
-                     [&](int x, int y) { return decode_texel(&last.rgba[4 * at(x, y)], use, tables); })
-            : halved(width, last.height_px, level.width_px, level.height_px,
-                     [&](int x, int y) { return above[at(x, y)]; });
-    level.rgba.resize(texels.size() * 4);
+    std::vector<Texel> texels = texture.levels.size() == 1
+                                    ? halved(width, last.height_px, level.width_px, level.height_px,
+                                             [&](int x, int y) { return codec.read(at(x, y)); })
+                                    : halved(width, last.height_px, level.width_px, level.height_px,
+                                             [&](int x, int y) { return above[at(x, y)]; });
+    level.rgba.resize(texels.size() * bytes);
     for (std::size_t i = 0; i < texels.size(); ++i) {
-      encode_texel(texels[i], use, tables, &level.rgba[4 * i]);
+      codec.store(texels[i], &level.rgba[bytes * i]);
     }
     texture.levels.push_back(std::move(level));
     above = std::move(texels);
   }
+}
+
+}  // namespace
+
+Texture make_texture(ImageRgba&& image, TextureUse use) {
+  Texture texture;
+  texture.has_alpha = image.has_alpha;
+  texture.levels.push_back({image.width_px, image.height_px, {}});
+  if (image.floats.empty()) {
+    texture.srgb = use == TextureUse::color;
+    add_levels(texture, Codec8{image.bytes, use, srgb_tables()});
+    texture.levels[0].rgba = std::move(image.bytes);
+    return texture;
+  }
+  const DeepCodec codec{image.floats, use, image.is_linear};
+  // The picture's own normals keep the length they have.
+  const DeepCodec first{image.floats, use == TextureUse::normal ? TextureUse::data : use, image.is_linear};
+  const std::size_t bytes = texel_bytes(codec.format());
+  texture.levels[0].rgba.resize(image.floats.size() / 4 * bytes);
+  for (std::size_t i = 0; i < image.floats.size() / 4; ++i) {
+    first.store(first.read(i), &texture.levels[0].rgba[bytes * i]);
+  }
+  add_levels(texture, codec);
   return texture;
 }
 

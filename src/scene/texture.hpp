@@ -15,6 +15,6 @@ enum class TextureUse : std::uint8_t {
 
 // Levels down to 1 x 1, each half the last (rounded down) and averaged exactly over the area it covers. Every level is
 // made from the unrounded values of the one above.
-Texture make_texture(ImageRgba8&& image, TextureUse use);
+Texture make_texture(ImageRgba&& image, TextureUse use);
 
 }  // namespace gazetrace

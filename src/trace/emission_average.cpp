@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "scene/texel.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -82,7 +84,13 @@ Vec3d average_emission(const Scene& scene, const Material& material, const Geome
     for (long long x = x_first; x <= x_last; ++x) {
       const auto column = static_cast<std::size_t>(wrap(x, texels.width_px, texture.wrap_u));
       const auto row = static_cast<std::size_t>(wrap(y, texels.height_px, texture.wrap_v));
-      const std::uint8_t* rgba = &texels.rgba[4 * (row * static_cast<std::size_t>(texels.width_px) + column)];
+      const std::size_t texel = row * static_cast<std::size_t>(texels.width_px) + column;
+      const std::uint8_t* rgba = &texels.rgba[texel_bytes(texture.format) * texel];
+      if (texture.format != TexelFormat::unorm8) {
+        const Vec4f c = deep_texel(rgba, texture.format);
+        sum += {c.x, c.y, c.z};
+        continue;
+      }
       sum += {decode(rgba[0], texture.srgb), decode(rgba[1], texture.srgb), decode(rgba[2], texture.srgb)};
     }
   }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/texel.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -65,7 +67,28 @@ inline Axis locate(float c, int size, TextureWrap wrap, bool nearest) {
 
 }  // namespace
 
+namespace {
+
+// Formats with two bytes a channel are rare: read one texture at a time.
+[[gnu::noinline]] void read_deep_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
+  const Vec4f c = read_texture(*group.coordinates.texture, u, v, level);
+  if (group.base) {
+    out.base = {std::min(c.x, 1.0F), std::min(c.y, 1.0F), std::min(c.z, 1.0F)};  // floats may hold more than white
+  } else if (group.metal_rough) {
+    out.roughness = std::clamp(c.y, 0.0F, 1.0F);
+    out.metallic = std::clamp(c.z, 0.0F, 1.0F);
+  } else {
+    out.normal = {c.x, c.y, c.z};
+  }
+}
+
+}  // namespace
+
 void read_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
+  if (group.deep) {
+    read_deep_group(group, u, v, level, out);
+    return;
+  }
   const auto index = static_cast<std::size_t>(std::clamp(level, 0.0F, group.last_level));
   const TexelGroup::Level& image = group.levels[index];
   const Axis x = locate(u, image.width_px, group.wrap_u, group.nearest);
@@ -105,8 +128,11 @@ Vec4f read_texture(const Texture& texture, float u, float v, float level) {
   const Texture::Level& image = texture.levels[index];
   const auto texel = [&](int x, int y) -> Vec4f {
     const std::size_t i =
-        4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(x));
-    const std::uint8_t* p = image.rgba.data() + i;
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(x);
+    const std::uint8_t* p = image.rgba.data() + i * texel_bytes(texture.format);
+    if (texture.format != TexelFormat::unorm8) {
+      return deep_texel(p, texture.format);
+    }
     const float alpha = static_cast<float>(p[3]) * (1.0F / 255.0F);
     if (texture.srgb) {
       return {kSrgbToLinear[p[0]], kSrgbToLinear[p[1]], kSrgbToLinear[p[2]], alpha};
@@ -138,6 +164,9 @@ float read_alpha(const Texture& texture, float u, float v) {
   const auto texel = [&](int column, int row) {
     const std::size_t i =
         static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width_px) + static_cast<std::size_t>(column);
+    if (texture.format != TexelFormat::unorm8) {
+      return deep_texel(&image.rgba[i * texel_bytes(texture.format)], texture.format).w * 255.0F;
+    }
     return static_cast<float>(image.rgba[4 * i + 3]);
   };
   const float a = texel(x.low, y.low);
@@ -183,6 +212,7 @@ TexelGroup start_group(const ShadingTexture& texture) {
   group.half_log2_texels = texture.half_log2_texels;
   group.last_level = static_cast<float>(texture.texture->levels.size() - 1);
   group.nearest = texture.texture->nearest;
+  group.deep = texture.texture->format != TexelFormat::unorm8;
   group.wrap_u = texture.texture->wrap_u;
   group.wrap_v = texture.texture->wrap_v;
   return group;
@@ -246,7 +276,9 @@ void make_groups(ShadingMaterial& material, TexelStore& store, std::vector<MadeG
     std::array<const Texture*, 3> members{};
     int present = 0;
     for (std::size_t j = i; j < 3; ++j) {
-      if (!done[j] && textures[j]->texture != nullptr && alike(*textures[i], *textures[j])) {
+      if (!done[j] && textures[j]->texture != nullptr &&
+          (j == i ||
+           (!group.deep && textures[j]->texture->format == TexelFormat::unorm8 && alike(*textures[i], *textures[j])))) {
         members[j] = textures[j]->texture;
         done[j] = true;
         ++present;

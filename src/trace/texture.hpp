@@ -34,6 +34,7 @@ struct TexelGroup {
   bool base = false, metal_rough = false, normal = false;
   bool srgb = false;  // of the base colour
   bool wide = false;  // 8 bytes
+  bool deep = false;  // one texture with two bytes a channel
   bool nearest = false;
   TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
   ShadingTexture coordinates;

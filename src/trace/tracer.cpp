@@ -2,6 +2,7 @@
 // PathTracer: tiles in parallel, batches in order, sums in double.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <tuple>
 #include <utility>
@@ -46,7 +47,9 @@ struct SiteSum {
 
 void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
   out.sum[site] = {static_cast<float>(sum.r), static_cast<float>(sum.g), static_cast<float>(sum.b)};
-  out.sum_square_luminance[site] = static_cast<float>(sum.luminance2);
+  // Saturates rather than becoming infinite: squares leave float's range at a radiance of 1.8e19.
+  out.sum_square_luminance[site] =
+      static_cast<float>(std::min(sum.luminance2, static_cast<double>(std::numeric_limits<float>::max())));
   out.count[site] = sum.count;
   if (!out.guides.empty()) {
     out.guides[site] = {to_float(sum.albedo), to_float(sum.normal), static_cast<float>(sum.depth), sum.hits};

@@ -85,6 +85,45 @@ TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
   }
 }
 
+// Emission of 1e30 and 1e-30 (what loading lets through): the series holds to float's precision, and nothing overflows
+// or vanishes. It ends where radiance does: at 3.4e38 over the number of samples above, at 1.2e-38 (smaller floats are
+// flushed to zero) below; the sum of squares saturates from a radiance of 1.8e19 on and is zero below 1e-23.
+TEST(TracerLight, ExtremeEmissionKeepsTheSeries) {
+  for (const float emission : {1e30F, 1e-30F}) {
+    Scene scene;
+    scene.materials.push_back(diffuse_material({0.5F, 0.5F, 0.5F}, {emission, emission, emission}));
+    add_mesh(scene, box(1.5F, true, 0));
+    for (const LightChoice choice : {LightChoice::power, LightChoice::tree}) {
+      TracerOptions options = threads(2);
+      options.light_choice = choice;
+      const PathTracer tracer(scene, options);
+      const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});
+      TraceSettings settings;
+      settings.diffuse = DiffuseModel::matte;
+      settings.max_bounces = 40;
+      const double expected = static_cast<double>(emission) / (1.0 - 0.5);
+      settings.light_sampling = LightSampling::bsdf_only;
+      EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, uniform_map(8, 8, 4), settings)).y / expected, 1, 2e-5);
+      for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only}) {
+        settings.light_sampling = sampling;
+        Repeats repeats;
+        for (std::uint64_t seed = 0; seed < 32; ++seed) {
+          settings.seed = seed;
+          const SparseFrame frame = tracer.trace(camera, 1, uniform_map(8, 8, 64), settings);
+          EXPECT_EQ(frame.stats.non_finite_samples, 0U);
+          for (std::size_t i = 0; i < frame.sum.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(frame.sum[i].y) && frame.sum[i].y > 0);
+            ASSERT_TRUE(std::isfinite(frame.sum_square_luminance[i]));
+          }
+          repeats.means.push_back(mean_radiance(frame).y / expected);
+        }
+        EXPECT_LT(std::fabs(repeats.mean() - 1), kCriticalT * std::sqrt(repeats.variance_of_mean()) + 2e-5)
+            << emission << " " << repeats.mean();
+      }
+    }
+  }
+}
+
 // The same box: after v events a path finds a^v, which clamping bounds from the second event on.
 TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
   for (const float albedo : {0.5F, 0.8F}) {

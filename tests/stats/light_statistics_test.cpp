@@ -155,8 +155,8 @@ TEST(TriangleSampling, ChoosesByPower) {
 }
 
 // Irradiance at the origin facing up, by one light sample at a time, no occlusion.
-std::vector<double> irradiance(const Scene& scene, std::uint32_t samples) {
-  const LightSampler lights(scene);
+std::vector<double> irradiance(const Scene& scene, std::uint32_t samples, LightChoice choice) {
+  const LightSampler lights(scene, choice);
   std::vector<double> repeats;
   for (std::uint64_t repeat = 0; repeat < kRepeats; ++repeat) {
     const SampleKey key = make_sample_key(100 + repeat, 0, 0);
@@ -230,19 +230,35 @@ TEST(Irradiance, EqualsClosedForms) {
     from_gradient += (64 - rows) * std::cos(theta) * std::sin(theta) * 2 * kPi * (kPi / 2 / 20000);
   }
 
+  // Emission at the ends of what loading lets through; weights are ratios, powers are double.
+  Scene blinding = lamp;
+  blinding.materials[0].emission = {1e30F, 1e30F, 1e30F};
+  Scene faint = lamp;
+  faint.materials[0].emission = {1e-30F, 1e-30F, 1e-30F};
+  const auto emission_of = [](const Scene& scene) { return static_cast<double>(scene.materials[0].emission.y); };
+
   struct Case {
     const char* name;
     const Scene* scene;
     double expected;
+    LightChoice choice = LightChoice::power;
   };
   const std::vector<Case> cases{{"lamp", &lamp, from_lamp},
                                 {"sky", &sky, from_sky},
                                 {"point", &point, from_point},
                                 {"all", &all, from_all},
-                                {"gradient", &gradient, from_gradient}};
+                                {"gradient", &gradient, from_gradient},
+                                {"lamp, tree", &lamp, from_lamp, LightChoice::tree},
+                                {"point, tree", &point, from_point, LightChoice::tree},
+                                {"all, tree", &all, from_all, LightChoice::tree},
+                                {"blinding", &blinding, from_lamp / 2 * emission_of(blinding)},
+                                {"blinding, tree", &blinding, from_lamp / 2 * emission_of(blinding), LightChoice::tree},
+                                {"faint", &faint, from_lamp / 2 * emission_of(faint)},
+                                {"faint, tree", &faint, from_lamp / 2 * emission_of(faint), LightChoice::tree}};
   for (const Case& c : cases) {
     // Float arithmetic is good for a few 1e-6, which counts where the estimator has no variance.
-    const test::MeanTest result = test::t_test(irradiance(*c.scene, 1U << 14U), c.expected, 5e-6 * c.expected);
+    const test::MeanTest result =
+        test::t_test(irradiance(*c.scene, 1U << 14U, c.choice), c.expected, 5e-6 * c.expected);
     EXPECT_GT(result.p_value, test::sidak(cases.size()))
         << c.name << ": " << result.mean << " +- " << result.standard_error << ", expected " << c.expected;
     EXPECT_LT(result.standard_error, 0.01 * c.expected) << c.name;

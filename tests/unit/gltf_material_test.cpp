@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
+
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 #include "support/png_bytes.hpp"
@@ -255,14 +258,18 @@ TEST(Textures, EmptyImagesAreToldAndLeftOut) {
   EXPECT_THAT(scene.warnings[0], HasSubstr("textures[0]"));
 }
 
-TEST(Textures, SixteenBitPicturesAreUsedWithEightAndTold) {
+TEST(Textures, SixteenBitPicturesKeepTheirDepth) {
   GltfBuilder builder =
-      with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
-                    {{{"uri", data_uri(test::png_bytes(1, 1, PngColor::rgb, 16, {0, 32896, 65535}))}}});
+      with_material({{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}}},
+                    {{{"uri", data_uri(test::png_bytes(1, 1, PngColor::rgb, 16, {0, 32897, 65534}))}}});
   const Scene scene = load(builder);
-  EXPECT_EQ(scene.textures.at(0).levels.at(0).rgba, (std::vector<std::uint8_t>{0, 128, 255, 255}));
-  ASSERT_EQ(scene.warnings.size(), 1U);
-  EXPECT_THAT(scene.warnings[0], HasSubstr("images[0] holds more than 8 bits"));
+  EXPECT_EQ(scene.textures.at(0).format, TexelFormat::unorm16);
+  const std::vector<std::uint8_t>& texel = scene.textures.at(0).levels.at(0).rgba;
+  std::array<std::uint16_t, 4> codes{};
+  ASSERT_EQ(texel.size(), sizeof codes);
+  std::memcpy(codes.data(), texel.data(), sizeof codes);
+  EXPECT_EQ(codes, (std::array<std::uint16_t, 4>{0, 32897, 65534, 65535}));
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST(Extensions, UsedButUnknownIsOneWarningEach) {
