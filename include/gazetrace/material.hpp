@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "gazetrace/math.hpp"
@@ -28,7 +29,74 @@ struct TextureRef {
   friend bool operator==(const TextureRef&, const TextureRef&) = default;
 };
 
-// glTF 2.0 section 3.9, metallic-roughness; factors multiply what the textures hold.
+// KHR_materials_clearcoat: a clear varnish of index 1.5 over everything else.
+struct ClearcoatLayer {
+  float factor = 0;     // 0..1: share of the surface that is coated
+  float roughness = 0;  // 0..1, perceptual
+  float normal_scale = 1.0F;
+  TextureRef texture;            // R
+  TextureRef roughness_texture;  // G
+  TextureRef normal_texture;     // linear, tangent space; without it the coat is not bumped, whatever lies below
+};
+
+// KHR_materials_sheen: fibres over the base, under a clearcoat.
+struct SheenLayer {
+  Vec3f color{0, 0, 0};          // linear; black: none
+  float roughness = 0;           // 0..1, perceptual
+  TextureRef color_texture;      // sRGB
+  TextureRef roughness_texture;  // A
+};
+
+// KHR_materials_specular: what of the dielectric part's reflection is there.
+struct SpecularParameters {
+  float factor = 1.0F;       // 0..1, scales it under every angle
+  Vec3f color{1, 1, 1};      // linear, >= 0: tints it at normal incidence; the product with that reflectance ends at 1
+  TextureRef texture;        // A
+  TextureRef color_texture;  // sRGB
+  // From KHR_materials_pbrSpecularGlossiness: A of the colour's texture is glossiness, 1 - roughness; it takes the
+  // place of the metallic-roughness texture.
+  bool color_texture_has_glossiness = false;
+};
+
+// KHR_materials_transmission: light through the surface instead of a diffuse base.
+struct TransmissionParameters {
+  float factor = 0;    // 0..1
+  TextureRef texture;  // R
+};
+
+// KHR_materials_volume: the surface bounds a solid body. Without it everything that transmits is a thin sheet.
+struct VolumeParameters {
+  float thickness = 0;  // 0: thin. What lies between two surfaces is traced, so that only zero or not matters
+  Vec3f attenuation_color{1, 1, 1};  // linear, what is left of white after the distance below
+  float attenuation_distance_m = std::numeric_limits<float>::infinity();
+  [[nodiscard]] bool present() const { return thickness > 0; }
+};
+
+// KHR_materials_anisotropy: rougher along one direction of the surface, that of the tangent turned by `rotation_rad`.
+struct AnisotropyParameters {
+  float strength = 0;  // 0..1
+  float rotation_rad = 0;
+  TextureRef texture;  // RG: direction in tangent space, -1..1; B: strength
+};
+
+// KHR_materials_iridescence: a thin film on the base.
+struct IridescenceParameters {
+  float factor = 0;  // 0..1: share of the surface under the film
+  float ior = 1.3F;
+  float thickness_min_nm = 100, thickness_max_nm = 400;  // at texture values 0 and 1; without a texture: the latter
+  TextureRef texture;                                    // R
+  TextureRef thickness_texture;                          // G
+};
+
+// KHR_materials_diffuse_transmission: paper, leaves; a share of the diffuse light leaves on the other side.
+struct DiffuseTransmissionParameters {
+  float factor = 0;  // 0..1
+  Vec3f color{1, 1, 1};
+  TextureRef texture;        // A
+  TextureRef color_texture;  // sRGB
+};
+
+// glTF 2.0 section 3.9, metallic-roughness, and its extensions; factors multiply what the textures hold.
 struct Material {
   std::string name;
   Vec4f base_color{1, 1, 1, 1};  // linear Rec.709, alpha last
@@ -45,6 +113,35 @@ struct Material {
   TextureRef metallic_roughness_texture;  // linear
   TextureRef normal_texture;              // linear, tangent space
   TextureRef emissive_texture;            // sRGB
+
+  float ior = 1.5F;  // KHR_materials_ior; 0: the dielectric part reflects everything at normal incidence
+  ClearcoatLayer clearcoat;
+  SheenLayer sheen;
+  SpecularParameters specular;
+  TransmissionParameters transmission;
+  VolumeParameters volume;
+  AnisotropyParameters anisotropy;
+  IridescenceParameters iridescence;
+  DiffuseTransmissionParameters diffuse_transmission;
+  float dispersion = 0;  // KHR_materials_dispersion: 20 / Abbe number; only of solid bodies
 };
+
+// What a material has beyond metallic-roughness, as far as it can show: a clearcoat of factor 0 is none. Scenes or
+// these over all materials in use.
+struct MaterialLayers {
+  bool clearcoat = false, sheen = false, specular = false, ior = false, transmission = false, volume = false,
+       anisotropy = false, iridescence = false, diffuse_transmission = false, dispersion = false;
+
+  [[nodiscard]] bool any() const {
+    return clearcoat || sheen || specular || ior || transmission || volume || anisotropy || iridescence ||
+           diffuse_transmission || dispersion;
+  }
+  friend bool operator==(const MaterialLayers&, const MaterialLayers&) = default;
+};
+MaterialLayers layers_of(const Material& material);
+MaterialLayers operator|(const MaterialLayers& a, const MaterialLayers& b);
+
+// The texture slots of the extensions, present or not.
+std::array<const TextureRef*, 13> layer_textures(const Material& material);
 
 }  // namespace gazetrace

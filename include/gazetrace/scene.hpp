@@ -101,6 +101,7 @@ struct SceneFeatures {
   bool environment = false;
   bool instances = false;  // a mesh used more than once
   bool unlit = false;
+  MaterialLayers layers;
   bool specular = true;  // any material that is not purely diffuse (all of glTF's are not)
 };
 
@@ -119,6 +120,12 @@ struct Scene {
   std::vector<std::string> ignored;  // what the file contains and this program does not show, one line each
   Warnings warnings;
 };
+
+struct MaterialExtensionInfo {
+  std::string name;  // "KHR_materials_clearcoat"
+  std::string description;
+};
+std::vector<MaterialExtensionInfo> material_extensions();
 
 struct SceneReadOptions {
   int threads = 0;  // texture decoding; 0: all

@@ -7,7 +7,9 @@
 //          s(i) shape(o, i) cos_i / pi  =  1 - (albedo of the whole dielectric specular lobe at o),
 //          so that a white dielectric reflects everything, and the lobe is reciprocal. For shape = 1 this is the
 //          diffuse term of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", 2017).
-//   e_average  2 * integral of e(mu) mu dmu
+//   e_average, b_average  2 * integral of e(mu) mu dmu, of b(mu) mu dmu
+//   sheen  {raw, kept}: directional albedo of the lobe of lobes/sheen.hpp for colour 1, as its authors state it, and
+//          after sheen_gain has taken out what exceeds 1;  sheen_average: of `kept`, like e_average
 // Nodes: mu = (k / (n - 1))^2, roughness = j / (n - 1); in between bilinear in (sqrt(mu), roughness).
 #pragma once
 
@@ -33,9 +35,15 @@ struct AlbedoTerms {
   float e, b, lambert, burley;
 };
 
+struct SheenAlbedo {
+  float raw, kept;
+};
+
 struct AlbedoTables {
   std::array<std::array<AlbedoTerms, kAlbedoNodes>, kAlbedoNodes> terms;  // [roughness][mu]
-  std::array<float, kAlbedoNodes> e_average;
+  std::array<float, kAlbedoNodes> e_average, b_average;
+  std::array<std::array<SheenAlbedo, kAlbedoNodes>, kAlbedoNodes> sheen;  // [roughness][mu]
+  std::array<float, kAlbedoNodes> sheen_average;
 };
 
 extern const AlbedoTables kAlbedoTables;
@@ -75,6 +83,25 @@ inline float albedo_average(const AlbedoRow& at) noexcept {
   const auto row = static_cast<std::size_t>(at.row);
   const float a = kAlbedoTables.e_average[row];
   return a + (kAlbedoTables.e_average[row + 1] - a) * at.fraction;
+}
+
+inline float interpolate_average(const std::array<float, kAlbedoNodes>& averages, const AlbedoRow& at) noexcept {
+  const auto row = static_cast<std::size_t>(at.row);
+  return averages[row] + (averages[row + 1] - averages[row]) * at.fraction;
+}
+
+inline SheenAlbedo sheen_albedo(const AlbedoRow& at, float mu) noexcept {
+  const float x = std::sqrt(mu) * static_cast<float>(kAlbedoNodes - 1);
+  const auto k = static_cast<std::size_t>(std::min(static_cast<int>(x), kAlbedoNodes - 2));
+  const float f = x - static_cast<float>(k);
+  const auto& low = kAlbedoTables.sheen[static_cast<std::size_t>(at.row)];
+  const auto& high = kAlbedoTables.sheen[static_cast<std::size_t>(at.row) + 1];
+  const auto blend = [&](float a, float b, float c, float d) {
+    const float first = a + (b - a) * f;
+    return first + (c + (d - c) * f - first) * at.fraction;
+  };
+  return {blend(low[k].raw, low[k + 1].raw, high[k].raw, high[k + 1].raw),
+          blend(low[k].kept, low[k + 1].kept, high[k].kept, high[k + 1].kept)};
 }
 
 }  // namespace gazetrace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "material/albedo_tables.hpp"
+#include "material/lobes/sheen.hpp"
 #include "material/microfacet.hpp"
 
 namespace gazetrace {
@@ -117,9 +118,43 @@ Row balance_burley(const Quadrature& q, double roughness, const Row& target) {
   return s;
 }
 
+// Integral of the sheen lobe times cosine: midpoint rule over the hemisphere, nodes crowded at the horizon. `raw`: the
+// same without any gain, nullptr for that one.
+double sheen_lobe_albedo(double mu, double roughness, const Row* raw) {
+  constexpr int kRings = 96;
+  constexpr int kAzimuths = 96;
+  const double alpha = sheen_alpha(roughness);
+  const double z = std::max(mu, 1e-4);
+  const Vec3d wo{std::sqrt(1 - z * z), 0, z};
+  const double raw_o = raw == nullptr ? 1 : interpolate(*raw, std::sqrt(mu));
+  double sum = 0;
+  for (int j = 0; j < kRings; ++j) {
+    const double t = (j + 0.5) / kRings;
+    const double cosine = t * t;
+    const double gain = raw == nullptr ? 1 : sheen_gain(raw_o, interpolate(*raw, t));
+    for (int i = 0; i < kAzimuths; ++i) {
+      const double phi = kPi * (i + 0.5) / kAzimuths;
+      const double sine = std::sqrt(1 - cosine * cosine);
+      const Vec3d wi{sine * std::cos(phi), sine * std::sin(phi), cosine};
+      sum += gain * sheen_value(wo, wi, alpha) * cosine * 2 * t;
+    }
+  }
+  return sum * 2 * kPi / (kRings * kAzimuths);
+}
+
+void write_row(std::FILE* out, const Row& row) {
+  std::fputs("{", out);
+  for (const double value : row) {
+    std::fprintf(out, "%.9eF, ", value);
+  }
+  std::fputs("}", out);
+}
+
 bool write_tables(std::FILE* out) {
   const Quadrature q = cosine_quadrature();
   Row averages{};
+  Row b_averages{};
+  Row sheen_averages{};
   std::fputs("// Written by generate_albedo_tables.\n#include \"material/albedo_tables.hpp\"\n\n", out);
   std::fputs("namespace gazetrace {\n\nconst AlbedoTables kAlbedoTables{{{\n", out);
   for (std::size_t j = 0; j < kNodes; ++j) {
@@ -130,6 +165,7 @@ bool write_tables(std::FILE* out) {
       lobe_albedo(node_mu(k), roughness, e[k], b[k]);
     }
     averages[j] = cosine_average(q, e);
+    b_averages[j] = cosine_average(q, b);
     const double f0 = kDielectricF0;
     const double f = f0 + (1 - f0) / 21;
     const double repeats = repeated_share(1 - averages[j]) * f * f * averages[j] / (1 - f * (1 - averages[j]));
@@ -147,9 +183,27 @@ bool write_tables(std::FILE* out) {
     std::fputs("}},\n", out);
   }
   std::fputs("}},\n  {", out);
-  for (const double average : averages) {
-    std::fprintf(out, "%.9eF, ", average);
+  write_row(out, averages);
+  std::fputs("},\n  {", out);
+  write_row(out, b_averages);
+  std::fputs("},\n  {{\n", out);
+  for (std::size_t j = 0; j < kNodes; ++j) {
+    const double roughness = static_cast<double>(j) / (kNodes - 1);
+    Row raw{};
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      raw[k] = sheen_lobe_albedo(node_mu(k), roughness, nullptr);
+    }
+    Row kept{};
+    std::fputs("    {{", out);
+    for (std::size_t k = 0; k < kNodes; ++k) {
+      kept[k] = sheen_lobe_albedo(node_mu(k), roughness, &raw);
+      std::fprintf(out, "{%.9eF, %.9eF}, ", raw[k], kept[k]);
+    }
+    std::fputs("}},\n", out);
+    sheen_averages[j] = cosine_average(q, kept);
   }
+  std::fputs("  }},\n  {", out);
+  write_row(out, sheen_averages);
   std::fputs("}};\n\n}  // namespace gazetrace\n", out);
   return std::ferror(out) == 0;
 }

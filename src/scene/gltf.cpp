@@ -59,6 +59,45 @@ GltfTextureInfo texture_info(const Info& from) {
   return info;
 }
 
+GltfTextureInfo texture_info_of(const Value& from) {
+  tinygltf::TextureInfo info;
+  info.index = static_cast<int>(number(from, "index", -1));
+  info.texCoord = static_cast<int>(number(from, "texCoord", 0));
+  if (from.Has("extensions") && from.Get("extensions").IsObject()) {
+    info.extensions = from.Get("extensions").Get<Value::Object>();
+  }
+  GltfTextureInfo result = texture_info(info);
+  result.scale_factor = number(from, "scale", 1);
+  return result;
+}
+
+GltfExtension extension_fields(const Value& from) {
+  GltfExtension to;
+  for (const auto& [key, value] : from.Get<Value::Object>()) {
+    if (value.IsNumber()) {
+      to.numbers[key] = {value.GetNumberAsDouble()};
+    } else if (value.IsArray()) {
+      const auto& items = value.Get<Value::Array>();
+      std::vector<double> numbers;
+      for (const Value& item : items) {
+        if (item.IsNumber()) {
+          numbers.push_back(item.GetNumberAsDouble());
+        }
+      }
+      if (numbers.size() == items.size()) {
+        to.numbers[key] = std::move(numbers);
+      } else {
+        to.others.insert(key);
+      }
+    } else if (value.IsObject() && value.Has("index")) {
+      to.textures[key] = texture_info_of(value);
+    } else {
+      to.others.insert(key);
+    }
+  }
+  return to;
+}
+
 GltfMaterial material(const tinygltf::Material& from) {
   GltfMaterial to;
   to.name = from.name;
@@ -78,6 +117,11 @@ GltfMaterial material(const tinygltf::Material& from) {
   to.metallic_roughness_texture = texture_info(from.pbrMetallicRoughness.metallicRoughnessTexture);
   to.normal_texture = texture_info(from.normalTexture);
   to.emissive_texture = texture_info(from.emissiveTexture);
+  for (const auto& [name, value] : from.extensions) {
+    if (value.IsObject()) {
+      to.extensions[name] = extension_fields(value);
+    }
+  }
   return to;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,6 +52,14 @@ struct GltfTextureInfo {
   bool has_transform = false;
   std::array<double, 2> offset{0, 0}, scale{1, 1};
   double rotation_rad = 0;
+  double scale_factor = 1;  // of a normal map's x and y
+};
+
+// Any extension of a material by its JSON keys; material_extension.hpp gives them meaning.
+struct GltfExtension {
+  std::map<std::string, std::vector<double>> numbers;  // one, or an array of them
+  std::map<std::string, GltfTextureInfo> textures;
+  std::set<std::string> others;  // keys of anything else
 };
 
 struct GltfMaterial {
@@ -60,6 +69,7 @@ struct GltfMaterial {
   double metallic = 1, roughness = 1, normal_scale = 1, alpha_cutoff = 0.5, emissive_strength = 1;
   bool double_sided = false, unlit = false;
   GltfTextureInfo base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture;
+  std::map<std::string, GltfExtension> extensions;
 };
 
 struct GltfNode {

@@ -7,6 +7,7 @@
 
 #include "gazetrace/error.hpp"
 #include "scene/gltf_walker.hpp"
+#include "scene/material_extension.hpp"
 
 namespace gazetrace {
 namespace {
@@ -45,9 +46,6 @@ using Step = Walker::Step;
 std::string remedy_for_extension(const std::string& name) {
   if (name == "KHR_texture_basisu") {
     return "convert its textures to PNG or WebP, for example with gltf-transform";
-  }
-  if (name == "KHR_materials_pbrSpecularGlossiness") {
-    return "convert its materials, for example with gltf-transform metalrough";
   }
   return "export the file without it";
 }
@@ -171,6 +169,17 @@ void check_materials(Walker& walker, const Json& root) {
       if (const Json* strength = walker.object(*extensions, "KHR_materials_emissive_strength")) {
         const Step step(walker, "extensions.KHR_materials_emissive_strength");
         walker.number(*strength, "emissiveStrength");
+      }
+      for (const MaterialExtension& known : material_extension_readers()) {
+        if (const Json* extension = walker.object(*extensions, known.extension)) {
+          const std::string place = "extensions." + std::string(known.extension);
+          const Step step(walker, place);
+          for (const auto& [key, value] : extension->items()) {
+            if (value.is_object() && value.contains("index")) {
+              check_texture_info(walker, *extension, key.c_str());
+            }
+          }
+        }
       }
     }
   });
@@ -398,21 +407,27 @@ void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
 }  // namespace
 
 const std::vector<std::string>& known_gltf_extensions() {
-  static const std::vector<std::string> kKnown{
-      // geometry
-      "KHR_mesh_quantization",
-      "EXT_mesh_gpu_instancing",
-      "EXT_meshopt_compression",
-      "KHR_draco_mesh_compression",
-      // pictures
-      "KHR_texture_transform",
-      "EXT_texture_webp",
-      // lights
-      "KHR_lights_punctual",
-      // materials
-      "KHR_materials_emissive_strength",
-      "KHR_materials_unlit",
-  };
+  static const std::vector<std::string> kKnown = [] {
+    std::vector<std::string> names{
+        // geometry
+        "KHR_mesh_quantization",
+        "EXT_mesh_gpu_instancing",
+        "EXT_meshopt_compression",
+        "KHR_draco_mesh_compression",
+        // pictures
+        "KHR_texture_transform",
+        "EXT_texture_webp",
+        // lights
+        "KHR_lights_punctual",
+        // materials, beside material_extensions.def
+        "KHR_materials_emissive_strength",
+        "KHR_materials_unlit",
+    };
+    for (const MaterialExtension& extension : material_extension_readers()) {
+      names.emplace_back(extension.extension);
+    }
+    return names;
+  }();
   return kKnown;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/material_extension.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -20,7 +22,8 @@ std::array<float, 6> texture_matrix(const GltfTextureInfo& info) {
 
 class MaterialBuilder {
  public:
-  MaterialBuilder(TextureTable& textures, Warnings& warnings) : textures_(textures), warnings_(warnings) {}
+  MaterialBuilder(const std::string& path, TextureTable& textures, Warnings& warnings)
+      : path_(path), textures_(textures), warnings_(warnings) {}
 
   Material build(const GltfMaterial& from, std::size_t index) {
     place_ = "materials[" + std::to_string(index) + "] '" + from.name + "'";
@@ -44,12 +47,28 @@ class MaterialBuilder {
       to.normal_texture = texture(from.normal_texture, TextureUse::normal);
       if (!(to.emission == Vec3f{})) {
         to.emissive_texture = texture(from.emissive_texture, TextureUse::color);
+        if (from.emissive_texture.texture >= 0 && !to.emissive_texture.present()) {
+          to.emission = {};  // where it shines is lost with the picture; all of it would be a lamp
+        }
       }
+      read_extensions(from, index, to);
     }
     return to;
   }
 
  private:
+  void read_extensions(const GltfMaterial& from, std::size_t index, Material& to) {
+    for (const MaterialExtension& extension : material_extension_readers()) {
+      const auto it = from.extensions.find(extension.extension);
+      if (it != from.extensions.end()) {
+        ExtensionReader reader(
+            it->second, path_ + ": materials[" + std::to_string(index) + "].extensions." + extension.extension,
+            [this](const GltfTextureInfo& info, TextureUse use) { return texture(info, use); }, warnings_);
+        extension.read(reader, to);
+      }
+    }
+  }
+
   float unit(double value, const char* what) {
     if (value < 0 || value > 1) {
       warnings_.push_back(place_ + ": " + what + " " + std::to_string(value) + " is outside 0..1 and was clamped");
@@ -87,6 +106,7 @@ class MaterialBuilder {
     return ref;
   }
 
+  const std::string& path_;
   TextureTable& textures_;
   Warnings& warnings_;
   std::string place_;
@@ -95,7 +115,7 @@ class MaterialBuilder {
 }  // namespace
 
 std::vector<Material> make_materials(const GltfDocument& document, TextureTable& textures, Warnings& warnings) {
-  MaterialBuilder builder(textures, warnings);
+  MaterialBuilder builder(document.path, textures, warnings);
   std::vector<Material> materials;
   materials.reserve(document.materials.size() + 1);
   for (std::size_t i = 0; i < document.materials.size(); ++i) {
@@ -128,13 +148,20 @@ void drop_needless_alpha(const std::vector<Texture>& textures, const std::vector
 
 VertexNeeds vertex_needs(const Material& material) {
   VertexNeeds needs;
-  for (const TextureRef* ref : {&material.base_color_texture, &material.metallic_roughness_texture,
-                                &material.normal_texture, &material.emissive_texture}) {
+  const auto add = [&needs](const TextureRef* ref) {
     if (ref->present()) {
       (ref->uv_set == 1 ? needs.uv1 : needs.uv0) = true;
     }
+  };
+  for (const TextureRef* ref : {&material.base_color_texture, &material.metallic_roughness_texture,
+                                &material.normal_texture, &material.emissive_texture}) {
+    add(ref);
   }
-  needs.tangents = material.normal_texture.present();
+  for (const TextureRef* ref : layer_textures(material)) {
+    add(ref);
+  }
+  needs.tangents = material.normal_texture.present() || material.clearcoat.normal_texture.present() ||
+                   material.anisotropy.strength > 0;
   return needs;
 }
 

@@ -59,6 +59,10 @@ SceneFeatures features_of(const Scene& scene) {
       features.alpha_blend = features.alpha_blend || material.alpha_mode == AlphaMode::blend;
       features.emissive_triangles = features.emissive_triangles || emits(material);
       features.unlit = features.unlit || material.unlit;
+      features.layers = features.layers | layers_of(material);
+      for (const TextureRef* ref : layer_textures(material)) {
+        features.textures = features.textures || ref->present();
+      }
     }
   }
   features.textures = features.textures || features.normal_maps;

@@ -70,6 +70,7 @@ struct ChunkHits {
   ChunkVec3 position, geometric, shading;  // unit, on the ray's side
   ChunkVec3 origin;                        // of rays that leave: position moved off the surface
   ChunkVec3 tangent;
+  ChunkVec3 smooth;  // interpolated normal, neither bumped nor turned to the ray; with layers only
   ChunkVec2 uv;
   ChunkArray<float> offset, side, good;
   ChunkVec3 base_color;

@@ -19,6 +19,7 @@ struct KernelFeatures {
   bool instances = false;  // hits inside shared meshes
   bool emission = false;   // surfaces that shine: emissive triangles and unlit materials
   bool extras = false;     // vertex colours, textures with coordinates of their own
+  bool layers = false;     // materials with extensions: lobes beyond metallic-roughness, bodies that light passes
 };
 
 struct FrameContext {

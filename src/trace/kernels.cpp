@@ -3,6 +3,7 @@
 
 #include "trace/kernel/emission.hpp"
 #include "trace/kernel/generate.hpp"
+#include "trace/kernel/layers.hpp"
 #include "trace/kernel/path_kernel.hpp"
 #include "trace/kernel/scatter.hpp"
 #include "trace/kernel/shade.hpp"
@@ -21,14 +22,17 @@ constexpr NamedKernel named(const char* name) {
 constexpr KernelFeatures kPlain{};
 constexpr KernelFeatures kTextured{.textures = true};
 constexpr KernelFeatures kInstanced{.textures = true, .instances = true};
-constexpr KernelFeatures kAll{.textures = true, .instances = true, .emission = true, .extras = true};
+constexpr KernelFeatures kUnlayered{.textures = true, .instances = true, .emission = true, .extras = true};
+constexpr KernelFeatures kAll{.textures = true, .instances = true, .emission = true, .extras = true, .layers = true};
 
+// "unlayered": everything but materials with extensions.
 constexpr std::array kKernels{named<kPlain>("plain"), named<kTextured>("textured"),
-                              named<kInstanced>("textured, instanced"), named<kAll>("all")};
+                              named<kInstanced>("textured, instanced"), named<kUnlayered>("unlayered"),
+                              named<kAll>("all")};
 
 constexpr bool covers(const KernelFeatures& kernel, const KernelFeatures& scene) {
   return (kernel.textures || !scene.textures) && (kernel.instances || !scene.instances) &&
-         (kernel.emission || !scene.emission) && (kernel.extras || !scene.extras);
+         (kernel.emission || !scene.emission) && (kernel.extras || !scene.extras) && (kernel.layers || !scene.layers);
 }
 
 }  // namespace
@@ -53,7 +57,8 @@ KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene&
   return {.textures = features.textures || features.normal_maps,
           .instances = !scene.instances.empty(),
           .emission = features.emissive_triangles || features.unlit,
-          .extras = !scene.extras.empty()};
+          .extras = !scene.extras.empty(),
+          .layers = features.layers.any()};
 }
 
 KernelList kernels() {

@@ -115,6 +115,12 @@ bool is_local(const PunctualLight& light) {
   return light.kind != LightKind::directional;
 }
 
+// A zero normal: light may come from anywhere.
+bool faces(const Vec3f& normal, const Vec3f& direction) {
+  const float cosine = dot(normal, direction);
+  return cosine > 0 || (cosine == 0 && dot(normal, normal) == 0);
+}
+
 double area_of(const EmissiveTriangle& triangle) {
   return 0.5 * length(cross(to_double(triangle.edge1), to_double(triangle.edge2)));
 }
@@ -312,7 +318,7 @@ void LightSampler::sample_many(std::size_t count, const Vec3f* position, const V
       result.distance = std::numeric_limits<float>::infinity();
       result.radiance = chosen[i].radiance;
       result.pdf = chosen[i].pdf * environment_probability_;
-      result.valid = result.pdf > 0 && dot(normal[begin + i], chosen[i].direction) > 0;
+      result.valid = result.pdf > 0 && faces(normal[begin + i], chosen[i].direction);
     }
   }
 }
@@ -336,7 +342,7 @@ LightSample LightSampler::sample_environment(const Vec3f& normal, const Vec2f& u
   result.distance = std::numeric_limits<float>::infinity();
   result.radiance = chosen.radiance;
   result.pdf = chosen.pdf * environment_probability_;
-  result.valid = result.pdf > 0 && dot(normal, chosen.direction) > 0;
+  result.valid = result.pdf > 0 && faces(normal, chosen.direction);
   return result;
 }
 
@@ -365,7 +371,7 @@ LightSample LightSampler::sample_triangle(std::uint32_t emitter, float selection
   result.direction = way / result.distance;
   result.radiance = triangle.emission;
   result.pdf = density(triangle, selection, -dot(triangle.normal, result.direction), distance_squared);
-  result.valid = result.pdf > 0 && dot(normal, result.direction) > 0;
+  result.valid = result.pdf > 0 && faces(normal, result.direction);
   return result;
 }
 
@@ -394,7 +400,7 @@ LightSample LightSampler::sample_punctual(std::uint32_t index, float probability
     result.radiance = light.intensity * (falloff / distance_squared);
   }
   const float sum = result.radiance.x + result.radiance.y + result.radiance.z;
-  result.valid = sum > 0 && std::isfinite(sum) && dot(normal, result.direction) > 0;
+  result.valid = sum > 0 && std::isfinite(sum) && faces(normal, result.direction);
   return result;
 }
 

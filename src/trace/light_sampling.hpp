@@ -63,7 +63,7 @@ class LightSampler {
   // True: densities of triangles depend on the shaded point, and whoever asks for one later must keep it.
   [[nodiscard]] bool depends_on_place() const noexcept { return !tree_.empty(); }
 
-  // `normal` is the side the light must come from: samples below its horizon come back invalid.
+  // `normal` is the side the light must come from: samples below its horizon come back invalid. Zero: either side.
   [[nodiscard]] LightSample sample(const Vec3f& position, const Vec3f& normal, const Vec2f& u,
                                    float u_select) const noexcept;
 

@@ -48,6 +48,7 @@ struct PathBatch {
   BatchArray<float> pdf;      // of the ray's direction, over solid angle
   BatchArray<float> cone_width, cone_spread;
   BatchVec3 normal;  // that lights were chosen with where the ray left; only where LightSampler::depends_on_place
+  BatchArray<std::uint32_t> body;  // that the ray is in: index into LayeredMaterials::materials, kNoId: none
 };
 
 struct ShadowBatch {

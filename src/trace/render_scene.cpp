@@ -39,9 +39,9 @@ Vec2f transformed_uv(const TextureRef* ref, const Geometry& geometry, std::uint3
   return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
 }
 
-bool needs_extra(const Geometry& geometry, const ShadingMaterial& material) {
-  return !geometry.colors.empty() || material.base.own_uv || material.metal_rough.own_uv || material.normal.own_uv ||
-         material.emit.own_uv;
+bool needs_extra(const Geometry& geometry, const ShadingMaterial& material, const LayeredMaterial* layers) {
+  return (layers != nullptr && layers->any_own_uv()) || !geometry.colors.empty() || material.base.own_uv ||
+         material.metal_rough.own_uv || material.normal.own_uv || material.emit.own_uv;
 }
 
 std::uint32_t triangle_count(const Mesh& mesh) {
@@ -59,7 +59,7 @@ void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, co
   const auto material_index = static_cast<std::size_t>(geometry.material);
   const ShadingMaterial& material = materials[material_index];
   const TextureRef* shared = shared_coordinates(scene.materials[material_index]);
-  const bool extra = needs_extra(geometry, material);
+  const bool extra = needs_extra(geometry, material, layered.of(static_cast<std::uint32_t>(material_index)));
   const bool mirrored = to_world != nullptr && determinant(*to_world) < 0;
   const auto normal_map = to_world != nullptr ? cofactors(*to_world) : cofactors(Affine{});
   const double normal_sign = mirrored ? -1.0 : 1.0;
@@ -139,7 +139,7 @@ void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, co
 }
 
 RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
-    : materials(make_materials(scene, texels)), features(features_of(scene)) {
+    : materials(make_materials(scene, texels)), layered(make_layered_materials(scene)), features(features_of(scene)) {
   const Stopwatch watch;
   const AlphaSource* alpha = this;
   rays = std::make_unique<RayScene>(options.threads, options.bvh_quality == BvhQuality::high, alpha);

@@ -10,6 +10,7 @@
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
 #include "trace/embree.hpp"
+#include "trace/layered_material.hpp"
 #include "trace/texture.hpp"
 
 namespace gazetrace {
@@ -64,6 +65,7 @@ class RenderScene : private AlphaSource {
   std::uint32_t first_instance_id = 0;
   TexelStore texels;
   std::vector<ShadingMaterial> materials;
+  LayeredMaterials layered;
   SceneFeatures features;
   std::unique_ptr<RayScene> rays;
   double build_s = 0;

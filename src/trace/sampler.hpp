@@ -15,7 +15,14 @@ namespace gazetrace {
 // Fixed numbers: a switched-off feature never shifts another's random numbers.
 enum class PathDimension : std::uint32_t { pixel = 0, lens = 1, time = 2, first_bounce = 8 };
 // Per scattering event. `select` holds two unrelated one-dimensional decisions: x picks the light, y the lobe.
-enum class BounceDimension : std::uint32_t { select = 0, light_uv = 1, bsdf_uv = 2, roulette = 3, count = 8 };
+enum class BounceDimension : std::uint32_t {
+  select = 0,
+  light_uv = 1,
+  bsdf_uv = 2,
+  roulette = 3,
+  channel = 4,
+  count = 8
+};
 
 constexpr std::uint32_t dimension_of(PathDimension d) noexcept {
   return static_cast<std::uint32_t>(d);

@@ -1,32 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small geometry of a hit: local frames, bent normals, ray origins that leave their surface.
+// Small geometry of a hit: bent normals, ray origins that leave their surface.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
 #include "gazetrace/math.hpp"
+#include "material/local_frame.hpp"
 
 namespace gazetrace {
 
 inline Vec3f fast_normalize(const Vec3f& v) {
   return v * (1.0F / std::sqrt(dot(v, v)));
 }
-
-// Orthonormal frame about a unit normal without a branch (Duff et al., "Building an Orthonormal Basis, Revisited",
-// JCGT 6(1), 2017).
-struct LocalFrame {
-  Vec3f s, t, n;
-  explicit LocalFrame(const Vec3f& normal) : n(normal) {
-    const float sign = std::copysign(1.0F, normal.z);
-    const float a = -1.0F / (sign + normal.z);
-    const float b = normal.x * normal.y * a;
-    s = {1.0F + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
-    t = {b, sign + normal.y * normal.y * a, -normal.y};
-  }
-  [[nodiscard]] Vec3f to_local(const Vec3f& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
-  [[nodiscard]] Vec3f to_world(const Vec3f& v) const { return s * v.x + t * v.y + n * v.z; }
-};
 
 // The shading normal nearest to the given one (in the plane of view and normal) whose mirror direction stays above the
 // geometric surface: no black fringes, no light from behind (Keller et al., "The Iray Light Transport Simulation and

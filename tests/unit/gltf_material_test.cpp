@@ -273,11 +273,11 @@ TEST(Textures, SixteenBitPicturesKeepTheirDepth) {
 }
 
 TEST(Extensions, UsedButUnknownIsOneWarningEach) {
-  GltfBuilder builder = with_material({{"extensions", {{"KHR_materials_sheen", json::object()}}}});
-  builder.json["extensionsUsed"] = {"KHR_materials_sheen", "KHR_texture_transform", "VENDOR_thing"};
+  GltfBuilder builder = with_material({{"extensions", {{"KHR_materials_unheard_of", json::object()}}}});
+  builder.json["extensionsUsed"] = {"KHR_materials_unheard_of", "KHR_texture_transform", "VENDOR_thing"};
   const Scene scene = load(builder);
   ASSERT_EQ(scene.warnings.size(), 2U);
-  EXPECT_THAT(scene.warnings[0], HasSubstr("KHR_materials_sheen"));
+  EXPECT_THAT(scene.warnings[0], HasSubstr("KHR_materials_unheard_of"));
   EXPECT_THAT(scene.warnings[1], HasSubstr("VENDOR_thing"));
   EXPECT_EQ(scene.ignored.size(), 2U);
   EXPECT_EQ(scene.extensions_used.size(), 3U);

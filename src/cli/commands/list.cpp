@@ -56,6 +56,7 @@ std::vector<Family> families() {
       {"filters", "--filter", [](const auto&) { return members_of(reconstruction_filters()); }},
       {"gaze-formats", "--gaze-format", [](const auto&) { return members_of(gaze_formats()); }},
       {"camera-formats", "--camera-format", [](const auto&) { return members_of(camera_formats()); }},
+      {"material-extensions", "scene files", [](const auto&) { return members_of(material_extensions()); }},
       {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},
       {"views", "--view", view_members},
       {"aovs", "--aov",

@@ -52,6 +52,16 @@ std::vector<std::string> feature_names(const SceneFeatures& features) {
   add(features.punctual_lights, "punctual lights");
   add(features.instances, "instances");
   add(features.unlit, "unlit");
+  add(features.layers.clearcoat, "clearcoat");
+  add(features.layers.sheen, "sheen");
+  add(features.layers.specular, "specular");
+  add(features.layers.ior, "ior");
+  add(features.layers.transmission, "transmission");
+  add(features.layers.volume, "volume");
+  add(features.layers.anisotropy, "anisotropy");
+  add(features.layers.iridescence, "iridescence");
+  add(features.layers.diffuse_transmission, "diffuse transmission");
+  add(features.layers.dispersion, "dispersion");
   return names;
 }
 

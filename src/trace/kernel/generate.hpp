@@ -27,6 +27,11 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
     work_.radiance.b[i] = 0;
     work_.radiance.rejected[i] = 0;
   }
+  if constexpr (kLayers) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      paths.body[i] = kNoId;
+    }
+  }
   if (frame_.settings.guides) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       work_.guides.hit[i] = 0;

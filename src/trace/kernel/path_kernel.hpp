@@ -32,6 +32,9 @@ class PathKernel {
   }
 
  private:
+  // The ideal Lambertian model knows no layers.
+  static constexpr bool kLayers = kFeatures.layers && kDiffuse != DiffuseModel::matte;
+
   PathKernel(const FrameContext& frame, Workspace& work, KernelCounts& counts)
       : frame_(frame), work_(work), counts_(counts) {}
 
@@ -95,6 +98,29 @@ class PathKernel {
     const float most = std::max(std::max(radiance.x, radiance.y), radiance.z);
     return most > limit ? radiance * (limit / most) : radiance;
   }
+  // Where a ray leaves hit i from: off the surface on the direction's side.
+  [[nodiscard]] Vec3f leaving_point(std::size_t i, const Vec3f& direction) const {
+    const ChunkHits& chunk = work_.chunk;
+    if constexpr (kLayers) {
+      if (leaves_through(i, direction)) {
+        return chunk.position.get(i) - chunk.geometric.get(i) * chunk.offset[i];
+      }
+    }
+    return chunk.origin.get(i);
+  }
+  [[nodiscard]] bool leaves_through(std::size_t i, const Vec3f& direction) const {
+    return dot(direction, work_.chunk.geometric.get(i)) < 0;
+  }
+  // The side that light must come from; zero: both.
+  [[nodiscard]] Vec3f lit_side(std::size_t i) const {
+    if constexpr (kLayers) {
+      const LayeredMaterial* material = frame_.scene->layered.of(work_.chunk.material[i]);
+      if (material != nullptr && material->transmits) {
+        return {};
+      }
+    }
+    return work_.chunk.geometric.get(i);
+  }
 
   // generate.hpp
   void start(int count);
@@ -132,6 +158,13 @@ class PathKernel {
                                                              bool bounces);
   void take_light_sample(int vertex, std::size_t i, const LightSample& light, const PathBatch& paths);
   void take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths);
+
+  // layers.hpp
+  void absorb(int vertex, std::size_t count);
+  std::size_t choose_channel(int vertex, std::size_t k);
+  [[nodiscard]] std::uint32_t body_after(std::size_t i, const PathBatch& paths, bool through) const;
+  void scatter_layers(int vertex, const std::uint16_t* active, std::size_t active_count, const LightSample* lights,
+                      bool bounces);
 
   // shadow.hpp
   void queue_shadow(int vertex, std::size_t slot, std::size_t i, const LightSample& light, const Vec3f& arriving);

@@ -46,7 +46,7 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
     const ChunkVec3& point = frame_.lights->depends_on_place() ? chunk.origin : chunk.position;
     for (std::size_t i = 0; i < count; ++i) {
       positions[i] = point.get(i);
-      normals[i] = chunk.geometric.get(i);
+      normals[i] = lit_side(i);
       choice[i] = select[i].x;
     }
     if (frame_.lights->depends_on_place()) {
@@ -66,6 +66,9 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
     work_.chunk.random_lobe[i] = select[i].y;
   }
   evaluate_lanes(work_.chunk, count, lit, bounces);
+  if constexpr (kLayers) {
+    scatter_layers(vertex, active, active_count, lit ? lights.data() : nullptr, bounces);
+  }
   for (std::size_t a = 0; a < active_count; ++a) {
     const std::size_t i = active[a];
     if (lit && lights[i].valid) {
@@ -188,8 +191,14 @@ inline void PathKernel<kFeatures, kDiffuse>::take_light_sample(int vertex, std::
   }
   const std::size_t k = work_.chunk.path[i];
   const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
-  const Vec3f arriving =
-      clamped(vertex + 1, throughput * work_.chunk.light_f_cos.get(i) * (light_radiance(light) * weight));
+  Vec3f arriving = throughput * work_.chunk.light_f_cos.get(i) * (light_radiance(light) * weight);
+  if constexpr (kLayers) {
+    const std::uint32_t body = body_after(i, paths, leaves_through(i, light.direction));
+    if (body != kNoId) {
+      arriving *= transmittance(frame_.scene->layered.materials[body].absorption_per_m, light.distance);
+    }
+  }
+  arriving = clamped(vertex + 1, arriving);
   if (arriving.x + arriving.y + arriving.z != 0) {
     queue_shadow(vertex, paths.slot[k], i, light, arriving);
   }
@@ -213,7 +222,11 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   RayBatch& out = work_.rays[to];
   PathBatch& state = work_.paths[to];
   const std::size_t n = next_count_++;
-  set_ray(out, n, chunk.origin.get(i), chunk.next.get(i), 0.0F, std::numeric_limits<float>::infinity());
+  const Vec3f direction = chunk.next.get(i);
+  set_ray(out, n, leaving_point(i, direction), direction, 0.0F, std::numeric_limits<float>::infinity());
+  if constexpr (kLayers) {
+    state.body[n] = body_after(i, paths, leaves_through(i, direction));
+  }
   out.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex + 1));
   state.slot[n] = static_cast<std::uint32_t>(slot);
   state.r[n] = weight.x;

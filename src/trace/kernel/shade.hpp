@@ -57,6 +57,10 @@ inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBa
   gather_triangles<kFeatures>(scene, chunk, count);
   place_hits<kFeatures>(chunk, count);
   read_materials<kFeatures>(scene, chunk, count);
+  if constexpr (kLayers) {
+    chunk.smooth = chunk.shading;
+    absorb(vertex, count);
+  }
   finish_normals<kFeatures>(chunk, count);
 
   std::array<std::uint16_t, kChunk> active;

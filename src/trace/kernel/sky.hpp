@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
+#include "material/lobes/volume.hpp"
 #include "trace/kernel/path_kernel.hpp"
 
 namespace gazetrace {
@@ -39,7 +41,13 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
   frame_.lights->environment_many(directions.data(), count, sky.data());
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t k = list[i];
-    const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
+    if constexpr (kLayers) {
+      if (paths.body[k] != kNoId) {  // of a body with a hole
+        throughput *= transmittance(frame_.scene->layered.materials[paths.body[k]].absorption_per_m,
+                                    std::numeric_limits<float>::infinity());
+      }
+    }
     const float weight = weight_of_found_light(vertex, paths.pdf[k], sky[i].pdf);
     add(paths.slot[k], clamped(vertex, throughput * sky[i].radiance * weight));
   }

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// KHR_materials_dispersion: 20 / Abbe number; 0: none.
+#include "scene/material_extension.hpp"
+
+namespace gazetrace {
+
+void read_dispersion(ExtensionReader& from, Material& to) {
+  to.dispersion = from.number("dispersion", 0);
+}
+
+}  // namespace gazetrace
