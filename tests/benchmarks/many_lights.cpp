@@ -6,22 +6,21 @@
 //   gazetrace_many_lights [--lights N,N,...] [--punctual] [--seeds N] [--spp N]
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/hash.hpp"
-#include "gazetrace/foveation.hpp"
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
+#include "pixel_statistics.hpp"
 
 namespace {
 
 using namespace gazetrace;
+using namespace gazetrace::benchmark;
 
 class Random {
  public:
@@ -95,84 +94,17 @@ Scene city(int lights, bool punctual) {
   return scene;
 }
 
-struct Measured {
-  double us_per_sample = 0, build_ms = 0;
-  std::vector<double> mean, variance;  // of each pixel: of a sample
-};
-
-Measured measure(const Scene& scene, LightChoice choice, int seeds, std::uint32_t spp) {
-  FoveationSettings uniform;
-  uniform.uniform_spp = spp;
-  Camera camera;
-  camera.pose = look_at({14, 7, 16}, {0, 0.5, 0}, {0, 1, 0});
-  const SamplingMap map = make_sampling_map(uniform, view_of_perspective(50 * kRadPerDeg, 160, 90), {});
+PixelStatistics measure_choice(const Scene& scene, LightChoice choice, int seeds, std::uint32_t spp) {
   TracerOptions options;
   options.threads = 1;
   options.light_choice = choice;
-  const PathTracer tracer(scene, options);
-  TraceSettings settings;
-  Measured result;
-  result.mean.resize(map.sites.size());
-  result.variance.resize(map.sites.size());
-  std::int64_t cpu_ns = 0;
-  std::uint64_t samples = 0;
-  for (int seed = 0; seed < seeds; ++seed) {
-    settings.seed = static_cast<std::uint64_t>(seed) + 1;
-    const SparseFrame frame = tracer.trace(camera, 0, map, settings);
-    for (const RegionTraceStats& region : frame.stats.regions) {
-      cpu_ns += region.cpu_ns;
-      samples += region.samples;
-    }
-    for (std::size_t i = 0; i < frame.sum.size(); ++i) {
-      const double y = static_cast<double>(frame.sum[i].y) / frame.count[i];
-      result.mean[i] += y;
-      result.variance[i] += y * y;
-    }
-  }
-  const double n = seeds;
-  for (std::size_t i = 0; i < result.mean.size(); ++i) {
-    result.mean[i] /= n;
-    result.variance[i] = (result.variance[i] / n - result.mean[i] * result.mean[i]) * n / (n - 1) * spp;
-  }
-  result.us_per_sample = static_cast<double>(cpu_ns) * 1e-3 / static_cast<double>(samples);
-  return result;
-}
-
-double relative_error(const Measured& measured, const std::vector<double>& mean) {
-  double typical = 0;
-  for (const double m : mean) {
-    typical += m / static_cast<double>(mean.size());
-  }
-  double sum = 0;
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    // The floor keeps pixels that hardly anything reaches from deciding alone.
-    sum += measured.variance[i] / (mean[i] * mean[i] + 0.01 * typical * typical);
-  }
-  return sum / static_cast<double>(mean.size());
-}
-
-double average(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) {
-    sum += v;
-  }
-  return sum / static_cast<double>(values.size());
-}
-
-std::vector<int> numbers(std::string_view text) {
-  std::vector<int> list;
-  while (!text.empty()) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    list.push_back(std::atoi(std::string(text.substr(0, comma)).c_str()));
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return list;
+  return measure(PathTracer(scene, options), TraceSettings{}, {{14, 7, 16}, {0, 0.5, 0}}, seeds, spp);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<int> counts{1, 2, 4, 8, 16, 32, 64, 256, 1000, 10000, 100000};
+  std::vector<double> counts{1, 2, 4, 8, 16, 32, 64, 256, 1000, 10000, 100000};
   bool punctual = false;
   int seeds = 16;
   std::uint32_t spp = 8;
@@ -181,7 +113,7 @@ int main(int argc, char** argv) {
     if (argument == "--punctual") {
       punctual = true;
     } else if (i + 1 < argc && argument == "--lights") {
-      counts = numbers(argv[++i]);
+      counts = parse_numbers(argv[++i]);
     } else if (i + 1 < argc && argument == "--seeds") {
       seeds = std::atoi(argv[++i]);
     } else if (i + 1 < argc && argument == "--spp") {
@@ -193,12 +125,12 @@ int main(int argc, char** argv) {
   }
   fmt::print("{:>8} {:>10} {:>10} {:>12} {:>12} {:>11} {:>10}\n", "lights", "power us", "tree us", "power relMSE",
              "tree relMSE", "efficiency", "mean ratio");
-  for (const int count : counts) {
-    const Scene scene = city(count, punctual);
-    const Measured power = measure(scene, LightChoice::power, seeds, spp);
-    const Measured tree = measure(scene, LightChoice::tree, seeds, spp);
-    const double a = relative_error(power, tree.mean);
-    const double b = relative_error(tree, tree.mean);
+  for (const double count : counts) {
+    const Scene scene = city(static_cast<int>(count), punctual);
+    const PixelStatistics power = measure_choice(scene, LightChoice::power, seeds, spp);
+    const PixelStatistics tree = measure_choice(scene, LightChoice::tree, seeds, spp);
+    const double a = relative_mse(power, tree.mean, 1);
+    const double b = relative_mse(tree, tree.mean, 1);
     fmt::print("{:8} {:10.3f} {:10.3f} {:12.4g} {:12.4g} {:11.2f} {:10.4f}\n", count, power.us_per_sample,
                tree.us_per_sample, a, b, power.us_per_sample * a / (tree.us_per_sample * b),
                average(tree.mean) / average(power.mean));
