@@ -22,7 +22,7 @@ constexpr double kPunctualFloor = 0.1;
 
 // From this many triangles and point or spot lights on, what the tree saves in noise is worth what it costs to walk;
 // measured by tests/benchmarks/many_lights.cpp.
-constexpr std::size_t kTreeFromLights = 8;
+constexpr std::size_t kTreeFromLights = 4;
 
 // A triangle smaller than this cannot be told from a line in float.
 constexpr double kSmallestArea = 1e-30;
