@@ -4,11 +4,13 @@
 // thread), the relative mean squared error of a pixel at one sample (variance over independent seeds by the squared
 // mean) and the efficiency 1 / (time * error) of the tree in units of the other's.
 //   gazetrace_many_lights [--lights N,N,...] [--punctual] [--seeds N] [--spp N]
+//   gazetrace_many_lights --scene FILE --eye X,Y,Z --target X,Y,Z [--seeds N] [--spp N]
 #include <fmt/core.h>
 
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -94,11 +96,11 @@ Scene city(int lights, bool punctual) {
   return scene;
 }
 
-PixelStatistics measure_choice(const Scene& scene, LightChoice choice, int seeds, std::uint32_t spp) {
+PixelStatistics measure_choice(const Scene& scene, const View& view, LightChoice choice, int seeds, std::uint32_t spp) {
   TracerOptions options;
   options.threads = 1;
   options.light_choice = choice;
-  return measure(PathTracer(scene, options), TraceSettings{}, {{14, 7, 16}, {0, 0.5, 0}}, seeds, spp);
+  return measure(PathTracer(scene, options), TraceSettings{}, view, seeds, spp);
 }
 
 }  // namespace
@@ -108,12 +110,20 @@ int main(int argc, char** argv) {
   bool punctual = false;
   int seeds = 16;
   std::uint32_t spp = 8;
+  std::string file;
+  View view{{14, 7, 16}, {0, 0.5, 0}};
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--punctual") {
       punctual = true;
     } else if (i + 1 < argc && argument == "--lights") {
       counts = parse_numbers(argv[++i]);
+    } else if (i + 1 < argc && argument == "--scene") {
+      file = argv[++i];
+    } else if (i + 1 < argc && argument == "--eye") {
+      view.eye = parse_point(argv[++i]);
+    } else if (i + 1 < argc && argument == "--target") {
+      view.target = parse_point(argv[++i]);
     } else if (i + 1 < argc && argument == "--seeds") {
       seeds = std::atoi(argv[++i]);
     } else if (i + 1 < argc && argument == "--spp") {
@@ -125,15 +135,22 @@ int main(int argc, char** argv) {
   }
   fmt::print("{:>8} {:>10} {:>10} {:>12} {:>12} {:>11} {:>10}\n", "lights", "power us", "tree us", "power relMSE",
              "tree relMSE", "efficiency", "mean ratio");
-  for (const double count : counts) {
-    const Scene scene = city(static_cast<int>(count), punctual);
-    const PixelStatistics power = measure_choice(scene, LightChoice::power, seeds, spp);
-    const PixelStatistics tree = measure_choice(scene, LightChoice::tree, seeds, spp);
+  const auto row = [&](double count, const Scene& scene) {
+    const PixelStatistics power = measure_choice(scene, view, LightChoice::power, seeds, spp);
+    const PixelStatistics tree = measure_choice(scene, view, LightChoice::tree, seeds, spp);
     const double a = relative_mse(power, tree.mean, 1);
     const double b = relative_mse(tree, tree.mean, 1);
     fmt::print("{:8} {:10.3f} {:10.3f} {:12.4g} {:12.4g} {:11.2f} {:10.4f}\n", count, power.us_per_sample,
                tree.us_per_sample, a, b, power.us_per_sample * a / (tree.us_per_sample * b),
                average(tree.mean) / average(power.mean));
+  };
+  if (!file.empty()) {
+    const Scene scene = load_scene(file);
+    row(static_cast<double>(summarize(scene).emissive_triangles + scene.lights.size()), scene);
+    return 0;
+  }
+  for (const double count : counts) {
+    row(count, city(static_cast<int>(count), punctual));
   }
   return 0;
 }
