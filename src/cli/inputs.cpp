@@ -199,8 +199,8 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
     }
     inputs.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     append(inputs.warnings, inputs.scene->warnings);
-    for (const std::string& text : inputs.scene->ignored) {
-      inputs.warnings.push_back(job.scene + ": ignored: " + text);
+    if (!inputs.scene->ignored.empty()) {
+      inputs.warnings.push_back(fmt::format("{}: ignored: {}", job.scene, fmt::join(inputs.scene->ignored, "; ")));
     }
   }
   if (camera_needs_scene(job)) {

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Small scenes that mean the same to two renderers, written as glTF. Each function returns (file, view options)."""
+
+import json
+import math
+
+import numpy as np
+
+
+class Builder:
+    def __init__(self):
+        self.data = bytearray()
+        self.document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [], "meshes": [],
+                         "materials": [], "buffers": [], "bufferViews": [], "accessors": []}
+
+    def material(self, color, metallic=0.0, roughness=1.0, emission=None, extensions=None):
+        value = {"pbrMetallicRoughness": {"baseColorFactor": [*color, 1], "metallicFactor": metallic,
+                                          "roughnessFactor": roughness}}
+        if emission:
+            strength = max(emission)
+            value["emissiveFactor"] = [e / strength for e in emission]
+            self._uses("KHR_materials_emissive_strength")
+            value["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": strength}}
+        for name, content in (extensions or {}).items():
+            self._uses(name)
+            value.setdefault("extensions", {})[name] = content
+        self.document["materials"].append(value)
+        return len(self.document["materials"]) - 1
+
+    def mesh(self, positions, triangles, material, normals=None):
+        attributes = {"POSITION": self._accessor(np.asarray(positions, np.float32), 5126, "VEC3", True)}
+        if normals is not None:
+            attributes["NORMAL"] = self._accessor(np.asarray(normals, np.float32), 5126, "VEC3", False)
+        indices = self._accessor(np.asarray(triangles, np.uint32).reshape(-1), 5125, "SCALAR", False)
+        self.document["meshes"].append(
+            {"primitives": [{"attributes": attributes, "indices": indices, "material": material}]})
+        self.node({"mesh": len(self.document["meshes"]) - 1})
+
+    def quad(self, corners, material):
+        """Front side: where the corners run counterclockwise."""
+        self.mesh(corners, [(0, 1, 2), (0, 2, 3)], material)
+
+    def box(self, low, high, turn_deg, center, material):
+        x0, y0, z0 = low
+        x1, y1, z1 = high
+        corners = np.array([(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)], float)
+        c, s = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
+        corners = corners @ np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)]) + np.array(center)
+        for a, b, d, e in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
+            self.quad([corners[a], corners[b], corners[d], corners[e]], material)
+
+    def sphere(self, center, radius, material, rings=48):
+        u, v = np.meshgrid(np.linspace(0, 2 * math.pi, 2 * rings + 1), np.linspace(0, math.pi, rings + 1))
+        normals = np.stack([np.sin(v) * np.cos(u), np.cos(v), np.sin(v) * np.sin(u)], -1).reshape(-1, 3)
+        row = 2 * rings + 1
+        triangles = []
+        for j in range(rings):
+            for i in range(2 * rings):
+                a, b = j * row + i, (j + 1) * row + i
+                if j > 0:
+                    triangles.append((a, a + 1, b))
+                if j < rings - 1:
+                    triangles.append((a + 1, b + 1, b))
+        self.mesh(np.array(center) + radius * normals, triangles, material, normals)
+
+    def light(self, kind, color, intensity, position=(0, 0, 0), toward=(0, -1, 0)):
+        self._uses("KHR_lights_punctual")
+        lights = self.document.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
+        lights.append({"type": kind, "color": list(color), "intensity": intensity})
+        # Lights look along -z: the shortest turn from there.
+        d = np.array(toward, float) / np.linalg.norm(toward)
+        q = np.array([*np.cross((0, 0, -1), d), 1 + d @ (0, 0, -1)])
+        q = q / np.linalg.norm(q) if np.linalg.norm(q) > 1e-9 else np.array([1.0, 0, 0, 0])
+        self.node({"translation": list(position), "rotation": q.tolist(),
+                   "extensions": {"KHR_lights_punctual": {"light": len(lights) - 1}}})
+
+    def node(self, node):
+        self.document["nodes"].append(node)
+        self.document["scenes"][0]["nodes"].append(len(self.document["nodes"]) - 1)
+
+    def write(self, path):
+        path.with_suffix(".bin").write_bytes(self.data)
+        self.document["buffers"] = [{"uri": path.with_suffix(".bin").name, "byteLength": len(self.data)}]
+        path.write_text(json.dumps(self.document))
+        return str(path)
+
+    def _uses(self, extension):
+        used = self.document.setdefault("extensionsUsed", [])
+        if extension not in used:
+            used.append(extension)
+
+    def _accessor(self, values, component, kind, bounds):
+        self.document["bufferViews"].append({"buffer": 0, "byteOffset": len(self.data), "byteLength": values.nbytes})
+        accessor = {"bufferView": len(self.document["bufferViews"]) - 1, "componentType": component,
+                    "count": len(values), "type": kind}
+        if bounds:
+            accessor |= {"min": values.min(0).tolist(), "max": values.max(0).tolist()}
+        self.data += values.tobytes()
+        self.document["accessors"].append(accessor)
+        return len(self.document["accessors"]) - 1
+
+
+def room(b, white, red, green):
+    """A box of 2 x 2 x 2 m about the origin, open towards +z."""
+    b.quad([(-1, -1, 1), (1, -1, 1), (1, -1, -1), (-1, -1, -1)], white)
+    b.quad([(-1, 1, -1), (1, 1, -1), (1, 1, 1), (-1, 1, 1)], white)
+    b.quad([(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)], white)
+    b.quad([(-1, -1, 1), (-1, -1, -1), (-1, 1, -1), (-1, 1, 1)], red)
+    b.quad([(1, -1, -1), (1, -1, 1), (1, 1, 1), (1, 1, -1)], green)
+
+
+ROOM_VIEW = ["--eye=0,0,3.8", "--target=0,0,0", "--yfov=40", "--env=none"]
+
+
+def cornell(folder):
+    b = Builder()
+    white, red = b.material((0.73, 0.73, 0.73)), b.material((0.65, 0.05, 0.05))
+    green, glow = b.material((0.12, 0.45, 0.15)), b.material((0.5, 0.5, 0.5), emission=(17, 12, 4))
+    room(b, white, red, green)
+    b.box((-0.3, 0, -0.3), (0.3, 1.2, 0.3), 18, (-0.35, -1, -0.35), white)
+    b.box((-0.3, 0, -0.3), (0.3, 0.6, 0.3), -17, (0.35, -1, 0.35), white)
+    b.quad([(-0.25, 0.99, -0.25), (0.25, 0.99, -0.25), (0.25, 0.99, 0.25), (-0.25, 0.99, 0.25)], glow)
+    return b.write(folder / "cornell.gltf"), ROOM_VIEW
+
+
+def punctual(folder):
+    b = Builder()
+    white, red, green = b.material((0.73, 0.73, 0.73)), b.material((0.65, 0.05, 0.05)), b.material((0.12, 0.45, 0.15))
+    room(b, white, red, green)
+    b.box((-0.3, 0, -0.3), (0.3, 0.9, 0.3), 25, (0.2, -1, -0.2), white)
+    b.light("point", (1, 0.8, 0.6), 2.0, (-0.5, 0.4, 0.3))
+    b.light("directional", (0.6, 0.7, 1), 1.5, toward=(-0.4, -0.5, -1))
+    return b.write(folder / "punctual.gltf"), ROOM_VIEW
+
+
+def balls(folder, env, metallic):
+    """Five balls from smooth to rough on a matte floor."""
+    b = Builder()
+    b.quad([(-4, 0, 4), (4, 0, 4), (4, 0, -4), (-4, 0, -4)], b.material((0.5, 0.5, 0.5)))
+    for i, roughness in enumerate((0.1, 0.25, 0.5, 0.75, 1.0)):
+        tint = (0.95, 0.64, 0.54) if metallic else (0.2, 0.4, 0.6)
+        b.sphere((1.1 * (i - 2), 0.5, 0), 0.5, b.material(tint, metallic, roughness))
+    name = "conductors" if metallic else "dielectrics"
+    return b.write(folder / f"{name}.gltf"), ["--eye=0,2,6", "--target=0,0.4,0", "--yfov=35", f"--env={env}"]
+
+
+def slab(folder):
+    """A slab of clear glass 0.5 m thick before the room, absorbing: attenuation over the way inside."""
+    b = Builder()
+    white, red, green = b.material((0.73, 0.73, 0.73)), b.material((0.65, 0.05, 0.05)), b.material((0.12, 0.45, 0.15))
+    glow = b.material((0.5, 0.5, 0.5), emission=(17, 15, 13))
+    room(b, white, red, green)
+    b.quad([(-0.6, 0.99, -0.6), (0.6, 0.99, -0.6), (0.6, 0.99, 0.6), (-0.6, 0.99, 0.6)], glow)
+    glass = b.material((1, 1, 1), 0.0, 0.0, extensions={
+        "KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_ior": {"ior": 1.5},
+        "KHR_materials_volume": {"thicknessFactor": 0.5, "attenuationDistance": 0.5,
+                                 "attenuationColor": [0.9, 0.5, 0.2]}})
+    b.box((-0.5, -0.5, -0.25), (0.5, 0.5, 0.25), 20, (0, -0.3, 0.1), glass)
+    return b.write(folder / "slab.gltf"), ROOM_VIEW

@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""gazetrace beside Mitsuba 3 and Blender's Cycles: CPU time per sample, error, and the product of both.
+
+  peers.py SCENE --gazetrace build/release/bin/gazetrace --env FILE.hdr [--programs gazetrace,mitsuba-llvm,cycles]
+
+Every program renders the same glTF, camera, light, bounces and samples. In one run, interleaved:
+
+  us          CPU time (user + system) per sample: the difference of a run with many and a run with few samples a pixel,
+              over the difference in samples, so that loading, building and writing cancel; median over --rounds
+  own         relative MSE at one sample a pixel (measured at --error-spp, times it) against a converged picture of the
+              program's own, its noise taken out: mean over seeds, with a 95 % interval of that mean
+  common      the same against one reference, the mean of all programs' converged pictures (matte materials only: there
+              the models coincide)
+  cost        us * own: time to a given error. The ratio column is that of gazetrace
+  furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
+
+Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
+"""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import resource
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).parent
+
+
+def read_picture(path):
+    if path.suffix == ".npy":
+        return np.load(path).astype(np.float64)
+    import OpenEXR
+
+    channels = OpenEXR.File(str(path)).channels()
+    picture = channels["RGB"].pixels if "RGB" in channels else np.dstack([channels[c].pixels for c in "RGB"])
+    return np.asarray(picture, np.float64)[:, :, :3]
+
+
+def command(program, options, scene, out, size, spp, seed, view):
+    """The command line of one render; `view` holds environment, camera and materials."""
+    common = ["--size", size, "--spp", str(spp), "--seed", str(seed), "--bounces", str(options.bounces), *view]
+    if program == "gazetrace":
+        materials = ["--diffuse", "matte" if options.materials == "matte" else "burley"]
+        return [options.gazetrace, "render", scene, *common, *materials, "--exr-pixels", "float", "--quiet", "--overwrite",
+                "-o", str(out)]
+    if program == "cycles":
+        return [options.blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
+                str(HERE / "cycles_render.py"), "--", scene, str(out), "--threads", str(os.cpu_count()), *common,
+                "--materials", options.materials]
+    variant = {"mitsuba-scalar": "scalar_rgb", "mitsuba-llvm": "llvm_ad_rgb"}[program]
+    return [options.mitsuba_python, str(HERE / "mitsuba_render.py"), scene, str(out), "--variant", variant, *common,
+            "--materials", options.materials]
+
+
+def run(program, options, scene, folder, size, spp, seed, view):
+    """(CPU seconds, picture path)"""
+    out = folder / f"{program}.{'npy' if program.startswith('mitsuba') else 'exr'}"
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    words = command(program, options, scene, out, size, spp, seed, view)
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if done.returncode != 0 or not out.exists():
+        sys.exit(f"{' '.join(words)}\nfailed:\n{done.stdout[-2000:]}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, out
+
+
+def relative_mse(picture, reference):
+    floor = 0.1 * reference.mean()
+    return float(np.mean((picture - reference) ** 2 / (reference**2 + floor**2)))
+
+
+def interval(values):
+    """Half the width of a 95 % interval of the mean (Student's t)."""
+    t = {2: 12.71, 3: 4.303, 4: 3.182, 5: 2.776, 6: 2.571, 7: 2.447, 8: 2.365, 12: 2.201, 16: 2.131}
+    if len(values) < 2:
+        return math.nan
+    near = max(n for n in t if n <= len(values))
+    return t[near] * statistics.stdev(values) / math.sqrt(len(values))
+
+
+def glowing_box(path):
+    """A closed box about the origin with albedo 1/2 and emission 1, normals inwards, as glTF."""
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    facing = [np.cross(np.subtract(corners[b], corners[a]), np.subtract(corners[c], corners[a])) @ corners[a]
+              for a, b, c in triangles]
+    triangles = [t if f < 0 else t[::-1] for t, f in zip(triangles, facing)]
+    data = b"".join(struct.pack("<3f", *c) for c in corners) + b"".join(struct.pack("<3H", *t) for t in triangles)
+    pathlib.Path(path).with_suffix(".bin").write_bytes(data)
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0},
+                       "emissiveFactor": [1, 1, 1], "doubleSided": True}],
+        "buffers": [{"uri": pathlib.Path(path).with_suffix(".bin").name, "byteLength": len(data)}],
+        "bufferViews": [{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [-1, -1, -1], "max": [1, 1, 1]},
+            {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"}]}
+    pathlib.Path(path).write_text(json.dumps(document))
+
+
+def furnace(program, options, folder):
+    scene = folder / "box.gltf"
+    glowing_box(scene)
+    view = ["--eye", "0,0,0", "--target", "0.3,0.2,-1", "--yfov", "60", "--env", "none"]
+    _, out = run(program, options, str(scene), folder, "32x18", 256, 1, view)
+    return read_picture(out).mean()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene")
+    parser.add_argument("--gazetrace", default="build/release/bin/gazetrace")
+    parser.add_argument("--blender", default="blender")
+    parser.add_argument("--mitsuba-python", default=sys.executable, help="a Python that has mitsuba")
+    parser.add_argument("--programs", default="gazetrace,mitsuba-scalar,mitsuba-llvm,cycles")
+    parser.add_argument("--env", default="none")
+    parser.add_argument("--eye", default="8,2,-0.3")
+    parser.add_argument("--target", default="-8,3,-0.3")
+    parser.add_argument("--yfov", default="50")
+    parser.add_argument("--bounces", type=int, default=3)
+    parser.add_argument("--materials", default="matte", choices=["matte", "principled"])
+    parser.add_argument("--size", default="960x540", help="of the timed pictures")
+    parser.add_argument("--spp", default="4,20", help="few and many samples a pixel of the timed pictures")
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--error-size", default="192x108")
+    parser.add_argument("--error-spp", type=int, default=64)
+    parser.add_argument("--reference-spp", type=int, default=2048)
+    parser.add_argument("--seeds", type=int, default=8)
+    options = parser.parse_args()
+    programs = options.programs.split(",")
+    # With =, since a value may begin with a minus.
+    view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        shine = {p: furnace(p, options, folder) if options.materials == "matte" else math.nan for p in programs}
+
+        few, many = map(int, options.spp.split(","))
+        width, height = map(int, options.size.split("x"))
+        times = {p: [] for p in programs}
+        for r in range(options.rounds):
+            for p in programs:
+                low, _ = run(p, options, options.scene, folder, options.size, few, 2 * r, view)
+                high, _ = run(p, options, options.scene, folder, options.size, many, 2 * r + 1, view)
+                times[p].append((high - low) / (width * height * (many - few)) * 1e6)
+
+        def picture(p, spp, seed):
+            return read_picture(run(p, options, options.scene, folder, options.error_size, spp, seed, view)[1])
+
+        reference = {}
+        if options.seeds > 0:
+            reference = {p: picture(p, options.reference_spp, 1000) for p in programs}
+            common = sum(reference.values()) / len(programs)
+        own, shared = {p: [] for p in programs}, {p: [] for p in programs}
+        # What the reference's own noise adds: a share spp / reference spp of the picture's.
+        noise = 1 + options.error_spp / options.reference_spp
+        for s in range(options.seeds):
+            for p in programs:
+                x = picture(p, options.error_spp, 2000 + s)
+                own[p].append(relative_mse(x, reference[p]) / noise * options.error_spp)
+                shared[p].append(relative_mse(x, common) / (1 + (noise - 1) / len(programs)) * options.error_spp)
+
+    target = sum(0.5**k for k in range(options.bounces + 1))
+    print(f"{pathlib.Path(options.scene).name}, {options.materials}, {options.bounces} bounces, {options.size}, "
+          f"{options.rounds} rounds of {few} and {many} spp; error at {options.error_size}, {options.error_spp} spp, "
+          f"reference {options.reference_spp} spp, {options.seeds} seeds; furnace {target}")
+    print(f"{'program':16}{'us':>8}{'least':>8}{'most':>8}{'own':>9}{'+-':>8}{'common':>9}{'+-':>8}{'cost':>9}{'ratio':>7}"
+          f"{'furnace':>9}")
+    mean = lambda v: statistics.mean(v) if v else math.nan
+    median = lambda v: statistics.median(v) if v else math.nan
+    cost = {p: median(times[p]) * mean(own[p]) for p in programs}
+    for p in programs:
+        t = times[p] or [math.nan]
+        print(f"{p:16}{median(times[p]):8.3f}{min(t):8.3f}{max(t):8.3f}{mean(own[p]):9.3f}"
+              f"{interval(own[p]):8.3f}{mean(shared[p]):9.3f}{interval(shared[p]):8.3f}{cost[p]:9.3f}"
+              f"{cost[p] / cost[programs[0]]:7.2f}{shine[p]:9.4f}")
+
+
+if __name__ == "__main__":
+    main()
