@@ -33,7 +33,8 @@ struct TraceSettings {
   double clamp_indirect = 0;
   // Ray cones open by this angle (times 1 / sqrt(pi pdf): once for a diffuse bounce, hardly for a mirror), so that hits
   // after a bounce read coarser texture levels. 0: full resolution everywhere, slower.
-  float bounce_cone_rad = 0.15F;
+  double bounce_cone_rad = 0.15;
+  double pixel_cone = 1;  // width of a camera ray's cone in pixels; 0 here and above: textures at full resolution
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
   bool guides = false;                   // collect albedo, normal and depth of the first hit

@@ -133,6 +133,13 @@ void check_settings(const JobSettings& job) {
     throw Error(ErrorKind::usage, "--clamp-indirect", fmt::format("{} is no radiance", job.trace.clamp_indirect),
                 "give a positive number, or 0 for none");
   }
+  const auto check_cone = [](const char* option, double value) {
+    if (!(value >= 0 && value <= 1000)) {
+      throw Error(ErrorKind::usage, option, fmt::format("{} is outside 0..1000", value));
+    }
+  };
+  check_cone("--pixel-cone", job.trace.pixel_cone);
+  check_cone("--bounce-cone", job.trace.bounce_cone_rad);
   if (job.threads < 0) {
     throw Error(ErrorKind::usage, "--threads", fmt::format("{} is negative", job.threads), "0 takes all");
   }

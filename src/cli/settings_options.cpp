@@ -128,6 +128,10 @@ void add_trace_options(OptionTable& table, JobSettings& job) {
               "Most that a sample may add after more than one scattering event: fewer fireflies, with bias; 0: off",
               kPixels);
   table.value("--pixel-filter", job.trace.filter, choices<PixelFilter>(), "Spread of the samples of a pixel", kPixels);
+  table.value("--pixel-cone", job.trace.pixel_cone, "PIXELS",
+              "Texture detail at first hits: width of a camera ray's footprint; 0 reads full resolution", kPixels);
+  table.value("--bounce-cone", job.trace.bounce_cone_rad, "RADIANS",
+              "Texture detail after bounces: how much a diffuse bounce widens the footprint; 0: not at all", kPixels);
   table.value("--seed", job.trace.seed, "N", "Same seed, same pictures, for any number of threads", kPixels);
   table.value("--bvh", job.bvh, choices<BvhQuality>(), "Build quality of the ray tracing tree");
   table.value("--threads", job.threads, "N", "0: as many as the machine has; pictures do not depend on it");

@@ -68,7 +68,7 @@ Options parse(int argc, char** argv) {
     } else if (name == "--share") {
       options.share = std::strtoul(value, nullptr, 10);
     } else if (name == "--cone") {
-      options.settings.bounce_cone_rad = std::strtof(value, nullptr);
+      options.settings.bounce_cone_rad = std::strtod(value, nullptr);
     } else if (name == "--eye") {
       options.eye = parse_point(value);
     } else if (name == "--target") {

@@ -11,6 +11,7 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
   RayBatch& rays = work_.rays[0];
   PathBatch& paths = work_.paths[0];
   const CameraRays& camera = *frame_.camera;
+  const auto cone = static_cast<float>(frame_.settings.pixel_cone);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const CameraRays::Ray ray = camera.ray(work_.samples.x[i], work_.samples.y[i]);
     set_ray(rays, i, ray.origin, ray.direction, ray.tnear, ray.tfar);
@@ -20,8 +21,8 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
     paths.g[i] = 1;
     paths.b[i] = 1;
     paths.pdf[i] = 0;
-    paths.cone_width[i] = camera.cone_width();
-    paths.cone_spread[i] = ray.cone_spread;
+    paths.cone_width[i] = camera.cone_width() * cone;
+    paths.cone_spread[i] = ray.cone_spread * cone;
     work_.radiance.r[i] = 0;
     work_.radiance.g[i] = 0;
     work_.radiance.b[i] = 0;

@@ -237,8 +237,8 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
     state.normal.set(n, chunk.lit_normal.get(i));
   }
   state.cone_width[n] = chunk.cone_width[i];
-  state.cone_spread[n] =
-      chunk.cone_spread[i] + frame_.settings.bounce_cone_rad / std::sqrt(static_cast<float>(kPi) * chunk.next_pdf[i]);
+  state.cone_spread[n] = chunk.cone_spread[i] + static_cast<float>(frame_.settings.bounce_cone_rad) /
+                                                    std::sqrt(static_cast<float>(kPi) * chunk.next_pdf[i]);
 }
 
 }  // namespace gazetrace
