@@ -43,6 +43,8 @@ struct DisplaySettings {
 };
 // The bits to ask ColorPipeline::apply for, by the suffix. Error(usage) for an unknown suffix, or bits it cannot hold.
 int display_image_bits(const DisplaySettings& settings);
+// Error(usage) where the format cannot hold a picture of this size.
+void check_display_image_size(const DisplaySettings& settings, int width_px, int height_px);
 
 struct OutputSettings {
   ExrSettings exr;
@@ -90,14 +92,17 @@ struct TimingRow {
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0, non_finite_samples = 0;
   // fovea, intermediate, periphery; a uniform frame counts as fovea.
-  std::array<std::uint64_t, 3> region_pixels{}, region_samples{};
-  std::array<double, 3> region_cpu_ms{};
+  // In the order of timing_regions().
+  std::array<std::uint64_t, 4> region_pixels{}, region_samples{};
+  std::array<double, 4> region_cpu_ms{};
   double exposure_ev = 0;
   std::string gaze_state;
   double peak_memory_mib = 0;
 };
 
 std::vector<std::string> timing_columns();
+// Names of the regions that have columns; "uniform" holds frames without regions and models of other regions.
+const std::vector<std::string>& timing_regions();
 std::string timing_row_text(const TimingRow& row);                // one line, without its end
 std::string timing_csv_text(const std::vector<TimingRow>& rows);  // header and rows
 // Error(input) with file:line. A last line without its end is what a killed run leaves behind: it is passed over.

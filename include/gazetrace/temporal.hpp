@@ -32,6 +32,6 @@ struct AccumulateSettings {
 // through bit-equal. Guides stay those of the current frame. Frames are to carry different samples: the same ones
 // added again raise the count, not the worth. Leaves the exposure's part of the history alone.
 Frame accumulate(Frame frame, const FrameRequest& request, const AccumulateSettings& settings, TemporalHistory& history,
-                 int threads = 0);
+                 int threads);
 
 }  // namespace gazetrace

@@ -52,11 +52,18 @@ GazeMapping gaze_mapping(const JobSettings& job) {
   return mapping;
 }
 
-std::int64_t frames_until(std::int64_t end_ns, const JobSettings& job) {
+// More than four days at 24 a second: a wrong unit, not a wish.
+constexpr double kMostFrames = 1e7;
+
+std::int64_t frames_until(double end_ns, const JobSettings& job) {
   // The last frame whose middle, start + (n - 1/2) / fps, is not after the end.
-  const double span_s = static_cast<double>(end_ns - job.start.ns) * 1e-9;
+  const double span_s = (end_ns - static_cast<double>(job.start.ns)) * 1e-9;
   const double frames = span_s * static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
-  return static_cast<std::int64_t>(std::floor(frames + 0.5));
+  if (!(frames < kMostFrames)) {
+    usage("--frames", fmt::format("camera path or gaze log stand for {:.3g} frames", frames),
+          "name the frames to render, or check --gaze-scale, --gaze-offset and --fps");
+  }
+  return static_cast<std::int64_t>(std::max(std::floor(frames + 0.5), 1.0));
 }
 
 std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
@@ -68,14 +75,14 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   std::int64_t count = 1;
   std::string reason = "nothing moves";
   if (!camera.is_static) {
-    count = frames_until(camera.end_ns, job);
+    count = frames_until(static_cast<double>(camera.end_ns), job);
     reason = "as long as the camera's path";
   } else if (log != nullptr && log->samples.size() > 1) {
-    const double span_ns = static_cast<double>(log->samples.back().t_ns - log->samples.front().t_ns);
-    count = frames_until(static_cast<std::int64_t>(span_ns * job.gaze_scale) + job.gaze_offset.ns, job);
+    const std::int64_t begin_ns = job.gaze_start ? job.gaze_start->ns : log->samples.front().t_ns;
+    const double span_ns = static_cast<double>(log->samples.back().t_ns) - static_cast<double>(begin_ns);
+    count = frames_until(span_ns * job.gaze_scale + static_cast<double>(job.gaze_offset.ns), job);
     reason = "as long as the gaze log";
   }
-  count = std::clamp<std::int64_t>(count, 1, 10'000'000);
   std::vector<std::int32_t> frames(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < frames.size(); ++i) {
     frames[i] = static_cast<std::int32_t>(i) + 1;
@@ -199,9 +206,7 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
     }
     inputs.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     append(inputs.warnings, inputs.scene->warnings);
-    if (!inputs.scene->ignored.empty()) {
-      inputs.warnings.push_back(fmt::format("{}: ignored: {}", job.scene, fmt::join(inputs.scene->ignored, "; ")));
-    }
+    append(inputs.warnings, inputs.scene->environment.warnings);
   }
   if (camera_needs_scene(job)) {
     camera = choose_camera(job, inputs.scene.get(), decision);
@@ -209,6 +214,10 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
   inputs.decisions.emplace_back("camera", decision);
   inputs.frames = choose_frames(job, camera, log, decision);
   inputs.decisions.emplace_back("frames", decision);
+  if (log == nullptr) {
+    inputs.decisions.emplace_back("sampling",
+                                  fmt::format("{} samples everywhere: there is no gaze", job.foveation.uniform_spp));
+  }
   const PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
   inputs.plan = plan_frames(camera, log, settings);
   const auto& aovs = job.exr.aovs;

@@ -43,7 +43,8 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
 void check_settings(const JobSettings& job);
 // Error(input) naming the first output that exists, unless --overwrite or --resume; then makes the folders and tries
 // whether files can be made in them.
-void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
+void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames,
+                     const std::map<std::string, std::string>& input_digests);
 
 // Content hashes of all files that the job reads.
 std::map<std::string, std::string> digest_job_files(const JobSettings& job);

@@ -120,6 +120,16 @@ std::vector<std::string> existing(const std::vector<std::string>& paths) {
   return found;
 }
 
+// Beyond this no picture has a meaning, and 2^stops times a bright light still fits a float.
+constexpr double kMaxStops = 64;
+constexpr int kMaxThreads = 1024;
+
+void check_stops(const char* option, double stops) {
+  if (!(std::fabs(stops) <= kMaxStops)) {
+    throw Error(ErrorKind::usage, option, fmt::format("{} stops are outside +-{}", stops, kMaxStops));
+  }
+}
+
 }  // namespace
 
 void check_settings(const JobSettings& job) {
@@ -140,9 +150,12 @@ void check_settings(const JobSettings& job) {
   };
   check_cone("--pixel-cone", job.trace.pixel_cone);
   check_cone("--bounce-cone", job.trace.bounce_cone_rad);
-  if (job.threads < 0) {
-    throw Error(ErrorKind::usage, "--threads", fmt::format("{} is negative", job.threads), "0 takes all");
+  if (job.threads < 0 || job.threads > kMaxThreads) {
+    throw Error(ErrorKind::usage, "--threads", fmt::format("{} is outside 0..{}", job.threads, kMaxThreads),
+                "0 takes all");
   }
+  check_stops("--env-ev", job.environment_ev);
+  check_stops("--exposure", job.exposure.ev);
   if (job.exr.zip_level < 1 || job.exr.zip_level > 9) {
     throw Error(ErrorKind::usage, "--exr-zip-level", fmt::format("{} is outside 1..9", job.exr.zip_level));
   }
@@ -170,6 +183,7 @@ void check_settings(const JobSettings& job) {
   }
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);
+  check_display_image_size(output.display, job.size.width, job.size.height);
   if (job.overwrite && job.resume) {
     throw Error(ErrorKind::usage, "--resume", "--overwrite starts over and --resume goes on", "give one of them");
   }
@@ -199,7 +213,63 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   return settings;
 }
 
-void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
+namespace {
+
+// No output may take the place of another or of what is read.
+void check_names_differ(std::vector<std::string> outputs, const std::map<std::string, std::string>& inputs) {
+  std::error_code ignored;
+  for (const std::string& output : outputs) {
+    if (!fs::exists(output, ignored)) {
+      continue;
+    }
+    for (const auto& [input, digest] : inputs) {
+      if (fs::equivalent(output, input, ignored)) {
+        throw Error(ErrorKind::usage, output, "this output would replace an input", "give another name");
+      }
+    }
+  }
+  for (std::string& output : outputs) {
+    output = fs::absolute(output).lexically_normal().string();
+  }
+  std::sort(outputs.begin(), outputs.end());
+  if (const auto twice = std::adjacent_find(outputs.begin(), outputs.end()); twice != outputs.end()) {
+    throw Error(ErrorKind::usage, *twice, "two outputs have this name", "give each its own");
+  }
+}
+
+// What --resume will go on from, read before anything is rendered or written.
+void check_earlier_run(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
+  const std::vector<std::string> files = output_files(settings.output, frames, settings.is_part);
+  if (files.size() < 2) {
+    return;
+  }
+  const std::string& record_path = files[0];
+  const std::string& timing_path = files[1];
+  if (fs::exists(timing_path)) {
+    read_timing_csv(timing_path);
+  }
+  if (!fs::exists(record_path)) {
+    return;
+  }
+  const std::vector<std::int32_t> before = parse_frame_list(read_run_record(record_path).frames);
+  for (const std::int32_t frame : before) {
+    if (std::find(frames.begin(), frames.end(), frame) == frames.end()) {
+      throw Error(ErrorKind::usage, "--resume",
+                  fmt::format("{} is of a run over frames {}, and frame {} is not asked for now", record_path,
+                              format_frame_list(before), frame),
+                  "give frames that include those, --part, or another folder");
+    }
+  }
+}
+
+}  // namespace
+
+void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames,
+                     const std::map<std::string, std::string>& input_digests) {
+  check_names_differ(output_files(settings.output, frames, settings.is_part), input_digests);
+  if (settings.output.resume) {
+    check_earlier_run(settings, frames);
+  }
   if (!settings.output.overwrite && !settings.output.resume) {
     for (const std::string& path : output_files(settings.output, frames, settings.is_part)) {
       if (fs::exists(path)) {

@@ -78,6 +78,9 @@ CameraPath still_camera(const JobSettings& job) {
   if (*job.eye == *job.target) {
     throw Error(ErrorKind::usage, "--target", "the camera stands on its target");
   }
+  if (!(length(job.up) > 0)) {
+    throw Error(ErrorKind::usage, "--up", "an up vector of no length points nowhere", "leave it out for 0,1,0");
+  }
   return static_camera(look_at(*job.eye, *job.target, job.up), perspective(job));
 }
 

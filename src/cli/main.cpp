@@ -113,6 +113,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace gazetrace;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of stdout that goes away is no error: see print_result
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit on sizes fails like a full disk
+#endif
   try {
     return run(argc, argv);
   } catch (const Error& error) {

@@ -66,7 +66,8 @@ void add_gaze_mapping_options(OptionTable& table, JobSettings& job) {
   table.value("--gaze-missing", job.gaze_missing, choices<NoGazePolicy>(),
               "For frames without usable gaze: hold the last, look at the centre, render uniformly, or stop", kPixels);
   table.value("--gaze-max-age", job.gaze_max_age, "DURATION", "An older sample counts as no gaze", kPixels);
-  table.value("--gaze-max-gap", job.gaze_max_gap, "DURATION", "The longest gap that --gaze-mode linear bridges",
+  table.value("--gaze-max-gap", job.gaze_max_gap, "DURATION",
+              "A longer step between two samples is a gap: not interpolated, and held samples in it are marked so",
               kPixels);
   table.value("--gaze-offset", job.gaze_offset, "DURATION", "t_video = scale (t_log - start) + offset", kPixels);
   table.value("--gaze-scale", job.gaze_scale, "FACTOR", "Clock rate of video over that of the log", kPixels);

@@ -47,7 +47,7 @@ std::string unknown_name_message(std::string_view what, std::string_view given, 
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
     return edit_distance(given, a) < edit_distance(given, b);
   });
-  if (nearest != known.end() && edit_distance(given, *nearest) <= 1 + given.size() / 3) {
+  if (nearest != known.end() && edit_distance(given, *nearest) <= 1 + given.size() / 4) {
     text += "; did you mean '" + *nearest + "'?";
   }
   text += " Known:";

@@ -2,14 +2,20 @@
 #include "core/parallel.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace gazetrace {
+namespace {
+constexpr int kMaxThreads = 1024;  // the task library fails far above this
+}
 
 int resolve_threads(int threads) {
-  return threads > 0 ? threads : tbb::info::default_concurrency();
+  return threads > 0 ? std::min(threads, kMaxThreads) : tbb::info::default_concurrency();
 }
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
@@ -20,6 +26,9 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     }
     return;
   }
+  // More threads than cores are allowed when asked for; the library would print a warning of its own.
+  const auto most = static_cast<std::size_t>(std::max(resolved, tbb::info::default_concurrency()));
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, most);
   tbb::task_arena arena(resolved);
   arena.execute([&] {
     tbb::parallel_for(

@@ -38,7 +38,7 @@ void check_samples(std::string_view place, std::uint32_t samples) {
 }
 
 void check_angles(const FoveationSettings& settings) {
-  constexpr std::string_view kPlace = "region_angles_deg";
+  constexpr std::string_view kPlace = "--region-angles";
   // tan(a/2) of eq. (1) ends at 180 degrees; a cone ends at 180 degrees of eccentricity.
   const bool cone = settings.shape == RegionShape::cone;
   const double limit = cone && settings.reading == AngleReading::full_angle ? 360.0 : 180.0;
@@ -71,12 +71,12 @@ void check_foveation(const FoveationSettings& settings) {
   if (std::find(names.begin(), names.end(), settings.falloff) == names.end()) {
     throw Error(ErrorKind::usage, "falloff", unknown_name_message("falloff", settings.falloff, names));
   }
-  check_samples("uniform_spp", settings.uniform_spp);
+  check_samples("--spp", settings.uniform_spp);
   for (const std::uint32_t samples : settings.region_samples) {
-    check_samples("region_samples", samples);
+    check_samples("--region-samples", samples);
   }
   for (const int block : settings.region_blocks_px) {
-    require(block >= 1 && block <= kMaxBlockPx, "region_blocks_px",
+    require(block >= 1 && block <= kMaxBlockPx, "--region-blocks",
             "blocks of " + std::to_string(block) + " pixels are not possible",
             "give 1 to " + std::to_string(kMaxBlockPx));
   }

@@ -14,9 +14,14 @@ namespace {
 struct Format {
   std::string_view suffix;
   int min_bits, max_bits;
+  int max_side_px;  // what the file's header or the library behind it can hold; the latter would end the process
 };
-constexpr std::array<Format, 6> kFormats{
-    {{".png", 8, 16}, {".jpg", 8, 8}, {".jpeg", 8, 8}, {".tif", 8, 16}, {".tiff", 8, 16}, {".dpx", 10, 10}}};
+constexpr std::array<Format, 6> kFormats{{{".png", 8, 16, 1000000},
+                                          {".jpg", 8, 8, 65500},
+                                          {".jpeg", 8, 8, 65500},
+                                          {".tif", 8, 16, 1000000},
+                                          {".tiff", 8, 16, 1000000},
+                                          {".dpx", 10, 10, 1000000}}};
 
 const Format& format_of(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
@@ -29,7 +34,7 @@ const Format& format_of(const std::string& path) {
   }
   throw Error(ErrorKind::usage, path,
               suffix.empty() ? "a display image needs a suffix" : "no display image ends in " + suffix,
-              "use .png, .jpg, .jpeg, .tif, .tiff or .dpx (scene-linear .exr has an option of its own)");
+              "use .png, .jpg, .jpeg, .tif, .tiff or .dpx, or .exr for scene-linear light");
 }
 
 }  // namespace
@@ -48,6 +53,19 @@ int display_image_bits(const DisplaySettings& settings) {
                 "write PNG or TIFF, or 8 bits");
   }
   return settings.bits;
+}
+
+void check_display_image_size(const DisplaySettings& settings, int width_px, int height_px) {
+  if (settings.pattern.empty()) {
+    return;
+  }
+  const Format& format = format_of(settings.pattern);
+  if (std::max(width_px, height_px) > format.max_side_px) {
+    throw Error(ErrorKind::usage, settings.pattern,
+                fmt::format("{}x{} pixels are more than such a file holds ({} a side)", width_px, height_px,
+                            format.max_side_px),
+                "write PNG or EXR");
+  }
 }
 
 void write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,

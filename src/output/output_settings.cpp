@@ -34,8 +34,12 @@ void check_output_settings(const OutputSettings& settings, bool several_frames) 
   if (!settings.exr.pattern.empty()) {
     check_exr_name(settings.exr.pattern, several_frames);
     check_known("EXR compression", settings.exr.compression, exr_compression_names());
-    for (const std::string& aov : settings.exr.aovs) {
-      check_known("AOV", aov, aov_names());
+  }
+  for (const std::string& aov : settings.exr.aovs) {
+    check_known("AOV", aov, aov_names());
+    if (settings.exr.pattern.empty()) {
+      throw Error(ErrorKind::usage, "--aov", "AOVs are channels of an EXR, and none is written",
+                  "add -o frame.####.exr");
     }
   }
   if (!settings.map_pattern.empty()) {

@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::array<const char*, 3> kRegions{"fovea", "intermediate", "periphery"};
+constexpr std::array<const char*, 4> kRegions{"fovea", "intermediate", "periphery", "uniform"};
 
 // Calls visit(name, field) for every column, in order. Row is TimingRow or const TimingRow.
 template <class Row, class Visit>
@@ -85,6 +85,11 @@ TimingRow parse_row(std::string_view line, const std::string& place) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& timing_regions() {
+  static const std::vector<std::string> kNames(kRegions.begin(), kRegions.end());
+  return kNames;
+}
 
 std::vector<std::string> timing_columns() {
   std::vector<std::string> names;

@@ -39,13 +39,15 @@ void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row
   row.rays_shadow = stats.rays_shadow;
   row.rejected_rays = stats.rejected_rays;
   row.non_finite_samples = stats.non_finite_samples;
-  for (std::size_t i = 0; i < std::min(map.regions.size(), row.region_pixels.size()); ++i) {
-    row.region_pixels[i] = map.regions[i].pixels;
-  }
-  for (std::size_t i = 0; i < std::min(stats.regions.size(), row.region_samples.size()); ++i) {
-    row.region_samples[i] = stats.regions[i].samples;
-    row.region_cpu_ms[i] = static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
-    row.trace_cpu_ms += row.region_cpu_ms[i];
+  const std::vector<std::string>& names = timing_regions();
+  for (std::size_t i = 0; i < map.regions.size(); ++i) {
+    const auto name = std::find(names.begin(), names.end(), map.regions[i].name);
+    // Models of other regions are summed under the last name.
+    const auto column = static_cast<std::size_t>(std::min(name - names.begin(), std::ptrdiff_t{3}));
+    row.region_pixels[column] += map.regions[i].pixels;
+    row.region_samples[column] += stats.regions[i].samples;
+    row.region_cpu_ms[column] += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
+    row.trace_cpu_ms += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
   }
 }
 
@@ -58,8 +60,9 @@ RenderedFrame render_frame(const PathTracer& tracer, const FrameRequest& request
       timed(row.trace_ms, [&] { return tracer.trace(request.camera, request.frame, rendered.map, settings.trace); });
   Frame dense =
       timed(row.reconstruct_ms, [&] { return reconstruct(sparse, rendered.map, settings.filter, settings.threads); });
-  rendered.frame =
-      timed(row.temporal_ms, [&] { return accumulate(std::move(dense), request, settings.accumulate, history); });
+  rendered.frame = timed(row.temporal_ms, [&] {
+    return accumulate(std::move(dense), request, settings.accumulate, history, settings.threads);
+  });
   rendered.exposure_ev = timed(row.exposure_ms, [&] {
     return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
   });

@@ -19,11 +19,11 @@ constexpr std::string_view kListRemedy = "write frames as 1-100, 1-100x2 or 1,5,
 constexpr std::int64_t kMaxFrames = 10'000'000;
 
 [[noreturn]] void bad_rate(std::string_view text, std::string_view problem) {
-  throw Error(ErrorKind::usage, "--fps", fmt::format("'{}' {}", text, problem), kRateRemedy);
+  throw Error(ErrorKind::usage, "", fmt::format("'{}' {}", text, problem), kRateRemedy);
 }
 
 [[noreturn]] void bad_list(std::string_view text, std::string_view problem) {
-  throw Error(ErrorKind::usage, "--frames", fmt::format("'{}' {}", text, problem), kListRemedy);
+  throw Error(ErrorKind::usage, "", fmt::format("'{}' {}", text, problem), kListRemedy);
 }
 
 template <class Integer>

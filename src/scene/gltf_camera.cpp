@@ -178,6 +178,14 @@ CameraPath make_path(const GltfDocument& document, const std::string& name, int 
   return path;
 }
 
+// True where something besides cameras hangs on a node. The document was checked: nodes form trees.
+bool carries_more_than_cameras(const GltfDocument& document, int node) {
+  const GltfNode& from = document.nodes[static_cast<std::size_t>(node)];
+  return from.mesh >= 0 || from.light >= 0 || std::any_of(from.children.begin(), from.children.end(), [&](int child) {
+           return carries_more_than_cameras(document, child);
+         });
+}
+
 // What animations move besides cameras is shown at rest.
 void list_other_motion(const GltfDocument& document, const std::set<int>& camera_nodes,
                        std::vector<std::string>& ignored, Warnings& warnings) {
@@ -186,12 +194,14 @@ void list_other_motion(const GltfDocument& document, const std::set<int>& camera
     std::size_t morphed = 0;
     for (const GltfAnimation::Channel& channel : document.animations[a].channels) {
       morphed += channel.path == "weights" ? 1 : 0;
-      moved += moves_nodes(channel.path) && !camera_nodes.contains(channel.node) ? 1 : 0;
+      moved += moves_nodes(channel.path) && channel.node >= 0 &&
+                       (!camera_nodes.contains(channel.node) || carries_more_than_cameras(document, channel.node))
+                   ? 1
+                   : 0;
     }
     if (moved + morphed > 0) {
       ignored.push_back("animation '" + animation_name(document, a) + "': " + std::to_string(moved) +
-                        " channels move nodes that lead to no camera, " + std::to_string(morphed) +
-                        " change morph weights");
+                        " channels move more than cameras, " + std::to_string(morphed) + " change morph weights");
       warnings.push_back("animation '" + animation_name(document, a) +
                          "' moves more than cameras; everything but cameras is shown at rest");
     }

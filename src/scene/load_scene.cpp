@@ -123,6 +123,11 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   scene.meshes = std::move(meshes.meshes);
   drop_needless_alpha(scene.textures, scene.meshes, scene.materials);
   append(scene.ignored, meshes.ignored);
+  if (!meshes.ignored.empty()) {
+    scene.warnings.push_back(
+        meshes.ignored.front() +
+        (meshes.ignored.size() == 1 ? "" : ", and " + std::to_string(meshes.ignored.size() - 1) + " more primitives"));
+  }
   append(scene.warnings, meshes.warnings);
 
   std::vector<int> parents;

@@ -144,6 +144,7 @@ class BadCameras(harness.CliTest):
         self.assert_refused([*arguments, "--camera-path", "gone.csv"], ["gone.csv"])
         self.assert_refused([*arguments, "--eye", "0,0,4"], ["--target"])
         self.assert_refused([*arguments, "--eye", "0,0,4", "--target", "0,0,4"], ["--target"])
+        self.assert_refused([*arguments, "--eye", "0,0,4", "--target", "0,0,0", "--up", "0,0,0"], ["--up"])
         self.assert_refused([*arguments, "--eye", "0,0,4", "--target", "0,0,0", "--camera", "main"], ["--camera"])
 
 
@@ -179,6 +180,31 @@ class BadOutputs(harness.CliTest):
         refuse(["-o", "a.####.exr", "--aov", "eccentricity"], ["eccentricity", "--gaze"])
         refuse(["-o", "a.####.exr", "--exr-compression", "zap"], ["zap"])
 
+    def test_outputs_that_meet(self):
+        arguments = ["render", "box.gltf", "--size", "64x36", "--spp", "1", "--overwrite"]
+        self.assert_refused([*arguments, "-o", "f.exr", "--map", "./f.exr"], ["f.exr", "two outputs"])
+        self.run_ok(*arguments, "-o", "sky.exr")
+        before = (self.folder / "sky.exr").read_bytes()
+        self.assert_refused([*arguments, "-o", "sky.exr", "--env", "sky.exr"], ["sky.exr", "input"])
+        self.assertEqual((self.folder / "sky.exr").read_bytes(), before)
+
+    def test_more_than_the_format_holds(self):
+        self.assert_refused(["render", "box.gltf", "-o", "f.jpg", "--size", "1x65535"], ["f.jpg", "65500"])
+        self.assert_refused(["render", "box.gltf", "-o", "f.png", "--size", "64x36", "--aov", "normal"], ["--aov", "exr"])
+
+    def test_going_on_with_another_run(self):
+        arguments = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "-o", "f.####.exr"]
+        self.run_ok(*arguments, "--frames", "1-3")
+        self.assert_refused([*arguments, "--frames", "4-6", "--resume"], ["run.json", "1-3", "--part"])
+        self.run_ok(*arguments, "--frames", "1-5", "--resume")
+        self.write("timing.csv", "garbage\n")
+        self.assert_refused([*arguments, "--frames", "1-5", "--resume"], ["timing.csv"])
+        self.assertIn('"done"', (self.folder / "run.json").read_text())
+
+    def test_converting_into_no_folder(self):
+        self.write("log.csv", harness.moving_gaze())
+        self.assert_refused(["gaze", "log.csv", "--convert", "gone/out.csv"], ["gone"])
+
     def test_unknown_view(self):
         arguments = ["render", "box.gltf", "-o", "f.png", "--size", "64x36"]
         self.assert_refused([*arguments, "--view", "ACES SDX"], ["ACES SDX", "ACES SDR"])
@@ -202,11 +228,15 @@ class BadOptions(harness.CliTest):
             ("--exposure", "bright", ["--exposure"]), ("--yfov", "180", ["--yfov"]), ("--env", "constant:1,2", ["--env"]),
             ("--env", "constant:-1,0,0", ["negative"]), ("--only-pixel", "64,0", ["--only-pixel", "64x36"]),
             ("--progress", "sometimes", ["auto"]), ("--bits", "12", ["12"]), ("--exr-zip-level", "0", ["--exr-zip-level"]),
-            ("--gaze-scale", "0", ["--gaze-scale"]),
+            ("--gaze-scale", "0", ["--gaze-scale"]), ("--threads", "66000", ["--threads", "1024"]),
+            ("--env-ev", "500", ["--env-ev", "500"]), ("--exposure", "auto+1e9", ["--exposure"]),
+            ("--pixel-cone", "-1", ["--pixel-cone"]),
         ]:
             with self.subTest(option=option, value=value):
                 size = [] if option == "--size" else ["--size", "64x36"]
                 self.assert_refused(["render", "box.gltf", "-o", "f.####.exr", "-o", "f.####.png", *size, option, value], words)
+        message = self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--frames", "3-1"], ["--frames"])
+        self.assertEqual(message.count("--frames"), 1, message)
 
     def test_usage(self):
         self.assert_refused([], ["command"])

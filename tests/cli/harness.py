@@ -119,6 +119,7 @@ class CliTest(unittest.TestCase):
             self.assertIn(word.lower(), lines[0].lower())
         self.assertEqual(result.stdout, "")
         self.assertEqual(set(self.files()), before)
+        return lines[0]
 
     def files(self, folder="."):
         root = self.folder / folder

@@ -133,6 +133,42 @@ TEST(TracerMean, ManyLightsAgreeHoweverTheyAreChosen) {
   EXPECT_LT(std::sqrt(light.variance_of_mean()), 0.01 * mis.mean()) << "too noisy to mean anything";
 }
 
+// Light sampling must see no more of a lamp than a ray that looks for it.
+TEST(TracerMean, CutOutAndBlendedLampsShineWithWhatIsThere) {
+  struct Case {
+    const char* name;
+    AlphaMode mode;
+    float alpha, expected;
+  };
+  const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
+  const SamplingMap map = uniform_map(24, 16, 16);
+  double whole = 0;
+  for (const Case& c : {Case{"whole", AlphaMode::opaque, 1, 1}, Case{"blended", AlphaMode::blend, 0.25F, 0.25F},
+                        Case{"kept", AlphaMode::mask, 0.75F, 1}, Case{"cut away", AlphaMode::mask, 0.25F, 0}}) {
+    Scene scene = corner(true, false);
+    scene.materials[2].alpha_mode = c.mode;
+    scene.materials[2].base_color.w = c.alpha;
+    const PathTracer tracer(scene, threads(2));
+    TraceSettings settings;
+    settings.max_bounces = 1;  // direct light only: it is proportional to what is there of the lamp
+    Repeats light;
+    for (const LightSampling mode : {LightSampling::light_only, LightSampling::mis, LightSampling::bsdf_only}) {
+      settings.light_sampling = mode;
+      const Repeats found = repeat(tracer, camera, map, settings);
+      if (mode == LightSampling::light_only) {
+        light = found;
+        whole = c.mode == AlphaMode::opaque ? found.mean() : whole;
+        // The lamp itself is in the picture's light, too; both scale alike.
+        EXPECT_NEAR(found.mean(), whole * static_cast<double>(c.expected), 0.03 * whole) << c.name;
+      } else if (c.expected > 0) {
+        EXPECT_LT(std::fabs(welch_t(found, light)), kCriticalT) << c.name << found.mean() << " " << light.mean();
+      } else {
+        EXPECT_EQ(found.mean(), 0) << c.name;
+      }
+    }
+  }
+}
+
 TEST(TracerMean, RussianRouletteKeepsTheMean) {
   const Scene scene = corner(true, true);
   const PathTracer tracer(scene, threads(2));

@@ -146,6 +146,10 @@ int run_gaze(const GazeArguments& arguments) {
   if (!arguments.convert.empty() && !arguments.overwrite && std::filesystem::exists(arguments.convert)) {
     throw Error(ErrorKind::input, arguments.convert, "this output exists already", "give --overwrite or another name");
   }
+  if (const auto folder = std::filesystem::path(arguments.convert).parent_path();
+      !folder.empty() && !std::filesystem::is_directory(folder)) {
+    throw Error(ErrorKind::input, arguments.convert, "there is no folder " + folder.string(), "make it first");
+  }
   const GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   const GazeReport report = measure(log);
   if (!arguments.convert.empty()) {

@@ -103,7 +103,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   PipelineSettings settings = pipeline_settings(job, inputs.frames);
   const std::map<std::string, std::string> digests = digest_job_files(job);
   settings.settings_digest = digest_job(arguments.table, job, settings, inputs.frames, digests);
-  prepare_outputs(settings, inputs.frames);
+  prepare_outputs(settings, inputs.frames, digests);
 
   TracerOptions options;
   options.threads = job.threads;

@@ -56,38 +56,73 @@ inline std::uint32_t PathKernel<kFeatures, kDiffuse>::emitter_of(std::size_t i) 
   return frame_.lights->emitter_of(scene_instance, geometry.scene_geometry, work_.hits.primitive[k]);
 }
 
-// A light sample on a textured emitter brings its place instead of the texture's value.
+// A light sample on a textured emitter brings its place instead of the texture's value. Emitters that are cut out or
+// blended shine with what is there of them: a ray that looks for them passes the rest.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline Vec3f PathKernel<kFeatures, kDiffuse>::light_radiance(const LightSample& light) const {
   if constexpr (kFeatures.emission) {
     if (light.emitter != kNoEmitter) {
       const EmissiveTriangle& emitter = frame_.lights->triangle(light.emitter);
       const ShadingMaterial& material = frame_.scene->materials[static_cast<std::size_t>(emitter.material)];
+      Vec3f radiance = light.radiance;
       if (material.emit.texture != nullptr) {
-        return light.radiance * emitted_texel(emitter, material, light.barycentric);
+        const Vec2f at = place_on_emitter(emitter, material.emit, light.barycentric);
+        const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, 0.0F);
+        radiance *= Vec3f{c.x, c.y, c.z};
       }
+      if (material.alpha_mode != AlphaMode::opaque) {
+        radiance = radiance * coverage_of_emitter(emitter, material, light.barycentric);
+      }
+      return radiance;
     }
   }
   return light.radiance;
 }
 
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-inline Vec3f PathKernel<kFeatures, kDiffuse>::emitted_texel(const EmissiveTriangle& emitter,
-                                                            const ShadingMaterial& material, const Vec2f& at) const {
+inline const Geometry& PathKernel<kFeatures, kDiffuse>::geometry_of(const EmissiveTriangle& emitter) const {
   const Instance& instance = frame_.source->instances[static_cast<std::size_t>(emitter.instance)];
-  const Geometry& geometry = frame_.source->meshes[static_cast<std::size_t>(instance.mesh)]
-                                 .geometries[static_cast<std::size_t>(emitter.geometry)];
+  return frame_.source->meshes[static_cast<std::size_t>(instance.mesh)]
+      .geometries[static_cast<std::size_t>(emitter.geometry)];
+}
+
+// Where a point of an emitter lies in a texture; the origin of the picture where the triangle has no coordinates.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline Vec2f PathKernel<kFeatures, kDiffuse>::place_on_emitter(const EmissiveTriangle& emitter,
+                                                               const ShadingTexture& texture, const Vec2f& at) const {
+  const Geometry& geometry = geometry_of(emitter);
   const auto& corner = geometry.triangles[static_cast<std::size_t>(emitter.primitive)];
-  const std::vector<Vec2f>& set = material.emit.uv_set == 1 ? geometry.uv1 : geometry.uv0;
-  if (set.size() != geometry.positions.size()) {
-    return {1, 1, 1};
+  const std::vector<Vec2f>& set = texture.uv_set == 1 ? geometry.uv1 : geometry.uv0;
+  Vec2f uv;
+  if (set.size() == geometry.positions.size()) {
+    const float w = 1.0F - at.x - at.y;
+    uv = {w * set[corner[0]].x + at.x * set[corner[1]].x + at.y * set[corner[2]].x,
+          w * set[corner[0]].y + at.x * set[corner[1]].y + at.y * set[corner[2]].y};
   }
-  const float w = 1.0F - at.x - at.y;
-  const float x = w * set[corner[0]].x + at.x * set[corner[1]].x + at.y * set[corner[2]].x;
-  const float y = w * set[corner[0]].y + at.x * set[corner[1]].y + at.y * set[corner[2]].y;
-  const auto& m = material.emit.transform;
-  const Vec4f c = read_texture(*material.emit.texture, m[0] * x + m[1] * y + m[2], m[3] * x + m[4] * y + m[5], 0.0F);
-  return {c.x, c.y, c.z};
+  const auto& m = texture.transform;
+  return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+}
+
+// The share of rays that RenderScene::transparent stops here.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline float PathKernel<kFeatures, kDiffuse>::coverage_of_emitter(const EmissiveTriangle& emitter,
+                                                                  const ShadingMaterial& material,
+                                                                  const Vec2f& at) const {
+  const Geometry& geometry = geometry_of(emitter);
+  float alpha = material.base_color.w;
+  if (material.base.texture != nullptr) {
+    const Vec2f place = place_on_emitter(emitter, material.base, at);
+    alpha *= read_alpha(*material.base.texture, place.x, place.y);
+  }
+  if (!geometry.colors.empty()) {
+    const auto& corner = geometry.triangles[static_cast<std::size_t>(emitter.primitive)];
+    alpha *= (1.0F - at.x - at.y) * geometry.colors[corner[0]].w + at.x * geometry.colors[corner[1]].w +
+             at.y * geometry.colors[corner[2]].w;
+  }
+  if (material.alpha_mode == AlphaMode::mask) {
+    return alpha < material.alpha_cutoff ? 0.0F : 1.0F;
+  }
+  return std::clamp(alpha, 0.0F, 1.0F);
 }
 
 }  // namespace gazetrace

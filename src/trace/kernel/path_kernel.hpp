@@ -141,8 +141,11 @@ class PathKernel {
                     const ShadingMaterial& material, float pdf_bsdf);
   [[nodiscard]] std::uint32_t emitter_of(std::size_t i) const;
   [[nodiscard]] Vec3f light_radiance(const LightSample& light) const;
-  [[nodiscard]] Vec3f emitted_texel(const EmissiveTriangle& emitter, const ShadingMaterial& material,
-                                    const Vec2f& at) const;
+  [[nodiscard]] const Geometry& geometry_of(const EmissiveTriangle& emitter) const;
+  [[nodiscard]] Vec2f place_on_emitter(const EmissiveTriangle& emitter, const ShadingTexture& texture,
+                                       const Vec2f& at) const;
+  [[nodiscard]] float coverage_of_emitter(const EmissiveTriangle& emitter, const ShadingMaterial& material,
+                                          const Vec2f& at) const;
 
   // scatter.hpp
   void scatter_chunk(int vertex, const PathBatch& paths, std::size_t count, const std::uint16_t* active,
