@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "core/hash.hpp"
+#include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -238,7 +239,8 @@ struct RayScene::Impl {
 };
 
 RayScene::RayScene(int threads, bool high_quality, const AlphaSource* alpha) : impl_(std::make_unique<Impl>()) {
-  const std::string config = "threads=" + std::to_string(std::max(threads, 0));
+  // 0 leaves the task library's own limit alone: a number here would hold for the whole process.
+  const std::string config = "threads=" + std::to_string(threads < resolve_threads(0) ? std::max(threads, 0) : 0);
   impl_->device = rtcNewDevice(config.c_str());
   if (impl_->device == nullptr) {
     throw Error(ErrorKind::runtime, "Embree", "no device could be made on this machine",
