@@ -70,6 +70,14 @@ struct CameraReadOptions {
   bool keep_time = false;
 };
 
+// A path from poses with increasing times. Error(input) at `source` for none, and for times that do not increase.
+struct TimedPose {
+  std::int64_t t_ns = 0;
+  CameraPose pose;
+};
+CameraPath camera_from_poses(std::vector<TimedPose> poses, const std::string& source, const Projection& projection,
+                             PathInterpolation interpolation);
+
 struct CameraFormatInfo {
   std::string name;
   std::string description;

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaze logs: reading them, and asking one where the eye was at a time.
-//
-// Time is int64 nanoseconds on the log's own clock, never a float. Screen gaze is a fraction of the *display*:
-// (0, 0) its top left edge, (1, 1) its bottom right, values outside lie beside it. Directions are unit vectors in the
-// view frame: right-handed, +x right, +y up, -z forward.
+// Gaze logs: reading them (gaze_log.hpp says what they are then), and asking one where the eye was at a time.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,46 +11,10 @@
 
 #include "gazetrace/display.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_log.hpp"
 #include "gazetrace/math.hpp"
 
 namespace gazetrace {
-
-enum class GazeKind : std::uint8_t { screen, direction };
-enum class GazeValidity : std::uint8_t { ok, low_confidence, blink, lost, off_screen, interpolated };
-enum class Eye : std::uint8_t { left, right, cyclopean };
-
-std::string_view to_string(GazeValidity validity);
-std::string_view to_string(Eye eye);
-
-struct GazeSample {
-  std::int64_t t_ns = 0;
-  double u = 0, v = 0;        // GazeKind::screen
-  Vec3d direction{0, 0, -1};  // GazeKind::direction
-  GazeValidity validity = GazeValidity::ok;
-  Eye eye = Eye::cyclopean;
-  float confidence = 1.0F;  // 0..1, NaN where the log has none
-  float pupil = 0.0F;       // in the log's own unit, NaN where missing
-  std::int64_t row = 0;     // 1-based line in the source file
-  // Coordinates are NaN where the log has none; such samples are never usable.
-};
-
-// off_screen samples are good measurements that happen to lie beside the display.
-inline bool is_usable(GazeValidity v) {
-  return v == GazeValidity::ok || v == GazeValidity::off_screen || v == GazeValidity::interpolated;
-}
-
-struct GazeLog {
-  GazeKind kind = GazeKind::screen;
-  // Times increase. Rows of several eyes at one time are one cyclopean sample: the log's own where it has one, else the
-  // mean of the usable eyes.
-  std::vector<GazeSample> samples;
-  std::string source;  // the path as given
-  std::string format;  // a name of `gaze_formats()`
-  std::string clock;   // what the log says of its clock; may be empty
-  // Geometry of the recording where the log states it (any zero field: not stated).
-  std::optional<DisplayGeometry> recording_geometry;
-  Warnings warnings;
-};
 
 enum class TimeUnit { automatic, ns, us, ms, s };
 enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector };
@@ -61,17 +22,71 @@ enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector };
 // center count half the display, -1..1. automatic: the center for degrees, else top left.
 enum class PositionOrigin { automatic, top_left, bottom_left, center };
 
-// What the user declared about columns of a CSV/TSV that does not say it itself. Empty names: found by header.
+// Axes in which a log writes directions and origins, and a head's pose. All have +y up but `cv`.
+//   gl        +x right, -z forward, right-handed: OpenXR, glTF, and gazetrace itself
+//   unity     +x right, +z forward, left-handed
+//   sranipal  +x to the wearer's left, +z forward, right-handed: HTC's SDK, Tobii's glasses
+//   cv        +x right, +y down, +z forward, right-handed: scene cameras
+enum class GazeAxes { automatic, gl, unity, sranipal, cv };
+
+// An eye's columns in a table: position or direction, and what else is known of it.
+struct EyeColumns {
+  std::string x, y, z;
+  std::string validity, confidence, pupil;
+  std::string openness;                      // 0 closed to 1 open; closed is a blink
+  std::string origin_x, origin_y, origin_z;  // of the eye in the head
+  bool operator==(const EyeColumns&) const = default;
+};
+
+// What the user declared about columns of a CSV/TSV that does not say it itself. Empty names: found by header. Every
+// format that is a table takes time, x, y and z from here before its own.
 struct GazeColumns {
   std::string time, x, y, z, validity, confidence, pupil, eye;
+  EyeColumns left, right;
+  // The head's pose in the same rows: position, and Euler angles in degrees (Unity's order: z, x, y) or, with w, a
+  // quaternion.
+  std::string head_x, head_y, head_z, head_rotation_x, head_rotation_y, head_rotation_z, head_rotation_w;
+  std::string frame;  // counter of samples: rows that repeat it are dropped
   TimeUnit time_unit = TimeUnit::automatic;
   PositionUnit position_unit = PositionUnit::automatic;
   PositionOrigin origin = PositionOrigin::automatic;
+  GazeAxes axes = GazeAxes::automatic;       // of directions and origins
+  GazeAxes head_axes = GazeAxes::automatic;  // of the head's pose
+  double origin_mm_per_unit = 1;
+  double head_m_per_unit = 1;
   // "ok" values of the validity column; empty: 1, true, ok, valid (any case).
   std::vector<std::string> valid_values;
+  // Where valid values are bits: all of these must be set; 0: they are not.
+  std::int64_t valid_mask = 0;
+  bool operator==(const GazeColumns&) const = default;
 };
 
+// A column map as JSON, `{"time": "Timeline", "time_unit": "s", "left": {"x": ...}, ...}`, names as above. Reading:
+// Error(input) for unknown keys and values.
+GazeColumns load_gaze_columns(const std::string& path);
+void save_gaze_columns(const GazeColumns& columns, const std::string& path);
+// What `over` declares replaces what `base` does.
+GazeColumns merge_gaze_columns(const GazeColumns& base, const GazeColumns& over);
+
 enum class UnorderedPolicy { error, sort };
+
+// Which gaze a binocular log gives.
+//   automatic  the log's own combined gaze where it has one; else the mean, or, where the eyes differ vertically by
+//   more
+//              than 0.5 deg in the median, the best eye, with a warning
+//   left, right  that eye alone
+//   mean       of both eyes, in angle. While one eye is lost the other stands in, moved by half the running offset
+//              between them
+//   dominant   `dominant_eye`; while it is lost the other, moved by the running offset
+//   best       as dominant, with the eye that has more usable samples, or less noise where both have as many
+enum class EyeChoice { automatic, left, right, mean, dominant, best };
+
+// What to take of a log that knows gaze in more than one frame.
+//   automatic     places on a display, else directions of head-mounted displays; gaze on a scene camera's picture is
+//                 refused
+//   head          directions from the head: of glasses, and of logs in degrees
+//   scene_camera  places on the scene camera's picture, for inspection and conversion
+enum class GazeFrame { automatic, head, scene_camera };
 
 struct GazeReadOptions {
   std::string format;  // a name of `gaze_formats()`; empty: by sniffing
@@ -79,19 +94,39 @@ struct GazeReadOptions {
   // Converts px, mm and degrees to fractions; needed only for those.
   std::optional<DisplayGeometry> display;
   UnorderedPolicy unordered = UnorderedPolicy::error;
+  EyeChoice eye = EyeChoice::automatic;
+  std::optional<Eye> dominant_eye;  // left or right; required by EyeChoice::dominant
+  GazeFrame frame = GazeFrame::automatic;
+  double min_confidence = std::numeric_limits<double>::quiet_NaN();  // NaN: the format's own (Pupil Core: 0.6)
+  bool zero_is_missing = false;  // exactly (0, 0) is missing, whatever the validity says
+  bool swap_xy = false;          // the log has its axes the wrong way round
+  // For looking at a log only: where pixels need the size of a display that nobody states, a usual size that holds them
+  // is taken, with a warning and a fact marked statistics; degrees become directions.
+  bool guess_display = false;
 };
 
+// How a format was tried.
+enum class FormatProof : std::uint8_t { recording, synthetic };
 struct GazeFormatInfo {
   std::string name;
   std::string description;
+  FormatProof proof = FormatProof::synthetic;  // read a real recording, or only files made after its documentation
 };
 std::vector<GazeFormatInfo> gaze_formats();
 
-// Error(input) with file:line for a log without time, without samples, with unordered or duplicated stamps (unless
-// sorting was asked for; then the last of equal stamps is kept and a warning counts them), with unknown columns or
-// units.
+// A format and how sure the sniffing is that a file is of it, 0..1, the surest first; those at 0 are left out.
+struct GazeFormatGuess {
+  std::string name;
+  double confidence = 0;
+};
+std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path);
+
+// Also gzip, and folders of recordings. Error(input) with file:line for a log without time, without samples, with
+// unordered or duplicated stamps (unless sorting was asked for; then the last of equal stamps is kept and a warning
+// counts them), with unknown columns or units, for gaze on a scene camera's picture.
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
-// Lossless, bit by bit, for all fields but `row`: header `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`.
+// Lossless, bit by bit, for samples, both eyes and origins, but `row`: header `t[ns],u[1],v[1],valid,eye,...` or
+// `t[ns],dx,dy,dz,...`. With both eyes there are three rows a time.
 void write_gaze_csv(const GazeLog& log, const std::string& path);
 
 // hold: the last row at or before the time. nearest: the row closest in time. linear: between two neighbouring usable
@@ -135,6 +170,8 @@ struct GazeAtTime {
 // Time on the log's clock of a video time, t_event + (t_video - offset) / scale, to the nearest nanosecond in 128-bit
 // integers. Error(usage) for a scale that is not positive, or a time beyond int64.
 std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns);
+// The other way: scale (t_log - t_event) + offset, to the nearest nanosecond, under the same errors.
+std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_log_ns);
 // Error(input) under NoGazePolicy::error, naming the time and the nearest rows.
 GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns);
 

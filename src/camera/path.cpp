@@ -123,6 +123,20 @@ CameraPose pose_between(const std::vector<CameraKey>& keys, PathInterpolation in
   return {a.pose.position_m * (1.0 - s) + b.pose.position_m * s, slerp(a.pose.orientation, b.pose.orientation, s)};
 }
 
+CameraPath path_of_keys(std::vector<CameraKey> keys, const std::string& source, const CameraReadOptions& options) {
+  CameraPath result;
+  result.source = source;
+  result.projection = options.projection;
+  result.is_static = keys.size() == 1;
+  result.begin_ns = keys.front().t_ns;
+  result.end_ns = keys.back().t_ns;
+  const auto shared = std::make_shared<const std::vector<CameraKey>>(std::move(keys));
+  result.pose_at = [shared, interpolation = options.interpolation](std::int64_t t_ns) {
+    return pose_between(*shared, interpolation, t_ns);
+  };
+  return result;
+}
+
 }  // namespace
 
 std::vector<CameraFormatInfo> camera_formats() {
@@ -133,23 +147,30 @@ std::vector<CameraFormatInfo> camera_formats() {
   return infos;
 }
 
+CameraPath camera_from_poses(std::vector<TimedPose> poses, const std::string& source, const Projection& projection,
+                             PathInterpolation interpolation) {
+  std::vector<CameraKey> keys;
+  keys.reserve(poses.size());
+  for (const TimedPose& pose : poses) {
+    keys.push_back({pose.t_ns, pose.pose, static_cast<std::int64_t>(keys.size()) + 1});
+  }
+  CameraReadOptions options;
+  options.interpolation = interpolation;
+  options.projection = projection;
+  prepare_keys(keys, source, options);
+  return path_of_keys(std::move(keys), source, options);
+}
+
 CameraPath load_camera_path(const std::string& path, const CameraReadOptions& options) {
   const CameraFile file{path, read_text_file(path)};
-  CameraPath result;
-  result.source = path;
-  result.projection = options.projection;
-  std::vector<CameraKey> keys = choose_format(file, options.format).read(file, result.warnings);
+  Warnings warnings;
+  std::vector<CameraKey> keys = choose_format(file, options.format).read(file, warnings);
   prepare_keys(keys, path, options);
   if (!options.keep_time) {
     rebase_times(keys, path);
   }
-  result.is_static = keys.size() == 1;
-  result.begin_ns = keys.front().t_ns;
-  result.end_ns = keys.back().t_ns;
-  const auto shared = std::make_shared<const std::vector<CameraKey>>(std::move(keys));
-  result.pose_at = [shared, interpolation = options.interpolation](std::int64_t t_ns) {
-    return pose_between(*shared, interpolation, t_ns);
-  };
+  CameraPath result = path_of_keys(std::move(keys), path, options);
+  result.warnings = std::move(warnings);
   return result;
 }
 

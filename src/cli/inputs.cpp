@@ -33,25 +33,6 @@ GazeLog fixed_gaze(const Vec2d& at) {
   return log;
 }
 
-GazeMapping gaze_mapping(const JobSettings& job) {
-  GazeMapping mapping;
-  if (job.gaze_at) {
-    mapping.max_age_ns = std::numeric_limits<std::int64_t>::max();
-    mapping.offset_ns = job.start.ns;
-    return mapping;
-  }
-  mapping.interpolation = job.gaze_mode;
-  mapping.no_gaze = job.gaze_missing;
-  mapping.max_age_ns = job.gaze_max_age.ns;
-  mapping.max_interpolation_gap_ns = job.gaze_max_gap.ns;
-  mapping.scale = job.gaze_scale;
-  mapping.offset_ns = job.gaze_offset.ns;
-  if (job.gaze_start) {
-    mapping.event_ns = job.gaze_start->ns;
-  }
-  return mapping;
-}
-
 // More than four days at 24 a second: a wrong unit, not a wish.
 constexpr double kMostFrames = 1e7;
 
@@ -103,6 +84,9 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   settings.width_px = job.size.width;
   settings.height_px = job.size.height;
   settings.display = screen_geometry(job.screen);
+  if (settings.display && (log == nullptr || log->kind == GazeKind::direction)) {
+    check_display(*settings.display);
+  }
   if (settings.display) {
     decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
   } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {
@@ -123,10 +107,29 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
 }
 
 bool camera_needs_scene(const JobSettings& job) {
-  return job.camera_path.empty() && !job.eye;
+  return job.camera_path.empty() && !job.camera_from_gaze && !job.eye;
 }
 
 }  // namespace
+
+GazeMapping gaze_mapping(const JobSettings& job) {
+  GazeMapping mapping;
+  if (job.gaze_at) {
+    mapping.max_age_ns = std::numeric_limits<std::int64_t>::max();
+    mapping.offset_ns = job.start.ns;
+    return mapping;
+  }
+  mapping.interpolation = job.gaze_mode;
+  mapping.no_gaze = job.gaze_missing;
+  mapping.max_age_ns = job.gaze_max_age.ns;
+  mapping.max_interpolation_gap_ns = job.gaze_max_gap.ns;
+  mapping.scale = job.gaze_scale;
+  mapping.offset_ns = job.gaze_offset.ns;
+  if (job.gaze_start) {
+    mapping.event_ns = job.gaze_start->ns;
+  }
+  return mapping;
+}
 
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
   const bool any = screen.size_px || screen.size_cm || screen.distance_cm || screen.eye_cm;
@@ -161,12 +164,23 @@ std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
     geometry.eye_x_cm = screen.eye_cm->x;
     geometry.eye_y_cm = screen.eye_cm->y;
   }
-  check_display(geometry);
+  const auto negative = [](double value) { return !(value >= 0) || !std::isfinite(value); };
+  if (geometry.width_px < 0 || geometry.height_px < 0 || negative(geometry.width_cm) || negative(geometry.height_cm) ||
+      negative(geometry.distance_cm)) {
+    check_display(geometry);  // says which
+  }
   return geometry;
+}
+
+GazeColumns merged_columns(const GazeFileSettings& gaze) {
+  return gaze.columns_file.empty() ? gaze.read.columns
+                                   : merge_gaze_columns(load_gaze_columns(gaze.columns_file), gaze.read.columns);
 }
 
 GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
   GazeReadOptions options = gaze.read;
+  options.columns = merged_columns(gaze);
+  options.min_confidence = gaze.min_confidence.value_or(options.min_confidence);
   options.display = screen_geometry(screen);
   options.unordered = gaze.sort ? UnorderedPolicy::sort : UnorderedPolicy::error;
   return load_gaze_log(gaze.path, options);
@@ -191,7 +205,7 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
   }
   CameraPath camera;
   if (!camera_needs_scene(job)) {
-    camera = choose_camera(job, nullptr, decision);
+    camera = choose_camera(job, nullptr, log, decision);
   }
   if (scope == InputScope::render || (camera_needs_scene(job) && !job.scene.empty())) {
     if (job.scene.empty()) {
@@ -209,7 +223,7 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
     append(inputs.warnings, inputs.scene->environment.warnings);
   }
   if (camera_needs_scene(job)) {
-    camera = choose_camera(job, inputs.scene.get(), decision);
+    camera = choose_camera(job, inputs.scene.get(), log, decision);
   }
   inputs.decisions.emplace_back("camera", decision);
   inputs.frames = choose_frames(job, camera, log, decision);

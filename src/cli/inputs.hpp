@@ -55,9 +55,11 @@ std::string digest_job(const OptionTable& table, const JobSettings& job, const P
 
 // Parts of load_inputs that `gaze` and `scene` use as well.
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen);
+GazeColumns merged_columns(const GazeFileSettings& gaze);  // options over the column map
 GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen);
 // "auto" is resolved by the scene; returns what was taken, in words.
 std::string set_environment(const JobSettings& job, Scene& scene);
-CameraPath choose_camera(const JobSettings& job, const Scene* scene, std::string& decision);
+CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision);
+GazeMapping gaze_mapping(const JobSettings& job);
 
 }  // namespace gazetrace

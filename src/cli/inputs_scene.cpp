@@ -84,12 +84,36 @@ CameraPath still_camera(const JobSettings& job) {
   return static_camera(look_at(*job.eye, *job.target, job.up), perspective(job));
 }
 
+// The head's poses on the clock of the video, as the gaze is mapped.
+CameraPath head_camera(const GazeLog& log, const JobSettings& job) {
+  if (log.head.empty()) {
+    throw Error(ErrorKind::input, log.source, "has no head pose for --camera-from-gaze",
+                "give --camera-path, or name its columns in a column map");
+  }
+  const GazeMapping mapping = gaze_mapping(job);
+  std::vector<TimedPose> poses;
+  poses.reserve(log.head.size());
+  for (const HeadPose& pose : log.head) {
+    poses.push_back({video_time_ns(log, mapping, pose.t_ns), {pose.position_m, pose.orientation}});
+  }
+  return camera_from_poses(std::move(poses), log.source, perspective(job), job.camera_read.interpolation);
+}
+
 }  // namespace
 
-CameraPath choose_camera(const JobSettings& job, const Scene* scene, std::string& decision) {
-  const int ways = (job.camera.empty() ? 0 : 1) + (job.camera_path.empty() ? 0 : 1) + (job.eye || job.target ? 1 : 0);
+CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision) {
+  const int ways = (job.camera.empty() ? 0 : 1) + (job.camera_path.empty() ? 0 : 1) + (job.camera_from_gaze ? 1 : 0) +
+                   (job.eye || job.target ? 1 : 0);
   if (ways > 1) {
-    throw Error(ErrorKind::usage, "", "--camera, --camera-path and --eye exclude each other", "give one of them");
+    throw Error(ErrorKind::usage, "", "--camera, --camera-path, --camera-from-gaze and --eye exclude each other",
+                "give one of them");
+  }
+  if (job.camera_from_gaze) {
+    if (log == nullptr) {
+      throw Error(ErrorKind::usage, "--camera-from-gaze", "there is no gaze log", "give --gaze");
+    }
+    decision = "the head's pose in " + log->source;
+    return head_camera(*log, job);
   }
   if (job.target && !job.eye) {
     throw Error(ErrorKind::usage, "--target", "a still camera needs --eye as well");

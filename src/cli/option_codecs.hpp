@@ -104,6 +104,13 @@ GAZETRACE_ENUM_NAMES(PositionOrigin, "gaze origin", {E::automatic, "auto"}, {E::
 GAZETRACE_ENUM_NAMES(GazeInterpolation, "gaze mode", {E::hold, "hold"}, {E::nearest, "nearest"}, {E::linear, "linear"})
 GAZETRACE_ENUM_NAMES(NoGazePolicy, "policy for missing gaze", {E::hold, "hold"}, {E::center, "center"},
                      {E::uniform, "uniform"}, {E::error, "error"})
+GAZETRACE_ENUM_NAMES(GazeAxes, "gaze axes", {E::automatic, "auto"}, {E::gl, "gl"}, {E::unity, "unity"},
+                     {E::sranipal, "sranipal"}, {E::cv, "cv"})
+GAZETRACE_ENUM_NAMES(EyeChoice, "eye", {E::automatic, "auto"}, {E::left, "left"}, {E::right, "right"},
+                     {E::mean, "mean"}, {E::dominant, "dominant"}, {E::best, "best"})
+GAZETRACE_ENUM_NAMES(GazeFrame, "gaze frame", {E::automatic, "auto"}, {E::head, "head"},
+                     {E::scene_camera, "scene-camera"})
+GAZETRACE_ENUM_NAMES(Eye, "eye", {E::left, "left"}, {E::right, "right"})
 GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"})
 GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})
 GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light_only, "light"}, {E::bsdf_only, "bsdf"})

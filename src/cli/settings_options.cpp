@@ -34,6 +34,8 @@ void add_camera_options(OptionTable& table, JobSettings& job) {
               kPixels);
   table.value("--camera-path", job.camera_path, "FILE",
               "Timestamped poses, gazetrace CSV (t[s],x[m],y[m],z[m],qx,qy,qz,qw) or TUM", kFile);
+  table.flag("--camera-from-gaze", job.camera_from_gaze,
+             "The head's pose in a head-mounted display's log is the camera's path", kPixels);
   table.value("--camera-format", job.camera_read.format, "NAME", "Format of --camera-path; default: by its content",
               kPixels);
   table.value("--camera-axes", job.camera_read.axes, choices<CameraAxes>(),
@@ -207,6 +209,23 @@ void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze) {
   table.value("--gaze-unit", columns.position_unit, choices<PositionUnit>(), "Unit of the positions", kPixels);
   table.value("--gaze-origin", columns.origin, choices<PositionOrigin>(), "Where (0, 0) is", kPixels);
   table.flag("--gaze-sort", gaze.sort, "Sorts unordered stamps and keeps the last of equal ones", kPixels);
+  table.value("--gaze-columns", gaze.columns_file, "FILE",
+              "Column map as JSON, for tables of one's own; 'gazetrace gaze --save-columns' writes one", kFile);
+  table.value("--gaze-axes", columns.axes, choices<GazeAxes>(),
+              "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
+              "left, cv along +z with y down; default: the format's own",
+              kPixels);
+  table.value("--gaze-frame", gaze.read.frame, choices<GazeFrame>(),
+              "Of logs that know several: head takes directions from the head, scene-camera places on its picture",
+              kPixels);
+  table.value("--gaze-eye", gaze.read.eye, choices<EyeChoice>(),
+              "Of binocular logs: auto takes the log's combined gaze, else the mean of both eyes in angle", kPixels);
+  table.value("--gaze-dominant", gaze.read.dominant_eye, choices<Eye>(), "The eye of --gaze-eye dominant", kPixels);
+  table.value("--gaze-min-confidence", gaze.min_confidence, "SHARE",
+              "Samples below it are not used; default: the format's own, such as 0.6 for Pupil Core", kPixels);
+  table.flag("--gaze-zero-missing", gaze.read.zero_is_missing, "Takes positions of exactly (0, 0) for missing ones",
+             kPixels);
+  table.flag("--gaze-swap-xy", gaze.read.swap_xy, "Exchanges the two axes", kPixels);
 }
 
 void add_screen_options(OptionTable& table, ScreenSettings& screen) {

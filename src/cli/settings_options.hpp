@@ -25,6 +25,8 @@ struct ScreenSettings {
 struct GazeFileSettings {
   std::string path;
   GazeReadOptions read;
+  std::string columns_file;  // a column map; options go over it
+  std::optional<double> min_confidence;
   bool sort = false;
 };
 
@@ -38,6 +40,7 @@ struct JobSettings {
   // Scene camera
   std::string camera;
   std::string camera_path;
+  bool camera_from_gaze = false;
   CameraReadOptions camera_read;
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   std::optional<Vec3d> eye, target;

@@ -66,7 +66,7 @@ constexpr bool is_digit(char c) {
 
 }  // namespace
 
-std::string read_text_file(const std::string& path) {
+std::string read_file_bytes(const std::string& path) {
   std::error_code code;
   if (std::filesystem::is_directory(path, code)) {
     throw Error(ErrorKind::input, path, "is a folder, not a file");
@@ -91,6 +91,10 @@ std::string read_text_file(const std::string& path) {
     throw Error(ErrorKind::input, path, "cannot be read to its end");
   }
   text.resize(used);
+  return text;
+}
+
+std::string utf8_text(std::string text) {
   if (text.starts_with("\xEF\xBB\xBF")) {
     text.erase(0, 3);
   } else if (text.starts_with("\xFF\xFE")) {
@@ -99,6 +103,10 @@ std::string read_text_file(const std::string& path) {
     return utf8_from_utf16(std::string_view(text).substr(2), false);
   }
   return text;
+}
+
+std::string read_text_file(const std::string& path) {
+  return utf8_text(read_file_bytes(path));
 }
 
 std::string_view trim(std::string_view text) {

@@ -14,6 +14,9 @@ namespace gazetrace {
 // The whole file as UTF-8: a byte-order mark is dropped, UTF-16 (either order, with its mark) is converted.
 // Error(input) when it cannot be read.
 std::string read_text_file(const std::string& path);
+// The two halves of it.
+std::string read_file_bytes(const std::string& path);
+std::string utf8_text(std::string text);
 
 std::string_view trim(std::string_view text);  // blanks, tabs, carriage returns, no-break spaces
 std::string to_lower(std::string_view text);   // ASCII

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <span>
 
 #include "core/text.hpp"
@@ -16,59 +15,14 @@ namespace {
 
 using Names = std::span<const std::string_view>;
 
-std::string letters_and_digits(std::string_view text) {
-  std::string kept;
-  for (const char c : to_lower(text)) {
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
-      kept += c;
-    }
-  }
-  return kept;
-}
-
-bool is_known_unit(std::string_view text) {
-  return time_exponent(text).has_value() || position_unit_from(text).has_value();
-}
-
-std::string listing(const std::vector<ColumnHeading>& headings) {
-  std::vector<std::string> texts;
-  texts.reserve(headings.size());
-  for (const ColumnHeading& heading : headings) {
-    texts.push_back(heading.text);
-  }
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
 class Finder {
  public:
-  Finder(const std::vector<ColumnHeading>& headings, const std::string& place) : headings_(headings), place_(place) {}
+  Finder(const DelimitedTable& table, const std::string& place) : table_(table), place_(place) {}
 
-  // A column that the user names: by its whole text, by its name without the unit, or by its number from 1.
-  [[nodiscard]] std::size_t declared(const std::string& name) const {
-    const std::string wanted = to_lower(trim(name));
-    for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
-      for (std::size_t i = 0; i < headings_.size(); ++i) {
-        if (to_lower(headings_[i].*part) == wanted) {
-          return i;
-        }
-      }
-    }
-    std::size_t number = 0;
-    const auto [rest, status] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
-    if (status == std::errc{} && rest == wanted.data() + wanted.size() && number >= 1 && number <= headings_.size()) {
-      return number - 1;
-    }
-    std::vector<std::string> names;
-    for (const ColumnHeading& heading : headings_) {
-      names.push_back(heading.text);
-    }
-    throw Error(ErrorKind::input, place_, unknown_name_message("column", name, names));
-  }
-
-  [[nodiscard]] std::optional<std::size_t> by_role(Names names) const {
+  [[nodiscard]] OptionalColumn by_role(Names names) const {
     for (const std::string_view name : names) {
-      for (std::size_t i = 0; i < headings_.size(); ++i) {
-        if (letters_and_digits(headings_[i].name) == name) {
+      for (std::size_t i = 0; i < table_.headings.size(); ++i) {
+        if (letters_and_digits(table_.headings[i].name) == name) {
           return i;
         }
       }
@@ -76,8 +30,8 @@ class Finder {
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<std::size_t> optional(const std::string& name, Names names) const {
-    return name.empty() ? by_role(names) : std::optional(declared(name));
+  [[nodiscard]] OptionalColumn optional(const std::string& name, Names names = {}) const {
+    return name.empty() ? by_role(names) : std::optional(declared_column(table_, name, place_));
   }
 
   [[nodiscard]] std::size_t required(const std::string& name, Names names, std::string_view what,
@@ -86,12 +40,12 @@ class Finder {
       return *found;
     }
     throw Error(ErrorKind::input, place_,
-                fmt::format("no column for {} is found; the columns are: {}", what, listing(headings_)),
+                fmt::format("no column for {} is found; the columns are: {}", what, column_listing(table_)),
                 fmt::format("name it with {}", option));
   }
 
  private:
-  const std::vector<ColumnHeading>& headings_;
+  const DelimitedTable& table_;
   const std::string& place_;
 };
 
@@ -104,24 +58,71 @@ constexpr std::array kEye{"eye"sv, "recordedeye"sv};
 constexpr std::array kDirectionX{"dx"sv, "dirx"sv, "directionx"sv, "gazedirectionx"sv, "gazedirx"sv};
 constexpr std::array kDirectionY{"dy"sv, "diry"sv, "directiony"sv, "gazedirectiony"sv, "gazediry"sv};
 constexpr std::array kDirectionZ{"dz"sv, "dirz"sv, "directionz"sv, "gazedirectionz"sv, "gazedirz"sv};
+constexpr std::array kOriginX{"ox"sv};
+constexpr std::array kOriginY{"oy"sv};
+constexpr std::array kOriginZ{"oz"sv};
 constexpr std::array kScreenX{"u"sv,        "x"sv,    "gazex"sv, "xcoordinate"sv, "gazepointx"sv,
                               "gazeposx"sv, "porx"sv, "posx"sv,  "xpos"sv};
 constexpr std::array kScreenY{"v"sv,        "y"sv,    "gazey"sv, "ycoordinate"sv, "gazepointy"sv,
                               "gazeposy"sv, "pory"sv, "posy"sv,  "ypos"sv};
 
+bool is_declared(const EyeColumns& eye) {
+  return !eye.x.empty() || !eye.y.empty();
+}
+
+GazeSource eye_source(const Finder& find, const EyeColumns& declared, Eye eye) {
+  GazeSource source;
+  source.eye = eye;
+  const std::string side(to_string(eye));
+  source.x = find.required(declared.x, {}, side + " x", side + ".x of the column map");
+  source.y = find.required(declared.y, {}, side + " y", side + ".y of the column map");
+  source.z = find.optional(declared.z);
+  source.validity = find.optional(declared.validity);
+  source.confidence = find.optional(declared.confidence);
+  source.pupil = find.optional(declared.pupil);
+  source.openness = find.optional(declared.openness);
+  source.origin = {find.optional(declared.origin_x), find.optional(declared.origin_y),
+                   find.optional(declared.origin_z)};
+  return source;
+}
+
 void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
+  const bool by_eye = is_declared(declared.left) || is_declared(declared.right);
+  if (by_eye) {
+    for (const auto& [columns, eye] : {std::pair(&declared.left, Eye::left), std::pair(&declared.right, Eye::right)}) {
+      if (is_declared(*columns)) {
+        plan.sources.push_back(eye_source(find, *columns, eye));
+        plan.kind = plan.sources.back().z ? GazeKind::direction : GazeKind::screen;
+      }
+    }
+  }
+  if (by_eye && declared.x.empty()) {
+    return;
+  }
+  GazeSource source;
   const bool directions_named = find.by_role(kDirectionX) && find.by_role(kDirectionY) && find.by_role(kDirectionZ);
   const bool is_direction = !declared.z.empty() || declared.position_unit == PositionUnit::unit_vector ||
                             (directions_named && declared.x.empty() && declared.y.empty());
   if (is_direction) {
     plan.kind = GazeKind::direction;
-    plan.x = find.required(declared.x, kDirectionX, "direction x", "--gaze-x-column");
-    plan.y = find.required(declared.y, kDirectionY, "direction y", "--gaze-y-column");
-    plan.z = find.required(declared.z, kDirectionZ, "direction z", "--gaze-z-column");
-    return;
+    source.x = find.required(declared.x, kDirectionX, "direction x", "--gaze-x-column");
+    source.y = find.required(declared.y, kDirectionY, "direction y", "--gaze-y-column");
+    source.z = find.required(declared.z, kDirectionZ, "direction z", "--gaze-z-column");
+  } else {
+    source.x = find.required(declared.x, kScreenX, "the horizontal position", "--gaze-x-column");
+    source.y = find.required(declared.y, kScreenY, "the vertical position", "--gaze-y-column");
   }
-  plan.x = find.required(declared.x, kScreenX, "the horizontal position", "--gaze-x-column");
-  plan.y = find.required(declared.y, kScreenY, "the vertical position", "--gaze-y-column");
+  source.validity = find.optional(declared.validity, kValidity);
+  source.confidence = find.optional(declared.confidence, kConfidence);
+  source.pupil = find.optional(declared.pupil, kPupil);
+  source.origin = {find.by_role(kOriginX), find.by_role(kOriginY), find.by_role(kOriginZ)};
+  plan.sources.insert(plan.sources.begin(), source);
+}
+
+void plan_head(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
+  plan.head_position = {find.optional(declared.head_x), find.optional(declared.head_y), find.optional(declared.head_z)};
+  plan.head_rotation = {find.optional(declared.head_rotation_x), find.optional(declared.head_rotation_y),
+                        find.optional(declared.head_rotation_z), find.optional(declared.head_rotation_w)};
 }
 
 void plan_time_unit(ColumnPlan& plan, const ColumnHeading& heading, const GazeColumns& declared,
@@ -157,9 +158,11 @@ PositionUnit unit_of(const ColumnHeading& heading, const GazeColumns& declared, 
   return unit.value_or(PositionUnit::automatic);
 }
 
-void plan_position_unit(ColumnPlan& plan, const std::vector<ColumnHeading>& headings, const GazeColumns& declared,
+void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const GazeColumns& declared,
                         const std::string& place) {
   const PositionUnit flag = declared.position_unit;
+  const ColumnHeading& x_heading = table.headings[plan.sources.front().x];
+  const ColumnHeading& y_heading = table.headings[plan.sources.front().y];
   if (plan.kind == GazeKind::direction) {
     if (flag != PositionUnit::automatic && flag != PositionUnit::unit_vector) {
       throw Error(ErrorKind::usage, place, fmt::format("directions of three columns cannot be in {}", to_string(flag)),
@@ -168,57 +171,55 @@ void plan_position_unit(ColumnPlan& plan, const std::vector<ColumnHeading>& head
     plan.unit = PositionUnit::unit_vector;
     return;
   }
-  const PositionUnit x = unit_of(headings[plan.x], declared, place);
-  const PositionUnit y = unit_of(headings[plan.y], declared, place);
+  const PositionUnit x = unit_of(x_heading, declared, place);
+  const PositionUnit y = unit_of(y_heading, declared, place);
   if (x != y && flag == PositionUnit::automatic) {
-    throw Error(
-        ErrorKind::input, place,
-        fmt::format("columns '{}' and '{}' are in different units", headings[plan.x].text, headings[plan.y].text),
-        "name two columns of one unit, or give --gaze-unit");
+    throw Error(ErrorKind::input, place,
+                fmt::format("columns '{}' and '{}' are in different units", x_heading.text, y_heading.text),
+                "name two columns of one unit, or give --gaze-unit");
   }
   if (flag != PositionUnit::automatic && x != PositionUnit::automatic && x != flag) {
     plan.warnings.push_back(fmt::format("{}: the header says that '{}' is in {}; --gaze-unit {} was given and is used",
-                                        place, headings[plan.x].text, to_string(x), to_string(flag)));
+                                        place, x_heading.text, to_string(x), to_string(flag)));
   }
   plan.unit = flag != PositionUnit::automatic ? flag : x;
+  plan.unit_evidence = flag != PositionUnit::automatic ? Evidence::option : Evidence::header;
 }
 
 }  // namespace
 
-ColumnHeading parse_heading(std::string_view cell) {
-  std::string buffer;
-  const std::string_view text = cell_text(cell, buffer);
-  ColumnHeading heading{std::string(text), std::string(text), ""};
-  for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')')}) {
-    const std::size_t at = text.rfind(open);
-    if (at != std::string_view::npos && at > 0 && text.back() == close) {
-      heading.name = trim(text.substr(0, at));
-      heading.unit = trim(text.substr(at + 1, text.size() - at - 2));
-      return heading;
+std::size_t ColumnPlan::needed_cells() const {
+  std::size_t needed = time + 1;
+  const auto reach = [&](const OptionalColumn& column) { needed = std::max(needed, column ? *column + 1 : 0); };
+  for (const GazeSource& source : sources) {
+    for (const OptionalColumn& column :
+         {OptionalColumn(source.x), OptionalColumn(source.y), source.z, source.validity, source.confidence,
+          source.pupil, source.openness, source.origin[0], source.origin[1], source.origin[2]}) {
+      reach(column);
     }
   }
-  // "x_px", "time_ms": only where the last part is a unit and no column of its own.
-  const std::size_t bar = text.rfind('_');
-  if (bar != std::string_view::npos && bar > 0 && is_known_unit(text.substr(bar + 1)) && text.substr(bar + 1) != "1") {
-    heading.name = text.substr(0, bar);
-    heading.unit = text.substr(bar + 1);
+  for (const OptionalColumn& column : {eye, frame, head_position[0], head_position[1], head_position[2],
+                                       head_rotation[0], head_rotation[1], head_rotation[2], head_rotation[3]}) {
+    reach(column);
   }
-  return heading;
+  return needed;
 }
 
-ColumnPlan plan_columns(const std::vector<ColumnHeading>& headings, const GazeColumns& declared,
-                        const std::string& place) {
-  const Finder find(headings, place);
+ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared, const std::string& place) {
+  const Finder find(table, place);
   ColumnPlan plan;
   plan.time = find.required(declared.time, kTime, "time", "--gaze-time-column");
   plan_positions(plan, find, declared);
-  plan.validity = find.optional(declared.validity, kValidity);
-  plan.confidence = find.optional(declared.confidence, kConfidence);
-  plan.pupil = find.optional(declared.pupil, kPupil);
+  plan_head(plan, find, declared);
   plan.eye = find.optional(declared.eye, kEye);
-  plan_time_unit(plan, headings[plan.time], declared, place);
-  plan_position_unit(plan, headings, declared, place);
-  plan.origin = declared.origin;
+  plan.frame = find.optional(declared.frame);
+  plan_time_unit(plan, table.headings[plan.time], declared, place);
+  plan_position_unit(plan, table, declared, place);
+  for (const GazeSource& source : plan.sources) {
+    if (source.pupil && plan.pupil_unit.empty()) {
+      plan.pupil_unit = table.headings[*source.pupil].unit;
+    }
+  }
   return plan;
 }
 

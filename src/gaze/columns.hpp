@@ -1,36 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which column of a table holds what, from its header text and from what the user declares.
+// Which column of a table holds what, from its header text and from what the user or a preset declares.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "gazetrace/gaze.hpp"
+#include "gaze/table.hpp"
 
 namespace gazetrace {
 
-// "gaze x [px]", "time (ms)", "x_px": name and unit; the text of the cell is kept for messages.
-struct ColumnHeading {
-  std::string text, name, unit;
+using OptionalColumn = std::optional<std::size_t>;
+
+// The columns of one gaze: of an eye, or of both together.
+struct GazeSource {
+  Eye eye = Eye::cyclopean;  // unless the table has a column of it
+  std::size_t x = 0, y = 0;
+  OptionalColumn z, validity, confidence, pupil, openness;
+  std::array<OptionalColumn, 3> origin;
 };
-ColumnHeading parse_heading(std::string_view cell);
 
 struct ColumnPlan {
-  std::size_t time = 0, x = 0, y = 0;
-  std::optional<std::size_t> z, validity, confidence, pupil, eye;
+  std::size_t time = 0;
+  std::vector<GazeSource> sources;  // at least one
+  OptionalColumn eye, frame;
+  std::array<OptionalColumn, 3> head_position;
+  std::array<OptionalColumn, 4> head_rotation;  // without the last: Euler angles
   GazeKind kind = GazeKind::screen;
   std::optional<int> time_exponent;  // empty: by statistics
   PositionUnit unit = PositionUnit::automatic;
-  PositionOrigin origin = PositionOrigin::automatic;
+  Evidence unit_evidence = Evidence::header;
+  std::string pupil_unit;
   Warnings warnings;
+
+  [[nodiscard]] std::size_t needed_cells() const;
 };
 
 // `place` is file:line of the header. Error(input) for columns that are not there and units that are unknown.
-ColumnPlan plan_columns(const std::vector<ColumnHeading>& headings, const GazeColumns& declared,
-                        const std::string& place);
+ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared, const std::string& place);
 
 }  // namespace gazetrace

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "gaze/eyes.hpp"
 
 namespace gazetrace {
 namespace {
@@ -71,84 +74,41 @@ void drop_duplicates(GazeLog& log, UnorderedPolicy unordered) {
   }
 }
 
-GazeSample mean_of(const GazeSample& a, const GazeSample& b, GazeKind kind) {
-  GazeSample mean = a;
-  mean.eye = Eye::cyclopean;
-  mean.u = 0.5 * (a.u + b.u);
-  mean.v = 0.5 * (a.v + b.v);
-  if (kind == GazeKind::direction) {
-    const Vec3d sum = a.direction + b.direction;
-    mean.direction = length(sum) > 0 ? normalize(sum) : a.direction;
-  } else if (a.validity != b.validity) {
-    // One eye beside the display and one on it: the mean decides.
-    const bool on_display = mean.u >= 0 && mean.u <= 1 && mean.v >= 0 && mean.v <= 1;
-    mean.validity = on_display ? GazeValidity::ok : GazeValidity::off_screen;
+// Origins come in the order of the file, perhaps each eye's in a row of its own; samples have one each when this is
+// done.
+void align_origins(GazeLog& log) {
+  if (log.origins.empty()) {
+    return;
   }
-  const auto mean_or_known = [](float x, float y) { return std::isnan(x) ? y : std::isnan(y) ? x : 0.5F * (x + y); };
-  mean.confidence = mean_or_known(a.confidence, b.confidence);
-  mean.pupil = mean_or_known(a.pupil, b.pupil);
-  return mean;
-}
-
-// The cyclopean sample of the rows of one time: the log's own where usable, else the mean of the usable eyes.
-GazeSample merge_group(const GazeSample* begin, const GazeSample* end, GazeKind kind) {
-  const GazeSample* left = nullptr;
-  const GazeSample* right = nullptr;
-  for (const GazeSample* sample = begin; sample != end; ++sample) {
-    if (!is_usable(sample->validity)) {
-      continue;
-    }
-    if (sample->eye == Eye::cyclopean) {
-      return *sample;
-    }
-    (sample->eye == Eye::left ? left : right) = sample;
-  }
-  if (left != nullptr && right != nullptr) {
-    return mean_of(*left, *right, kind);
-  }
-  GazeSample merged = left != nullptr ? *left : right != nullptr ? *right : *begin;
-  merged.eye = Eye::cyclopean;
-  return merged;
-}
-
-void merge_eyes(GazeLog& log) {
-  std::array<std::size_t, 3> rows{};
+  constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+  std::vector<EyeOrigins> by_time = std::move(log.origins);
+  std::stable_sort(by_time.begin(), by_time.end(),
+                   [](const EyeOrigins& a, const EyeOrigins& b) { return a.t_ns < b.t_ns; });
+  log.origins.clear();
+  log.origins.reserve(log.samples.size());
+  auto at = by_time.begin();
   for (const GazeSample& sample : log.samples) {
-    ++rows[static_cast<std::size_t>(sample.eye)];
-  }
-  if (std::count(rows.begin(), rows.end(), std::size_t{0}) >= 2) {
-    return;  // one eye, or one that stands for both
-  }
-  const auto usable_eyes = [](const GazeSample* begin, const GazeSample* end) {
-    return std::count_if(begin, end, [](const GazeSample& s) { return is_usable(s.validity); });
-  };
-  std::vector<GazeSample>& samples = log.samples;
-  std::size_t kept = 0;
-  std::size_t one_eyed = 0;
-  for (std::size_t begin = 0; begin < samples.size();) {
-    std::size_t end = begin + 1;
-    while (end < samples.size() && samples[end].t_ns == samples[begin].t_ns) {
-      ++end;
+    EyeOrigins joined{{kNanF, kNanF, kNanF}, {kNanF, kNanF, kNanF}, sample.t_ns};
+    for (; at != by_time.end() && at->t_ns <= sample.t_ns; ++at) {
+      if (at->t_ns == sample.t_ns) {
+        joined.left_mm = std::isnan(at->left_mm.x) ? joined.left_mm : at->left_mm;
+        joined.right_mm = std::isnan(at->right_mm.x) ? joined.right_mm : at->right_mm;
+      }
     }
-    one_eyed += usable_eyes(&samples[begin], samples.data() + end) == 1 ? 1 : 0;
-    samples[kept++] = merge_group(&samples[begin], samples.data() + end, log.kind);
-    begin = end;
+    log.origins.push_back(joined);
   }
-  samples.resize(kept);
-  log.warnings.push_back(
-      fmt::format("{}: rows of several eyes merged to their mean: {} times, {} of them with one usable eye only",
-                  log.source, kept, one_eyed));
 }
 
 }  // namespace
 
-void finish_log(GazeLog& log, UnorderedPolicy unordered) {
+void finish_log(GazeLog& log, const GazeReadOptions& options) {
   if (log.samples.empty()) {
     throw Error(ErrorKind::input, log.source, "holds no sample", "a gaze log needs at least one row below its header");
   }
-  order_samples(log, unordered);
-  drop_duplicates(log, unordered);
-  merge_eyes(log);
+  order_samples(log, options.unordered);
+  drop_duplicates(log, options.unordered);
+  choose_eyes(log, options);
+  align_origins(log);
   const auto usable = [](const GazeSample& sample) { return is_usable(sample.validity); };
   if (std::none_of(log.samples.begin(), log.samples.end(), usable)) {
     log.warnings.push_back(fmt::format("{}: none of its {} samples is usable", log.source, log.samples.size()));

@@ -5,8 +5,8 @@
 
 namespace gazetrace {
 
-// What holds for a log of any format: at least one sample, ordered times, no two rows of one eye at one time, and both
-// eyes of one time merged to their mean.
-void finish_log(GazeLog& log, UnorderedPolicy unordered);
+// What holds for a log of any format: at least one sample, ordered times, no two rows of one eye at one time, and one
+// gaze of both eyes a time.
+void finish_log(GazeLog& log, const GazeReadOptions& options);
 
 }  // namespace gazetrace

@@ -10,15 +10,22 @@ namespace gazetrace {
 
 struct GazeFile {
   std::string path;  // for sidecars and messages
-  std::string text;  // UTF-8, without a byte-order mark
+  std::string text;  // unpacked; UTF-8 without a byte-order mark, or the bytes of a binary format
 };
 
 struct GazeFormat {
   std::string name;
+  FormatProof proof;
   std::string description;
   double (*sniff)(const GazeFile& file);  // how sure, 0..1
-  // Samples in the order of the file; `finish_log` checks and orders them.
+  // Rows in the order of the file, one for each eye and each combined gaze of the log; `finish_log` checks, orders and
+  // merges them. `origins` go by row, `samples` need not be aligned with them.
   GazeLog (*read)(const GazeFile& file, const GazeReadOptions& options);
 };
+
+// The part of a file that sniffing looks at.
+inline std::string_view head_of(const GazeFile& file, std::size_t bytes = 65536) {
+  return std::string_view(file.text).substr(0, bytes);
+}
 
 }  // namespace gazetrace

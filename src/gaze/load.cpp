@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <filesystem>
+#include <utility>
 
 #include "core/text.hpp"
 #include "gaze/finish.hpp"
 #include "gaze/gaze_format.hpp"
+#include "gaze/gzip.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -18,14 +21,15 @@ namespace {
 
 const std::vector<GazeFormat>& formats() {
   static const std::vector<GazeFormat> all{
-#define GAZE_FORMAT(name, text, description) {text, description, sniff_gaze_##name, read_gaze_##name},
+#define GAZE_FORMAT(name, text, proof, description) \
+  {text, FormatProof::proof, description, sniff_gaze_##name, read_gaze_##name},
 #include "gaze/formats/formats.def"
 #undef GAZE_FORMAT
   };
   return all;
 }
 
-const GazeFormat& choose_format(const GazeFile& file, const std::string& name) {
+const GazeFormat& format_by_name(const std::string& name) {
   std::vector<std::string> names;
   for (const GazeFormat& format : formats()) {
     if (format.name == name) {
@@ -33,27 +37,51 @@ const GazeFormat& choose_format(const GazeFile& file, const std::string& name) {
     }
     names.push_back(format.name);
   }
-  if (!name.empty()) {
-    throw Error(ErrorKind::usage, "", unknown_name_message("gaze format", name, names));
-  }
-  if (file.text.starts_with("\x1F\x8B")) {
-    throw Error(ErrorKind::input, file.path, "is compressed with gzip, which is not read here",
-                "unpack it first: gunzip");
-  }
-  const GazeFormat* best = nullptr;
-  double sure = 0;
+  throw Error(ErrorKind::usage, "", unknown_name_message("gaze format", name, names));
+}
+
+struct Guess {
+  const GazeFormat* format;
+  double confidence;
+};
+
+// The surest first; of equals the one listed first.
+std::vector<Guess> sniff(const GazeFile& file) {
+  std::vector<Guess> guesses;
   for (const GazeFormat& format : formats()) {
-    const double confidence = format.sniff(file);
-    if (confidence > sure) {
-      best = &format;
-      sure = confidence;
+    if (const double confidence = format.sniff(file); confidence > 0) {
+      guesses.push_back({&format, confidence});
     }
   }
-  if (best == nullptr) {
-    throw Error(ErrorKind::input, file.path, "is not a gaze log of a known format",
-                "give a CSV or TSV with a header, or name the format with --gaze-format");
+  std::stable_sort(guesses.begin(), guesses.end(),
+                   [](const Guess& a, const Guess& b) { return a.confidence > b.confidence; });
+  return guesses;
+}
+
+// A folder stands for the recording in it.
+std::string file_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  if (!fs::is_directory(path, code)) {
+    return path;
   }
-  return *best;
+  for (const char* const name : {"gazedata.gz", "livedata.json.gz", "gaze ps1.raw", "gaze_positions.csv", "gaze.csv"}) {
+    if (fs::exists(fs::path(path) / name, code)) {
+      return (fs::path(path) / name).string();
+    }
+  }
+  throw Error(ErrorKind::input, path, "is a folder without a recording of a known name", "name the log itself");
+}
+
+GazeFile open_file(const std::string& path) {
+  GazeFile file{file_of(path), {}};
+  std::string bytes = read_file_bytes(file.path);
+  if (is_gzip(bytes)) {
+    bytes = unpack_gzip(bytes, path);
+  }
+  // Records of numbers may begin like a byte-order mark.
+  file.text = file.path.ends_with(".raw") ? std::move(bytes) : utf8_text(std::move(bytes));
+  return file;
 }
 
 }  // namespace
@@ -88,24 +116,90 @@ std::string_view to_string(Eye eye) {
   return "cyclopean";
 }
 
+std::string_view to_string(GazeKind kind) {
+  switch (kind) {
+    case GazeKind::screen:
+      return "screen";
+    case GazeKind::direction:
+      return "direction";
+    case GazeKind::scene_camera:
+      return "scene-camera";
+  }
+  return "screen";
+}
+
+std::string_view to_string(Evidence evidence) {
+  switch (evidence) {
+    case Evidence::option:
+      return "option";
+    case Evidence::sidecar:
+      return "sidecar";
+    case Evidence::header:
+      return "header";
+    case Evidence::format:
+      return "format";
+    case Evidence::statistics:
+      return "statistics";
+  }
+  return "statistics";
+}
+
+std::string_view to_string(GazeEventType type) {
+  switch (type) {
+    case GazeEventType::fixation:
+      return "fixation";
+    case GazeEventType::saccade:
+      return "saccade";
+    case GazeEventType::blink:
+      return "blink";
+    case GazeEventType::message:
+      return "message";
+    case GazeEventType::segment:
+      return "segment";
+  }
+  return "message";
+}
+
 std::vector<GazeFormatInfo> gaze_formats() {
   std::vector<GazeFormatInfo> infos;
   for (const GazeFormat& format : formats()) {
-    infos.push_back({format.name, format.description});
+    infos.push_back({format.name, format.description, format.proof});
   }
   return infos;
 }
 
-GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
-  const GazeFile file{path, read_text_file(path)};
-  if (trim(file.text).empty()) {
-    throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
+std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
+  std::vector<GazeFormatGuess> guesses;
+  for (const Guess& guess : sniff(open_file(path))) {
+    guesses.push_back({guess.format->name, guess.confidence});
   }
-  const GazeFormat& format = choose_format(file, options.format);
-  GazeLog log = format.read(file, options);
+  return guesses;
+}
+
+GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
+  const GazeFormat* format = options.format.empty() ? nullptr : &format_by_name(options.format);
+  GazeLog log;
+  double confidence = 1;
+  {
+    const GazeFile file = open_file(path);
+    if (file.text.empty() || trim(head_of(file)).empty()) {
+      throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
+    }
+    if (format == nullptr) {
+      const std::vector<Guess> guesses = sniff(file);
+      if (guesses.empty()) {
+        throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
+                    "give a CSV or TSV with a header, or name the format with --gaze-format");
+      }
+      format = guesses.front().format;
+      confidence = guesses.front().confidence;
+    }
+    log = format->read(file, options);
+  }  // the text is given back before eyes are joined
   log.source = path;
-  log.format = format.name;
-  finish_log(log, options.unordered);
+  log.format = format->name;
+  log.format_confidence = confidence;
+  finish_log(log, options);
   return log;
 }
 

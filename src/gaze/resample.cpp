@@ -277,6 +277,24 @@ std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::in
   return static_cast<std::int64_t>(t);
 }
 
+std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_log_ns) {
+  if (!(mapping.scale > 0) || !std::isfinite(mapping.scale)) {
+    return log_time_ns(log, mapping, 0);  // says so
+  }
+  const std::int64_t event = mapping.event_ns.value_or(log.samples.empty() ? 0 : log.samples.front().t_ns);
+  const Int128 since = Int128{t_log_ns} - event;
+  // x87's 64 bits of mantissa hold every int64 exactly; the product is within half a nanosecond over 290 years.
+  const Int128 scaled =
+      mapping.scale == 1.0
+          ? since
+          : static_cast<Int128>(std::round(static_cast<long double>(since) * static_cast<long double>(mapping.scale)));
+  const Int128 t = scaled + mapping.offset_ns;
+  if (t > std::numeric_limits<std::int64_t>::max() || t < std::numeric_limits<std::int64_t>::min()) {
+    beyond_int64();
+  }
+  return static_cast<std::int64_t>(t);
+}
+
 GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns) {
   return Resampler(log, mapping, log_time_ns(log, mapping, t_video_ns)).run();
 }

@@ -26,6 +26,7 @@ std::string geometry_line(std::string_view key, std::initializer_list<double> va
 
 std::string preamble(const GazeLog& log) {
   std::string text = "# gazetrace-gaze 1\n";
+  text += log.kind == GazeKind::scene_camera ? "# kind scene-camera\n" : "";
   if (log.recording_geometry) {
     const DisplayGeometry& g = *log.recording_geometry;
     if (g.width_px > 0 && g.height_px > 0) {
@@ -56,39 +57,102 @@ void append_number(std::string& text, Number value) {
   }
 }
 
-}  // namespace
-
-void write_gaze_csv(const GazeLog& log, const std::string& path) {
-  bool has_confidence = false;
-  bool has_pupil = false;
-  for (const GazeSample& sample : log.samples) {
-    has_confidence = has_confidence || !std::isnan(sample.confidence);
-    has_pupil = has_pupil || !std::isnan(sample.pupil);
+// The eyes of a sample as rows of their own, between which reading joins again.
+GazeSample eye_row(const GazeSample& sample, const EyeGaze& gaze, Eye eye, GazeKind kind) {
+  GazeSample row = sample;
+  row.eye = eye;
+  row.validity = gaze.validity;
+  row.confidence = gaze.confidence;
+  row.pupil = gaze.pupil;
+  if (kind == GazeKind::direction) {
+    row.direction = gaze.at;
+  } else {
+    row.u = gaze.at.x;
+    row.v = gaze.at.y;
   }
-  const bool is_screen = log.kind == GazeKind::screen;
-  std::string text = preamble(log);
-  text += is_screen ? "t[ns],u[1],v[1],valid,eye" : "t[ns],dx,dy,dz,valid,eye";
-  text += has_confidence ? ",confidence" : "";
-  text += has_pupil ? ",pupil" : "";
-  text += '\n';
-  for (const GazeSample& sample : log.samples) {
+  return row;
+}
+
+class RowWriter {
+ public:
+  explicit RowWriter(const GazeLog& log) : log_(log) {
+    const auto look = [&](float confidence, float pupil) {
+      has_confidence_ = has_confidence_ || !std::isnan(confidence);
+      has_pupil_ = has_pupil_ || !std::isnan(pupil);
+    };
+    for (const GazeSample& sample : log.samples) {
+      look(sample.confidence, sample.pupil);
+    }
+    for (const BothEyes& eyes : log.eyes) {
+      look(eyes.left.confidence, eyes.left.pupil);
+      look(eyes.right.confidence, eyes.right.pupil);
+    }
+  }
+
+  [[nodiscard]] std::string header() const {
+    std::string text = log_.kind == GazeKind::direction ? "t[ns],dx,dy,dz,valid,eye" : "t[ns],u[1],v[1],valid,eye";
+    text += has_confidence_ ? ",confidence" : "";
+    text += has_pupil_ ? log_.pupil_unit.empty() ? ",pupil" : ",pupil[" + log_.pupil_unit + "]" : "";
+    text += log_.origins.empty() ? "" : ",ox[mm],oy[mm],oz[mm]";
+    return text + "\n";
+  }
+
+  void write(const GazeSample& sample, const Vec3f* origin, std::string& text) const {
     fmt::format_to(std::back_inserter(text), "{}", sample.t_ns);
-    if (is_screen) {
-      append_number(text, sample.u);
-      append_number(text, sample.v);
-    } else {
+    if (log_.kind == GazeKind::direction) {
       append_number(text, sample.direction.x);
       append_number(text, sample.direction.y);
       append_number(text, sample.direction.z);
+    } else {
+      append_number(text, sample.u);
+      append_number(text, sample.v);
     }
     fmt::format_to(std::back_inserter(text), ",{},{}", to_string(sample.validity), to_string(sample.eye));
-    if (has_confidence) {
+    if (has_confidence_) {
       append_number(text, sample.confidence);
     }
-    if (has_pupil) {
+    if (has_pupil_) {
       append_number(text, sample.pupil);
     }
+    if (!log_.origins.empty()) {
+      constexpr Vec3f kUnknown{NAN, NAN, NAN};
+      const Vec3f& at = origin == nullptr ? kUnknown : *origin;
+      append_number(text, at.x);
+      append_number(text, at.y);
+      append_number(text, at.z);
+    }
     text += '\n';
+  }
+
+ private:
+  const GazeLog& log_;
+  bool has_confidence_ = false;
+  bool has_pupil_ = false;
+};
+
+}  // namespace
+
+void write_gaze_csv(const GazeLog& log, const std::string& path) {
+  const RowWriter rows(log);
+  std::string text = preamble(log) + rows.header();
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    GazeSample sample = log.samples[i];
+    const EyeOrigins* const origins = log.origins.empty() ? nullptr : &log.origins[i];
+    if (log.eyes.empty()) {
+      rows.write(sample,
+                 origins == nullptr         ? nullptr
+                 : sample.eye == Eye::right ? &origins->right_mm
+                                            : &origins->left_mm,
+                 text);
+      continue;
+    }
+    // What was chosen stands for both from now on.
+    sample.eye = Eye::cyclopean;
+    rows.write(sample, nullptr, text);
+    rows.write(eye_row(sample, log.eyes[i].left, Eye::left, log.kind), origins == nullptr ? nullptr : &origins->left_mm,
+               text);
+    rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind),
+               origins == nullptr ? nullptr : &origins->right_mm, text);
   }
   // Under its name only when complete.
   const std::string part = path + ".part";

@@ -119,6 +119,11 @@ class GazeGeometry {
                   "gaze directions need a perspective camera: an orthographic one has no eye",
                   "use a perspective camera, or a log of gaze on a screen");
     }
+    if (log != nullptr && log->kind == GazeKind::scene_camera) {
+      throw Error(ErrorKind::input, log->source,
+                  "gaze on a scene camera's picture is no place on a display, and no direction either",
+                  "use a log mapped to a surface, or --gaze-frame head");
+    }
     const bool on_screen = log != nullptr && !directions;
     if (on_screen) {
       display_for_screen_log(*log, settings);

@@ -127,8 +127,9 @@ TEST(GazeErrors, Rows) {
       {"overflow.csv", header + "9223372036.854775808,.5,.5,1,left\n",
        "overflow.csv:3: time '9223372036.854775808' in s does not fit int64 nanoseconds; check the unit of the time "
        "column"},
-      {"ticks.csv", "time(100ns),u,v\n638342794000115346,.5,.5\n",
-       "ticks.csv:2: time '638342794000115346' in 100 ns does not fit int64 nanoseconds; check the unit of the time "
+      // Above .NET's count of 1970, ticks are counted from there; below it they are only too many.
+      {"ticks.csv", "time(100ns),u,v\n538342794000115346,.5,.5\n",
+       "ticks.csv:2: time '538342794000115346' in 100 ns does not fit int64 nanoseconds; check the unit of the time "
        "column"},
       {"text.csv", header + "1,.5,here,1,left\n",
        "text.csv:3: 'here' in column 'v' is not a number; write missing values as an empty cell or n/a"},
@@ -161,11 +162,12 @@ TEST(GazeErrors, FilesAndFormats) {
             "bytes.bin: is not a gaze log of a known format; give a CSV or TSV with a header, or name the format with "
             "--gaze-format");
   EXPECT_EQ(files.without_folder(message_of(files.write("log.tsv.gz", "\x1F\x8B\x08"), options, ErrorKind::input)),
-            "log.tsv.gz: is compressed with gzip, which is not read here; unpack it first: gunzip");
+            "log.tsv.gz: gzip data are cut off; copy the file again; gzip -t tests it");
   const std::string log = files.write("log.csv", "t[ns],u[1],v[1]\n1,.5,.5\n");
   options.format = "gazetrace_csv";
-  EXPECT_EQ(message_of(log, options, ErrorKind::usage),
-            "unknown gaze format 'gazetrace_csv'; did you mean 'gazetrace-csv'? Known: gazetrace-csv, generic");
+  EXPECT_TRUE(
+      message_of(log, options, ErrorKind::usage)
+          .starts_with("unknown gaze format 'gazetrace_csv'; did you mean 'gazetrace-csv'? Known: gazetrace-csv, "));
   options.format = "generic";
   EXPECT_EQ(load_gaze_log(log, options).format, "generic");
   options.columns.position_unit = PositionUnit::deg;

@@ -23,6 +23,7 @@ struct GazeArguments {
   ScreenSettings screen;
   OptionTable table;
   std::string convert;
+  std::string save_columns;
   bool overwrite = false;
   bool json = false;
 };
@@ -66,8 +67,8 @@ GazeReport measure(const GazeLog& log) {
       report.longest_gap_ns = std::max(report.longest_gap_ns, sample.t_ns - usable_before->t_ns);
     }
     usable_before = &sample;
-    report.u.add(log.kind == GazeKind::screen ? sample.u : sample.direction.x);
-    report.v.add(log.kind == GazeKind::screen ? sample.v : sample.direction.y);
+    report.u.add(log.kind != GazeKind::direction ? sample.u : sample.direction.x);
+    report.v.add(log.kind != GazeKind::direction ? sample.v : sample.direction.y);
   }
   if (!steps_ns.empty()) {
     const auto middle = steps_ns.begin() + static_cast<std::ptrdiff_t>(steps_ns.size() / 2);
@@ -82,14 +83,18 @@ const std::array<GazeValidity, 6> kValidities = {GazeValidity::ok,         GazeV
                                                  GazeValidity::off_screen, GazeValidity::interpolated};
 
 std::string geometry_text(const DisplayGeometry& g) {
-  return fmt::format("{} x {} px, {} x {} cm, at {} cm", g.width_px, g.height_px, g.width_cm, g.height_cm,
-                     g.distance_cm);
+  const auto size = g.width_cm > 0 ? fmt::format("{:.5g} x {:.5g} cm", g.width_cm, g.height_cm) : "size not stated";
+  const auto distance = g.distance_cm > 0 ? fmt::format("at {:.5g} cm", g.distance_cm) : "distance not stated";
+  return fmt::format("{} x {} px, {}, {}", g.width_px, g.height_px, size, distance);
 }
 
 std::string report_text(const GazeLog& log, const GazeReport& r) {
-  const bool is_screen = log.kind == GazeKind::screen;
-  std::string text = fmt::format("{}\nformat       {}, {}\n", log.source, log.format,
-                                 is_screen ? "on a screen" : "directions from the head");
+  const bool is_screen = log.kind != GazeKind::direction;
+  std::string text =
+      fmt::format("{}\nformat       {} ({:.0f} % sure), {}\n", log.source, log.format, 100 * log.format_confidence,
+                  log.kind == GazeKind::direction ? "directions from the head"
+                  : log.kind == GazeKind::screen  ? "on a screen"
+                                                  : "on a scene camera's picture");
   text += fmt::format("samples      {} in {:.3f} s, median rate {:.2f} Hz\n", r.samples,
                       static_cast<double>(r.last_ns - r.first_ns) * 1e-9, r.median_rate_hz);
   text += fmt::format("time         {} ns to {} ns{}\n", r.first_ns, r.last_ns,
@@ -108,6 +113,20 @@ std::string report_text(const GazeLog& log, const GazeReport& r) {
   }
   text += fmt::format("geometry     {}\n",
                       log.recording_geometry ? geometry_text(*log.recording_geometry) : "not stated by the log");
+  for (const GazeFact& fact : log.facts) {
+    text += fmt::format("{:<17}{} ({}{}{})\n", fact.what, fact.value, to_string(fact.evidence),
+                        fact.detail.empty() ? "" : ": ", fact.detail);
+  }
+  if (!log.eyes.empty()) {
+    text += "eyes         both\n";
+  }
+  if (!log.head.empty()) {
+    text += fmt::format("head         {} poses\n", log.head.size());
+  }
+  for (const GazeCalibration& calibration : log.calibrations) {
+    text += fmt::format("validation   {} eye: {} deg mean, {} deg at most\n", to_string(calibration.eye),
+                        calibration.mean_error_deg, calibration.max_error_deg);
+  }
   for (const std::string& warning : log.warnings) {
     text += fmt::format("warning      {}\n", warning);
   }
@@ -118,7 +137,8 @@ std::string report_json(const GazeLog& log, const GazeReport& r) {
   using Json = nlohmann::ordered_json;
   Json json{{"source", log.source},
             {"format", log.format},
-            {"kind", log.kind == GazeKind::screen ? "screen" : "direction"},
+            {"format_confidence", log.format_confidence},
+            {"kind", to_string(log.kind)},
             {"clock", log.clock},
             {"samples", r.samples},
             {"usable", r.usable},
@@ -138,6 +158,13 @@ std::string report_json(const GazeLog& log, const GazeReport& r) {
     json["geometry"] = {
         {"px", {g.width_px, g.height_px}}, {"cm", {g.width_cm, g.height_cm}}, {"distance_cm", g.distance_cm}};
   }
+  for (const GazeFact& fact : log.facts) {
+    json["facts"].push_back(
+        {{"what", fact.what}, {"value", fact.value}, {"evidence", to_string(fact.evidence)}, {"detail", fact.detail}});
+  }
+  json["both_eyes"] = !log.eyes.empty();
+  json["head_poses"] = log.head.size();
+  json["events"] = log.events.size();
   json["warnings"] = log.warnings;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -149,6 +176,9 @@ int run_gaze(const GazeArguments& arguments) {
   if (const auto folder = std::filesystem::path(arguments.convert).parent_path();
       !folder.empty() && !std::filesystem::is_directory(folder)) {
     throw Error(ErrorKind::input, arguments.convert, "there is no folder " + folder.string(), "make it first");
+  }
+  if (!arguments.save_columns.empty()) {
+    save_gaze_columns(merged_columns(arguments.gaze), arguments.save_columns);
   }
   const GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   const GazeReport report = measure(log);
@@ -168,6 +198,8 @@ Command add_gaze_command(CLI::App& app, const Invocation& /*invocation*/) {
   bind_options(app, arguments->table);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("--convert", arguments->convert, "Writes the log as gazetrace CSV")->type_name("OUT.csv");
+  app.add_option("--save-columns", arguments->save_columns, "Writes what was declared of the columns as a column map")
+      ->type_name("MAP.json");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces OUT.csv when it is there");
   app.add_flag("--json", arguments->json, "As JSON");
   return {[arguments] { return run_gaze(*arguments); }, nullptr};

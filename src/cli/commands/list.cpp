@@ -54,7 +54,16 @@ std::vector<Family> families() {
   return {
       {"falloffs", "--falloff", [](const auto&) { return members_of(falloffs()); }},
       {"filters", "--filter", [](const auto&) { return members_of(reconstruction_filters()); }},
-      {"gaze-formats", "--gaze-format", [](const auto&) { return members_of(gaze_formats()); }},
+      {"gaze-formats", "--gaze-format",
+       [](const auto&) {
+         std::vector<Member> members;
+         for (const GazeFormatInfo& format : gaze_formats()) {
+           const bool real = format.proof == FormatProof::recording;
+           members.push_back({format.name, format.description + (real ? " (tried on a real recording)"
+                                                                      : " (unconfirmed: synthetic files only)")});
+         }
+         return members;
+       }},
       {"camera-formats", "--camera-format", [](const auto&) { return members_of(camera_formats()); }},
       {"material-extensions", "scene files", [](const auto&) { return members_of(material_extensions()); }},
       {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},

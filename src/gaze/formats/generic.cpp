@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any CSV or TSV with a column of time and two or three of position; what the header does not say, the user declares.
 #include "core/text.hpp"
-#include "gaze/delimited.hpp"
+#include "gaze/mapped_table.hpp"
 
 namespace gazetrace {
 
 double sniff_gaze_generic(const GazeFile& file) {
-  if (file.text.find('\0') != std::string::npos) {
+  if (head_of(file).find('\0') != std::string_view::npos) {
     return 0.0;  // binary
   }
   LineReader lines(file.text);
@@ -21,7 +21,7 @@ double sniff_gaze_generic(const GazeFile& file) {
 }
 
 GazeLog read_gaze_generic(const GazeFile& file, const GazeReadOptions& options) {
-  return read_table(file, open_table(file), options, ValidityStyle::any);
+  return read_mapped_table(file, open_table(file), options, options.columns, ValidityStyle::any);
 }
 
 }  // namespace gazetrace

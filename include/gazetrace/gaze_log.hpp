@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a gaze log is once it is read: samples, what is known of each eye and of the head, and from what it was
+// concluded.
+//
+// Time is int64 nanoseconds on the log's own clock, never a float. Screen gaze is a fraction of the *display*:
+// (0, 0) its top left edge, (1, 1) its bottom right, values outside lie beside it. Directions are unit vectors in the
+// view frame: right-handed, +x right, +y up, -z forward.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/display.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/math.hpp"
+
+namespace gazetrace {
+
+// scene_camera: u, v are fractions of the picture of a camera on the head. That is no place on a display: such a log
+// can be looked at and converted, but not rendered with.
+enum class GazeKind : std::uint8_t { screen, direction, scene_camera };
+enum class GazeValidity : std::uint8_t { ok, low_confidence, blink, lost, off_screen, interpolated };
+enum class Eye : std::uint8_t { left, right, cyclopean };
+
+std::string_view to_string(GazeKind kind);
+std::string_view to_string(GazeValidity validity);
+std::string_view to_string(Eye eye);
+
+struct GazeSample {
+  std::int64_t t_ns = 0;
+  double u = 0, v = 0;        // GazeKind::screen and scene_camera
+  Vec3d direction{0, 0, -1};  // GazeKind::direction
+  GazeValidity validity = GazeValidity::ok;
+  Eye eye = Eye::cyclopean;
+  float confidence = 1.0F;  // 0..1, NaN where the log has none
+  float pupil = 0.0F;       // in `GazeLog::pupil_unit`, NaN where missing
+  std::int64_t row = 0;     // 1-based line (binary formats: record) in the source file
+  // Coordinates are NaN where the log has none; such samples are never usable.
+};
+
+// off_screen samples are good measurements that happen to lie beside the display.
+inline bool is_usable(GazeValidity v) {
+  return v == GazeValidity::ok || v == GazeValidity::off_screen || v == GazeValidity::interpolated;
+}
+
+// One eye at the time of a sample, before both were made into one gaze.
+struct EyeGaze {
+  // (u, v, 0) or the direction, NaN where unknown.
+  Vec3d at{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+           std::numeric_limits<double>::quiet_NaN()};
+  float confidence = std::numeric_limits<float>::quiet_NaN();
+  float pupil = std::numeric_limits<float>::quiet_NaN();
+  GazeValidity validity = GazeValidity::lost;
+};
+struct BothEyes {
+  EyeGaze left, right;
+};
+
+// Where the eyes sit in the head, in the axes of the directions; NaN where unknown.
+struct EyeOrigins {
+  Vec3f left_mm, right_mm;
+  std::int64_t t_ns = 0;
+};
+
+// The head in the world of the recording: metres, glTF axes (the view looks along its own -z, +y up).
+struct HeadPose {
+  std::int64_t t_ns = 0;
+  Vec3d position_m;
+  Quatd orientation;
+};
+
+// From what something was concluded, in the order of trust. statistics is a guess.
+enum class Evidence : std::uint8_t { option, sidecar, header, format, statistics };
+std::string_view to_string(Evidence evidence);
+
+// "time unit" = "us", from the header: "Recording timestamp [us]".
+struct GazeFact {
+  std::string what;   // "time column", "time unit", "position columns", "position unit", "origin", "axes", ...
+  std::string value;  // "us"
+  Evidence evidence = Evidence::format;
+  std::string detail;
+};
+
+enum class GazeEventType : std::uint8_t {
+  fixation,
+  saccade,
+  blink,
+  message,  // of the experiment or the tracker, `text`
+  segment,  // recording runs from begin to end; between segments it was stopped
+};
+std::string_view to_string(GazeEventType type);
+
+// What the log itself says happened; begin and end are inclusive and equal for messages.
+struct GazeEvent {
+  GazeEventType type = GazeEventType::message;
+  Eye eye = Eye::cyclopean;
+  std::int64_t begin_ns = 0, end_ns = 0;
+  std::string text;
+  std::int64_t row = 0;
+};
+
+// What a validation of the tracker measured.
+struct GazeCalibration {
+  std::int64_t t_ns = 0;
+  Eye eye = Eye::cyclopean;
+  double mean_error_deg = 0, max_error_deg = 0;  // NaN where not stated
+  std::int64_t row = 0;
+};
+
+struct GazeLog {
+  GazeKind kind = GazeKind::screen;
+  // Times increase. One gaze a time: of both eyes as `GazeReadOptions::eye` says.
+  std::vector<GazeSample> samples;
+  std::string source;            // the path as given
+  std::string format;            // a name of `gaze_formats()`
+  double format_confidence = 1;  // 0..1, how sure the sniffing was; 1 where the format was named
+  std::string clock;             // what the log says of its clock; may be empty
+  std::string pupil_unit;        // "mm", "px", "area", ...; empty: not stated
+  // Geometry of the recording where the log states it (any zero field: not stated).
+  std::optional<DisplayGeometry> recording_geometry;
+  std::optional<Vec2d> pixels_per_degree;  // horizontally and vertically, where the log states them
+  double nominal_rate_hz = 0;              // 0: not stated
+  // A frame log writes the newest sample once a frame: how old a sample is, is unknown, not zero.
+  bool sample_age_unknown = false;
+
+  std::vector<BothEyes> eyes;       // empty, or one for each sample: the log has both eyes
+  std::vector<EyeOrigins> origins;  // empty, or one for each sample
+  std::vector<HeadPose> head;       // empty, or the head's poses with increasing times
+  std::vector<GazeEvent> events;    // in the order of the file
+  std::vector<GazeCalibration> calibrations;
+  std::vector<GazeFact> facts;
+  Warnings warnings;
+};
+
+}  // namespace gazetrace

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+// BIDS 1.11 eye tracking: ..._recording-<label>_physio.tsv(.gz) without a header line; names, units and rate from the
+// sidecars, which inherit; the screen from the events' sidecar; one file an eye, so the other eye's file beside it is
+// read with it. Drafts are accepted with a note: _eyetrack.tsv, eye1_x_coordinate, sizes in centimetres, a header line.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "core/text.hpp"
+#include "gaze/bids_sidecars.hpp"
+#include "gaze/gzip.hpp"
+#include "gaze/read_support.hpp"
+#include "gaze/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct BidsColumns {
+  std::size_t time = 0, x = 0, y = 0;
+  std::optional<std::size_t> pupil;
+};
+
+std::string unpacked(const std::string& path) {
+  std::string bytes = read_file_bytes(path);
+  return utf8_text(is_gzip(bytes) ? unpack_gzip(bytes, path) : std::move(bytes));
+}
+
+BidsColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+  const auto need = [&](const std::string& declared, std::initializer_list<std::string_view> names) {
+    if (!declared.empty()) {
+      return declared_column(table, declared, place);
+    }
+    if (const auto found = table.find_any(names)) {
+      return *found;
+    }
+    throw Error(ErrorKind::input, place, fmt::format("the sidecar's Columns have no '{}'", *names.begin()),
+                "its columns are: " + column_listing(table));
+  };
+  BidsColumns c;
+  c.time = need(options.columns.time, {"timestamp", "time", "eye_timestamp", "eye1_timestamp"});
+  c.x = need(options.columns.x, {"x_coordinate", "eye1_x_coordinate", "eye2_x_coordinate"});
+  c.y = need(options.columns.y, {"y_coordinate", "eye1_y_coordinate", "eye2_y_coordinate"});
+  c.pupil = table.find_any({"pupil_size", "eye1_pupil_size", "eye2_pupil_size"});
+  return c;
+}
+
+// EyeLink's inclusive corners are often written as the size: 1919 x 1079.
+void mend_resolution(DisplayGeometry& g, GazeLog& log, const std::string& place) {
+  const auto is_corner = [](int n) { return n % 2 == 1 && (n + 1) % 8 == 0; };
+  if (is_corner(g.width_px) && is_corner(g.height_px)) {
+    log.warnings.push_back(
+        fmt::format("{}: ScreenResolution {}x{} looks like inclusive corners taken for a size; {}x{} is used", place,
+                    g.width_px, g.height_px, g.width_px + 1, g.height_px + 1));
+    ++g.width_px;
+    ++g.height_px;
+  }
+}
+
+PositionOrigin read_geometry(const BidsName& name, GazeLog& log) {
+  const Sidecars events(name, "events");
+  const auto key = [](std::string_view what) { return fmt::format("StimulusPresentation.{}", what); };
+  const std::vector<double> resolution = events.numbers(key("ScreenResolution"));
+  const std::vector<double> size = events.numbers(key("ScreenSize"));
+  const std::vector<double> point = events.numbers(key("ScreenDistance"));
+  const double distance = point.size() == 3 ? std::abs(point[2]) : events.number(key("ScreenDistance")).value_or(0);
+  const std::string place = events.source(key("ScreenResolution"));
+  DisplayGeometry g;
+  const auto fits = [](const std::vector<double>& v, double most) {
+    return v.size() == 2 && v[0] > 0 && v[1] > 0 && v[0] < most && v[1] < most;
+  };
+  if (fits(resolution, 1e5)) {
+    g.width_px = static_cast<int>(std::lround(resolution[0]));
+    g.height_px = static_cast<int>(std::lround(resolution[1]));
+    mend_resolution(g, log, place);
+    add_fact(log, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::sidecar, place);
+  }
+  if (fits(size, 1e4)) {
+    // Metres; drafts had centimetres, and no screen is 5 m wide.
+    const double to_cm = size[0] > 5 ? 1 : 100;
+    g.width_cm = size[0] * to_cm;
+    g.height_cm = size[1] * to_cm;
+    if (to_cm == 1) {
+      log.warnings.push_back(
+          fmt::format("{}: ScreenSize {} is taken for centimetres, as drafts had it", place, size[0]));
+    }
+    add_fact(log, "display size", fmt::format("{:.5g} x {:.5g} cm", g.width_cm, g.height_cm), Evidence::sidecar, place);
+  }
+  if (distance > 0 && distance < 1e4) {
+    g.distance_cm = distance > 10 ? distance : distance * 100;
+    add_fact(log, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
+  }
+  if (g.width_px > 0 || g.width_cm > 0 || g.distance_cm > 0) {
+    log.recording_geometry = g;
+  }
+  const std::vector<std::string> origin = events.texts(key("ScreenOrigin"));
+  const auto said = [&](std::string_view word) {
+    return std::find(origin.begin(), origin.end(), word) != origin.end();
+  };
+  return said("bottom")   ? PositionOrigin::bottom_left
+         : said("center") ? PositionOrigin::center
+                          : PositionOrigin::top_left;
+}
+
+Eye recorded_eye(const Sidecars& sidecars) {
+  const std::string eye = to_lower(sidecars.text("RecordedEye"));
+  return eye == "left" ? Eye::left : eye == "right" ? Eye::right : Eye::cyclopean;
+}
+
+// Where no unit is stated: that in which the steps are what SamplingFrequency says.
+int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::size_t time, double rate_hz,
+                     const std::string& place) {
+  std::vector<double> times;
+  TableRows rows(file, table, time + 1);
+  while (times.size() < 2000 && rows.next()) {
+    if (const auto value = number_from(rows.cell(time))) {
+      times.push_back(*value);
+    }
+  }
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(std::abs(times[i] - times[i - 1]));
+  }
+  if (!steps.empty() && rate_hz > 0) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    for (const int exponent : {9, 6, 3, 0}) {
+      const double ratio = *middle * std::pow(10.0, exponent) * 1e-9 * rate_hz;
+      if (ratio > 0.5 && ratio < 2) {
+        return exponent;
+      }
+    }
+  }
+  throw Error(ErrorKind::input, place, "the sidecar does not state the timestamp's Units",
+              "give --gaze-time-unit, or write \"timestamp\": {\"Units\": \"ms\"} into it");
+}
+
+void read_samples(const GazeFile& file, const Sidecars& sidecars, const GazeReadOptions& options, GazeLog& log) {
+  std::vector<std::string> names = sidecars.texts("Columns");
+  if (names.empty()) {
+    throw Error(ErrorKind::input, file.path, "no sidecar names its Columns",
+                "put the ..._physio.json beside it, or name the columns: --gaze-format generic --gaze-time-column 1 "
+                "--gaze-x-column 2 --gaze-y-column 3");
+  }
+  DelimitedTable table = open_headerless(file.text, '\t', names);
+  const BidsColumns c = find_columns(table, options, file.path);
+  std::vector<std::string_view> first;
+  LineReader lines(file.text);
+  std::string_view line;
+  if (lines.next(line)) {
+    split_cells(line, '\t', first);
+    if (c.time < first.size() && !number_from(trim(first[c.time])) && !is_missing(trim(first[c.time]))) {
+      log.warnings.push_back(file.path + ": has a header line, as drafts had it; the sidecar's names are used");
+      table.body = lines.rest();
+      table.lines_above = 1;
+    }
+  }
+  const std::string& time_name = names[c.time];
+  const auto stated = time_exponent(sidecars.text(time_name + ".Units"));
+  const int exponent = stated ? *stated
+                       : options.columns.time_unit != TimeUnit::automatic
+                           ? 9
+                           : exponent_by_rate(file, table, c.time, log.nominal_rate_hz, file.path);
+  const TimeScale scale =
+      choose_time_unit(log, options, time_name, exponent, stated ? Evidence::sidecar : Evidence::statistics, file.path);
+  log.pupil_unit = c.pupil ? sidecars.text(names[*c.pupil] + ".Units") : "";
+  const Eye eye = recorded_eye(sidecars);
+  TableRows rows(file, table, std::max({c.time, c.x, c.y, c.pupil.value_or(0)}) + 1);
+  while (rows.next()) {
+    rows.check_length();
+    GazeSample sample;
+    sample.t_ns = rows.time_ns(c.time, scale);
+    sample.row = rows.line();
+    sample.eye = eye;
+    sample.confidence = static_cast<float>(kNan);
+    sample.pupil = static_cast<float>(rows.number(c.pupil));
+    sample.u = rows.number(c.x);
+    sample.v = rows.number(c.y);
+    if (std::isnan(sample.u) || std::isnan(sample.v)) {
+      sample.u = sample.v = kNan;
+      sample.validity = GazeValidity::lost;
+    }
+    log.samples.push_back(sample);
+  }
+}
+
+// ..._physioevents.tsv(.gz): onset in the unit of its OnsetSource, duration in seconds, trial_type, blink, message.
+void read_events(const BidsName& name, const Sidecars& physio, const std::string& path, GazeLog& log) {
+  const std::size_t at = path.rfind("_physio.");
+  if (at == std::string::npos) {
+    return;
+  }
+  for (const char* const extension : {".tsv.gz", ".tsv"}) {
+    const std::string events_path = path.substr(0, at) + "_physioevents" + extension;
+    std::error_code code;
+    if (!std::filesystem::exists(events_path, code)) {
+      continue;
+    }
+    const Sidecars sidecars(name, "physioevents");
+    const GazeFile file{events_path, unpacked(events_path)};
+    const DelimitedTable table = open_headerless(file.text, '\t', sidecars.texts("Columns"));
+    const auto onset = table.find("onset");
+    const auto exponent = time_exponent(physio.text(sidecars.text("OnsetSource") + ".Units"));
+    if (!onset || !exponent) {
+      log.warnings.push_back(events_path + ": its onsets are in no known unit; left out");
+      return;
+    }
+    const auto type = table.find("trial_type");
+    const auto duration = table.find("duration");
+    const auto blink = table.find("blink");
+    const auto message = table.find("message");
+    TableRows rows(file, table, table.headings.size());
+    while (rows.next()) {
+      GazeEvent event;
+      event.row = rows.line();
+      event.begin_ns = rows.time_ns(*onset, {*exponent, 0});
+      const double seconds = rows.number(duration);
+      event.end_ns = event.begin_ns + (seconds > 0 && seconds < 1e6 ? std::llround(seconds * 1e9) : 0);
+      const std::string text = to_lower(rows.cell(type));
+      const bool blinks = blink && rows.cell(*blink) == "1";
+      event.type = blinks               ? GazeEventType::blink
+                   : text == "fixation" ? GazeEventType::fixation
+                   : text == "saccade"  ? GazeEventType::saccade
+                                        : GazeEventType::message;
+      event.text = is_missing(rows.cell(message)) ? "" : std::string(rows.cell(message));
+      log.events.push_back(std::move(event));
+    }
+    return;
+  }
+}
+
+}  // namespace
+
+double sniff_gaze_bids(const GazeFile& file) {
+  const BidsName name = parse_bids_name(file.path);
+  const bool table = name.extension == ".tsv" || name.extension == ".tsv.gz";
+  if (!table || (name.suffix != "physio" && name.suffix != "eyetrack")) {
+    return 0.0;
+  }
+  const std::string_view head = head_of(file, 4096);
+  std::vector<std::string_view> cells;
+  split_cells(head.substr(0, head.find('\n')), '\t', cells);
+  return cells.size() >= 3 ? 0.98 : 0.5;
+}
+
+GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
+  const BidsName name = parse_bids_name(file.path);
+  const Sidecars sidecars(name, name.suffix);
+  GazeLog log;
+  log.source = file.path;
+  log.format = "bids";
+  log.nominal_rate_hz = sidecars.number("SamplingFrequency").value_or(0);
+  log.clock = sidecars.text("timestamp.Origin");
+  const std::string space = sidecars.text("SampleCoordinateSystem");
+  if (!space.empty() && space != "gaze-on-screen" && space != "eye-in-head") {
+    throw Error(ErrorKind::input, file.path, fmt::format("its SampleCoordinateSystem is '{}'", space.substr(0, 40)),
+                "gaze-on-screen and eye-in-head can be read");
+  }
+  const PositionOrigin origin = read_geometry(name, log);
+  read_samples(file, sidecars, options, log);
+  for (const std::string& path : sibling_recordings(name, name.suffix)) {
+    const Sidecars other(parse_bids_name(path), name.suffix);
+    const Eye eye = recorded_eye(other);
+    if (eye == Eye::cyclopean || recorded_eye(sidecars) == Eye::cyclopean || eye == recorded_eye(sidecars)) {
+      continue;
+    }
+    const GazeFile sibling{path, unpacked(path)};
+    GazeLog second;
+    second.nominal_rate_hz = log.nominal_rate_hz;
+    read_samples(sibling, other, options, second);
+    log.samples.insert(log.samples.end(), second.samples.begin(), second.samples.end());
+    std::stable_sort(log.samples.begin(), log.samples.end(),
+                     [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
+    add_fact(log, "other eye", std::filesystem::path(path).filename().string(), Evidence::sidecar, "RecordedEye");
+    break;
+  }
+  read_events(name, sidecars, file.path, log);
+  const std::string unit_text = sidecars.text("x_coordinate.Units");
+  const auto unit = position_unit_from(unit_text);
+  GazeReadOptions settled = options;
+  if (space == "eye-in-head") {
+    settled.frame = GazeFrame::head;
+  }
+  finish_places(log, settled,
+                {unit.value_or(PositionUnit::px), unit == PositionUnit::deg ? PositionOrigin::center : origin,
+                 unit ? Evidence::sidecar : Evidence::format, "x_coordinate, y_coordinate"},
+                file.path);
+  return log;
+}
+
+}  // namespace gazetrace

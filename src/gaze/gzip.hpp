@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace gazetrace {
+
+bool is_gzip(std::string_view bytes);
+// All members of a gzip file. Error(input) at `path` for damaged or cut data, and for data that unpack to more than any
+// recording does (400 times their size and 16 MiB).
+std::string unpack_gzip(std::string_view bytes, const std::string& path);
+
+}  // namespace gazetrace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// JSON as a flat list of leaves, with numbers as they were written: times go into integers digit by digit.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace gazetrace {
+
+struct JsonLeaf {
+  std::string path;  // "data.eyeleft.gazedirection.2"
+  std::string text;  // of a string its content, of a number its digits; "true", "false", "null"; "{}" and "[]" if empty
+  bool is_number = false;
+};
+
+class JsonLeaves {
+ public:
+  // Error(input) at `place` for what is no JSON object.
+  JsonLeaves(std::string_view json, const std::string& place);
+
+  [[nodiscard]] const JsonLeaf* find(std::string_view path) const;  // the first one of this path
+  [[nodiscard]] bool has(std::string_view path) const;              // a leaf, or leaves below it
+  [[nodiscard]] std::string text(std::string_view path) const;      // empty where there is none
+  [[nodiscard]] std::optional<double> number(std::string_view path) const;
+  // "path.0", "path.1", ... as far as they are numbers; NaN for null.
+  [[nodiscard]] std::vector<double> numbers(std::string_view path) const;
+  [[nodiscard]] std::vector<std::string> texts(std::string_view path) const;
+  [[nodiscard]] const std::vector<JsonLeaf>& leaves() const { return leaves_; }
+
+ private:
+  std::vector<JsonLeaf> leaves_;
+};
+
+// An object from paths and texts, in this order; objects only.
+struct JsonValue {
+  std::string path;
+  std::string text;
+  enum class Kind : std::uint8_t { string, number, list } kind = Kind::string;
+  std::vector<std::string> list;
+};
+std::string json_text(const std::vector<JsonValue>& values);
+
+}  // namespace gazetrace

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A table whose columns are declared or found by header: the generic format, gazetrace CSV, and presets.
+#pragma once
+
+#include "gaze/columns.hpp"
+#include "gaze/validity.hpp"
+
+namespace gazetrace {
+
+// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header.
+struct GazetracePreamble {
+  std::optional<int> version;  // of `# gazetrace-gaze N`
+  std::string clock;
+  bool is_scene_camera = false;  // `# kind scene-camera`
+  std::optional<DisplayGeometry> geometry;
+};
+// Error(input) for lines that state a geometry wrongly.
+GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
+
+// Reads the rows and converts positions; everything but order, duplicates and eyes. `columns` replaces
+// `options.columns`: a preset merged with what the user declared; `evidence` is where the rest of it comes from.
+GazeLog read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+                          const GazeColumns& columns, ValidityStyle style, Evidence evidence = Evidence::option);
+
+// A format that is a table with its own columns: `preset` under what the user declared.
+GazeLog read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+                    const GazeColumns& preset);
+// The left eye lies left of the right one: where the log's origins say otherwise, its x axis is the other way round, as
+// in logs whose maker had already turned the vectors. Mirrors directions and origins then.
+void mend_handedness(GazeLog& log);
+
+}  // namespace gazetrace

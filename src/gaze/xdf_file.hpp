@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chunks of an XDF file, taken apart into streams of numbers. The format: github.com/sccn/xdf, Specifications.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+
+struct XdfClockOffset {
+  double time_s = 0, offset_s = 0;
+};
+
+struct XdfStream {
+  std::uint32_t id = 0;
+  std::string header;  // XML
+  std::size_t channels = 0;
+  std::string channel_format;  // "float32", ...
+  double nominal_rate_hz = 0;
+  std::vector<double> times_s;  // on the sender's clock
+  std::vector<double> values;   // channels x samples, a sample after the other
+  std::vector<XdfClockOffset> offsets;
+};
+
+// `read_header` fills channels, channel_format and nominal_rate_hz from the XML. Streams of strings keep no values.
+// Damaged chunks are passed over to the next boundary, with a warning.
+std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path, Warnings& warnings,
+                                void (*read_header)(XdfStream& stream));
+
+// Times on the common clock: offsets added through a robust linear fit, restarted where the clock was reset by more
+// than 5 s. Then, for streams of a nominal rate, evenly spaced between breaks of more than 1 s and 500 samples.
+std::vector<double> synchronized_times_s(const XdfStream& stream);
+
+}  // namespace gazetrace
