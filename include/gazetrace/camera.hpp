@@ -75,8 +75,8 @@ struct TimedPose {
   std::int64_t t_ns = 0;
   CameraPose pose;
 };
-CameraPath camera_from_poses(std::vector<TimedPose> poses, const std::string& source, const Projection& projection,
-                             PathInterpolation interpolation);
+CameraPath camera_from_poses(const std::vector<TimedPose>& poses, const std::string& source,
+                             const Projection& projection, PathInterpolation interpolation);
 
 struct CameraFormatInfo {
   std::string name;

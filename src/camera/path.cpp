@@ -147,8 +147,8 @@ std::vector<CameraFormatInfo> camera_formats() {
   return infos;
 }
 
-CameraPath camera_from_poses(std::vector<TimedPose> poses, const std::string& source, const Projection& projection,
-                             PathInterpolation interpolation) {
+CameraPath camera_from_poses(const std::vector<TimedPose>& poses, const std::string& source,
+                             const Projection& projection, PathInterpolation interpolation) {
   std::vector<CameraKey> keys;
   keys.reserve(poses.size());
   for (const TimedPose& pose : poses) {

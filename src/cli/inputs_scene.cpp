@@ -96,7 +96,7 @@ CameraPath head_camera(const GazeLog& log, const JobSettings& job) {
   for (const HeadPose& pose : log.head) {
     poses.push_back({video_time_ns(log, mapping, pose.t_ns), {pose.position_m, pose.orientation}});
   }
-  return camera_from_poses(std::move(poses), log.source, perspective(job), job.camera_read.interpolation);
+  return camera_from_poses(poses, log.source, perspective(job), job.camera_read.interpolation);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace gazetrace {
 namespace {
 
 constexpr double kMaxVerticalDisparityDeg = 0.5;
-constexpr double kOffsetTime_ns = 1e9;  // of the running offset
+constexpr double kOffsetTimeNs = 1e9;  // of the running offset
 
 // Places of the eyes as two angles: azimuth and elevation where the geometry is known, else what the log has.
 class AnglePlane {
@@ -96,7 +96,7 @@ class RunningOffset {
   void add(const Vec2d& difference, std::int64_t t_ns) {
     ++count_;
     const double passed = count_ > 1 ? static_cast<double>(t_ns) - static_cast<double>(last_ns_) : 0;
-    const double weight = std::max(1.0 / static_cast<double>(count_), 1.0 - std::exp(-passed / kOffsetTime_ns));
+    const double weight = std::max(1.0 / static_cast<double>(count_), 1.0 - std::exp(-passed / kOffsetTimeNs));
     offset_ = {offset_.x + weight * (difference.x - offset_.x), offset_.y + weight * (difference.y - offset_.y)};
     last_ns_ = t_ns;
   }

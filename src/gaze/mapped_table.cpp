@@ -20,8 +20,7 @@ class RowReader {
  public:
   RowReader(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan, const GazeColumns& columns,
             ValidityStyle style, const TimeScale& time)
-      : table_(table),
-        plan_(plan),
+      : plan_(plan),
         columns_(columns),
         style_(style),
         validity_(columns, style),
@@ -29,7 +28,6 @@ class RowReader {
         time_(time) {
     for (const GazeSource& source : plan.sources) {
       has_origins_ = has_origins_ || source.origin[0].has_value();
-      has_validity_ = has_validity_ || source.validity.has_value();
     }
     has_head_ = plan.head_position[0] && plan.head_rotation[0];
   }
@@ -154,7 +152,6 @@ class RowReader {
   }
 
   static constexpr float nan_ = std::numeric_limits<float>::quiet_NaN();
-  const DelimitedTable& table_;
   const ColumnPlan& plan_;
   const GazeColumns& columns_;
   ValidityStyle style_;
@@ -162,7 +159,6 @@ class RowReader {
   TableRows rows_;
   TimeScale time_;
   bool has_origins_ = false;
-  bool has_validity_ = false;
   bool has_head_ = false;
   std::string last_frame_;
 };

@@ -61,7 +61,9 @@ void read_preamble_lines(const DelimitedTable& table, GazeLog& log) {
 std::vector<SmiColumns> eye_columns(const DelimitedTable& table, const std::string& place) {
   std::vector<SmiColumns> eyes;
   for (const auto& [letter, eye] : {std::pair("L", Eye::left), std::pair("R", Eye::right)}) {
-    const auto column = [&](std::string_view name) { return table.find(fmt::format("{} {}", letter, name)); };
+    const auto column = [&table, side = letter](std::string_view name) {
+      return table.find(fmt::format("{} {}", side, name));
+    };
     const auto x = column("POR X [px]");
     const auto y = column("POR Y [px]");
     if (x && y) {

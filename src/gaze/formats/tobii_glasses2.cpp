@@ -124,6 +124,7 @@ GazeLog read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& op
     }
   });
   std::vector<const GazeOfIndex*> ordered;
+  ordered.reserve(gazes.size());
   for (const auto& [index, gaze] : gazes) {
     ordered.push_back(&gaze);
   }

@@ -46,7 +46,9 @@ std::array<double, 2> pair_from(TableRows& rows, std::size_t column) {
 std::vector<SdkEye> find_eyes(const DelimitedTable& table, const std::string& place) {
   std::vector<SdkEye> eyes;
   for (const auto& [side, eye] : {std::pair("left", Eye::left), std::pair("right", Eye::right)}) {
-    const auto column = [&](std::string_view name) { return table.find(fmt::format("{}_{}", side, name)); };
+    const auto column = [&table, prefix = side](std::string_view name) {
+      return table.find(fmt::format("{}_{}", prefix, name));
+    };
     const auto pair = column("gaze_point_on_display_area");
     const auto x = column("gaze_point_on_display_area_x");
     const auto y = column("gaze_point_on_display_area_y");

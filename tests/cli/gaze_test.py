@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Gaze logs from outside: reading without a distance, column maps, head poses as the camera."""
+
+import gzip
+import json
+
+import harness
+
+HEAD_LOG = (
+    "t[ms],head x,head y,head z,pitch,yaw,roll,gx,gy,gz\n"
+    "5000,0,1.6,0,0,350,0,0,0,1\n"
+    "5500,0,1.6,1,0,0,0,0,0,1\n"
+    "6000,0,1.6,2,0,10,0,0.6,0,0.8\n"
+)
+HEAD_MAP = {
+    "time": "t", "x": "gx", "y": "gy", "z": "gz", "axes": "unity", "head_axes": "unity",
+    "head_x": "head x", "head_y": "head y", "head_z": "head z",
+    "head_rotation_x": "pitch", "head_rotation_y": "yaw", "head_rotation_z": "roll",
+}
+
+
+class GazeLogs(harness.CliTest):
+    def summary(self, *arguments):
+        return json.loads(self.run_ok("gaze", *arguments, "--json").stdout)
+
+    def test_pixels_need_no_distance_to_be_read(self):
+        self.write("log.csv", "t[ms],x[px],y[px]\n0,960,540\n4,480,270\n")
+        summary = self.summary("log.csv", "--screen-px", "1920,1080")
+        self.assertEqual(summary["usable"], 2)
+        self.assertEqual(summary["range"]["first"], [0.25, 0.5])
+
+    def test_gzip(self):
+        (self.folder / "log.csv.gz").write_bytes(gzip.compress(b"t[ms],u[1],v[1]\n0,0.5,0.5\n"))
+        self.assertEqual(self.summary("log.csv.gz")["samples"], 1)
+
+    def test_a_column_map_is_saved_and_reused(self):
+        self.write("log.csv", "clock;right;down\n7;10;20\n")
+        flags = ["--gaze-time-column", "clock", "--gaze-x-column", "right", "--gaze-y-column", "down",
+                 "--gaze-time-unit", "ms", "--gaze-unit", "px", "--screen-px", "100,100"]
+        first = self.summary("log.csv", *flags, "--save-columns", "map.json")
+        second = self.summary("log.csv", "--gaze-columns", "map.json", "--screen-px", "100,100")
+        self.assertEqual(first["first_ns"], 7_000_000)
+        self.assertEqual(first["range"], second["range"])
+        self.assertEqual(second["first_ns"], 7_000_000)
+
+    def test_what_was_concluded_says_from_what(self):
+        self.write("log.csv", "time,u,v\n0,0.5,0.5\n4,0.5,0.5\n8,0.5,0.5\n")
+        facts = {fact["what"]: fact for fact in self.summary("log.csv")["facts"]}
+        self.assertEqual((facts["time unit"]["value"], facts["time unit"]["evidence"]), ("ms", "statistics"))
+
+    def test_formats_say_what_they_were_tried_on(self):
+        text = self.run_ok("list", "gaze-formats").stdout
+        lines = {line.split()[0]: line for line in text.splitlines()[1:]}
+        self.assertIn("unconfirmed", lines["varjo"])
+        self.assertIn("real recording", lines["eyelink-asc"])
+
+    def test_one_log_gives_gaze_and_camera(self):
+        self.write("log.csv", HEAD_LOG)
+        self.write("map.json", json.dumps(HEAD_MAP))
+        arguments = ["--gaze", "log.csv", "--gaze-columns", "map.json", "--camera-from-gaze", "--fps", "2",
+                     "--size", "64x36", "--json"]
+        frames = json.loads(self.run_ok("plan", *arguments).stdout)
+        frames = frames["frames"] if isinstance(frames, dict) else frames
+        # Frames at 0.25 and 0.75 s: between the poses at 0, 0.5 and 1 s of the log that begins at 5 s.
+        self.assertEqual(len(frames), 2)
+        text = json.dumps(frames)
+        self.assertIn("-0.5", text)  # half way to Unity's z = 1, which is -1 here
+        self.assertIn("-1.5", text)
+
+    def test_a_log_without_head_poses_is_no_camera(self):
+        self.write("log.csv", "t[ms],dx,dy,dz\n0,0,0,-1\n")
+        self.assert_refused(["plan", "--gaze", "log.csv", "--camera-from-gaze"], ["log.csv", "no head pose"])
+
+
+if __name__ == "__main__":
+    harness.main()
