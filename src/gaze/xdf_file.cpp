@@ -213,7 +213,7 @@ Line fit(const XdfClockOffset* begin, const XdfClockOffset* end) {
 }
 
 void add_offsets(const XdfStream& stream, std::vector<double>& times_s) {
-  constexpr double kReset_s = 5;
+  constexpr double kResetSeconds = 5;
   if (stream.offsets.empty()) {
     return;
   }
@@ -221,7 +221,7 @@ void add_offsets(const XdfStream& stream, std::vector<double>& times_s) {
   std::size_t done = 0;
   for (std::size_t i = 1; i <= stream.offsets.size(); ++i) {
     const bool ends = i == stream.offsets.size();
-    if (!ends && std::abs(stream.offsets[i].offset_s - stream.offsets[i - 1].offset_s) < kReset_s &&
+    if (!ends && std::abs(stream.offsets[i].offset_s - stream.offsets[i - 1].offset_s) < kResetSeconds &&
         stream.offsets[i].time_s >= stream.offsets[i - 1].time_s) {
       continue;
     }
@@ -232,7 +232,7 @@ void add_offsets(const XdfStream& stream, std::vector<double>& times_s) {
     double before = done < times_s.size() ? times_s[done] : 0;
     while (done < times_s.size()) {
       const double t = times_s[done];
-      if (!ends && (forwards ? t > until : t < before - kReset_s)) {
+      if (!ends && (forwards ? t > until : t < before - kResetSeconds)) {
         break;
       }
       before = t;
@@ -243,12 +243,12 @@ void add_offsets(const XdfStream& stream, std::vector<double>& times_s) {
 }
 
 void even_out(const XdfStream& stream, std::vector<double>& times_s) {
-  constexpr double kBreak_s = 1;
+  constexpr double kBreakSeconds = 1;
   constexpr double kBreakSamples = 500;
   if (!(stream.nominal_rate_hz > 0)) {
     return;
   }
-  const double gap = std::max(kBreak_s, kBreakSamples / stream.nominal_rate_hz);
+  const double gap = std::max(kBreakSeconds, kBreakSamples / stream.nominal_rate_hz);
   std::size_t begin = 0;
   for (std::size_t i = 1; i <= times_s.size(); ++i) {
     if (i < times_s.size() && std::abs(times_s[i] - times_s[i - 1]) <= gap) {
