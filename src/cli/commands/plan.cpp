@@ -93,7 +93,7 @@ std::string counts_as_json(const std::vector<FrameCounts>& frames, std::uint32_t
 int run_plan(const PlanArguments& arguments) {
   const JobSettings& job = arguments.job;
   check_settings(job);
-  if (job.scene.empty() && job.camera_path.empty() && !job.eye && !arguments.counts) {
+  if (job.scene.empty() && job.camera_path.empty() && !job.camera_from_gaze && !job.eye && !arguments.counts) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
   }
