@@ -24,15 +24,15 @@ TEST(FrameRate, IsAReducedFraction) {
 TEST(FrameRate, RefusesWhatIsNone) {
   const std::string remedy = "; write frames per second as 24, 23.976 or 24000/1001";
   const std::vector<std::pair<std::string, std::string>> cases{
-      {"", "--fps: '' is not a frame rate"},
-      {"abc", "--fps: 'abc' is not a frame rate"},
-      {"0", "--fps: '0' is not positive"},
-      {"-24", "--fps: '-24' is not positive"},
-      {"24/0", "--fps: '24/0' is not positive"},
-      {"24/", "--fps: '24/' is not a quotient of two whole numbers"},
-      {"1e3", "--fps: '1e3' is not a frame rate"},
+      {"", "'' is not a frame rate"},
+      {"abc", "'abc' is not a frame rate"},
+      {"0", "'0' is not positive"},
+      {"-24", "'-24' is not positive"},
+      {"24/0", "'24/0' is not positive"},
+      {"24/", "'24/' is not a quotient of two whole numbers"},
+      {"1e3", "'1e3' is not a frame rate"},
       {"24.", ""},
-      {"99999999999999999999", "--fps: '99999999999999999999' is not a frame rate"},
+      {"99999999999999999999", "'99999999999999999999' is not a frame rate"},
   };
   for (const auto& [text, message] : cases) {
     try {
@@ -100,7 +100,7 @@ TEST(FrameList, RefusesWhatIsNone) {
       parse_frame_list(text);
       ADD_FAILURE() << text;
     } catch (const Error& error) {
-      EXPECT_EQ(error.what(), "--frames: " + message + "; write frames as 1-100, 1-100x2 or 1,5,9-12");
+      EXPECT_EQ(error.what(), message + "; write frames as 1-100, 1-100x2 or 1,5,9-12");
     }
   }
 }
