@@ -142,18 +142,3 @@ def balls(folder, env, metallic):
         b.sphere((1.1 * (i - 2), 0.5, 0), 0.5, b.material(tint, metallic, roughness))
     name = "conductors" if metallic else "dielectrics"
     return b.write(folder / f"{name}.gltf"), ["--eye=0,2,6", "--target=0,0.4,0", "--yfov=35", f"--env={env}"]
-
-
-def slab(folder):
-    """A slab of clear glass 0.5 m thick before the room, absorbing: attenuation over the way inside."""
-    b = Builder()
-    white, red, green = b.material((0.73, 0.73, 0.73)), b.material((0.65, 0.05, 0.05)), b.material((0.12, 0.45, 0.15))
-    glow = b.material((0.5, 0.5, 0.5), emission=(17, 15, 13))
-    room(b, white, red, green)
-    b.quad([(-0.6, 0.99, -0.6), (0.6, 0.99, -0.6), (0.6, 0.99, 0.6), (-0.6, 0.99, 0.6)], glow)
-    glass = b.material((1, 1, 1), 0.0, 0.0, extensions={
-        "KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_ior": {"ior": 1.5},
-        "KHR_materials_volume": {"thicknessFactor": 0.5, "attenuationDistance": 0.5,
-                                 "attenuationColor": [0.9, 0.5, 0.2]}})
-    b.box((-0.5, -0.5, -0.25), (0.5, 0.5, 0.25), 20, (0, -0.3, 0.1), glass)
-    return b.write(folder / "slab.gltf"), ROOM_VIEW

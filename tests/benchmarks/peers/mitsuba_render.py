@@ -7,7 +7,7 @@
 
 Materials. matte: base colour / pi, as gazetrace renders with `--diffuse matte`: the models coincide. principled: Mitsuba's
 Disney BSDF with glTF's base colour, roughness, metalness and normal map: Schlick's Fresnel and GGX as in gazetrace, without
-its compensation of multiple scattering and with another diffuse lobe. conductor and dielectric: see `surface`.
+its compensation of multiple scattering and with another diffuse lobe.
 Bounces count scattering events. Textures are bilinear and repeat; Mitsuba has no mip levels.
 """
 
@@ -21,7 +21,7 @@ import numpy as np
 from gltf_meshes import Gltf, write_ply
 
 
-def texture_node(path, factor, raw, channel=None, scratch=None):
+def texture_node(path, factor, raw, channel=None):
     """A bitmap times a factor; `channel` picks one channel of the file."""
     bitmap = mi.Bitmap(str(path))
     if channel is not None or not np.allclose(factor, 1) or bitmap.channel_count() not in (1, 3):
