@@ -27,6 +27,10 @@ struct Command {
 #define GAZETRACE_COMMAND(name, help) Command add_##name##_command(CLI::App& app, const Invocation& invocation);
 #include "cli/commands.def"
 #undef GAZETRACE_COMMAND
+#define GAZETRACE_GAZE_COMMAND(name, help) \
+  Command add_gaze_##name##_command(CLI::App& app, const Invocation& invocation);
+#include "cli/gaze_commands.def"
+#undef GAZETRACE_GAZE_COMMAND
 
 // Makes CLI11 options of a table's entries; both must live until parsing is done.
 void bind_options(CLI::App& app, const OptionTable& table);

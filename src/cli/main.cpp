@@ -31,21 +31,39 @@ const CLI::App* chosen_command(const CLI::App& app) {
   return parsed.empty() ? nullptr : parsed.front();
 }
 
+// The command within it that was asked for, or itself: "gaze inspect" and its options.
+const CLI::App* innermost(const CLI::App* command, std::string& words) {
+  while (command != nullptr) {
+    words += " " + command->get_name();
+    const auto parsed = command->get_subcommands();
+    if (parsed.empty()) {
+      return command;
+    }
+    command = parsed.front();
+  }
+  return nullptr;
+}
+
+std::vector<std::string> names_within(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(sub->get_name());
+  }
+  return names;
+}
+
 // CLI11's message, with the nearest name where an option is unknown.
 std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App* command = chosen_command(app);
-  const std::string help = command == nullptr ? "gazetrace --help" : "gazetrace " + command->get_name() + " --help";
+  std::string words = "gazetrace";
+  const CLI::App* command = innermost(chosen_command(app), words);
+  const std::vector<std::string> commands = names_within(command == nullptr ? app : *command);
   std::string text = error.what();
   for (const std::string& word : app.remaining(true)) {
-    if (!word.starts_with('-') && command != nullptr) {
+    if (!word.starts_with('-') && commands.empty()) {
       continue;
     }
-    std::vector<std::string> known;
-    if (command == nullptr) {
-      for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
-        known.push_back(sub->get_name());
-      }
-    } else {
+    std::vector<std::string> known = commands;
+    if (commands.empty()) {
       for (const CLI::Option* option : command->get_options()) {
         for (const std::string& name : option->get_lnames()) {
           known.push_back("--" + name);
@@ -53,11 +71,13 @@ std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) 
       }
       known.emplace_back("--config");
     }
-    text = unknown_name_message(command == nullptr ? "command" : "option", word.substr(0, word.find('=')), known);
-    text.resize(std::min(text.size(), text.find(" Known:")));
+    text = unknown_name_message(commands.empty() ? "option" : "command", word.substr(0, word.find('=')), known);
+    if (commands.empty() || command == nullptr) {
+      text.resize(std::min(text.size(), text.find(" Known:")));
+    }
     break;
   }
-  return text + "; see '" + help + "'";
+  return text + "; see '" + words + " --help'";
 }
 
 int run(int argc, char** argv) {

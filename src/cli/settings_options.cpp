@@ -210,7 +210,7 @@ void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze) {
   table.value("--gaze-origin", columns.origin, choices<PositionOrigin>(), "Where (0, 0) is", kPixels);
   table.flag("--gaze-sort", gaze.sort, "Sorts unordered stamps and keeps the last of equal ones", kPixels);
   table.value("--gaze-columns", gaze.columns_file, "FILE",
-              "Column map as JSON, for tables of one's own; 'gazetrace gaze --save-columns' writes one", kFile);
+              "Column map as JSON, for tables of one's own; 'gazetrace gaze inspect --save-columns' writes one", kFile);
   table.value("--gaze-axes", columns.axes, choices<GazeAxes>(),
               "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
               "left, cv along +z with y down; default: the format's own",

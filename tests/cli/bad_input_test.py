@@ -77,11 +77,11 @@ class BadGaze(harness.CliTest):
         self.write(name, content)
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze", name, *more], words)
         if not more:
-            self.assert_refused(["gaze", name], words)
+            self.assert_refused(["gaze", "inspect", name], words)
 
     def test_missing_file(self):
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze", "gone.csv"], ["gone.csv"])
-        self.assert_refused(["gaze", "gone.csv"], ["gone.csv"])
+        self.assert_refused(["gaze", "inspect", "gone.csv"], ["gone.csv"])
 
     def test_without_time(self):
         self.refuse(harness.gaze_csv(["0.5,0.5,ok,left"], "u[1],v[1],valid,eye"), ["log.csv", "time"])
@@ -166,7 +166,7 @@ class BadOutputs(harness.CliTest):
     def test_converting_over_a_file(self):
         self.write("log.csv", harness.moving_gaze())
         self.write("out.csv", "precious")
-        self.assert_refused(["gaze", "log.csv", "--convert", "out.csv"], ["out.csv", "exists"])
+        self.assert_refused(["gaze", "convert", "log.csv", "-o", "out.csv"], ["out.csv", "exists"])
 
     def test_names(self):
         def refuse(output, words):
@@ -203,7 +203,7 @@ class BadOutputs(harness.CliTest):
 
     def test_converting_into_no_folder(self):
         self.write("log.csv", harness.moving_gaze())
-        self.assert_refused(["gaze", "log.csv", "--convert", "gone/out.csv"], ["gone"])
+        self.assert_refused(["gaze", "convert", "log.csv", "-o", "gone/out.csv"], ["gone"])
 
     def test_unknown_view(self):
         arguments = ["render", "box.gltf", "-o", "f.png", "--size", "64x36"]
@@ -248,7 +248,10 @@ class BadOptions(harness.CliTest):
         self.assert_refused(["render", "box.gltf", "--size", "1x1", "--size", "2x2"], ["--size"])
         self.assert_refused(["render", "box.gltf", *OUT, "--overwrite", "--resume"], ["--resume"])
         self.assert_refused(["scene"], ["scene"])
-        self.assert_refused(["gaze"], ["log"])
+        self.assert_refused(["gaze", "inspect"], ["log"])
+        self.assert_refused(["gaze"], ["subcommand", "gazetrace gaze --help"])
+        self.assert_refused(["gaze", "inspekt", "log.csv"], ["inspekt", "did you mean 'inspect'"])
+        self.assert_refused(["gaze", "inspect", "log.csv", "--jsom"], ["did you mean '--json'", "gazetrace gaze inspect --help"])
         self.assert_refused(["merge", "."], ["parts"])
         self.assert_refused(["list", "falofs"], ["falloffs"])
         self.assert_refused(["plan"], ["scene"])

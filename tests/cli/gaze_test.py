@@ -21,7 +21,7 @@ HEAD_MAP = {
 
 class GazeLogs(harness.CliTest):
     def summary(self, *arguments):
-        return json.loads(self.run_ok("gaze", *arguments, "--json").stdout)
+        return json.loads(self.run_ok("gaze", "inspect", *arguments, "--json").stdout)
 
     def test_pixels_need_no_distance_to_be_read(self):
         self.write("log.csv", "t[ms],x[px],y[px]\n0,960,540\n4,480,270\n")

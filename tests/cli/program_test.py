@@ -24,8 +24,8 @@ class Talk(harness.CliTest):
             self.assertEqual(result.stderr, "")
 
     def test_every_option_has_help(self):
-        for command in ("render", "plan", "gaze"):
-            lines = self.run_ok(command, "--help").stdout.splitlines()
+        for command in (["render"], ["plan"], ["gaze", "inspect"], ["gaze", "convert"]):
+            lines = self.run_ok(*command, "--help").stdout.splitlines()
             options = [i for i, line in enumerate(lines) if re.match(r"  -", line)]
             self.assertGreater(len(options), 10)
             for i in options:
@@ -83,10 +83,11 @@ class Talk(harness.CliTest):
 
     def test_gaze_summary_and_conversion(self):
         self.write("log.csv", harness.moving_gaze())
-        summary = json.loads(self.run_ok("gaze", "log.csv", "--convert", "copy.csv", "--json").stdout)
+        summary = json.loads(self.run_ok("gaze", "inspect", "log.csv", "--json").stdout)
+        self.run_ok("gaze", "convert", "log.csv", "-o", "copy.csv")
         self.assertEqual((summary["samples"], summary["first_ns"], summary["last_ns"]), (100, 0, 990_000_000))
         self.assertEqual(summary["median_rate_hz"], 100.0)
-        copy = json.loads(self.run_ok("gaze", "copy.csv", "--json").stdout)
+        copy = json.loads(self.run_ok("gaze", "inspect", "copy.csv", "--json").stdout)
         for key in summary:
             if key != "source":
                 self.assertEqual(summary[key], copy[key], key)
