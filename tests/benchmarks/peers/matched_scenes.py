@@ -49,6 +49,17 @@ class Builder:
         for a, b, d, e in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
             self.quad([corners[a], corners[b], corners[d], corners[e]], material)
 
+    def closed_box(self, low, high, turn_deg, center, material):
+        """One mesh of 12 triangles that face outwards: a body."""
+        corners = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+        middle = corners.mean(0)
+        triangles = []
+        for a, b, d, e in ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)):
+            outwards = np.cross(corners[b] - corners[a], corners[d] - corners[a]) @ (corners[a] - middle) > 0
+            triangles += [(a, b, d), (a, d, e)] if outwards else [(a, d, b), (a, e, d)]
+        c, s = math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))
+        self.mesh(corners @ np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)]) + np.array(center), triangles, material)
+
     def sphere(self, center, radius, material, rings=48):
         u, v = np.meshgrid(np.linspace(0, 2 * math.pi, 2 * rings + 1), np.linspace(0, math.pi, rings + 1))
         normals = np.stack([np.sin(v) * np.cos(u), np.cos(v), np.sin(v) * np.sin(u)], -1).reshape(-1, 3)
@@ -134,7 +145,7 @@ def punctual(folder):
 
 
 def balls(folder, env, metallic):
-    """Five balls from smooth to rough on a matte floor."""
+    """Five balls from smooth to rough on a floor."""
     b = Builder()
     b.quad([(-4, 0, 4), (4, 0, 4), (4, 0, -4), (-4, 0, -4)], b.material((0.5, 0.5, 0.5)))
     for i, roughness in enumerate((0.1, 0.25, 0.5, 0.75, 1.0)):
@@ -142,3 +153,72 @@ def balls(folder, env, metallic):
         b.sphere((1.1 * (i - 2), 0.5, 0), 0.5, b.material(tint, metallic, roughness))
     name = "conductors" if metallic else "dielectrics"
     return b.write(folder / f"{name}.gltf"), ["--eye=0,2,6", "--target=0,0.4,0", "--yfov=35", f"--env={env}"]
+
+
+def ball_on_floor(folder, env, metallic, roughness):
+    """A coarse ball: a few kB."""
+    b = Builder()
+    b.quad([(-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3)], b.material((0.5, 0.5, 0.5)))
+    tint = (0.95, 0.64, 0.54) if metallic else (0.2, 0.4, 0.6)
+    b.sphere((0, 0.6, 0), 0.6, b.material(tint, metallic, roughness), rings=8)
+    name = "conductor" if metallic else "dielectric"
+    return b.write(folder / f"{name}.gltf"), ["--eye=0,1.2,2.6", "--target=0,0.5,0", "--yfov=38", f"--env={env}"]
+
+
+def one_ball(folder, metallic, roughness, tint):
+    """A ball in even light: each of its pixels shows a directional albedo."""
+    b = Builder()
+    b.sphere((0, 0, 0), 1, b.material(tint, metallic, roughness), rings=128)
+    name = f"ball_{metallic}_{roughness}.gltf"
+    return b.write(folder / name), ["--eye=0,0,8", "--target=0,0,0", "--yfov=16", "--env=constant:1,1,1"]
+
+
+def glass(b, roughness=0.0, ior=1.5, color=None, distance=None):
+    volume = {"thicknessFactor": 1}
+    if color is not None:
+        volume |= {"attenuationColor": list(color), "attenuationDistance": distance}
+    return b.material((1, 1, 1), 0.0, roughness, extensions={
+        "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": volume,
+        "KHR_materials_ior": {"ior": ior}})
+
+
+def glass_balls(folder, env, roughness):
+    """Three bodies of glass on a floor: clear, of a low index, and one that absorbs."""
+    b = Builder()
+    b.quad([(-4, 0, 4), (4, 0, 4), (4, 0, -4), (-4, 0, -4)], b.material((0.5, 0.5, 0.5)))
+    b.sphere((-1.1, 0.52, 0), 0.5, glass(b, roughness))
+    b.sphere((0, 0.52, 0.2), 0.5, glass(b, roughness, ior=1.25))
+    b.sphere((1.1, 0.52, 0), 0.5, glass(b, roughness, color=(0.9, 0.5, 0.2), distance=0.5))
+    name = "rough_glass" if roughness else "glass"
+    return b.write(folder / f"{name}.gltf"), ["--eye=0,1.6,4", "--target=0,0.5,0", "--yfov=38", f"--env={env}"]
+
+
+def slab(folder, env):
+    """A thick pane that absorbs, standing askew above a floor, a red block behind it."""
+    b = Builder()
+    b.quad([(-4, 0, 4), (4, 0, 4), (4, 0, -4), (-4, 0, -4)], b.material((0.5, 0.5, 0.5)))
+    b.box((-0.3, 0, -0.3), (0.3, 0.7, 0.3), 20, (-0.4, 0, -1.1), b.material((0.65, 0.1, 0.1)))
+    pane = glass(b, color=(0.25, 0.7, 0.6), distance=0.3)
+    b.closed_box((-0.8, 0.05, -0.15), (0.8, 1.2, 0.15), 25, (0, 0, 0), pane)
+    return b.write(folder / "slab.gltf"), ["--eye=0,1.3,3.2", "--target=0,0.5,0", "--yfov=38", f"--env={env}"]
+
+
+SLAB_IOR, SLAB_DEPTH, SLAB_COLOR, SLAB_DISTANCE = 1.5, 0.4, (0.3, 0.6, 0.9), 0.5
+
+
+def slab_in_front_of_light(folder):
+    """An absorbing pane seen straight on, an even light behind it: the closed form is slab_transmittance."""
+    b = Builder()
+    pane = glass(b, ior=SLAB_IOR, color=SLAB_COLOR, distance=SLAB_DISTANCE)
+    b.closed_box((-2, -2, -SLAB_DEPTH / 2), (2, 2, SLAB_DEPTH / 2), 0, (0, 0, 0), pane)
+    # Metallic, since a black dielectric would still reflect a little of what the pane throws back.
+    light = b.material((0, 0, 0), 1.0, emission=(1, 1, 1))
+    b.quad([(-2, -2, -1), (2, -2, -1), (2, 2, -1), (-2, 2, -1)], light)
+    return b.write(folder / "slab_light.gltf"), ["--eye=0,0,10", "--target=0,0,0", "--yfov=1", "--env=none"]
+
+
+def slab_transmittance(bounces):
+    """(1 - R)^2 a sum of (R a)^(2 k), a = exp(-sigma d), as far as paths of so many scattering events reach."""
+    r = ((SLAB_IOR - 1) / (SLAB_IOR + 1)) ** 2
+    a = np.array(SLAB_COLOR) ** (SLAB_DEPTH / SLAB_DISTANCE)
+    return sum((1 - r) ** 2 * a * (r * a) ** (2 * k) for k in range((bounces - 2) // 2 + 1))

@@ -64,13 +64,17 @@ def command(program, options, scene, out, size, spp, seed, view):
 def run(program, options, scene, folder, size, spp, seed, view):
     """(CPU seconds, picture path)"""
     out = folder / f"{program}.{'npy' if program.startswith('mitsuba') else 'exr'}"
+    return run_words(command(program, options, scene, out, size, spp, seed, view), out), out
+
+
+def run_words(words, out):
+    """CPU seconds of a command that writes the picture `out`."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    words = command(program, options, scene, out, size, spp, seed, view)
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if done.returncode != 0 or not out.exists():
         sys.exit(f"{' '.join(words)}\nfailed:\n{done.stdout[-2000:]}")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, out
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def relative_mse(picture, reference):

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same light as another renderer: window means beside those that Mitsuba 3 gave for the same files
+// (tests/data/mitsuba, written by tests/benchmarks/peers/write_mitsuba_reference.py, with versions and settings).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "render/tracer_scenes.hpp"
+#include "support/chi2.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+
+constexpr int kSeeds = 12;
+constexpr std::uint32_t kSpp = 128;
+
+const std::string& folder() {
+  static const std::string path = std::string(GAZETRACE_SOURCE_DIR) + "/tests/data/mitsuba/";
+  return path;
+}
+
+Vec3d vector_of(const json& a) {
+  return {a[0], a[1], a[2]};
+}
+
+// Means of a frame's windows, row by row, red, green, blue of each.
+std::vector<double> window_means(const SparseFrame& frame, const SamplingMap& map, int window_px) {
+  const int across = map.width_px / window_px;
+  const int down = map.height_px / window_px;
+  std::vector<double> sums(static_cast<std::size_t>(3 * across * down));
+  std::vector<PixelIndex> pixels;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    pixels_of_site(map, map.sites[i], pixels);
+    const int window = pixels[0].y / window_px * across + pixels[0].x / window_px;
+    const Vec3d mean = to_double(frame.sum[i]) / frame.count[i];
+    double* sum = &sums[static_cast<std::size_t>(3 * window)];
+    sum[0] += mean.x;
+    sum[1] += mean.y;
+    sum[2] += mean.z;
+  }
+  for (double& sum : sums) {
+    sum /= window_px * window_px;
+  }
+  return sums;
+}
+
+struct Sample {
+  double mean = 0, variance_of_mean = 0;
+  double count = 0;
+};
+
+Sample sample_of(const std::vector<std::vector<double>>& repeats, std::size_t window) {
+  Sample result;
+  result.count = static_cast<double>(repeats.size());
+  for (const auto& repeat : repeats) {
+    result.mean += repeat[window] / result.count;
+  }
+  for (const auto& repeat : repeats) {
+    const double off = repeat[window] - result.mean;
+    result.variance_of_mean += off * off / (result.count - 1) / result.count;
+  }
+  return result;
+}
+
+// Two-sided p of Welch's t with the Welch-Satterthwaite degrees of freedom.
+double welch_p(const Sample& a, const Sample& b) {
+  const double variance = a.variance_of_mean + b.variance_of_mean;
+  if (!(variance > 0)) {
+    return a.mean == b.mean ? 1 : 0;
+  }
+  const double t2 = (a.mean - b.mean) * (a.mean - b.mean) / variance;
+  const double degrees = variance * variance /
+                         (a.variance_of_mean * a.variance_of_mean / (a.count - 1) +
+                          b.variance_of_mean * b.variance_of_mean / (b.count - 1));
+  return incomplete_beta(0.5 * degrees, 0.5, degrees / (degrees + t2));
+}
+
+TEST(MitsubaReference, NoWindowDiffers) {
+  std::ifstream file(folder() + "reference.json");
+  ASSERT_TRUE(file) << folder() << "reference.json";
+  const json reference = json::parse(file);
+  struct Window {
+    std::string place;
+    double p, ours, theirs, spread;
+  };
+  std::vector<Window> windows;
+  const int size_px = reference["size_px"];
+  const int window_px = reference["window_px"];
+  for (const json& entry : reference["scenes"]) {
+    Scene scene = load_scene(folder() + entry["file"].get<std::string>());
+    if (!entry["environment"].is_null()) {
+      scene.environment = load_environment(folder() + entry["environment"].get<std::string>());
+    }
+    const PathTracer tracer(scene, threads(0));
+    const Camera camera = camera_at(vector_of(entry["eye"]), vector_of(entry["target"]), entry["yfov_deg"]);
+    const SamplingMap map = uniform_map(size_px, size_px, kSpp);
+    TraceSettings settings;
+    settings.max_bounces = entry["bounces"];
+    settings.diffuse = entry["materials"] == "matte" ? DiffuseModel::matte : DiffuseModel::burley;
+    std::vector<std::vector<double>> repeats;
+    for (int s = 0; s < kSeeds; ++s) {
+      settings.seed = static_cast<std::uint64_t>(s + 1);
+      repeats.push_back(window_means(tracer.trace(camera, 1, map, settings), map, window_px));
+    }
+    const std::vector<double> means = entry["mean"];
+    const std::vector<double> errors = entry["standard_error"];
+    ASSERT_EQ(means.size(), repeats[0].size());
+    for (std::size_t w = 0; w < means.size(); ++w) {
+      const Sample ours = sample_of(repeats, w);
+      const Sample theirs{means[w], errors[w] * errors[w], reference["seeds"]};
+      windows.push_back(
+          {entry["file"].get<std::string>() + " window " + std::to_string(w / 3) + " channel " + std::to_string(w % 3),
+           welch_p(ours, theirs), ours.mean, theirs.mean, std::sqrt(ours.variance_of_mean + theirs.variance_of_mean)});
+    }
+  }
+  // Holm 1979: the k-th smallest of n is held against the family's level / (n - k).
+  std::sort(windows.begin(), windows.end(), [](const Window& a, const Window& b) { return a.p < b.p; });
+  ASSERT_GT(windows.size(), 50U);
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    const Window& w = windows[k];
+    if (w.p * static_cast<double>(windows.size() - k) >= kFamilyLevel) {
+      break;
+    }
+    ADD_FAILURE() << w.place << ": " << w.ours << ", Mitsuba " << w.theirs << ", standard error " << w.spread << ", p "
+                  << w.p;
+  }
+  // Else nothing could be seen: the median window tells differences of 0.4 % (two standard errors).
+  std::vector<double> relative;
+  for (const Window& w : windows) {
+    relative.push_back(w.spread / w.theirs);
+  }
+  std::nth_element(relative.begin(), relative.begin() + static_cast<std::ptrdiff_t>(relative.size() / 2),
+                   relative.end());
+  RecordProperty("median_relative_error", std::to_string(relative[relative.size() / 2]));
+  EXPECT_LT(relative[relative.size() / 2], 0.002) << "too noisy to mean anything";
+}
+
+}  // namespace
+}  // namespace gazetrace
