@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -128,7 +130,9 @@ struct MaterialExtensionInfo {
 std::vector<MaterialExtensionInfo> material_extensions();
 
 struct SceneReadOptions {
-  int threads = 0;  // texture decoding; 0: all
+  int threads = 0;  // of decoding textures and reading meshes, which overlap; 0: all
+  // Told how many of a scene's textures and meshes are ready; from several threads, one at a time.
+  std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
 // .gltf or .glb. Error(input) names the file, the JSON place ("meshes[3].primitives[0].attributes.NORMAL") and what is

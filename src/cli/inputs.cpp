@@ -186,7 +186,8 @@ GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& scree
   return load_gaze_log(gaze.path, options);
 }
 
-Inputs load_inputs(const JobSettings& job, InputScope scope) {
+Inputs load_inputs(const JobSettings& job, InputScope scope,
+                   const std::function<void(std::size_t, std::size_t)>& progress) {
   Inputs inputs;
   std::string decision;
   // What is quick to read first: a wrong name must not cost the loading of a scene.
@@ -214,6 +215,7 @@ Inputs load_inputs(const JobSettings& job, InputScope scope) {
     const auto begin = std::chrono::steady_clock::now();
     SceneReadOptions options;
     options.threads = job.threads;
+    options.progress = progress;
     inputs.scene = std::make_unique<Scene>(load_scene(job.scene, options));
     if (scope == InputScope::render) {
       inputs.decisions.emplace_back("environment", set_environment(job, *inputs.scene));

@@ -2,6 +2,8 @@
 // From what was typed to loaded inputs: everything that can be checked is checked here, before the first ray.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,7 +37,9 @@ enum class InputScope {
 };
 
 // Error(usage or input). Every warning of a part (scene, camera, log, plan) is in Inputs::warnings.
-Inputs load_inputs(const JobSettings& job, InputScope scope);
+// `progress` is told of the scene's textures and meshes, see SceneReadOptions.
+Inputs load_inputs(const JobSettings& job, InputScope scope,
+                   const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 // Pipeline settings from options; checks names, patterns, folders. Without the settings digest.
 PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames);

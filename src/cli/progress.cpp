@@ -11,6 +11,12 @@ namespace {
 
 constexpr int kBarWidth = 30;
 constexpr std::chrono::seconds kLineEvery{5};
+constexpr std::chrono::milliseconds kDrawEvery{50};
+
+std::string bar_text(std::size_t done, std::size_t total) {
+  const std::size_t filled = total == 0 ? kBarWidth : done * kBarWidth / total;
+  return "[" + std::string(filled, '#') + std::string(kBarWidth - filled, '-') + "]";
+}
 
 }  // namespace
 
@@ -64,10 +70,9 @@ void Progress::frame_done(std::int32_t frame, double frame_ms, bool skipped) {
 }
 
 void Progress::draw_bar() const {
-  const std::size_t filled = frames_ == 0 ? kBarWidth : done_ * kBarWidth / frames_;
-  const std::string bar = std::string(filled, '#') + std::string(kBarWidth - filled, '-');
   // \x1b[K: clear to the end of the line, because the text may get shorter.
-  const std::string text = fmt::format("\r[{}] {}/{} frames{}\x1b[K", bar, done_, frames_, time_left());
+  const std::string text =
+      fmt::format("\r{} {}/{} frames{}\x1b[K", bar_text(done_, frames_), done_, frames_, time_left());
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
 }
@@ -91,6 +96,35 @@ std::string Progress::time_left() const {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
   return ", " + duration_text(elapsed_s / static_cast<double>(rendered_) * static_cast<double>(frames_ - done_)) +
          " left";
+}
+
+LoadProgress::~LoadProgress() {
+  if (open_) {
+    std::fputs("\r\x1b[K", stderr);
+  }
+}
+
+void LoadProgress::parts_done(std::size_t done, std::size_t total) {
+  const Clock::time_point now = Clock::now();
+  if (style_ == ProgressStyle::bar && (done == total || now - last_ >= kDrawEvery)) {
+    draw(done, total, fmt::format("loading: {}/{} textures and meshes", done, total));
+    last_ = now;
+  } else if (style_ == ProgressStyle::lines && now - last_ >= kLineEvery) {
+    std::fputs(fmt::format("loading: {} of {} textures and meshes\n", done, total).c_str(), stderr);
+    last_ = now;
+  }
+}
+
+void LoadProgress::building_tree() {
+  if (style_ == ProgressStyle::bar) {
+    draw(1, 1, "loaded; building the tree for rays");
+  }
+}
+
+void LoadProgress::draw(std::size_t done, std::size_t total, const std::string& what) {
+  std::fputs(fmt::format("\r{} {}\x1b[K", bar_text(done, total), what).c_str(), stderr);
+  std::fflush(stderr);
+  open_ = true;
 }
 
 }  // namespace gazetrace

@@ -39,6 +39,26 @@ class Progress {
   bool open_ = false;  // the bar's line has not ended
 };
 
+// What happens before the first frame. A bar's line is wiped when it is done; as plain lines only long loads are told.
+class LoadProgress {
+ public:
+  explicit LoadProgress(ProgressStyle style) : style_(style) {}
+  ~LoadProgress();
+  LoadProgress(const LoadProgress&) = delete;
+  LoadProgress& operator=(const LoadProgress&) = delete;
+
+  void parts_done(std::size_t done, std::size_t total);  // textures and meshes
+  void building_tree();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(std::size_t done, std::size_t total, const std::string& what);
+
+  ProgressStyle style_;
+  Clock::time_point last_ = Clock::now();
+  bool open_ = false;
+};
+
 // "47 s", "3 min 20 s", "2 h 05 min".
 std::string duration_text(double seconds);
 

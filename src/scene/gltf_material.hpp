@@ -2,7 +2,9 @@
 // Materials, and the textures they turn out to need.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <tuple>
@@ -23,8 +25,10 @@ class TextureTable {
   // -1 (with a warning, once per glTF texture) where the file names no picture that could be read.
   std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
 
-  // Decodes everything requested so far. Error(input) names the glTF file, the image and the picture file.
-  std::vector<Texture> load(int threads) const;
+  [[nodiscard]] std::size_t picture_count() const { return pictures_.size(); }
+  // Decodes everything requested so far; `picture_done` is called for each picture, from several threads. Error(input)
+  // names the glTF file, the image and the picture file.
+  std::vector<Texture> load(int threads, const std::function<void()>& picture_done) const;
 
  private:
   struct Entry {

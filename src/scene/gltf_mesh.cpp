@@ -197,10 +197,12 @@ OneMesh make_mesh(const GltfDocument& document, std::size_t index, const std::ve
 }  // namespace
 
 MeshResult make_meshes(const GltfDocument& document, const std::vector<Material>& materials,
-                       std::int32_t default_material, int threads) {
+                       std::int32_t default_material, int threads, const std::function<void()>& mesh_done) {
   std::vector<OneMesh> parts(document.meshes.size());
-  parallel_for_first_error(parts.size(), threads,
-                           [&](std::size_t i) { parts[i] = make_mesh(document, i, materials, default_material); });
+  parallel_for_first_error(parts.size(), threads, [&](std::size_t i) {
+    parts[i] = make_mesh(document, i, materials, default_material);
+    mesh_done();
+  });
   MeshResult result;
   result.meshes.reserve(parts.size());
   for (OneMesh& part : parts) {

@@ -2,6 +2,8 @@
 // glTF primitives as indexed triangles.
 #pragma once
 
+#include <functional>
+
 #include "gazetrace/scene.hpp"
 #include "scene/gltf.hpp"
 
@@ -13,8 +15,9 @@ struct MeshResult {
   Warnings warnings;
 };
 
-// `default_material` is the index for primitives without one. Error(input) names mesh, primitive and attribute.
+// `default_material` is the index for primitives without one; `mesh_done` is called for each mesh, from several
+// threads. Error(input) names mesh, primitive and attribute.
 MeshResult make_meshes(const GltfDocument& document, const std::vector<Material>& materials,
-                       std::int32_t default_material, int threads);
+                       std::int32_t default_material, int threads, const std::function<void()>& mesh_done);
 
 }  // namespace gazetrace

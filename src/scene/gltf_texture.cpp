@@ -79,7 +79,7 @@ ImageRgba TextureTable::decode(const Picture& picture, const std::string& place)
   return read_image_rgba(decode_data_uri(source.uri, place), place);
 }
 
-std::vector<Texture> TextureTable::load(int threads) const {
+std::vector<Texture> TextureTable::load(int threads, const std::function<void()>& picture_done) const {
   std::vector<Texture> textures(entries_.size());
   parallel_for_first_error(pictures_.size(), threads, [&](std::size_t i) {
     const Picture& picture = pictures_[i];
@@ -96,6 +96,7 @@ std::vector<Texture> TextureTable::load(int threads) const {
       texture.wrap_v = wrap_mode(entry.sampler.wrap_t);
       textures[picture.entries[k]] = std::move(texture);
     }
+    picture_done();
   });
   return textures;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a file to a Scene: read, check, parse, convert.
 #include <algorithm>
+#include <functional>
+#include <mutex>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -11,6 +13,7 @@
 #include "scene/gltf_material.hpp"
 #include "scene/gltf_mesh.hpp"
 #include "scene/gltf_node.hpp"
+#include "scene/parallel_errors.hpp"
 
 namespace gazetrace {
 namespace {
@@ -92,6 +95,26 @@ std::int32_t default_material(const GltfDocument& document, std::vector<Material
   return static_cast<std::int32_t>(materials.size()) - 1;
 }
 
+// Counts what is loaded, over threads.
+class LoadCount {
+ public:
+  LoadCount(const std::function<void(std::size_t, std::size_t)>& report, std::size_t total)
+      : report_(report), total_(total) {}
+
+  void one_done() {
+    if (report_) {
+      const std::lock_guard lock(mutex_);
+      report_(++done_, total_);
+    }
+  }
+
+ private:
+  const std::function<void(std::size_t, std::size_t)>& report_;
+  std::size_t total_;
+  std::size_t done_ = 0;
+  std::mutex mutex_;
+};
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
@@ -117,9 +140,17 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   TextureTable textures(document);
   scene.materials = make_materials(document, textures, scene.warnings);
   const std::int32_t fallback = default_material(document, scene.materials);
-  scene.textures = textures.load(options.threads);
 
-  MeshResult meshes = make_meshes(document, scene.materials, fallback, options.threads);
+  LoadCount count(options.progress, textures.picture_count() + document.meshes.size());
+  const auto one_done = [&] { count.one_done(); };
+  MeshResult meshes;
+  parallel_for_first_error(2, options.threads, [&](std::size_t part) {
+    if (part == 0) {
+      scene.textures = textures.load(options.threads, one_done);
+    } else {
+      meshes = make_meshes(document, scene.materials, fallback, options.threads, one_done);
+    }
+  });
   scene.meshes = std::move(meshes.meshes);
   drop_needless_alpha(scene.textures, scene.meshes, scene.materials);
   append(scene.ignored, meshes.ignored);

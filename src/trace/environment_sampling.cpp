@@ -15,7 +15,7 @@ constexpr int kCellsAcross = 2048;
 
 // Of the mean radiance, taken off by compensation. With as many light as BSDF samples the balance heuristic's mixture
 // follows the sky where p_light = 2 p_sky - p_bsdf; a BSDF is as good as even over the sky, 1 / (4 pi), which leaves
-// what exceeds half the mean. Measured by tests/benchmarks/light_settings.cpp.
+// what exceeds half the mean. Measured by tests/benchmarks/trade_offs.cpp.
 constexpr double kCompensation = 0.5;
 // A sky of which less than this share stands out is sampled as it is.
 constexpr double kLeastExcess = 0.02;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time and noise of an estimator: mean and variance of every pixel over independent seeds, on one thread.
+// Time, noise and bias of an estimator: mean and variance of every pixel over independent seeds, on one thread.
 #pragma once
 
 #include <cstddef>
@@ -32,8 +32,9 @@ inline double average(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+// With the seeds first_seed, first_seed + 1, ...
 inline PixelStatistics measure(const PathTracer& tracer, TraceSettings settings, const View& view, int seeds,
-                               std::uint32_t spp) {
+                               std::uint32_t spp, int first_seed = 1) {
   FoveationSettings uniform;
   uniform.uniform_spp = spp;
   Camera camera;
@@ -48,7 +49,7 @@ inline PixelStatistics measure(const PathTracer& tracer, TraceSettings settings,
   result.variance.resize(map.sites.size());
   std::int64_t cpu_ns = 0;
   std::uint64_t samples = 0;
-  for (int seed = 1; seed <= seeds; ++seed) {
+  for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);
     const SparseFrame frame = tracer.trace(camera, 0, map, settings);
     for (const RegionTraceStats& region : frame.stats.regions) {

@@ -47,13 +47,27 @@ Scene corner(bool area_light, bool sky) {
   return scene;
 }
 
+// Varnish, fibres and a sheet that lets light through on what was plain.
+Scene with_layers(Scene scene) {
+  scene.materials[0].sheen.color = {0.8F, 0.3F, 0.2F};
+  scene.materials[0].sheen.roughness = 0.4F;
+  scene.materials[0].diffuse_transmission.factor = 0.3F;
+  scene.materials[0].double_sided = true;
+  scene.materials[1].clearcoat.factor = 0.8F;
+  scene.materials[1].clearcoat.roughness = 0.3F;
+  scene.materials[1].anisotropy.strength = 0.6F;
+  return scene;
+}
+
 TEST(TracerMean, MisLightOnlyAndBsdfOnlyAgree) {
   struct Case {
     const char* name;
     bool area_light, sky;
+    bool layered = false;
   };
-  for (const Case& c : {Case{"area light", true, false}, Case{"sky", false, true}, Case{"both", true, true}}) {
-    const Scene scene = corner(c.area_light, c.sky);
+  for (const Case& c : {Case{"area light", true, false}, Case{"sky", false, true}, Case{"both", true, true},
+                        Case{"layered materials", true, true, true}}) {
+    const Scene scene = c.layered ? with_layers(corner(c.area_light, c.sky)) : corner(c.area_light, c.sky);
     const PathTracer tracer(scene, threads(2));
     const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
     const SamplingMap map = uniform_map(24, 16, 16);

@@ -22,7 +22,7 @@ struct Configuration {
 
 std::vector<Configuration> configurations() {
   std::vector<Configuration> all;
-  for (const float roughness : {0.01F, 0.1F, 0.3F, 0.6F, 1.0F}) {
+  for (const float roughness : {0.0F, 1e-4F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F}) {
     for (const float metallic : {0.0F, 0.5F, 1.0F}) {
       for (const float mu : {0.01F, 0.15F, 0.5F, 0.99F}) {
         all.push_back({roughness, metallic, mu});

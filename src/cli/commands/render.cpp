@@ -99,7 +99,9 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   check_asked_for_something(job);
   check_settings(job);
   const ColorPipeline color(job.color);
-  Inputs inputs = load_inputs(job, InputScope::render);
+  auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, job.quiet));
+  Inputs inputs = load_inputs(job, InputScope::render,
+                              [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); });
   PipelineSettings settings = pipeline_settings(job, inputs.frames);
   const std::map<std::string, std::string> digests = digest_job_files(job);
   settings.settings_digest = digest_job(arguments.table, job, settings, inputs.frames, digests);
@@ -108,7 +110,9 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   TracerOptions options;
   options.threads = job.threads;
   options.bvh_quality = job.bvh;
+  loading->building_tree();
   const PathTracer tracer(*inputs.scene, options);
+  loading.reset();
   RunRecord record = start_record(arguments, invocation, inputs, settings, tracer, color);
   record.input_digests = digests;
   const std::vector<std::string> files = output_files(settings.output, inputs.frames, settings.is_part);
