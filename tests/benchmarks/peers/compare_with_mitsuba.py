@@ -15,6 +15,7 @@ glass beside the closed form. Exit code 1 if a scene of coinciding models differ
 """
 
 import argparse
+import concurrent.futures
 import dataclasses
 import math
 import pathlib
@@ -66,21 +67,41 @@ def ratio_of_means(a, b):
     return ratio, ratio * math.hypot(a.std(ddof=1) / a.mean(), b.std(ddof=1) / b.mean()) / math.sqrt(len(a))
 
 
-def render_both(case, arguments, folder, size=None, spp=None):
-    """Two arrays (seed, y, x, rgb)."""
-    path, view = case.made
-    options = types.SimpleNamespace(gazetrace=arguments.gazetrace, mitsuba_python=arguments.mitsuba_python,
-                                    materials=case.materials, bounces=arguments.bounces)
-    size, spp = size or arguments.size, spp or arguments.spp
-    # All repeats in one process each, so that scenes are loaded and kernels compiled once: a frame's number seeds its
-    # samples as --seed does.
-    frames = [folder / f"gazetrace.{i + 1:04d}.exr" for i in range(arguments.seeds)]
-    words = command("gazetrace", options, path, folder / "gazetrace.####.exr", size, spp, 100, [*view, *case.ours])
-    run_words([*words, "--frames", f"1-{arguments.seeds}"], frames[-1])
-    out = folder / "mitsuba.npy"
-    words = command("mitsuba-llvm", options, path, out, size, spp, 100, [*view, *case.theirs])
-    run_words([*words, "--seeds", str(arguments.seeds)], out)
-    return np.stack([read_picture(frame) for frame in frames]), read_picture(out)
+class Renders:
+    """Pictures by either program, each made once: an array (repeat, y, x, rgb)."""
+
+    def __init__(self, arguments, folder):
+        self.arguments, self.folder, self.done = arguments, folder, {}
+
+    def both(self, case, size=None, spp=None):
+        size, spp = size or self.arguments.size, spp or self.arguments.spp
+        path, view = case.made
+        # gazetrace knows its own model alone, whichever Mitsuba is asked for.
+        model = "matte" if case.materials == "matte" else "gltf"
+        keys = [("gazetrace", path, (*view, *case.ours), model, size, spp),
+                ("mitsuba-llvm", path, (*view, *case.theirs), case.materials, size, spp)]
+        with concurrent.futures.ThreadPoolExecutor() as both:
+            return tuple(both.map(lambda key: self._once(*key), keys))
+
+    def _once(self, *key):
+        if key not in self.done:
+            self.done[key] = self._render(*key)
+        return self.done[key]
+
+    def _render(self, program, path, view, materials, size, spp):
+        options = types.SimpleNamespace(gazetrace=self.arguments.gazetrace, materials=materials,
+                                        mitsuba_python=self.arguments.mitsuba_python, bounces=self.arguments.bounces)
+        # All repeats in one process, so that scenes are loaded and kernels compiled once: a frame's number seeds its
+        # samples as --seed does.
+        n = self.arguments.seeds
+        if program == "gazetrace":
+            frames = [self.folder / f"gazetrace.{i + 1:04d}.exr" for i in range(n)]
+            words = command(program, options, path, self.folder / "gazetrace.####.exr", size, spp, 100, view)
+            run_words([*words, "--frames", f"1-{n}"], frames[-1])
+            return np.stack([read_picture(frame) for frame in frames])
+        out = self.folder / "mitsuba.npy"
+        run_words([*command(program, options, path, out, size, spp, 100, view), "--matched", "--seeds", str(n)], out)
+        return read_picture(out)
 
 
 def cases(arguments, folder):
@@ -88,31 +109,34 @@ def cases(arguments, folder):
             Case("punctual", "matte", True, matched_scenes.punctual(folder))]
     if arguments.env:
         env = arguments.env
-        if arguments.sponza:
-            view = ["--eye=8,2,-0.3", "--target=-8,3,-0.3", "--yfov=50", f"--env={env}"]
-            full = ("--pixel-cone=0", "--bounce-cone=0")
-            scene = (arguments.sponza, view)
-            made += [Case("sponza", "matte", True, scene, ours=full),
-                     Case("sponza, mip", "matte", False, scene),
-                     Case("sponza, stock", "matte", False, scene, ours=full,
-                          theirs=("--own-environment", "--own-masks", "--own-normals"))]
         made += [Case("conductors", "gltf", True, matched_scenes.balls(folder, env, 1)),
                  Case("dielectrics", "gltf", True, matched_scenes.balls(folder, env, 0)),
                  Case("glass", "gltf", True, matched_scenes.glass_balls(folder, env, 0.0)),
                  Case("slab", "gltf", True, matched_scenes.slab(folder, env)),
                  Case("rough glass", "gltf", True, matched_scenes.glass_balls(folder, env, 0.4)),
                  Case("stock glass", "principled", False, matched_scenes.glass_balls(folder, env, 0.4))]
+        if arguments.sponza:
+            view = ["--eye=8,2,-0.3", "--target=-8,3,-0.3", "--yfov=50", f"--env={env}"]
+            full = ("--pixel-cone=0", "--bounce-cone=0")
+            scene = (matched_scenes.without_normal_maps(arguments.sponza, folder), view)
+            made += [Case("sponza", "matte", True, scene, ours=full),
+                     # What each rule is worth: gazetrace's normal maps and mip levels, Mitsuba's own ways.
+                     Case("own masks", "matte", False, scene, ours=full, theirs=("--own-masks",)),
+                     Case("normal maps", "matte", False, (arguments.sponza, view), ours=full),
+                     Case("mip levels", "matte", False, scene),
+                     Case("own normals", "matte", False, scene, ours=full, theirs=("--own-normals",)),
+                     Case("own sky rows", "matte", False, scene, ours=full, theirs=("--own-environment",))]
     return made
 
 
-def compare_scenes(arguments, folder):
+def compare_scenes(arguments, folder, renders):
     print(f"{arguments.size}, {arguments.spp} spp, {arguments.seeds} seeds, {arguments.bounces} bounces")
     print(f"{'scene':15}{'materials':>10}{'ratio':>9}{'+-':>8}{'windows':>9}{'least p':>10}{'largest':>9}  verdict")
     failed = False
     for case in cases(arguments, folder):
         if arguments.only and case.name not in arguments.only.split(";"):
             continue
-        ours, theirs = render_both(case, arguments, folder)
+        ours, theirs = renders.both(case)
         ratio, error = ratio_of_means(ours.mean((1, 2, 3)), theirs.mean((1, 2, 3)))
         ours_w, theirs_w = np.stack([windows(x) for x in ours]), np.stack([windows(x) for x in theirs])
         p, count = compare(ours_w, theirs_w)
@@ -129,7 +153,7 @@ def compare_scenes(arguments, folder):
     return failed
 
 
-def compare_balls(arguments, folder):
+def compare_balls(folder, renders):
     size = 64
     mask, _ = predicted_ratio.inner_cosines(size)
     print("\na ball in even light: gazetrace over Mitsuba's principled (green)")
@@ -137,18 +161,18 @@ def compare_balls(arguments, folder):
     for metallic, tint in TINTS.items():
         for roughness in (0.1, 0.25, 0.5, 0.75, 1.0):
             case = Case("ball", "principled", False, matched_scenes.one_ball(folder, metallic, roughness, tint))
-            ours, theirs = (x[:, mask, 1].mean(1) for x in render_both(case, arguments, folder, f"{size}x{size}", 64))
+            ours, theirs = (x[:, mask, 1].mean(1) for x in renders.both(case, f"{size}x{size}", 16))
             ratio, error = ratio_of_means(ours, theirs)
             a, b = predicted_ratio.predicted(metallic, roughness, tint, size)
             print(f"{metallic:8d}{roughness:10.2f}{ratio:10.5f}{error:9.5f}{a[1] / b[1]:10.5f}{ours.mean():9.5f}{a[1]:10.5f}",
                   flush=True)
 
 
-def compare_slab(arguments, folder):
+def compare_pane(bounces, folder, renders):
     """True where either program is off the closed form by more than 1e-3 of it."""
     case = Case("pane", "gltf", True, matched_scenes.slab_in_front_of_light(folder))
-    ours, theirs = render_both(case, arguments, folder, "32x32", 256)
-    exact = matched_scenes.slab_transmittance(arguments.bounces)
+    ours, theirs = renders.both(case, "32x32", 256)
+    exact = matched_scenes.slab_transmittance(bounces)
     print("\nan absorbing pane at normal incidence, rgb")
     rgb = lambda v: "  ".join(f"{x:.5f}" for x in v)
     error = lambda x: x.mean((1, 2)).std(0, ddof=1) / math.sqrt(len(x))
@@ -175,11 +199,12 @@ def main():
     wanted = lambda name: not arguments.only or name in arguments.only.split(";")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        failed = compare_scenes(arguments, folder)
+        renders = Renders(arguments, folder)
+        failed = compare_scenes(arguments, folder, renders)
         if wanted("balls"):
-            compare_balls(arguments, folder)
+            compare_balls(folder, renders)
         if wanted("pane"):
-            failed |= compare_slab(arguments, folder)
+            failed |= compare_pane(arguments.bounces, folder, renders)
     return 1 if failed else 0
 
 

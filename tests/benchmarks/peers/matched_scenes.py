@@ -3,6 +3,7 @@
 
 import json
 import math
+import pathlib
 
 import numpy as np
 
@@ -109,6 +110,21 @@ class Builder:
         self.data += values.tobytes()
         self.document["accessors"].append(accessor)
         return len(self.document["accessors"]) - 1
+
+
+def without_normal_maps(path, folder):
+    """A copy of a glTF file whose materials have no normal maps: mitsuba_render.py's matte surfaces know none."""
+    source = pathlib.Path(path).resolve()
+    document = json.loads(source.read_text())
+    for material in document["materials"]:
+        material.pop("normalTexture", None)
+    for entry in document["buffers"] + document["images"]:
+        top = pathlib.PurePath(entry["uri"]).parts[0]
+        if not (folder / top).exists():
+            (folder / top).symlink_to(source.parent / top)
+    copy = folder / f"plain_{source.name}"
+    copy.write_text(json.dumps(document))
+    return str(copy)
 
 
 def room(b, white, red, green):

@@ -33,9 +33,14 @@ def smith_lambda(cosine, alpha):
     return 0.5 * (np.sqrt(1 + alpha**2 * tangent2) - 1)
 
 
-def visible_normals(cosine, alpha, count=128):
-    """Equally probable normals seen under `cosine`: arrays (count, count), with the view in the xz plane."""
-    u, v = np.meshgrid((np.arange(count) + 0.5) / count, (np.arange(count) + 0.5) / count)
+def visible_normals(cosine, alpha, count=192):
+    """Normals seen under `cosine`, (count, count, 3), and their shares, of mean 1; the view lies in the xz plane.
+
+    The nodes crowd towards the disc's edge, where the long tail of GGX is: evenly spread ones lose part of it.
+    """
+    edge, v = np.meshgrid((np.arange(count) + 0.5) / count, (np.arange(count) + 0.5) / count)
+    u = 1 - edge**2
+    shares = 2 * edge
     sine = np.sqrt(max(1 - cosine**2, 0.0))
     view = np.array([alpha * sine, 0, cosine])
     view /= np.linalg.norm(view)
@@ -48,19 +53,19 @@ def visible_normals(cosine, alpha, count=128):
     t3 = np.sqrt(np.maximum(1 - t1**2 - t2**2, 0))
     normal = t1[..., None] * across + t2[..., None] * other + t3[..., None] * view
     normal = np.stack([alpha * normal[..., 0], alpha * normal[..., 1], np.maximum(normal[..., 2], 1e-12)], -1)
-    return normal / np.linalg.norm(normal, axis=-1)[..., None]
+    return normal / np.linalg.norm(normal, axis=-1)[..., None], shares
 
 
 def reflected(cosine, alpha, fresnel, correlated=True):
     """Directional albedo of single scattering; `fresnel` is a function of the angle's cosine to the facet."""
     view = np.array([np.sqrt(max(1 - cosine**2, 0.0)), 0, cosine])
-    h = visible_normals(cosine, alpha)
+    h, shares = visible_normals(cosine, alpha)
     o_dot_h = h @ view
     i_z = 2 * o_dot_h * h[..., 2] - cosine
     up = i_z > 0
     lambda_o, lambda_i = smith_lambda(cosine, alpha), smith_lambda(np.where(up, i_z, 1.0), alpha)
     masking = (1 + lambda_o) / (1 + lambda_o + lambda_i) if correlated else 1 / (1 + lambda_i)
-    return float(np.mean(np.where(up, masking, 0) * fresnel(o_dot_h)))
+    return float(np.mean(shares * np.where(up, masking, 0) * fresnel(o_dot_h)))
 
 
 def fresnel(cosine, eta):
@@ -75,7 +80,7 @@ def fresnel(cosine, eta):
 def kept_by_glass(cosine, alpha, eta):
     """Share of light that leaves a rough surface between two media after one scattering event, on either side."""
     view = np.array([np.sqrt(max(1 - cosine**2, 0.0)), 0, cosine])
-    h = visible_normals(cosine, alpha)
+    h, shares = visible_normals(cosine, alpha)
     o_dot_h = h @ view
     f = fresnel(o_dot_h, eta)
     lambda_o = smith_lambda(cosine, alpha)
@@ -83,7 +88,8 @@ def kept_by_glass(cosine, alpha, eta):
     up = 2 * o_dot_h * h[..., 2] - cosine
     bent = np.sqrt(np.maximum(1 - (1 - o_dot_h**2) / eta**2, 0))
     down = -(h[..., 2] * (o_dot_h / eta - bent) - cosine / eta)
-    return float(np.mean(np.where(up > 0, f * masking(up), 0) + np.where(down > 0, (1 - f) * masking(down), 0)))
+    kept = np.where(up > 0, f * masking(up), 0) + np.where(down > 0, (1 - f) * masking(down), 0)
+    return float(np.mean(shares * kept))
 
 
 @dataclasses.dataclass

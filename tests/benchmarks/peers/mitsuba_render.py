@@ -12,13 +12,14 @@ multiple scattering and another diffuse lobe. Smooth bodies of glass are Mitsuba
 principled its `roughdielectric`, which differs as principled does.
 Bounces count scattering events. Textures are bilinear and repeat; Mitsuba has no mip levels.
 
-Three things that Mitsuba would do otherwise, each with an option to see its share:
-  --own-environment   its envmap has rows at v = i / (rows - 1), not at pixel centres; by default the picture is given
-                      twice as many rows, so that both interpolate the same function
+--matched (LLVM variants alone; slower) takes out three things that Mitsuba does otherwise; each has an option that leaves
+it in, to see its share:
+  --own-environment   its envmap has rows at v = i / (rows - 1), not at pixel centres; matched, the picture gets twice as
+                      many rows, so that both interpolate the same function
   --own-masks         its `path` counts a hole in a mask as a scattering event and lets it stop light samples, and a mask's
-                      opacity is interpolated after the cutoff; by default `volpath`, which does neither, and alpha_cutoff
-  --own-normals       it knows no bent normals and lets light through where shading normal and triangle disagree; by
-                      default surface_sides
+                      opacity is interpolated after the cutoff; matched, `volpath`, which does neither, and alpha_cutoff
+  --own-normals       it knows no bent normals and lets light through where shading normal and triangle disagree; matched,
+                      surface_sides
 """
 
 import argparse
@@ -239,23 +240,27 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--sampler", default="independent")
     parser.add_argument("--materials", default="matte", choices=["matte", "gltf", "principled"])
+    parser.add_argument("--matched", action="store_true")
     parser.add_argument("--own-environment", action="store_true")
     parser.add_argument("--own-masks", action="store_true")
     parser.add_argument("--own-normals", action="store_true")
     parser.add_argument("--seeds", type=int, default=0, help="so many pictures from --seed on, as one array; 0: a picture")
-    parser.add_argument("--per-pass", type=int, default=8, help="samples a pixel held in memory at once (llvm)")
+    parser.add_argument("--per-pass", type=int, default=0,
+                        help="samples a pixel held in memory at once (llvm); 0: 8, more for small pictures")
     options = parser.parse_args()
     mi.set_variant(options.variant)
-    if options.variant.startswith("scalar"):
-        # Plugins in Python would be called ray by ray.
-        options.own_normals = options.own_masks = True
-    else:
+    if not options.matched:
+        options.own_normals = options.own_masks = options.own_environment = True
+    if options.variant.startswith("llvm"):  # in scalar variants plugins in Python would be called ray by ray
         import mitsuba_metallic_roughness
 
         mitsuba_metallic_roughness.register()
     with tempfile.TemporaryDirectory() as scratch:
         scene = convert(options, scratch)
-        per_pass = options.spp if options.variant.startswith("scalar") else options.per_pass
+        width, height = map(int, options.size.split("x"))
+        per_pass = options.per_pass or max(8, 2**21 // (width * height))
+        if options.variant.startswith("scalar"):
+            per_pass = options.spp
         pictures = [render(scene, options.spp, options.seed + s, per_pass) for s in range(max(options.seeds, 1))]
         np.save(options.output, np.stack(pictures) if options.seeds else pictures[0])
 

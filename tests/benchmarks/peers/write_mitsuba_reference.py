@@ -51,7 +51,7 @@ def render(scene, view, materials, scratch):
     out = pathlib.Path(scratch) / "out.npy"
     words = [sys.executable, str(HERE / "mitsuba_render.py"), str(scene), str(out), "--variant", "llvm_ad_rgb", "--size",
              f"{SIZE}x{SIZE}", "--spp", str(SPP), "--seed", str(FIRST_SEED), "--seeds", str(SEEDS), "--bounces",
-             str(BOUNCES), "--materials", materials, "--per-pass", "256", *view]
+             str(BOUNCES), "--materials", materials, "--matched", *view]
     subprocess.run(words, check=True)
     cut = np.load(out).astype(np.float64).reshape(SEEDS, SIZE // WINDOW, WINDOW, SIZE // WINDOW, WINDOW, 3)
     return cut.mean((2, 4)).reshape(SEEDS, -1)
