@@ -36,16 +36,34 @@ struct Projection {
   friend bool operator==(const Projection&, const Projection&) = default;
 };
 
+// A thin lens: what lies at the focus distance is sharp; a point at distance d along the view axis blurs into a disc
+// that covers 2 radius |d - focus| / (d focus) in tangents of the view angle. Shape and field of view are those of the
+// projection, wherever the focus is (no breathing). Applies to orthographic views too, as a bundle of parallel axes.
+struct Lens {
+  double radius_m = 0;          // of the aperture; 0: a pinhole, everything is sharp
+  double focus_distance_m = 1;  // from the camera to the plane in focus, along the view axis; > 0
+  friend bool operator==(const Lens&, const Lens&) = default;
+};
+
+// Aperture radius of a lens with f-number N on a sensor of the given height, f / (2 N), with the focal length that
+// gives the field of view at infinity: f = height / (2 tan(yfov / 2)). Radius 0 for N = 0.
+double lens_radius_m(double f_number, double sensor_height_mm, double yfov_rad);
+
 // All that ray generation needs for one frame.
 struct Camera {
-  CameraPose pose;
+  CameraPose pose;  // in the middle of the frame's time
   Projection projection;
+  Lens lens;
+  // Poses at equal steps from opening to closing of the shutter, the first and last ones included; between two of them
+  // positions are linear and orientations slerp. Empty: the camera stands still while the shutter is open.
+  std::vector<CameraPose> shutter_poses;
 };
 
 // A camera over time. `pose_at` may be called with any time inside [begin_ns, end_ns].
 struct CameraPath {
   std::string source;  // file, or file + camera name
   Projection projection;
+  Lens lens;
   std::function<CameraPose(std::int64_t t_video_ns)> pose_at;
   bool is_static = true;  // no time dependence: every time is inside
   std::int64_t begin_ns = 0;

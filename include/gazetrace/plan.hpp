@@ -28,8 +28,20 @@ std::string to_string(const FrameRate& rate);
 std::vector<std::int32_t> parse_frame_list(std::string_view text);
 std::string format_frame_list(const std::vector<std::int32_t>& frames);
 
+// When the shutter opens and closes, in fractions of the frame's time; equal: an instant, nothing blurs.
+struct Shutter {
+  double open = 0.5, close = 0.5;
+  [[nodiscard]] bool blurs() const { return close > open; }
+  friend bool operator==(const Shutter&, const Shutter&) = default;
+};
+// "0.5": half of the frame's time, about its middle; "180deg": the same as an angle of a turning shutter; "0.25,0.75":
+// open and close; "0": off.
+Shutter parse_shutter(std::string_view text);
+std::string to_string(const Shutter& shutter);
+
 struct PlanSettings {
   std::vector<std::int32_t> frames;
+  Shutter shutter;
   FrameRate fps;
   std::int64_t start_ns = 0;  // video time at which frame 1 begins
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
@@ -44,6 +56,7 @@ struct PlanSettings {
 struct FrameRequest {
   std::int32_t frame = 1;
   std::int64_t t_video_ns = 0;  // mid-exposure: start + (frame - 1/2) / fps, rounded down to a nanosecond
+  std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: no motion blur
   int width_px = 0, height_px = 0;
   Camera camera;
   PlanarView view;         // of the eye: display or, for gaze directions, the camera's own frustum

@@ -37,4 +37,9 @@ CameraPath static_camera(const CameraPose& pose, const Projection& projection) {
   return path;
 }
 
+double lens_radius_m(double f_number, double sensor_height_mm, double yfov_rad) {
+  const double focal_length_m = sensor_height_mm * 1e-3 / (2 * std::tan(yfov_rad / 2));
+  return f_number > 0 ? focal_length_m / (2 * f_number) : 0;
+}
+
 }  // namespace gazetrace

@@ -78,6 +78,7 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   settings.frames = frames;
   settings.fps = job.fps;
   settings.start_ns = job.start.ns;
+  settings.shutter = job.shutter;
   settings.camera_extrapolation = job.camera_extrapolation;
   settings.gaze = gaze_mapping(job);
   settings.gaze_latency_ns = job.gaze_at ? 0 : job.gaze_latency.ns;

@@ -99,9 +99,7 @@ CameraPath head_camera(const GazeLog& log, const JobSettings& job) {
   return camera_from_poses(poses, log.source, perspective(job), job.camera_read.interpolation);
 }
 
-}  // namespace
-
-CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision) {
+CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision) {
   const int ways = (job.camera.empty() ? 0 : 1) + (job.camera_path.empty() ? 0 : 1) + (job.camera_from_gaze ? 1 : 0) +
                    (job.eye || job.target ? 1 : 0);
   if (ways > 1) {
@@ -149,6 +147,43 @@ CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeL
       camera.projection.yfov_rad = checked_yfov_rad(*job.yfov_deg);
     }
   }
+  return camera;
+}
+
+Lens chosen_lens(const JobSettings& job, const Projection& projection) {
+  const Aperture& aperture = job.aperture;
+  if (!(aperture.f_number > 0) && !(aperture.radius_m > 0)) {
+    if (job.focus_distance_m) {
+      throw Error(ErrorKind::usage, "--focus-distance", "a pinhole focuses nowhere", "give --aperture as well");
+    }
+    return {};
+  }
+  if (!job.focus_distance_m) {
+    throw Error(ErrorKind::usage, "--aperture", "a lens needs a distance that is sharp", "give --focus-distance");
+  }
+  if (!(*job.focus_distance_m > 0)) {
+    throw Error(ErrorKind::usage, "--focus-distance",
+                fmt::format("{} is not in front of the lens", *job.focus_distance_m));
+  }
+  if (!(job.sensor_height_mm > 0)) {
+    throw Error(ErrorKind::usage, "--sensor-height", fmt::format("{} mm is no height", job.sensor_height_mm));
+  }
+  double radius_m = aperture.radius_m;
+  if (aperture.f_number > 0) {
+    if (projection.kind != ProjectionKind::perspective) {
+      throw Error(ErrorKind::usage, "--aperture", "an orthographic camera has no focal length for an f-number",
+                  "give a radius in metres");
+    }
+    radius_m = lens_radius_m(aperture.f_number, job.sensor_height_mm, projection.yfov_rad);
+  }
+  return {radius_m, *job.focus_distance_m};
+}
+
+}  // namespace
+
+CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision) {
+  CameraPath camera = camera_without_lens(job, scene, log, decision);
+  camera.lens = chosen_lens(job, camera.projection);
   return camera;
 }
 

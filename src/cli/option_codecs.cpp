@@ -181,6 +181,24 @@ void parse_value(std::string_view text, const std::string& place, FrameRate& val
   }
 }
 
+void parse_value(std::string_view text, const std::string& place, Shutter& value) {
+  try {
+    value = parse_shutter(text);
+  } catch (const Error& error) {
+    throw Error(error.kind(), place, error.what());
+  }
+}
+
+void parse_value(std::string_view text, const std::string& place, Aperture& value) {
+  constexpr std::string_view kForm = "an f-number as f/2.8, or a radius in metres";
+  const bool is_f_number = text.starts_with("f/");
+  const double number = parse_finite(text.substr(is_f_number ? 2 : 0), place, kForm);
+  if (number < 0 || (is_f_number && number == 0)) {
+    throw Error(ErrorKind::usage, place, fmt::format("'{}' is no aperture", text), std::string("give ") + kForm.data());
+  }
+  value = is_f_number ? Aperture{number, 0} : Aperture{0, number};
+}
+
 void parse_value(std::string_view text, const std::string& place, Vec2d& value) {
   const auto [x, y] = split_exactly<2>(text, place, kTwoNumbers);
   value = {parse_finite(x, place, kTwoNumbers), parse_finite(y, place, kTwoNumbers)};
@@ -292,6 +310,14 @@ std::string format_value(const FrameList& value) {
 
 std::string format_value(const FrameRate& value) {
   return to_string(value);
+}
+
+std::string format_value(const Shutter& value) {
+  return to_string(value);
+}
+
+std::string format_value(const Aperture& value) {
+  return value.f_number > 0 ? "f/" + format_value(value.f_number) : format_value(value.radius_m);
 }
 
 std::string format_value(const Vec2d& value) {

@@ -30,6 +30,11 @@ struct SizePx {
 struct FrameList {
   std::vector<std::int32_t> frames;
 };
+// "f/2.8" or a radius in metres; 0: a pinhole.
+struct Aperture {
+  double f_number = 0;  // 0: radius_m counts
+  double radius_m = 0;
+};
 
 // Every parser throws Error(usage, place, ...), place being the option or the line of a settings file.
 void parse_value(std::string_view text, const std::string& place, bool& value);
@@ -42,6 +47,8 @@ void parse_value(std::string_view text, const std::string& place, DurationNs& va
 void parse_value(std::string_view text, const std::string& place, SizePx& value);
 void parse_value(std::string_view text, const std::string& place, FrameList& value);
 void parse_value(std::string_view text, const std::string& place, FrameRate& value);
+void parse_value(std::string_view text, const std::string& place, Shutter& value);
+void parse_value(std::string_view text, const std::string& place, Aperture& value);
 void parse_value(std::string_view text, const std::string& place, Vec2d& value);
 void parse_value(std::string_view text, const std::string& place, Vec3d& value);
 void parse_value(std::string_view text, const std::string& place, FrameRect& value);
@@ -63,6 +70,8 @@ std::string format_value(const DurationNs& value);
 std::string format_value(const SizePx& value);
 std::string format_value(const FrameList& value);
 std::string format_value(const FrameRate& value);
+std::string format_value(const Shutter& value);
+std::string format_value(const Aperture& value);
 std::string format_value(const Vec2d& value);
 std::string format_value(const Vec3d& value);
 std::string format_value(const FrameRect& value);

@@ -57,6 +57,23 @@ void add_camera_options(OptionTable& table, JobSettings& job) {
       kPixels);
 }
 
+void add_lens_options(OptionTable& table, JobSettings& job) {
+  table.group("Lens and shutter");
+  table.value("--aperture", job.aperture, "f/N|METRES",
+              "Depth of field: the lens's f-number, or the radius of its opening in metres; 0: a pinhole, all is sharp",
+              kPixels);
+  table.value("--focus-distance", job.focus_distance_m, "METRES",
+              "What is sharp, along the view from the camera; needed with --aperture", kPixels);
+  table.value("--sensor-height", job.sensor_height_mm, "MM",
+              "Height of the picture on the sensor, millimetres: with the field of view it gives the focal length "
+              "that f/N refers to",
+              kPixels);
+  table.value("--shutter", job.shutter, "PART|DEGdeg|OPEN,CLOSE",
+              "Motion blur: how much of a frame's time the shutter is open, about its middle (0.5, 180deg), or from "
+              "when to when (0.25,0.75); 0: off",
+              kPixels);
+}
+
 void add_gaze_mapping_options(OptionTable& table, JobSettings& job) {
   table.group("Gaze in time");
   table.value("--gaze-at", job.gaze_at, "U,V",
@@ -248,6 +265,7 @@ void add_ocio_config_options(OptionTable& table, ColorSettings& color) {
 void add_job_options(OptionTable& table, JobSettings& job) {
   add_scene_options(table, job);
   add_camera_options(table, job);
+  add_lens_options(table, job);
   table.group("Gaze log");
   table.value("--gaze", job.gaze.path, "FILE", "Where the viewer looked, over time", kFile);
   add_gaze_file_options(table, job.gaze);

@@ -47,6 +47,12 @@ struct JobSettings {
   Vec3d up{0, 1, 0};
   std::optional<double> yfov_deg;
 
+  // Lens and shutter
+  Aperture aperture;
+  std::optional<double> focus_distance_m;
+  double sensor_height_mm = 24;
+  Shutter shutter;
+
   // Gaze and screen
   GazeFileSettings gaze;
   std::optional<Vec2d> gaze_at;

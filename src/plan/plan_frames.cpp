@@ -42,6 +42,34 @@ void check_settings(const PlanSettings& settings) {
   }
 }
 
+// start + (frame - 1 + part) / fps, for times inside a frame: half a nanosecond does not matter here.
+std::int64_t time_in_frame_ns(const PlanSettings& settings, std::int32_t frame, double part) {
+  const double period_ns =
+      1e9 * static_cast<double>(settings.fps.denominator) / static_cast<double>(settings.fps.numerator);
+  return frame_time_ns(settings, frame) + std::llround((part - 0.5) * period_ns);
+}
+
+CameraPose pose_at(const CameraPath& camera, std::int64_t t_ns) {
+  return camera.pose_at(camera.is_static ? t_ns : std::clamp(t_ns, camera.begin_ns, camera.end_ns));
+}
+
+// A camera's path need not be even while the shutter is open: it is taken at this many steps.
+constexpr int kShutterSteps = 16;
+
+// Empty where the camera stands still.
+std::vector<CameraPose> shutter_poses(const CameraPath& camera, std::int64_t open_ns, std::int64_t close_ns) {
+  std::vector<CameraPose> poses;
+  if (camera.is_static || close_ns <= open_ns) {
+    return poses;
+  }
+  for (int i = 0; i <= kShutterSteps; ++i) {
+    poses.push_back(pose_at(camera, open_ns + (close_ns - open_ns) * i / kShutterSteps));
+  }
+  const bool still =
+      std::all_of(poses.begin(), poses.end(), [&](const CameraPose& pose) { return pose == poses.front(); });
+  return still ? std::vector<CameraPose>() : poses;
+}
+
 bool covers(const CameraPath& camera, std::int64_t t_ns) {
   return camera.is_static || (t_ns >= camera.begin_ns && t_ns <= camera.end_ns);
 }
@@ -194,9 +222,15 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
     request.width_px = settings.width_px;
     request.height_px = settings.height_px;
     request.view = geometry.view();
-    const std::int64_t t_camera =
-        camera.is_static ? request.t_video_ns : std::clamp(request.t_video_ns, camera.begin_ns, camera.end_ns);
-    request.camera = {camera.pose_at(t_camera), camera.projection};
+    request.shutter_open_ns = request.shutter_close_ns = request.t_video_ns;
+    if (settings.shutter.blurs()) {
+      request.shutter_open_ns = time_in_frame_ns(settings, frame, settings.shutter.open);
+      request.shutter_close_ns = time_in_frame_ns(settings, frame, settings.shutter.close);
+    }
+    request.camera.pose = pose_at(camera, request.t_video_ns);
+    request.camera.projection = camera.projection;
+    request.camera.lens = camera.lens;
+    request.camera.shutter_poses = shutter_poses(camera, request.shutter_open_ns, request.shutter_close_ns);
     if (log != nullptr) {
       request.gaze_true = gaze_at(*log, settings.gaze, request.t_video_ns);
       request.gaze_render = settings.gaze_latency_ns == 0

@@ -10,7 +10,7 @@ namespace gazetrace {
 namespace {
 
 bool same_camera(const Camera& a, const Camera& b) {
-  return a.pose == b.pose && a.projection == b.projection;
+  return a.pose == b.pose && a.projection == b.projection && a.lens == b.lens && a.shutter_poses == b.shutter_poses;
 }
 
 bool fits(const TemporalHistory& history, const Frame& frame, const Camera& camera) {

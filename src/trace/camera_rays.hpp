@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a camera from continuous pixel coordinates, with glTF's near and far planes.
+// Rays of a camera from continuous pixel coordinates, with glTF's near and far planes, through a pinhole or a lens, at
+// an instant or while the shutter is open.
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "gazetrace/camera.hpp"
 #include "gazetrace/math.hpp"
 
 namespace gazetrace {
+
+// The point of the unit disc for a point of the unit square, areas in proportion and neighbours kept: Shirley and Chiu,
+// "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
+Vec2f concentric_disk(const Vec2f& u);
 
 // Pixel coordinates are taken from the frame's centre, so that 16K frames keep their sub-pixel digits in float.
 class CameraRays {
@@ -20,24 +26,42 @@ class CameraRays {
     float tnear, tfar;
     float cone_spread;  // angle of one pixel, rad (perspective)
   };
+  // Where the camera is and how it is turned.
+  struct Placement {
+    Vec3f origin, forward, right_step, up_step;
+  };
+
   // x right, y down, in pixels from the frame's centre.
-  [[nodiscard]] Ray ray(float x, float y) const {
-    if (perspective_) {
-      const Vec3f d = forward_ + right_step_ * x - up_step_ * y;
-      const float inverse = 1.0F / std::sqrt(dot(d, d));  // cosine to the view axis
-      return {origin_, d * inverse, near_ / inverse, far_ / inverse, spread_ * inverse};
-    }
-    return {origin_ + right_step_ * x - up_step_ * y, forward_, near_, far_, 0.0F};
-  }
+  [[nodiscard]] Ray ray(float x, float y) const { return ray(placement_, x, y); }
+  // `lens`: of the unit disc. `time`: 0 when the shutter opens, 1 when it closes.
+  [[nodiscard]] Ray ray(float x, float y, const Vec2f& lens, float time) const;
+
+  [[nodiscard]] bool has_lens() const { return lens_radius_ > 0; }
+  [[nodiscard]] bool moves() const { return !keys_.empty(); }
+  [[nodiscard]] Placement placement_at(float time) const;
+
   [[nodiscard]] float cone_width() const { return width_; }  // at the origin, m
-  [[nodiscard]] const Vec3f& forward() const { return forward_; }
-  [[nodiscard]] const Vec3f& origin() const { return origin_; }
+  [[nodiscard]] const Vec3f& forward() const { return placement_.forward; }
+  [[nodiscard]] const Vec3f& origin() const { return placement_.origin; }
 
  private:
+  [[nodiscard]] Placement place(const CameraPose& pose) const;
+  [[nodiscard]] Ray ray(const Placement& at, float x, float y) const {
+    if (perspective_) {
+      const Vec3f d = at.forward + at.right_step * x - at.up_step * y;
+      const float inverse = 1.0F / std::sqrt(dot(d, d));  // cosine to the view axis
+      return {at.origin, d * inverse, near_ / inverse, far_ / inverse, spread_ * inverse};
+    }
+    return {at.origin + at.right_step * x - at.up_step * y, at.forward, near_, far_, 0.0F};
+  }
+
   bool perspective_ = true;
-  Vec3f origin_, forward_, right_step_, up_step_;
+  Placement placement_;
+  double step_ = 0;  // of one pixel: tangent (perspective) or metres
   float near_ = 0, far_ = std::numeric_limits<float>::infinity();
   float spread_ = 0, width_ = 0;
+  float lens_radius_ = 0, focus_distance_ = 1;  // m
+  std::vector<CameraPose> keys_;
 };
 
 }  // namespace gazetrace

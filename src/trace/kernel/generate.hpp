@@ -12,8 +12,7 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
   PathBatch& paths = work_.paths[0];
   const CameraRays& camera = *frame_.camera;
   const auto cone = static_cast<float>(frame_.settings.pixel_cone);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    const CameraRays::Ray ray = camera.ray(work_.samples.x[i], work_.samples.y[i]);
+  const auto begin_path = [&](std::size_t i, const CameraRays::Ray& ray) __attribute__((always_inline)) {
     set_ray(rays, i, ray.origin, ray.direction, ray.tnear, ray.tfar);
     rays.alpha_key[i] = alpha_key(i, 0);
     paths.slot[i] = static_cast<std::uint32_t>(i);
@@ -27,6 +26,18 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
     work_.radiance.g[i] = 0;
     work_.radiance.b[i] = 0;
     work_.radiance.rejected[i] = 0;
+  };
+  if (camera.has_lens() || camera.moves()) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const SampleKey key = work_.samples.key[i];
+      const std::uint32_t sample = work_.samples.sample[i];
+      const Vec2f lens = concentric_disk(sample_2d(key, sample, dimension_of(PathDimension::lens)));
+      begin_path(i, camera.ray(work_.samples.x[i], work_.samples.y[i], lens, time_of(i)));
+    }
+  } else {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      begin_path(i, camera.ray(work_.samples.x[i], work_.samples.y[i]));
+    }
   }
   if constexpr (kLayers) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {

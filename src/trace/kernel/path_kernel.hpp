@@ -83,6 +83,11 @@ class PathKernel {
                   hash32(work_.samples.sample[slot] ^ hash32(segment + 0x9e3779b9U)));
   }
 
+  // When the sample looks: 0 when the shutter opens, below 1.
+  [[nodiscard]] float time_of(std::size_t slot) const {
+    return sample_1d(work_.samples.key[slot], work_.samples.sample[slot], dimension_of(PathDimension::time));
+  }
+
   void add(std::size_t slot, const Vec3f& radiance) {
     work_.radiance.r[slot] += radiance.x;
     work_.radiance.g[slot] += radiance.y;

@@ -107,7 +107,9 @@ inline void PathKernel<kFeatures, kDiffuse>::record_guides(std::size_t slot, std
   guides.normal_x[slot] = chunk.shading.x[i];
   guides.normal_y[slot] = chunk.shading.y[i];
   guides.normal_z[slot] = chunk.shading.z[i];
-  guides.depth[slot] = chunk.t[i] * dot(chunk.direction.get(i), frame_.camera->forward());
+  const CameraRays& camera = *frame_.camera;
+  const Vec3f forward = camera.moves() ? camera.placement_at(time_of(slot)).forward : camera.forward();
+  guides.depth[slot] = chunk.t[i] * dot(chunk.direction.get(i), forward);
   guides.hit[slot] = 1;
 }
 
