@@ -100,7 +100,8 @@ class Renders:
             run_words([*words, "--frames", f"1-{n}"], frames[-1])
             return np.stack([read_picture(frame) for frame in frames])
         out = self.folder / "mitsuba.npy"
-        run_words([*command(program, options, path, out, size, spp, 100, view), "--matched", "--seeds", str(n)], out)
+        more = ["--matched", "--seeds", str(n), "--sampler", self.arguments.sampler]
+        run_words([*command(program, options, path, out, size, spp, 100, view), *more], out)
         return read_picture(out)
 
 
@@ -193,6 +194,7 @@ def main():
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--bounces", type=int, default=6)
+    parser.add_argument("--sampler", default="independent", help="of Mitsuba; multijitter is less noisy")
     parser.add_argument("--only", help="names of scenes, semicolon separated; balls and pane are names, too")
     parser.add_argument("--keep", help="folder for the mean pictures, as .npy")
     arguments = parser.parse_args()

@@ -20,7 +20,7 @@ import numpy as np
 
 import matched_scenes
 
-SIZE, WINDOW, SPP, SEEDS, FIRST_SEED, BOUNCES = 32, 16, 2048, 12, 7000, 6
+SIZE, WINDOW, SPP, SEEDS, FIRST_SEED, BOUNCES = 32, 16, 1024, 12, 7000, 6
 HERE = pathlib.Path(__file__).parent
 
 
