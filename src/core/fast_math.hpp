@@ -3,6 +3,7 @@
 // units in the last place of float where each says so. Polynomials are Taylor or minimax series over the stated range.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -47,6 +48,40 @@ inline float atan2_turns(float y, float x) noexcept {
   turns = ay > ax ? 0.25F - turns : turns;
   turns = x < 0 ? 0.5F - turns : turns;
   return y < 0 ? -turns : turns;
+}
+
+// log2(x) for normal x > 0; absolute error below 2e-7 + 1e-7 |log2 x|. The mantissa in [sqrt(1/2), sqrt 2) goes through
+// log m = 2 atanh((m - 1) / (m + 1)), whose series needs five terms there.
+inline float log2_fast(float x) noexcept {
+  constexpr std::int32_t kHalfRoot = 0x3f3504f3;  // bits of sqrt(1/2)
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  const std::int32_t exponent = (bits - kHalfRoot) >> 23;
+  const float m = std::bit_cast<float>(bits - exponent * (1 << 23));
+  const float t = (m - 1.0F) / (m + 1.0F);
+  const float s = t * t;
+  const float atanh = t * (1.0F + s * (3.3333333e-1F + s * (2.0e-1F + s * (1.4285714e-1F + s * 1.1111111e-1F))));
+  return static_cast<float>(exponent) + 2.88539008F * atanh;
+}
+
+// 2^x, clamped to normal numbers; relative error below 2e-7.
+inline float exp2_fast(float x) noexcept {
+  const float limited = x < -126.0F ? -126.0F : (x > 127.0F ? 127.0F : x);
+  // Adding and subtracting 1.5 * 2^23 rounds to the nearest integer.
+  const float whole = (limited + 12582912.0F) - 12582912.0F;
+  const float z = (limited - whole) * 6.93147181e-1F;
+  const float p =
+      1.0F +
+      z * (1.0F +
+           z * (0.5F + z * (1.6666667e-1F +
+                            z * (4.1666667e-2F + z * (8.3333333e-3F + z * (1.3888889e-3F + z * 1.9841270e-4F))))));
+  return p * std::bit_cast<float>((static_cast<std::int32_t>(whole) + 127) * (1 << 23));
+}
+
+// x^y for x >= 0; 0 and subnormal x give 0 whatever y is.
+inline float pow_fast(float x, float y) noexcept {
+  constexpr float kLeastNormal = 1.17549435e-38F;
+  const float power = exp2_fast(y * log2_fast(x > kLeastNormal ? x : 1.0F));
+  return x > kLeastNormal ? power : 0.0F;
 }
 
 }  // namespace gazetrace

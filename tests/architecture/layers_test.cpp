@@ -21,7 +21,7 @@ const fs::path kSource = GAZETRACE_SOURCE_DIR;
 const std::map<std::string, int> kLayer = {
     {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},  {"scene", 2},
     {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4}, {"output", 4},
-    {"compare", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"sweep", 6},    {"cli", 7},
+    {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"sweep", 6}, {"cli", 7},
 };
 
 // Within a layer, the order of the data: what may be seen sideways.
@@ -45,6 +45,8 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"trace", "trace"},       {"reconstruct", "reconstruct"},
     {"temporal", "temporal"}, {"color", "color"},
     {"output", "output"},     {"pipeline", "pipeline"},
+    {"metrics", "metrics"},   {"fovvideovdp", "metrics"},
+    {"compare", "compare"},
 };
 
 // Which files may meet which dependency.

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "metrics/code_values.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.hpp"
+
+namespace gazetrace {
+
+double display_light(DisplayResponse response, double code) {
+  const double v = std::clamp(code, 0.0, 1.0);
+  switch (response) {
+    case DisplayResponse::srgb:
+      return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    case DisplayResponse::gamma22:
+      return std::pow(v, 2.2);
+    case DisplayResponse::gamma24:
+      return std::pow(v, 2.4);
+    case DisplayResponse::linear:
+      return v;
+  }
+  return v;
+}
+
+ImageRgb light_of_code(const ImageRgb& code, DisplayResponse response, int threads) {
+  std::array<float, 256> codes{};
+  std::array<float, 256> lights{};
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    codes[i] = static_cast<float>(i) / 255.0F;
+    lights[i] = static_cast<float>(display_light(response, static_cast<double>(i) / 255.0));
+  }
+  const auto decode = [&](float v) {
+    const auto i = static_cast<std::size_t>(std::clamp(v, 0.0F, 1.0F) * 255.0F + 0.5F);
+    return codes[i] == v ? lights[i] : static_cast<float>(display_light(response, v));
+  };
+  ImageRgb light(code.width_px, code.height_px);
+  parallel_for(static_cast<std::size_t>(code.height_px), threads, [&](std::size_t row) {
+    for (int x = 0; x < code.width_px; ++x) {
+      const Vec3f& v = code(x, static_cast<int>(row));
+      light(x, static_cast<int>(row)) = {decode(v.x), decode(v.y), decode(v.z)};
+    }
+  });
+  return light;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weights of the colour channels, and display code values as light.
+#pragma once
+
+#include "gazetrace/image.hpp"
+#include "gazetrace/metrics.hpp"
+
+namespace gazetrace {
+
+// ITU-R BT.601 luma of code values.
+inline double luma_601(const Vec3f& code) {
+  return 0.299 * static_cast<double>(code.x) + 0.587 * static_cast<double>(code.y) +
+         0.114 * static_cast<double>(code.z);
+}
+
+// The light of a picture of code values, through a table where they are 8-bit ones.
+ImageRgb light_of_code(const ImageRgb& code, DisplayResponse response, int threads);
+
+}  // namespace gazetrace

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two factors of structural similarity from local means, variances and covariance.
+#pragma once
+
+#include "gazetrace/image.hpp"
+
+namespace gazetrace {
+
+using ImageDouble = Image<double>;
+
+inline constexpr int kSsimRadiusPx = 5;  // of the Gaussian window, 11 x 11 with a sigma of 1.5
+
+struct SsimFactors {
+  ImageDouble luminance;           // (2 mr mt + C1) / (mr^2 + mt^2 + C1)
+  ImageDouble contrast_structure;  // (2 srt + C2) / (sr^2 + st^2 + C2)
+};
+
+// Of the pixels whose window lies inside: both images lack a rim of kSsimRadiusPx. Code values with peak 1, K1 = 0.01,
+// K2 = 0.03, population covariance (Wang et al., "Image quality assessment: from error visibility to structural
+// similarity", 2004, eq. 6-10 and section III-C).
+SsimFactors ssim_factors(const ImageDouble& reference, const ImageDouble& test, int threads);
+
+}  // namespace gazetrace
