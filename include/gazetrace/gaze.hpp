@@ -100,9 +100,17 @@ struct GazeReadOptions {
   double min_confidence = std::numeric_limits<double>::quiet_NaN();  // NaN: the format's own (Pupil Core: 0.6)
   bool zero_is_missing = false;  // exactly (0, 0) is missing, whatever the validity says
   bool swap_xy = false;          // the log has its axes the wrong way round
+  bool flip_x = false;           // left and right are exchanged: u becomes 1 - u, direction x becomes -x
+  bool flip_y = false;           // top and bottom likewise
+  // Numbers are written with a decimal comma in a table that commas separate: cells are joined again. Where tabs or
+  // semicolons separate, decimal commas are understood without it.
+  bool decimal_comma = false;
   // For looking at a log only: where pixels need the size of a display that nobody states, a usual size that holds them
   // is taken, with a warning and a fact marked statistics; degrees become directions.
   bool guess_display = false;
+  // As guess_display; moreover what reading refuses and an option mends is mended and told in GazeLog::faults, and gaze
+  // on a scene camera's picture is taken.
+  bool for_inspection = false;
 };
 
 // How a format was tried.

@@ -111,6 +111,33 @@ struct GazeCalibration {
   std::int64_t row = 0;
 };
 
+// What reading for inspection mended where it stops otherwise.
+struct GazeFault {
+  std::string code;     // "unordered", "duplicates", "decimal-commas"
+  std::string problem;  // with file and line
+  std::string flag;     // the option under which reading does the same; empty: there is none
+};
+
+// Rows of the file against the clock, before anything was sorted or dropped; each eye's rows count for themselves.
+struct GazeOrder {
+  std::size_t rows = 0;
+  std::size_t backward_steps = 0;
+  std::int64_t longest_backward_ns = 0;
+  std::int64_t first_backward_row = 0;   // 1-based, 0: none
+  std::size_t duplicates = 0;            // rows of a time and an eye that were there already
+  std::size_t identical_duplicates = 0;  // with the very same position
+  std::int64_t first_duplicate_row = 0;
+};
+
+// Another account of the same gaze in the same file: positions in other units, means of fixations by the tracker.
+// Correlations of gaze x, y with its x, y, each axis oriented as the format defines that of the gaze: +1 is expected
+// for xx and yy. NaN where an axis does not vary.
+struct GazeWitness {
+  std::string what;
+  std::size_t count = 0;
+  double xx = 0, yy = 0, xy = 0, yx = 0;  // xy: gaze x with its y
+};
+
 struct GazeLog {
   GazeKind kind = GazeKind::screen;
   // Times increase. One gaze a time: of both eyes as `GazeReadOptions::eye` says.
@@ -134,6 +161,11 @@ struct GazeLog {
   std::vector<GazeCalibration> calibrations;
   std::vector<GazeFact> facts;
   Warnings warnings;
+
+  GazeOrder order;
+  std::size_t zero_positions = 0;  // rows at exactly (0, 0) in the file's units that nothing marks as missing
+  std::vector<GazeWitness> witnesses;
+  std::vector<GazeFault> faults;  // empty but after GazeReadOptions::for_inspection
 };
 
 }  // namespace gazetrace

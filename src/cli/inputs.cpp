@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_inspect.hpp"
 
 namespace gazetrace {
 namespace {
@@ -107,6 +108,21 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   return settings;
 }
 
+// Gaze is biometric, and a time of day tells whose it is: nothing that is written shall carry it.
+void hide_times_of_day(GazeLog& log, JobSettings& job) {
+  for (std::string& warning : log.warnings) {
+    warning = without_dates(warning);
+  }
+  if (is_wall_clock(log)) {
+    const std::int64_t taken_off_ns = count_from_first_sample(log);
+    if (job.gaze_start) {
+      if (__builtin_sub_overflow(job.gaze_start->ns, taken_off_ns, &job.gaze_start->ns)) {
+        usage("--gaze-start", "lies ages away from the log");
+      }
+    }
+  }
+}
+
 bool camera_needs_scene(const JobSettings& job) {
   return job.camera_path.empty() && !job.camera_from_gaze && !job.eye;
 }
@@ -178,18 +194,23 @@ GazeColumns merged_columns(const GazeFileSettings& gaze) {
                                    : merge_gaze_columns(load_gaze_columns(gaze.columns_file), gaze.read.columns);
 }
 
-GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
+GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings& screen) {
   GazeReadOptions options = gaze.read;
   options.columns = merged_columns(gaze);
   options.min_confidence = gaze.min_confidence.value_or(options.min_confidence);
   options.display = screen_geometry(screen);
   options.unordered = gaze.sort ? UnorderedPolicy::sort : UnorderedPolicy::error;
-  return load_gaze_log(gaze.path, options);
+  return options;
 }
 
-Inputs load_inputs(const JobSettings& job, InputScope scope,
+GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
+  return load_gaze_log(gaze.path, read_options(gaze, screen));
+}
+
+Inputs load_inputs(const JobSettings& given, InputScope scope,
                    const std::function<void(std::size_t, std::size_t)>& progress) {
   Inputs inputs;
+  JobSettings job = given;
   std::string decision;
   // What is quick to read first: a wrong name must not cost the loading of a scene.
   if (job.gaze_at) {
@@ -199,6 +220,9 @@ Inputs load_inputs(const JobSettings& job, InputScope scope,
     inputs.gaze = fixed_gaze(*job.gaze_at);
   } else if (!job.gaze.path.empty()) {
     inputs.gaze = read_gaze_file(job.gaze, job.screen);
+    if (!job.keep_ids) {
+      hide_times_of_day(*inputs.gaze, job);
+    }
   }
   const GazeLog* log = inputs.gaze ? &*inputs.gaze : nullptr;
   {

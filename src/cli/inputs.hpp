@@ -60,6 +60,7 @@ std::string digest_job(const OptionTable& table, const JobSettings& job, const P
 // Parts of load_inputs that `gaze` and `scene` use as well.
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen);
 GazeColumns merged_columns(const GazeFileSettings& gaze);  // options over the column map
+GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings& screen);
 GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen);
 // "auto" is resolved by the scene; returns what was taken, in words.
 std::string set_environment(const JobSettings& job, Scene& scene);

@@ -94,6 +94,8 @@ void add_gaze_mapping_options(OptionTable& table, JobSettings& job) {
               "Time on the log's clock that is video time --gaze-offset; default: its first sample", kPixels);
   table.value("--gaze-latency", job.gaze_latency, "DURATION",
               "Sampling follows the gaze of this long ago; measurements keep the true gaze", kPixels);
+  table.flag("--keep-ids", job.keep_ids,
+             "Times of day of the log stay in plan, headers and records; otherwise time counts from its first sample");
 }
 
 void add_frame_options(OptionTable& table, JobSettings& job) {
@@ -243,6 +245,11 @@ void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze) {
   table.flag("--gaze-zero-missing", gaze.read.zero_is_missing, "Takes positions of exactly (0, 0) for missing ones",
              kPixels);
   table.flag("--gaze-swap-xy", gaze.read.swap_xy, "Exchanges the two axes", kPixels);
+  table.flag("--gaze-flip-x", gaze.read.flip_x, "Exchanges left and right", kPixels);
+  table.flag("--gaze-flip-y", gaze.read.flip_y, "Exchanges top and bottom", kPixels);
+  table.flag("--gaze-decimal-comma", gaze.read.decimal_comma,
+             "Numbers have decimal commas though commas separate the columns; not needed with tabs or semicolons",
+             kPixels);
 }
 
 void add_screen_options(OptionTable& table, ScreenSettings& screen) {

@@ -64,6 +64,7 @@ struct JobSettings {
   double gaze_scale = 1.0;
   std::optional<DurationNs> gaze_start;
   DurationNs gaze_latency;
+  bool keep_ids = false;
   ScreenSettings screen;
   std::optional<FrameRect> frame_rect;
 

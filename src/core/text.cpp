@@ -155,13 +155,22 @@ bool LineReader::next(std::string_view& line) {
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells) {
   cells.clear();
   if (separator == ' ') {
-    constexpr std::string_view kBlanks = " \t";
-    for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
-      const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-      cells.push_back(line.substr(begin, end - begin));
-      begin = line.find_first_not_of(kBlanks, end);
+    const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    for (;;) {
+      while (at != end && is_blank(*at)) {
+        ++at;
+      }
+      if (at == end) {
+        return;
+      }
+      const char* const begin = at;
+      while (at != end && !is_blank(*at)) {
+        ++at;
+      }
+      cells.emplace_back(begin, static_cast<std::size_t>(at - begin));
     }
-    return;
   }
   bool quoted = false;
   std::size_t begin = 0;
@@ -197,6 +206,18 @@ std::string_view cell_text(std::string_view cell, std::string& buffer) {
 }
 
 NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& value) {
+  // Nearly all stamps are short whole numbers.
+  constexpr std::array<std::int64_t, 10> kPowers{1,       10,        100,        1'000,       10'000,
+                                                 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
+  if (exponent >= 0 && exponent < 10 && !text.empty() && text.size() <= 18 &&
+      std::all_of(text.begin(), text.end(), is_digit)) {
+    std::int64_t whole = 0;
+    for (const char c : text) {
+      whole = 10 * whole + (c - '0');
+    }
+    return __builtin_mul_overflow(whole, kPowers[static_cast<std::size_t>(exponent)], &value) ? NumberStatus::overflow
+                                                                                              : NumberStatus::ok;
+  }
   bool negative = false;
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
     negative = text.front() == '-';

@@ -23,6 +23,7 @@ class Finder {
     for (const std::string_view name : names) {
       for (std::size_t i = 0; i < table_.headings.size(); ++i) {
         if (letters_and_digits(table_.headings[i].name) == name) {
+          table_.check_unique(i);
           return i;
         }
       }

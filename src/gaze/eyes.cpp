@@ -39,13 +39,14 @@ class AnglePlane {
   // Radians where angles are known.
   [[nodiscard]] Vec2d angles(const Vec3d& at) const {
     if (is_direction_) {
-      return {std::atan2(at.x, -at.z), std::atan2(at.y, std::hypot(at.x, at.z))};
+      return {std::atan2(at.x, -at.z), std::atan2(at.y, std::sqrt(at.x * at.x + at.z * at.z))};
     }
     if (geometry_) {
       const DisplayGeometry& g = *geometry_;
       const double right = (at.x - 0.5) * g.width_cm - g.eye_x_cm;
       const double up = (0.5 - at.y) * g.height_cm - g.eye_y_cm;
-      return {std::atan2(right, g.distance_cm), std::atan2(up, std::hypot(right, g.distance_cm))};
+      return {std::atan2(right, g.distance_cm),
+              std::atan2(up, std::sqrt(right * right + g.distance_cm * g.distance_cm))};
     }
     return degrees_ ? Vec2d{at.x * degrees_->x * kRadPerDeg, -at.y * degrees_->y * kRadPerDeg} : Vec2d{at.x, at.y};
   }
@@ -60,7 +61,8 @@ class AnglePlane {
       const DisplayGeometry& g = *geometry_;
       const double right = std::tan(angles.x) * g.distance_cm;
       sample.u = 0.5 + (right + g.eye_x_cm) / g.width_cm;
-      sample.v = 0.5 - (std::tan(angles.y) * std::hypot(right, g.distance_cm) + g.eye_y_cm) / g.height_cm;
+      sample.v = 0.5 - (std::tan(angles.y) * std::sqrt(right * right + g.distance_cm * g.distance_cm) + g.eye_y_cm) /
+                           g.height_cm;
     } else if (degrees_) {
       sample.u = angles.x * kDegPerRad / degrees_->x;
       sample.v = -angles.y * kDegPerRad / degrees_->y;
@@ -96,7 +98,11 @@ class RunningOffset {
   void add(const Vec2d& difference, std::int64_t t_ns) {
     ++count_;
     const double passed = count_ > 1 ? static_cast<double>(t_ns) - static_cast<double>(last_ns_) : 0;
-    const double weight = std::max(1.0 / static_cast<double>(count_), 1.0 - std::exp(-passed / kOffsetTimeNs));
+    if (passed != passed_) {  // mostly one step of the tracker's clock
+      passed_ = passed;
+      forgotten_ = 1.0 - std::exp(-passed / kOffsetTimeNs);
+    }
+    const double weight = std::max(1.0 / static_cast<double>(count_), forgotten_);
     offset_ = {offset_.x + weight * (difference.x - offset_.x), offset_.y + weight * (difference.y - offset_.y)};
     last_ns_ = t_ns;
   }
@@ -107,6 +113,7 @@ class RunningOffset {
   Vec2d offset_;
   std::size_t count_ = 0;
   std::int64_t last_ns_ = 0;
+  double passed_ = 0, forgotten_ = 0;
 };
 
 EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
@@ -229,9 +236,8 @@ float mean_or_known(float a, float b) {
   return std::isnan(a) ? b : std::isnan(b) ? a : 0.5F * (a + b);
 }
 
-void take_mean(GazeSample& sample, const BothEyes& eyes, GazeKind kind, const AnglePlane& plane) {
-  const Vec2d left = plane.angles(eyes.left.at);
-  const Vec2d right = plane.angles(eyes.right.at);
+void take_mean(GazeSample& sample, const BothEyes& eyes, const Vec2d& left, const Vec2d& right, GazeKind kind,
+               const AnglePlane& plane) {
   take_eye(sample, eyes.left, kind);
   plane.place({0.5 * (left.x + right.x), 0.5 * (left.y + right.y)}, sample);
   if (kind != GazeKind::direction && eyes.left.validity != eyes.right.validity) {
@@ -254,9 +260,11 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
     const bool right = is_usable(eyes.right.validity);
     sample.eye = preferred;
     if (left && right) {
-      offset.add(plane.angles(eyes.left.at) - plane.angles(eyes.right.at), sample.t_ns);
+      const Vec2d left_angles = plane.angles(eyes.left.at);
+      const Vec2d right_angles = plane.angles(eyes.right.at);
+      offset.add(left_angles - right_angles, sample.t_ns);
       if (preferred == Eye::cyclopean) {
-        take_mean(sample, eyes, log.kind, plane);
+        take_mean(sample, eyes, left_angles, right_angles, log.kind, plane);
       } else {
         take_eye(sample, preferred == Eye::left ? eyes.left : eyes.right, log.kind);
       }

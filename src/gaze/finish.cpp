@@ -18,32 +18,56 @@ std::string place_of(const GazeLog& log, const GazeSample& sample) {
   return fmt::format("{}:{}", log.source, sample.row);
 }
 
-void order_samples(GazeLog& log, UnorderedPolicy unordered) {
-  std::size_t backwards = 0;
+bool is_same_position(const GazeSample& a, const GazeSample& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return same(a.u, b.u) && same(a.v, b.v) && same(a.direction.x, b.direction.x) && same(a.direction.y, b.direction.y) &&
+         same(a.direction.z, b.direction.z);
+}
+
+// Error(input) naming `row`, unless what is wrong is to be mended.
+void refuse(GazeLog& log, const GazeReadOptions& options, const std::string& code, const GazeSample& row,
+            const std::string& problem, const std::string& remedy) {
+  if (options.unordered == UnorderedPolicy::sort) {
+    return;
+  }
+  if (!options.for_inspection) {
+    throw Error(ErrorKind::input, place_of(log, row), problem, remedy);
+  }
+  log.faults.push_back({code, fmt::format("line {}: {}", row.row, problem), "--gaze-sort"});
+}
+
+void order_samples(GazeLog& log, const GazeReadOptions& options) {
+  GazeOrder& order = log.order;
+  order.rows = log.samples.size();
   for (std::size_t i = 1; i < log.samples.size(); ++i) {
     const GazeSample& before = log.samples[i - 1];
     const GazeSample& sample = log.samples[i];
     if (sample.t_ns >= before.t_ns) {
       continue;
     }
-    if (unordered == UnorderedPolicy::error) {
-      throw Error(ErrorKind::input, place_of(log, sample),
-                  fmt::format("time {} ns is before that of line {} ({} ns)", sample.t_ns, before.row, before.t_ns),
-                  "sort the log, or use --gaze-sort");
+    if (order.backward_steps++ == 0) {
+      order.first_backward_row = sample.row;
+      refuse(log, options, "unordered", sample,
+             fmt::format("time {} ns is before that of line {} ({} ns)", sample.t_ns, before.row, before.t_ns),
+             "sort the log, or use --gaze-sort");
     }
-    ++backwards;
+    std::int64_t back_ns = 0;
+    if (__builtin_sub_overflow(before.t_ns, sample.t_ns, &back_ns)) {
+      back_ns = std::numeric_limits<std::int64_t>::max();
+    }
+    order.longest_backward_ns = std::max(order.longest_backward_ns, back_ns);
   }
-  if (backwards > 0) {
+  if (order.backward_steps > 0) {
     std::stable_sort(log.samples.begin(), log.samples.end(),
                      [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
-    log.warnings.push_back(fmt::format("{}: sorted by time; {} {} backwards", log.source, backwards,
-                                       backwards == 1 ? "step went" : "steps went"));
+    log.warnings.push_back(fmt::format("{}: sorted by time; {} {} backwards", log.source, order.backward_steps,
+                                       order.backward_steps == 1 ? "step went" : "steps went"));
   }
 }
 
 // Keeps the last row of each eye among rows of one time.
-void drop_duplicates(GazeLog& log, UnorderedPolicy unordered) {
-  std::size_t dropped = 0;
+void drop_duplicates(GazeLog& log, const GazeReadOptions& options) {
+  GazeOrder& order = log.order;
   std::vector<GazeSample>& samples = log.samples;
   std::size_t kept = 0;
   std::size_t group = 0;  // where the rows of the current time begin, among the kept
@@ -56,21 +80,25 @@ void drop_duplicates(GazeLog& log, UnorderedPolicy unordered) {
       ++twin;
     }
     if (twin < kept) {
-      if (unordered == UnorderedPolicy::error) {
-        throw Error(ErrorKind::input, place_of(log, samples[i]),
-                    fmt::format("time {} ns repeats that of line {}", samples[i].t_ns, samples[twin].row),
-                    "remove one of them, or use --gaze-sort, which keeps the last");
+      if (order.duplicates++ == 0) {
+        order.first_duplicate_row = samples[i].row;
+        refuse(log, options, "duplicates", samples[i],
+               fmt::format("time {} ns repeats that of line {}", samples[i].t_ns, samples[twin].row),
+               "remove one of them, or use --gaze-sort, which keeps the last");
       }
-      ++dropped;
+      order.identical_duplicates += is_same_position(samples[twin], samples[i]) ? 1 : 0;
       samples[twin] = samples[i];
       continue;
     }
-    samples[kept++] = samples[i];
+    if (kept != i) {
+      samples[kept] = samples[i];
+    }
+    ++kept;
   }
   samples.resize(kept);
-  if (dropped > 0) {
-    log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source, dropped,
-                                       dropped == 1 ? "duplicate was" : "duplicates were"));
+  if (order.duplicates > 0) {
+    log.warnings.push_back(fmt::format("{}: {} {} dropped: the last row of equal times is kept", log.source,
+                                       order.duplicates, order.duplicates == 1 ? "duplicate was" : "duplicates were"));
   }
 }
 
@@ -105,8 +133,8 @@ void finish_log(GazeLog& log, const GazeReadOptions& options) {
   if (log.samples.empty()) {
     throw Error(ErrorKind::input, log.source, "holds no sample", "a gaze log needs at least one row below its header");
   }
-  order_samples(log, options.unordered);
-  drop_duplicates(log, options.unordered);
+  order_samples(log, options);
+  drop_duplicates(log, options);
   choose_eyes(log, options);
   align_origins(log);
   const auto usable = [](const GazeSample& sample) { return is_usable(sample.validity); };

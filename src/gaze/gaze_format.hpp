@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "gazetrace/gaze.hpp"
 
@@ -11,6 +12,8 @@ namespace gazetrace {
 struct GazeFile {
   std::string path;  // for sidecars and messages
   std::string text;  // unpacked; UTF-8 without a byte-order mark, or the bytes of a binary format
+  // Columns whose numbers a decimal comma splits into two cells; empty: none.
+  std::vector<bool> fractions = {};
 };
 
 struct GazeFormat {

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "core/text.hpp"
+#include "gaze/decimal_comma.hpp"
 #include "gaze/finish.hpp"
 #include "gaze/gaze_format.hpp"
 #include "gaze/gzip.hpp"
+#include "gaze/read_support.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -82,6 +87,62 @@ GazeFile open_file(const std::string& path) {
   // Records of numbers may begin like a byte-order mark.
   file.text = file.path.ends_with(".raw") ? std::move(bytes) : utf8_text(std::move(bytes));
   return file;
+}
+
+// Columns that decimal commas split, where the user says so or, for inspection, where they are seen.
+std::optional<GazeFault> join_decimal_commas(GazeFile& file, const GazeReadOptions& options) {
+  if (!options.decimal_comma && !options.for_inspection) {
+    return std::nullopt;
+  }
+  DecimalCommas commas = find_decimal_commas(file);
+  using Status = DecimalCommas::Status;
+  if (commas.status == Status::none) {
+    return std::nullopt;
+  }
+  if (commas.status == Status::ambiguous) {
+    throw Error(
+        ErrorKind::input, file.path,
+        "rows hold more cells than there are columns, as with decimal commas between commas, and cannot be told "
+        "apart for certain",
+        "export again with decimal points, or with tabs or semicolons between the columns");
+  }
+  file.fractions = std::move(commas.fractions);
+  if (options.decimal_comma) {
+    return std::nullopt;
+  }
+  return GazeFault{"decimal-commas",
+                   fmt::format("rows hold more cells than the {} columns: numbers have decimal commas, and commas "
+                               "separate the columns, too",
+                               file.fractions.size()),
+                   "--gaze-decimal-comma"};
+}
+
+// Says so where the numbers of a table have decimal commas. The first rows decide.
+void add_decimal_mark(const GazeFile& file, GazeLog& log) {
+  std::size_t commas = 0;
+  std::size_t points = 0;
+  std::vector<std::string_view> cells;
+  LineReader lines(head_of(file));
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty() || ((text.front() < '0' || text.front() > '9') && text.front() != '-')) {
+      continue;
+    }
+    const char separator = text.find('\t') != std::string_view::npos  ? '\t'
+                           : text.find(';') != std::string_view::npos ? ';'
+                                                                      : ' ';
+    split_cells(text, separator, cells);
+    for (const std::string_view cell : cells) {
+      const std::size_t mark = cell.find_first_of(",.");
+      if (mark != std::string_view::npos && cells.size() > 2 && number_from(trim(cell))) {
+        (cell[mark] == ',' ? commas : points) += 1;
+      }
+    }
+  }
+  if (!file.fractions.empty() || commas > 9 * points) {
+    add_fact(log, "decimal mark", "comma", Evidence::statistics,
+             file.fractions.empty() ? "understood" : "cells that it split are joined");
+  }
 }
 
 }  // namespace
@@ -181,7 +242,8 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
   GazeLog log;
   double confidence = 1;
   {
-    const GazeFile file = open_file(path);
+    GazeFile file = open_file(path);
+    std::optional<GazeFault> commas;
     if (file.text.empty() || trim(head_of(file)).empty()) {
       throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
     }
@@ -194,7 +256,12 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
       format = guesses.front().format;
       confidence = guesses.front().confidence;
     }
+    commas = join_decimal_commas(file, options);
     log = format->read(file, options);
+    if (commas) {
+      log.faults.push_back(*commas);
+    }
+    add_decimal_mark(file, log);
   }  // the text is given back before eyes are joined
   log.source = path;
   log.format = format->name;

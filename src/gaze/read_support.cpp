@@ -107,6 +107,46 @@ void directions_from_degrees(GazeLog& log, const GazeReadOptions& options) {
   }
 }
 
+void add_flip_facts(GazeLog& log, const GazeReadOptions& options) {
+  if (options.flip_x) {
+    add_fact(log, "left and right", "exchanged", Evidence::option);
+  }
+  if (options.flip_y) {
+    add_fact(log, "top and bottom", "exchanged", Evidence::option);
+  }
+}
+
+void flip_directions(GazeLog& log, const GazeReadOptions& options) {
+  if (options.flip_x || options.flip_y) {
+    for (GazeSample& sample : log.samples) {
+      sample.direction.x *= options.flip_x ? -1 : 1;
+      sample.direction.y *= options.flip_y ? -1 : 1;
+    }
+    add_flip_facts(log, options);
+  }
+}
+
+// The witnesses follow what is done to the gaze beside them.
+void turn_witnesses(GazeLog& log, const GazeReadOptions& options, bool other_way_up) {
+  for (GazeWitness& w : log.witnesses) {
+    if (options.swap_xy) {
+      std::swap(w.xx, w.yx);
+      std::swap(w.yy, w.xy);
+    }
+    const double x_sign = options.flip_x ? -1 : 1;
+    const double y_sign = options.flip_y != other_way_up ? -1 : 1;
+    w.xx *= x_sign;
+    w.xy *= x_sign;
+    w.yy *= y_sign;
+    w.yx *= y_sign;
+  }
+}
+
+bool grows_up(const PlaceSpace& space) {
+  return space.unit == PositionUnit::deg || space.origin == PositionOrigin::bottom_left ||
+         space.origin == PositionOrigin::center;
+}
+
 PlaceSpace overrule(GazeLog& log, const GazeReadOptions& options, const PlaceSpace& space, const std::string& place) {
   PlaceSpace chosen = space;
   const PositionUnit unit = options.columns.position_unit;
@@ -160,31 +200,74 @@ std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& opti
   return options.columns.time.empty() ? own : declared_column(table, options.columns.time, place);
 }
 
+void WitnessTally::add(double x, double y, double witness_x, double witness_y) {
+  const std::array<double, 4> value{x, y, witness_x, witness_y};
+  if (!std::isfinite(x + y + witness_x + witness_y)) {
+    return;
+  }
+  ++count_;
+  std::array<double, 4> before{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    before[i] = value[i] - mean_[i];
+    mean_[i] += before[i] / static_cast<double>(count_);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      product_[i][j] += before[i] * (value[j] - mean_[j]);
+    }
+  }
+}
+
+void WitnessTally::finish(GazeLog& log, std::string what) const {
+  constexpr std::size_t kLeast = 5;
+  if (count_ < kLeast) {
+    return;
+  }
+  const auto correlation = [&](std::size_t i, std::size_t j) {
+    const double spread = std::sqrt(product_[i][i]) * std::sqrt(product_[j][j]);
+    return spread > 0 ? product_[i][j] / spread : kNan;
+  };
+  log.witnesses.push_back(
+      {std::move(what), count_, correlation(0, 2), correlation(1, 3), correlation(0, 3), correlation(1, 2)});
+}
+
 void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpace& space, const std::string& place) {
-  if (options.zero_is_missing || options.swap_xy) {
-    for (GazeSample& sample : log.samples) {
-      if (options.zero_is_missing && sample.u == 0 && sample.v == 0) {
+  for (GazeSample& sample : log.samples) {
+    if (sample.u == 0 && sample.v == 0) {
+      if (options.zero_is_missing) {
         sample.u = sample.v = kNan;
         sample.validity = is_usable(sample.validity) ? GazeValidity::lost : sample.validity;
+      } else {
+        log.zero_positions += is_usable(sample.validity) ? 1 : 0;
       }
-      if (options.swap_xy) {
-        std::swap(sample.u, sample.v);
-      }
+    }
+    if (options.swap_xy) {
+      std::swap(sample.u, sample.v);
     }
   }
   const PlaceSpace chosen = overrule(log, options, space, place);
+  turn_witnesses(log, options, grows_up(chosen) != grows_up(space));
+  const bool look_only = options.guess_display || options.for_inspection;
   if (chosen.unit == PositionUnit::deg &&
-      (options.frame == GazeFrame::head || (options.guess_display && !options.display && !log.recording_geometry))) {
+      (options.frame == GazeFrame::head || (look_only && !options.display && !log.recording_geometry))) {
     directions_from_degrees(log, options);
+    flip_directions(log, options);
     return;
   }
   std::optional<DisplayGeometry> display = conversion_display(log, options, place);
   const bool sized = display && display->width_px > 0 && display->height_px > 0;
-  if (chosen.unit == PositionUnit::px && !sized && options.guess_display) {
+  if (chosen.unit == PositionUnit::px && !sized && look_only) {
     guess_display(log, display, place);
   }
   convert_positions(log, chosen.unit, chosen.origin, chosen.unit == PositionUnit::fraction ? std::nullopt : display,
                     place);
+  if (options.flip_x || options.flip_y) {
+    for (GazeSample& sample : log.samples) {
+      sample.u = options.flip_x ? 1.0 - sample.u : sample.u;
+      sample.v = options.flip_y ? 1.0 - sample.v : sample.v;
+    }
+    add_flip_facts(log, options);
+  }
   if (!space.validity_is_final && log.kind == GazeKind::screen) {
     mark_off_screen(log.samples);
   }
@@ -233,6 +316,7 @@ void finish_directions(GazeLog& log, const GazeReadOptions& options, GazeAxes ow
   }
   add_fact(log, "axes", std::string(to_string(axes == GazeAxes::automatic ? GazeAxes::gl : axes)),
            given == GazeAxes::automatic ? evidence : Evidence::option);
+  turn_witnesses(log, options, false);
   std::size_t not_unit = 0;
   std::size_t backwards = 0;
   std::size_t usable = 0;
@@ -256,6 +340,7 @@ void finish_directions(GazeLog& log, const GazeReadOptions& options, GazeAxes ow
     usable += is_usable(sample.validity) ? 1 : 0;
     backwards += is_usable(sample.validity) && d.z > 0 ? 1 : 0;
   }
+  flip_directions(log, options);
   for (EyeOrigins& origins : log.origins) {
     origins.left_mm = to_float(from_axes(to_double(origins.left_mm), axes));
     origins.right_mm = to_float(from_axes(to_double(origins.right_mm), axes));
@@ -317,7 +402,7 @@ void finish_head(GazeLog& log) {
 }
 
 void refuse_scene_camera(const GazeFile& file, const GazeReadOptions& options, std::string_view way_out) {
-  if (options.frame == GazeFrame::automatic) {
+  if (options.frame == GazeFrame::automatic && !options.for_inspection) {
     throw Error(ErrorKind::input, file.path,
                 "holds gaze on the picture of a scene camera, which moves with the head: it is no place on a display",
                 way_out);

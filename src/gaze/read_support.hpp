@@ -3,6 +3,7 @@
 // fractions or directions, and it is written down what was concluded from what.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,6 +49,19 @@ Quatd quaternion_from_unity_euler_deg(const Vec3d& rotation);
 HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Quatd& orientation, GazeAxes axes);
 // Keeps poses with increasing times and of unit length.
 void finish_head(GazeLog& log);
+
+// Gathers the correlations of a GazeWitness; rows where any of the four is not finite are left out.
+class WitnessTally {
+ public:
+  void add(double x, double y, double witness_x, double witness_y);
+  // Adds the witness to the log where there were enough rows. Call it before finish_places or finish_directions.
+  void finish(GazeLog& log, std::string what) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::array<double, 4> mean_{};                    // x, y, witness x, witness y
+  std::array<std::array<double, 4>, 4> product_{};  // sums of products of differences from the means
+};
 
 // Throws for gaze on a scene camera's picture unless it was asked for; `way_out` says what else there is.
 void refuse_scene_camera(const GazeFile& file, const GazeReadOptions& options, std::string_view way_out);

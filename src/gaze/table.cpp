@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstring>
 
 #include "core/text.hpp"
 #include "gaze/units.hpp"
@@ -45,10 +46,18 @@ void split_row(std::string_view line, const DelimitedTable& table, std::size_t c
   cells.clear();
   const char* at = line.data();
   const char* const end = at + line.size();
+  const auto next_separator = [&](const char* from) {
+    const auto* const found = static_cast<const char*>(
+        from == end ? nullptr : std::memchr(from, table.separator, static_cast<std::size_t>(end - from)));
+    return found == nullptr ? end : found;
+  };
   while (cells.size() < count) {
-    const char* stop = at;
-    while (stop != end && *stop != table.separator) {
-      ++stop;
+    const char* stop = next_separator(at);
+    // A missing value stands in one cell even where numbers take two.
+    const bool joins = cells.size() < table.fractions.size() && table.fractions[cells.size()] && stop != end &&
+                       stop != at && stop[-1] >= '0' && stop[-1] <= '9';
+    if (joins) {
+      stop = next_separator(stop + 1);
     }
     cells.emplace_back(at, static_cast<std::size_t>(stop - at));
     if (stop == end) {
@@ -61,6 +70,18 @@ void split_row(std::string_view line, const DelimitedTable& table, std::size_t c
 bool is_row(std::string_view line) {
   const std::string_view text = trim(line);
   return !text.empty() && text.front() != '#';
+}
+
+std::optional<std::size_t> first_called(const std::vector<ColumnHeading>& headings, std::string_view name) {
+  const std::string wanted = letters_and_digits(name);
+  for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
+    for (std::size_t i = 0; i < headings.size(); ++i) {
+      if (letters_and_digits(headings[i].*part) == wanted) {
+        return i;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 bool is_known_unit(std::string_view text) {
@@ -120,16 +141,25 @@ std::string place_of(const GazeFile& file, std::int64_t line) {
   return fmt::format("{}:{}", file.path, line);
 }
 
-std::optional<std::size_t> DelimitedTable::find(std::string_view name) const {
-  const std::string wanted = letters_and_digits(name);
-  for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
-    for (std::size_t i = 0; i < headings.size(); ++i) {
-      if (letters_and_digits(headings[i].*part) == wanted) {
-        return i;
-      }
+void DelimitedTable::check_unique(std::size_t column) const {
+  const std::string wanted = letters_and_digits(headings[column].text);
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    if (i != column && !wanted.empty() && letters_and_digits(headings[i].text) == wanted) {
+      throw Error(
+          ErrorKind::input, place,
+          fmt::format("columns {} ('{}') and {} ('{}') have one name", std::min(column, i) + 1,
+                      headings[std::min(column, i)].text, std::max(column, i) + 1, headings[std::max(column, i)].text),
+          "rename the one that is not meant, or name columns by number, such as --gaze-x-column 2");
     }
   }
-  return std::nullopt;
+}
+
+std::optional<std::size_t> DelimitedTable::find(std::string_view name) const {
+  const auto found = first_called(headings, name);
+  if (found) {
+    check_unique(*found);
+  }
+  return found;
 }
 
 std::optional<std::size_t> DelimitedTable::find_any(std::initializer_list<std::string_view> names) const {
@@ -142,7 +172,8 @@ std::optional<std::size_t> DelimitedTable::find_any(std::initializer_list<std::s
 }
 
 bool DelimitedTable::has_all(std::initializer_list<std::string_view> names) const {
-  return std::all_of(names.begin(), names.end(), [&](std::string_view name) { return find(name).has_value(); });
+  return std::all_of(names.begin(), names.end(),
+                     [&](std::string_view name) { return first_called(headings, name).has_value(); });
 }
 
 DelimitedTable open_table(const GazeFile& file) {
@@ -176,6 +207,8 @@ DelimitedTable open_table(const GazeFile& file) {
     const char* const body = table.has_header ? lines.rest().data() : line.data();
     table.body = std::string_view(body, static_cast<std::size_t>(file.text.data() + file.text.size() - body));
     table.lines_above = table.has_header ? lines.number() : lines.number() - 1;
+    table.place = place_of(file, table.header_line);
+    table.fractions = file.fractions;
     break;
   }
   return table;
@@ -196,6 +229,7 @@ std::size_t declared_column(const DelimitedTable& table, const std::string& name
   for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
     for (std::size_t i = 0; i < table.headings.size(); ++i) {
       if (to_lower(table.headings[i].*part) == wanted) {
+        table.check_unique(i);
         return i;
       }
     }

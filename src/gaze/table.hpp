@@ -41,11 +41,15 @@ struct DelimitedTable {
   std::string_view body;         // from the first row
   std::int64_t lines_above = 0;  // before the body
   std::vector<PreambleLine> preamble;
+  std::vector<bool> fractions;  // as GazeFile's
+  std::string place;            // file:line of the header
 
-  // By the whole text or the name, blanks, punctuation and case aside.
+  // By the whole text or the name, blanks, punctuation and case aside. Error(input) where two columns are called so.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> find_any(std::initializer_list<std::string_view> names) const;
   [[nodiscard]] bool has_all(std::initializer_list<std::string_view> names) const;
+  // Error(input) naming both where another column has the very name of `column`.
+  void check_unique(std::size_t column) const;
 };
 
 // A file without any row has no headings.

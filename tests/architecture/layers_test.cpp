@@ -46,7 +46,7 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"temporal", "temporal"}, {"color", "color"},
     {"output", "output"},     {"pipeline", "pipeline"},
     {"metrics", "metrics"},   {"fovvideovdp", "metrics"},
-    {"compare", "compare"},
+    {"compare", "compare"},   {"gaze_inspect", "gaze"},
 };
 
 // Which files may meet which dependency.

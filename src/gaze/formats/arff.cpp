@@ -71,6 +71,8 @@ GazeLog read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
   const ArffHeader header = read_header(file);
   DelimitedTable table = open_headerless(header.rows, ',', header.names);
   table.lines_above = header.lines_above;
+  table.place = place_of(file, header.lines_above);
+  table.fractions = file.fractions;
   const std::string place = place_of(file, header.lines_above);
   const auto named = [&](const std::string& declared, std::string_view own) {
     if (!declared.empty()) {

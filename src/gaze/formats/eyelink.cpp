@@ -212,10 +212,35 @@ class AscReader {
                                : key == "ESACC" ? GazeEventType::saccade
                                                 : GazeEventType::blink;
     log_.events.push_back({type, eye, begin, end, {}, line_});
+    if (type == GazeEventType::fixation) {
+      compare_fixation(eye, begin, end);
+    }
     if (type == GazeEventType::blink) {
       blinks_[eye == Eye::right ? 1 : 0].push_back({begin, end});
     } else if (type == GazeEventType::saccade) {
       saccades_[eye == Eye::right ? 1 : 0].push_back({begin, end});
+    }
+  }
+
+  // The tracker's own mean of a fixation, behind the duration, or behind HREF's where both are written, against that of
+  // its samples, which stand above it.
+  void compare_fixation(Eye eye, std::int64_t begin_ns, std::int64_t end_ns) {
+    const std::size_t column = words_.size() == 8 || words_.size() == 10 ? 5 : 8;
+    if (words_.size() < column + 2) {
+      return;
+    }
+    double x = 0;
+    double y = 0;
+    double count = 0;
+    for (auto sample = log_.samples.rbegin(); sample != log_.samples.rend() && sample->t_ns >= begin_ns; ++sample) {
+      if (sample->eye == eye && sample->t_ns <= end_ns && !std::isnan(sample->u)) {
+        x += sample->u;
+        y += sample->v;
+        ++count;
+      }
+    }
+    if (count > 0) {
+      fixations_.add(x / count, y / count, number(column) - left_px_, number(column + 1) - top_px_);
     }
   }
 
@@ -265,7 +290,8 @@ class AscReader {
     sample.v = number(column + 1) - top_px_;
     const double pupil = number(column + 2);
     sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-    if (std::isnan(sample.u) || std::isnan(sample.v)) {
+    const bool zero = options_.zero_is_missing && number(column) == 0 && number(column + 1) == 0;
+    if (zero || std::isnan(sample.u) || std::isnan(sample.v)) {
       sample.u = sample.v = kNan;
       sample.validity = GazeValidity::lost;
     } else if (!flags.empty()) {
@@ -341,6 +367,7 @@ class AscReader {
                fmt::format("{}x{} px", log_.recording_geometry->width_px, log_.recording_geometry->height_px),
                Evidence::header, coordinates_ + ", inclusive corners");
     }
+    fixations_.finish(log_, "the fixations' means (EFIX)");
     finish_places(log_, options_, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"},
                   file_.path);
   }
@@ -360,6 +387,7 @@ class AscReader {
   std::string coordinates_;
   std::vector<Vec2d> resolutions_;
   std::array<std::vector<Span>, 2> blinks_, saccades_;
+  WitnessTally fixations_;
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ double sniff_gaze_gazebase(const GazeFile& file) {
   }
   const DelimitedTable table = header_of(file);
   const bool vr = table.has_all({"lx", "ly", "rx", "ry"});
-  return table.has_all({"n", "x", "y"}) && (vr || table.find("val")) ? 0.9 : 0.0;
+  return table.has_all({"n", "x", "y"}) && (vr || table.has_all({"val"})) ? 0.9 : 0.0;
 }
 
 GazeLog read_gaze_gazebase(const GazeFile& file, const GazeReadOptions& options) {

@@ -51,6 +51,7 @@ GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   const std::size_t time = time_column(table, options, *own_time, place);
   const TimeScale scale = choose_time_unit(log, options, table.headings[time].text, 0, Evidence::header, place);
   LabelRuns runs;
+  WitnessTally angles;
   TableRows rows(file, table,
                  std::max({time, *x, *y, azimuth.value_or(0), elevation.value_or(0), worn.value_or(0),
                            blink.value_or(0), fixation.value_or(0)}) +
@@ -58,6 +59,9 @@ GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   while (rows.next()) {
     rows.check_length();
     GazeSample sample = missing_sample(rows.time_ns(time, scale), rows.line(), Eye::cyclopean, log.kind);
+    if (log.kind == GazeKind::scene_camera && azimuth && elevation) {
+      angles.add(rows.number(*x), rows.number(*y), rows.number(*azimuth), -rows.number(*elevation));
+    }
     if (log.kind == GazeKind::direction) {
       const double az = rows.number(*azimuth) * kRadPerDeg;
       const double el = rows.number(*elevation) * kRadPerDeg;
@@ -83,6 +87,7 @@ GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
     log.samples.push_back(sample);
   }
   runs.finish(log);
+  angles.finish(log, "azimuth and elevation");
   if (log.kind == GazeKind::direction) {
     add_fact(log, "position columns", "azimuth [deg], elevation [deg]", Evidence::header);
     add_fact(log, "position unit", "deg", Evidence::header);

@@ -22,6 +22,7 @@ using Triple = std::array<std::size_t, 3>;
 struct CoreColumns {
   std::size_t time = 0, confidence = 0, x = 0, y = 0;
   std::array<std::optional<Triple>, 2> normal, center;
+  std::optional<Triple> point;
   std::size_t needed = 0;
 };
 
@@ -40,13 +41,14 @@ CoreColumns find_columns(const DelimitedTable& table, const GazeReadOptions& opt
   c.confidence = need("confidence");
   c.x = need("norm_pos_x");
   c.y = need("norm_pos_y");
+  const auto triple = [&](std::string_view stem) -> std::optional<Triple> {
+    if (!table.find(fmt::format("{}_x", stem))) {
+      return std::nullopt;
+    }
+    return Triple{need(fmt::format("{}_x", stem)), need(fmt::format("{}_y", stem)), need(fmt::format("{}_z", stem))};
+  };
+  c.point = triple("gaze_point_3d");
   for (std::size_t eye = 0; eye < 2; ++eye) {
-    const auto triple = [&](std::string_view stem) -> std::optional<Triple> {
-      if (!table.find(fmt::format("{}_x", stem))) {
-        return std::nullopt;
-      }
-      return Triple{need(fmt::format("{}_x", stem)), need(fmt::format("{}_y", stem)), need(fmt::format("{}_z", stem))};
-    };
     c.normal[eye] = triple(fmt::format("gaze_normal{}", eye));
     c.center[eye] = triple(fmt::format("eye_center{}_3d", eye));
   }
@@ -115,6 +117,7 @@ GazeLog read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
   const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
   const bool right_first = by_eye && eye_0_is_right(file, table, c, log);
   TableRows rows(file, table, c.needed);
+  WitnessTally points;
   while (rows.next()) {
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(c.time, scale);
@@ -131,6 +134,9 @@ GazeLog read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
       GazeSample sample = missing_sample(t_ns, rows.line(), Eye::cyclopean, log.kind);
       sample.u = rows.number(c.x);
       sample.v = rows.number(c.y);
+      if (const Vec3d at = vector(rows, c.point); validity == GazeValidity::ok && at.z > 0) {
+        points.add(sample.u, sample.v, at.x / at.z, -at.y / at.z);
+      }
       add(sample, !std::isnan(sample.u) && !std::isnan(sample.v));
       continue;
     }
@@ -144,6 +150,7 @@ GazeLog read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
     }
     log.origins.push_back({origins[0], origins[1], t_ns});
   }
+  points.finish(log, "the gaze point in 3D");
   add_fact(log, "least confidence", fmt::format("{}", least),
            std::isnan(options.min_confidence) ? Evidence::format : Evidence::option);
   if (log.kind == GazeKind::direction) {

@@ -19,6 +19,7 @@ struct GazeOfIndex {
   Vec3d center_mm[2] = {{kNan, kNan, kNan}, {kNan, kNan, kNan}};
   double pupil_mm[2] = {kNan, kNan};
   double u = kNan, v = kNan;
+  Vec3d point_mm{kNan, kNan, kNan};
   bool bad[2] = {false, false};
   bool bad_place = false;
   bool has_eyes = false, has_place = false;
@@ -46,6 +47,8 @@ void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, std::
   } else if (json.has("pd")) {
     const double pupil = json.number("pd").value_or(kNan);
     gaze.pupil_mm[side] = !bad && pupil > 0 ? pupil : kNan;
+  } else if (json.has("gp3")) {
+    gaze.point_mm = json_vector(json, "gp3");
   } else if (json.has("gp")) {
     const std::vector<double> at = json.numbers("gp");
     if (at.size() == 2) {
@@ -129,13 +132,18 @@ GazeLog read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& op
     ordered.push_back(&gaze);
   }
   std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) { return a->t_ns < b->t_ns; });
+  WitnessTally points;
   for (const GazeOfIndex* const gaze : ordered) {
+    if (const Vec3d& at = gaze->point_mm; !gaze->bad_place && at.z > 0) {
+      points.add(gaze->u, gaze->v, -at.x / at.z, -at.y / at.z);
+    }
     add_samples(*gaze, log);
   }
   if (log.kind == GazeKind::direction) {
     add_fact(log, "position columns", "gd", Evidence::format, "of each eye");
     finish_directions(log, options, GazeAxes::sranipal, Evidence::format, file.path);
   } else {
+    points.finish(log, "gp3");
     finish_places(log, options, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gp"}, file.path);
   }
   return log;

@@ -10,7 +10,7 @@
 namespace gazetrace {
 namespace {
 
-void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, GazeLog& log) {
+void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, GazeLog& log, WitnessTally& points) {
   if (log.kind == GazeKind::scene_camera) {
     GazeSample sample = missing_sample(t_ns, row, Eye::cyclopean, log.kind);
     const std::vector<double> at = json.numbers("data.gaze2d");
@@ -18,6 +18,9 @@ void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, GazeL
       sample.u = at[0];
       sample.v = at[1];
       sample.validity = GazeValidity::ok;
+      if (const Vec3d point = json_vector(json, "data.gaze3d"); point.z > 0) {
+        points.add(at[0], at[1], -point.x / point.z, -point.y / point.z);
+      }
     }
     log.samples.push_back(sample);
     return;
@@ -60,6 +63,7 @@ GazeLog read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& op
   log.pupil_unit = "mm";
   log.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const int exponent = choose_time_unit(log, options, "timestamp", 9, Evidence::format, file.path).exponent;
+  WitnessTally points;
   for_each_json_line(file, log.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
     if (json.text("type") != "gaze") {
       return;
@@ -68,12 +72,13 @@ GazeLog read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& op
     if (!t_ns) {
       throw Error(ErrorKind::input, place, "this sample has no timestamp", "remove the line");
     }
-    add_line(json, *t_ns, row, log);
+    add_line(json, *t_ns, row, log, points);
   });
   if (log.kind == GazeKind::direction) {
     add_fact(log, "position columns", "gazedirection", Evidence::format, "of each eye");
     finish_directions(log, options, GazeAxes::sranipal, Evidence::format, file.path);
   } else {
+    points.finish(log, "gaze3d");
     finish_places(log, options, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gaze2d"},
                   file.path);
   }

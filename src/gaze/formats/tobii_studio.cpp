@@ -155,8 +155,10 @@ class StudioReader {
     if (c_.left_x && c_.left_y) {
       add(t_ns, Eye::left, *c_.left_x, *c_.left_y, rows_.number(c_.left_validity), rows_.number(c_.left_pupil));
       if (c_.left_x_mm && c_.left_y_mm) {
-        width_.add(rows_.number(*c_.left_x), rows_.number(*c_.left_x_mm));
-        height_.add(rows_.number(*c_.left_y), rows_.number(*c_.left_y_mm));
+        width_.add(rows_.number(options_.swap_xy ? *c_.left_y : *c_.left_x), rows_.number(*c_.left_x_mm));
+        height_.add(rows_.number(options_.swap_xy ? *c_.left_x : *c_.left_y), rows_.number(*c_.left_y_mm));
+        millimetres_.add(rows_.number(*c_.left_x), rows_.number(*c_.left_y), rows_.number(*c_.left_x_mm),
+                         -rows_.number(*c_.left_y_mm));
       }
     }
     if (c_.right_x && c_.right_y) {
@@ -221,6 +223,7 @@ class StudioReader {
                  "median of DistanceLeft and DistanceRight");
       }
     }
+    millimetres_.finish(log_, "the left eye in millimetres (ADCSmm)");
     finish_places(log_, options_,
                   {PositionUnit::px, PositionOrigin::top_left, Evidence::header,
                    c_.x ? "GazePointX (ADCSpx), GazePointY (ADCSpx)" : "GazePointLeftX (ADCSpx), ..."},
@@ -236,6 +239,7 @@ class StudioReader {
   TimeScale scale_;
   LabelRuns runs_;
   Slope width_, height_;
+  WitnessTally millimetres_;
   std::vector<double> distances_mm_;
 };
 

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// The log doctor: how good a gaze log is, what is suspicious in it, from what that was concluded, and which options
+// mend it. Nothing here changes a log.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/gaze.hpp"
+
+namespace gazetrace {
+
+// Times in the log's own nanoseconds. A gap is a step of more than three median steps.
+struct GazeTiming {
+  std::int64_t first_ns = 0, last_ns = 0;
+  double nominal_rate_hz = 0;  // stated by the log; 0: it does not
+  double median_rate_hz = 0;   // one over the median step
+  double mean_rate_hz = 0;     // of the steps that are no gaps
+  double step_q1_ns = 0, step_q3_ns = 0;
+  double jitter_ns = 0;  // standard deviation of the steps that are no gaps
+  std::size_t gaps = 0;
+  std::int64_t longest_gap_ns = 0;  // 0: none
+  std::int64_t gaps_total_ns = 0;
+};
+
+// Which samples can be used. Time without usable gaze goes from one usable sample to the next, less one median step.
+struct GazeLoss {
+  std::size_t samples = 0, usable = 0;
+  std::array<std::size_t, 6> by_validity{};       // in the order of GazeValidity
+  std::optional<double> left_share, right_share;  // of samples that each eye has usable; for binocular logs
+  std::size_t blink_like = 0;  // losses of 50..500 ms, the window of pymovements after Nystrom (2024)
+  double blink_like_median_ms = 0;
+  std::size_t longer = 0;  // losses above 500 ms
+  std::int64_t longest_ns = 0;
+};
+
+// The same position, bit by bit, over at least five samples and 100 ms: data held while the eye is lost, or a logger
+// that is faster than its tracker.
+struct GazeFrozen {
+  std::size_t runs = 0, samples = 0;
+  std::int64_t longest_ns = 0;
+  std::int64_t longest_row = 0;  // 1-based line where the longest begins
+  double repeated_share = 0;     // usable samples that repeat the one before
+};
+
+// Noise within fixations, which for this purpose are stretches of at least 100 ms below 30 deg/s, velocity taken over
+// 20 ms; medians over the stretches. RMS of sample-to-sample distances, and the root of the summed variances of both
+// axes (Holmqvist et al. 2012). Where angles are unknown the picture counts as 40 degrees wide for the threshold alone,
+// and the values are in pixels or in shares of the picture.
+struct GazePrecision {
+  std::size_t fixations = 0;
+  double rms_s2s = 0, sd = 0;
+};
+
+// Left minus right eye, right and up positive, in the unit of the report; spread: interquartile range / 1.349.
+struct GazeDisparity {
+  std::size_t pairs = 0;
+  double horizontal = 0, vertical = 0;
+  double horizontal_spread = 0, vertical_spread = 0;
+  double vertical_correlation = 0, horizontal_correlation = 0;  // of the two eyes' positions
+};
+
+// Whether an axis points the way that was assumed.
+enum class AxisVerdict : std::uint8_t { confirmed, flipped, undecided };
+std::string_view to_string(AxisVerdict verdict);
+struct GazeAxisTest {
+  char axis = 'y';  // x or y
+  AxisVerdict verdict = AxisVerdict::undecided;
+  std::string evidence;
+};
+
+// The vestibulo-ocular reflex keeps gaze still in the world while the head turns, so the sign of an axis under which it
+// is steadier is the right one. Over stretches of 250 ms in which the head turns by 5 to 150 deg/s about that axis and
+// the eye makes no saccade: the share that is steadier as read, by a sign test, and the ratio of the speeds.
+struct VorTest {
+  char axis = 'x';
+  std::size_t stretches = 0, steadier_as_read = 0;
+  double speed_as_read_deg_s = 0, speed_flipped_deg_s = 0;  // medians of gaze in the world
+  AxisVerdict verdict = AxisVerdict::undecided;
+};
+
+enum class FindingKind : std::uint8_t {
+  fault,      // certain: by what the file itself says
+  suspicion,  // by statistics; may be wrong
+  note,       // worth knowing, nothing to mend
+};
+std::string_view to_string(FindingKind kind);
+
+struct GazeFinding {
+  FindingKind kind = FindingKind::note;
+  std::string code;  // "unordered", "repeated-rows", "time-unit", "position-unit", "origin", "zero-missing",
+                     // "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
+  std::string what;
+  std::string evidence;
+  std::string flag;  // the exact option that mends it; empty: none does
+};
+
+struct GazeInspection {
+  // What the log says of itself; see GazeLog. Without what identifies a person unless it was to be kept.
+  std::string source, format, clock, pupil_unit;
+  double format_confidence = 1;
+  GazeKind kind = GazeKind::screen;
+  std::vector<GazeFact> facts;
+  std::optional<DisplayGeometry> geometry;
+  std::vector<GazeCalibration> calibrations;
+  std::array<std::size_t, 5> events{};  // in the order of GazeEventType
+  std::size_t head_poses = 0;
+  bool both_eyes = false;
+  bool is_wall_clock = false;  // stamps are times of day; first_ns and last_ns are 0 then unless they were to be kept
+  Warnings warnings;
+
+  GazeOrder order;
+  GazeTiming timing;
+  GazeLoss loss;
+  GazeFrozen frozen;
+  std::string unit;  // of precision and disparity: "deg", "px" or "of the picture"
+  std::optional<GazePrecision> precision;
+  std::optional<GazeDisparity> disparity;
+  std::array<double, 2> range_x{}, range_y{};  // u and v, or direction x and y, of usable samples
+  std::vector<VorTest> vor;
+  std::vector<GazeAxisTest> axes;
+  std::vector<GazeFinding> findings;
+  std::string verdict;             // one sentence
+  std::vector<std::string> flags;  // all that mend, in the order to give them
+};
+
+// Names, participants, serial numbers and times of day stay out unless `keep_ids`. `display` completes what the log
+// states of its display.
+struct GazeInspectOptions {
+  std::optional<DisplayGeometry> display;
+  bool keep_ids = false;
+};
+GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options);
+// Reads with `read.for_inspection` set: broken logs are mended where an option can, and what was wrong is a finding.
+GazeLog load_for_inspection(const std::string& path, GazeReadOptions read);
+
+// Stamps that count from 1970 and fall into this century are times of day, which identify a session.
+bool is_wall_clock(const GazeLog& log);
+// Counts all stamps of a log from its first sample on; returns what was taken off. Mapping to video time only knows
+// differences, so nothing else changes.
+std::int64_t count_from_first_sample(GazeLog& log);
+// Dates and times of day become "(date)".
+std::string without_dates(const std::string& text);
+
+std::string inspection_text(const GazeInspection& inspection);
+std::string inspection_json(const GazeInspection& inspection);
+
+// x and y over time with losses, gaps and events, and the scanpath over the display. Time counts from the first sample.
+struct GazePictureOptions {
+  int width_px = 1200;
+  std::string frame_image;  // .png or .jpg, put behind the scanpath; empty: none
+};
+std::string inspection_svg(const GazeLog& log, const GazeInspection& inspection, const GazePictureOptions& options);
+
+}  // namespace gazetrace

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaze/inspect/inspect.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <regex>
+
+namespace gazetrace {
+namespace {
+
+void measure_ranges(const GazeLog& log, GazeInspection& report) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  report.range_x = report.range_y = {kFar, -kFar};
+  for (const GazeSample& sample : log.samples) {
+    if (!is_usable(sample.validity)) {
+      continue;
+    }
+    const bool direction = log.kind == GazeKind::direction;
+    const double x = direction ? sample.direction.x : sample.u;
+    const double y = direction ? sample.direction.y : sample.v;
+    report.range_x = {std::min(report.range_x[0], x), std::max(report.range_x[1], x)};
+    report.range_y = {std::min(report.range_y[0], y), std::max(report.range_y[1], y)};
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(AxisVerdict verdict) {
+  switch (verdict) {
+    case AxisVerdict::confirmed:
+      return "confirmed";
+    case AxisVerdict::flipped:
+      return "flipped";
+    case AxisVerdict::undecided:
+      return "undecided";
+  }
+  return "undecided";
+}
+
+std::string_view to_string(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::fault:
+      return "fault";
+    case FindingKind::suspicion:
+      return "suspicion";
+    case FindingKind::note:
+      return "note";
+  }
+  return "note";
+}
+
+std::string without_dates(const std::string& text) {
+  // 2022/09/19, 19.09.2022, 2022-09-19T13:34:49.156, 13:34:49.156
+  static const std::regex kDate(
+      R"((\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4})([T ]?\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?Z?)?|\d{1,2}:\d{2}:\d{2}([.,]\d+)?)");
+  return std::regex_replace(text, kDate, "(date)");
+}
+
+bool is_wall_clock(const GazeLog& log) {
+  constexpr std::int64_t kYear2000 = 946'684'800'000'000'000;
+  constexpr std::int64_t kYear2100 = 4'102'444'800'000'000'000;
+  return !log.samples.empty() && log.samples.front().t_ns >= kYear2000 && log.samples.front().t_ns < kYear2100;
+}
+
+std::int64_t count_from_first_sample(GazeLog& log) {
+  const std::int64_t first = log.samples.empty() ? 0 : log.samples.front().t_ns;
+  const auto shift = [&](std::int64_t& t_ns) {
+    if (__builtin_sub_overflow(t_ns, first, &t_ns)) {
+      t_ns = 0;  // half an age away from the recording: no time of it
+    }
+  };
+  for (GazeSample& sample : log.samples) {
+    shift(sample.t_ns);
+  }
+  for (EyeOrigins& origins : log.origins) {
+    shift(origins.t_ns);
+  }
+  for (HeadPose& pose : log.head) {
+    shift(pose.t_ns);
+  }
+  for (GazeEvent& event : log.events) {
+    shift(event.begin_ns);
+    shift(event.end_ns);
+  }
+  for (GazeCalibration& calibration : log.calibrations) {
+    shift(calibration.t_ns);
+  }
+  return first;
+}
+
+GazeLog load_for_inspection(const std::string& path, GazeReadOptions read) {
+  read.for_inspection = true;
+  return load_gaze_log(path, read);
+}
+
+GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options) {
+  GazeInspection report;
+  const auto shown = [&](const std::string& text) { return options.keep_ids ? text : without_dates(text); };
+  report.source = log.source;
+  report.format = log.format;
+  report.clock = shown(log.clock);
+  report.pupil_unit = log.pupil_unit;
+  report.format_confidence = log.format_confidence;
+  report.kind = log.kind;
+  for (const GazeFact& fact : log.facts) {
+    report.facts.push_back({fact.what, shown(fact.value), fact.evidence, shown(fact.detail)});
+  }
+  for (const std::string& warning : log.warnings) {
+    report.warnings.push_back(shown(warning));
+  }
+  report.geometry = log.recording_geometry;
+  report.calibrations = log.calibrations;
+  for (const GazeEvent& event : log.events) {
+    ++report.events[static_cast<std::size_t>(event.type)];
+  }
+  report.head_poses = log.head.size();
+  report.both_eyes = !log.eyes.empty();
+  report.order = log.order;
+  report.timing = measure_timing(log);
+  const double step_ns = report.timing.median_rate_hz > 0 ? 1e9 / report.timing.median_rate_hz : 0;
+  report.loss = measure_loss(log, step_ns);
+  report.frozen = measure_frozen(log);
+  const GazePlane plane(log, options.display);
+  report.unit = plane.unit();
+  report.precision = measure_precision(log, plane, step_ns);
+  report.disparity = measure_disparity(log, plane);
+  measure_ranges(log, report);
+  report.vor = test_vor(log);
+  report.is_wall_clock = is_wall_clock(log);
+  conclude(log, options, report);
+  if (report.is_wall_clock && !options.keep_ids) {
+    report.timing.first_ns = report.timing.last_ns = 0;
+    for (GazeFinding& finding : report.findings) {
+      static const std::regex kStamp(R"(\b\d{18,19}\b)");
+      finding.what = std::regex_replace(finding.what, kStamp, "(stamp)");
+    }
+    for (GazeCalibration& calibration : report.calibrations) {
+      calibration.t_ns = 0;
+    }
+  }
+  return report;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of an inspection; each file beside this one holds one or two of them.
+#pragma once
+
+#include <vector>
+
+#include "gazetrace/gaze_inspect.hpp"
+
+namespace gazetrace {
+
+// Gaze as two coordinates, right and up: degrees where the geometry is known or the log has directions, else pixels of
+// the display, else shares of the picture's width.
+class GazePlane {
+ public:
+  GazePlane(const GazeLog& log, const std::optional<DisplayGeometry>& given);
+
+  [[nodiscard]] const std::string& unit() const { return unit_; }
+  // What 30 deg/s is in the unit; a guess where angles are unknown.
+  [[nodiscard]] double units_per_degree() const { return units_per_degree_; }
+  [[nodiscard]] Vec2d at(const Vec3d& place) const;  // (u, v, 0) or a direction
+  [[nodiscard]] Vec2d of(const GazeSample& sample) const {
+    return at(is_direction_ ? sample.direction : Vec3d{sample.u, sample.v, 0});
+  }
+
+ private:
+  bool is_direction_ = false;
+  DisplayGeometry geometry_;
+  bool has_angles_ = false;
+  double x_scale_ = 1, y_scale_ = 1;
+  double units_per_degree_ = 1;
+  std::string unit_ = "deg";
+};
+
+GazeTiming measure_timing(const GazeLog& log);
+GazeLoss measure_loss(const GazeLog& log, double median_step_ns);
+GazeFrozen measure_frozen(const GazeLog& log);
+std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePlane& plane, double median_step_ns);
+std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane);
+std::vector<VorTest> test_vor(const GazeLog& log);
+
+// Fills axes, findings, verdict and flags from the rest of the inspection.
+void conclude(const GazeLog& log, const GazeInspectOptions& options, GazeInspection& inspection);
+
+// Quantile of unordered values, which it reorders; NaN of none.
+double quantile(std::vector<double>& values, double share);
+
+}  // namespace gazetrace

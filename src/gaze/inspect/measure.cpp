@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// Timing, losses, frozen values, precision and binocular disparity.
+#include <algorithm>
+#include <cmath>
+
+#include "gaze/inspect/inspect.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kGapInSteps = 3;
+constexpr double kBlinkLeastMs = 50, kBlinkMostMs = 500;
+constexpr std::size_t kFrozenSamples = 5;
+constexpr std::int64_t kFrozenNs = 100'000'000;
+constexpr double kFixationDegPerS = 30;
+constexpr std::int64_t kVelocityWindowNs = 20'000'000;
+constexpr std::int64_t kFixationNs = 100'000'000;
+
+bool same_place(const GazeLog& log, const GazeSample& a, const GazeSample& b) {
+  return log.kind == GazeKind::direction ? a.direction == b.direction : a.u == b.u && a.v == b.v;
+}
+
+// Sums over one fixation.
+class Stretch {
+ public:
+  void add(const Vec2d& at) {
+    ++count_;
+    const double share = 1.0 / static_cast<double>(count_);
+    const Vec2d from{at.x - mean_.x, at.y - mean_.y};
+    mean_ = {mean_.x + share * from.x, mean_.y + share * from.y};
+    squares_ += from.x * (at.x - mean_.x) + from.y * (at.y - mean_.y);
+    if (count_ > 1) {
+      const Vec2d step{at.x - last_.x, at.y - last_.y};
+      steps_ += step.x * step.x + step.y * step.y;
+    }
+    last_ = at;
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] double rms_s2s() const { return std::sqrt(steps_ / static_cast<double>(count_ - 1)); }
+  [[nodiscard]] double sd() const { return std::sqrt(squares_ / static_cast<double>(count_ - 1)); }
+
+ private:
+  std::size_t count_ = 0;
+  Vec2d mean_, last_;
+  double squares_ = 0, steps_ = 0;
+};
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double mean_a = 0;
+  double mean_b = 0;
+  const auto n = static_cast<double>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    mean_a += a[i] / n;
+    mean_b += b[i] / n;
+  }
+  double aa = 0;
+  double bb = 0;
+  double ab = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    aa += (a[i] - mean_a) * (a[i] - mean_a);
+    bb += (b[i] - mean_b) * (b[i] - mean_b);
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+  }
+  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
+}
+
+}  // namespace
+
+GazeTiming measure_timing(const GazeLog& log) {
+  GazeTiming timing;
+  timing.first_ns = log.samples.front().t_ns;
+  timing.last_ns = log.samples.back().t_ns;
+  timing.nominal_rate_hz = log.nominal_rate_hz;
+  std::vector<double> steps;
+  steps.reserve(log.samples.size());
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    steps.push_back(static_cast<double>(log.samples[i].t_ns) - static_cast<double>(log.samples[i - 1].t_ns));
+  }
+  // Nanoseconds from 1970 do not fit a double: differences of integers do.
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    std::int64_t step = 0;
+    if (!__builtin_sub_overflow(log.samples[i].t_ns, log.samples[i - 1].t_ns, &step)) {
+      steps[i - 1] = static_cast<double>(step);
+    }
+  }
+  if (steps.empty()) {
+    return timing;
+  }
+  const double median = quantile(steps, 0.5);
+  timing.step_q1_ns = quantile(steps, 0.25);
+  timing.step_q3_ns = quantile(steps, 0.75);
+  timing.median_rate_hz = median > 0 ? 1e9 / median : 0;
+  double count = 0;
+  double mean = 0;
+  double squares = 0;
+  for (const double step : steps) {
+    if (step > kGapInSteps * median) {
+      ++timing.gaps;
+      timing.gaps_total_ns += static_cast<std::int64_t>(std::min(step, 9e18));
+      timing.longest_gap_ns = std::max(timing.longest_gap_ns, static_cast<std::int64_t>(std::min(step, 9e18)));
+      continue;
+    }
+    ++count;
+    const double from = step - mean;
+    mean += from / count;
+    squares += from * (step - mean);
+  }
+  timing.mean_rate_hz = mean > 0 ? 1e9 / mean : 0;
+  timing.jitter_ns = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
+  return timing;
+}
+
+GazeLoss measure_loss(const GazeLog& log, double median_step_ns) {
+  GazeLoss loss;
+  loss.samples = log.samples.size();
+  std::vector<double> blinks_ms;
+  const GazeSample* before = nullptr;
+  for (const GazeSample& sample : log.samples) {
+    ++loss.by_validity[static_cast<std::size_t>(sample.validity)];
+    if (!is_usable(sample.validity)) {
+      continue;
+    }
+    ++loss.usable;
+    if (before != nullptr) {
+      const double lost_ns = static_cast<double>(sample.t_ns - before->t_ns) - median_step_ns;
+      const double lost_ms = lost_ns * 1e-6;
+      if (lost_ms >= kBlinkLeastMs && lost_ms <= kBlinkMostMs) {
+        blinks_ms.push_back(lost_ms);
+      }
+      loss.longer += lost_ms > kBlinkMostMs ? 1 : 0;
+      loss.longest_ns = std::max(loss.longest_ns, static_cast<std::int64_t>(std::min(lost_ns, 9e18)));
+    }
+    before = &sample;
+  }
+  loss.blink_like = blinks_ms.size();
+  loss.blink_like_median_ms = blinks_ms.empty() ? 0 : quantile(blinks_ms, 0.5);
+  if (!log.eyes.empty()) {
+    std::array<std::size_t, 2> usable{};
+    for (const BothEyes& eyes : log.eyes) {
+      usable[0] += is_usable(eyes.left.validity) ? 1 : 0;
+      usable[1] += is_usable(eyes.right.validity) ? 1 : 0;
+    }
+    const auto n = static_cast<double>(log.eyes.size());
+    loss.left_share = static_cast<double>(usable[0]) / n;
+    loss.right_share = static_cast<double>(usable[1]) / n;
+  }
+  return loss;
+}
+
+GazeFrozen measure_frozen(const GazeLog& log) {
+  GazeFrozen frozen;
+  std::size_t usable = 0;
+  std::size_t repeated = 0;
+  const auto end_run = [&](std::size_t begin, std::size_t end) {  // [begin, end)
+    const std::int64_t length_ns = log.samples[end - 1].t_ns - log.samples[begin].t_ns;
+    if (end - begin < kFrozenSamples || length_ns < kFrozenNs) {
+      return;
+    }
+    ++frozen.runs;
+    frozen.samples += end - begin;
+    if (length_ns > frozen.longest_ns) {
+      frozen.longest_ns = length_ns;
+      frozen.longest_row = log.samples[begin].row;
+    }
+  };
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample& sample = log.samples[i];
+    const bool good = is_usable(sample.validity);
+    usable += good ? 1 : 0;
+    const bool repeats =
+        i > 0 && good && is_usable(log.samples[i - 1].validity) && same_place(log, sample, log.samples[i - 1]);
+    repeated += repeats ? 1 : 0;
+    if (!repeats) {
+      if (i > begin) {
+        end_run(begin, i);
+      }
+      begin = i;
+    }
+  }
+  end_run(begin, log.samples.size());
+  frozen.repeated_share = usable > 0 ? static_cast<double>(repeated) / static_cast<double>(usable) : 0;
+  return frozen;
+}
+
+std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePlane& plane, double median_step_ns) {
+  const auto window = static_cast<std::size_t>(
+      std::max(1.0, std::round(static_cast<double>(kVelocityWindowNs) / std::max(median_step_ns, 1e3))));
+  const double threshold = kFixationDegPerS * plane.units_per_degree();
+  std::vector<Vec2d> recent(window + 1);  // a ring of the last places
+  std::size_t in_run = 0;                 // usable samples in a row, without gaps
+  std::vector<double> rms;
+  std::vector<double> sd;
+  Stretch stretch;
+  std::int64_t begin_ns = 0;
+  std::int64_t last_ns = 0;
+  const auto end_stretch = [&] {
+    if (stretch.count() >= 3 && last_ns - begin_ns >= kFixationNs) {
+      rms.push_back(stretch.rms_s2s());
+      sd.push_back(stretch.sd());
+    }
+    stretch = {};
+  };
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample& sample = log.samples[i];
+    const bool follows =
+        i > 0 && static_cast<double>(sample.t_ns - log.samples[i - 1].t_ns) <= kGapInSteps * median_step_ns;
+    if (!is_usable(sample.validity) || !follows) {
+      end_stretch();
+      in_run = 0;
+    }
+    if (!is_usable(sample.validity)) {
+      continue;
+    }
+    const Vec2d at = plane.of(sample);
+    recent[i % (window + 1)] = at;
+    ++in_run;
+    if (in_run <= window) {
+      continue;
+    }
+    const Vec2d& from = recent[(i - window) % (window + 1)];
+    const double seconds = static_cast<double>(sample.t_ns - log.samples[i - window].t_ns) * 1e-9;
+    const Vec2d way{at.x - from.x, at.y - from.y};
+    if (!(std::sqrt(way.x * way.x + way.y * way.y) < threshold * seconds)) {
+      end_stretch();
+      continue;
+    }
+    begin_ns = stretch.count() == 0 ? sample.t_ns : begin_ns;
+    stretch.add(at);
+    last_ns = sample.t_ns;
+  }
+  end_stretch();
+  if (rms.empty()) {
+    return std::nullopt;
+  }
+  return GazePrecision{rms.size(), quantile(rms, 0.5), quantile(sd, 0.5)};
+}
+
+std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane) {
+  constexpr std::size_t kMostPairs = 200'000;
+  std::vector<double> left_x;
+  std::vector<double> left_y;
+  std::vector<double> right_x;
+  std::vector<double> right_y;
+  const std::size_t stride = std::max<std::size_t>(1, log.eyes.size() / kMostPairs);
+  for (std::size_t i = 0; i < log.eyes.size(); i += stride) {
+    const BothEyes& eyes = log.eyes[i];
+    if (is_usable(eyes.left.validity) && is_usable(eyes.right.validity)) {
+      const Vec2d left = plane.at(eyes.left.at);
+      const Vec2d right = plane.at(eyes.right.at);
+      left_x.push_back(left.x);
+      left_y.push_back(left.y);
+      right_x.push_back(right.x);
+      right_y.push_back(right.y);
+    }
+  }
+  if (left_x.size() < 3) {
+    return std::nullopt;
+  }
+  GazeDisparity disparity;
+  disparity.pairs = left_x.size();
+  disparity.horizontal_correlation = correlation(left_x, right_x);
+  disparity.vertical_correlation = correlation(left_y, right_y);
+  for (std::size_t i = 0; i < left_x.size(); ++i) {
+    left_x[i] -= right_x[i];
+    left_y[i] -= right_y[i];
+  }
+  const auto spread = [](std::vector<double>& values) {
+    const double q1 = quantile(values, 0.25);
+    return (quantile(values, 0.75) - q1) / 1.349;
+  };
+  disparity.horizontal = quantile(left_x, 0.5);
+  disparity.vertical = quantile(left_y, 0.5);
+  disparity.horizontal_spread = spread(left_x);
+  disparity.vertical_spread = spread(left_y);
+  return disparity;
+}
+
+}  // namespace gazetrace
