@@ -77,7 +77,7 @@ class BadGaze(harness.CliTest):
         self.write(name, content)
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze", name, *more], words)
         if not more:
-            self.assert_refused(["gaze", "inspect", name], words)
+            self.assert_refused(["gaze", "convert", name, "-o", "converted.csv"], words)
 
     def test_missing_file(self):
         self.assert_refused(["render", "box.gltf", *OUT, "--gaze", "gone.csv"], ["gone.csv"])

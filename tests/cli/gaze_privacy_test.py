@@ -43,7 +43,7 @@ class Privacy(harness.CliTest):
         said = self.everything_said("--keep-ids")
         for place in ("inspect log.csv []", "plan --json", "f.0001.exr"):
             self.assertIn(STAMP, said[place], place)
-        self.assertIn("2023/10/30", said["inspect gazepoint.csv []"])
+        self.assertIn("2023/10/30", said["inspect log.csv []"])
 
     def test_frames_get_the_same_gaze_either_way(self):
         self.write("log.csv", LOG)
