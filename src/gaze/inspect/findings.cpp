@@ -391,7 +391,10 @@ class Doctor {
           fmt::format("{:.1f} % of the samples lie beside the display", 100 * share(beside)),
           "positions outside 0..1 of the display");
     }
-    if (!log_.sample_age_unknown && report_.frozen.samples * 20 > loss.usable && report_.frozen.runs > 0) {
+    const bool are_zeros = std::any_of(report_.findings.begin(), report_.findings.end(),
+                                       [](const GazeFinding& f) { return f.code == "zero-missing"; });
+    const bool tells = !are_zeros && !log_.sample_age_unknown;  // zeros stand still, too, and are told already
+    if (tells && report_.frozen.samples * 20 > loss.usable && report_.frozen.runs > 0) {
       add(FindingKind::suspicion, "frozen",
           fmt::format("positions stand still bit by bit in {} runs, the longest of {:.0f} ms in line {}",
                       report_.frozen.runs, static_cast<double>(report_.frozen.longest_ns) * 1e-6,
@@ -399,8 +402,7 @@ class Doctor {
           "data held while the eye was lost, or a logger that repeats; a validity column would tell "
           "(--gaze-validity-column)");
     }
-    if (!log_.sample_age_unknown && report_.frozen.samples * 20 <= loss.usable &&
-        report_.frozen.longest_ns >= 1'000'000'000) {
+    if (tells && report_.frozen.samples * 20 <= loss.usable && report_.frozen.longest_ns >= 1'000'000'000) {
       add(FindingKind::note, "frozen",
           fmt::format("a position stands still bit by bit for {:.0f} ms, from line {} on",
                       static_cast<double>(report_.frozen.longest_ns) * 1e-6, report_.frozen.longest_row),
