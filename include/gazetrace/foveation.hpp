@@ -40,6 +40,8 @@ struct FalloffInfo {
 };
 std::vector<FalloffInfo> falloffs();
 void check_foveation(const FoveationSettings& settings);  // Error(usage)
+// With every region ending `by_deg` of eccentricity farther out: for a gaze that may be off by as much.
+FoveationSettings widened(const FoveationSettings& settings, double by_deg);
 
 // Pixels of one grid-aligned block that lie inside one region. The block grid is anchored at the image's origin; a
 // block that straddles a border or the frame's edge has one site per region in it. Its samples are stratified over the

@@ -11,6 +11,7 @@
 
 #include "gazetrace/display.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_log.hpp"
 #include "gazetrace/math.hpp"
 
@@ -137,9 +138,16 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
 // `t[ns],dx,dy,dz,...`. With both eyes there are three rows a time.
 void write_gaze_csv(const GazeLog& log, const std::string& path);
 
+// The same as BIDS eye tracking: one file for each eye, and one for what was made of both, with sidecars, the log's
+// events and the screen. `path` names it: sub-01_task-view_physio.tsv.gz; a recording- in it is replaced by eye1, eye2
+// and cyclopean. Lossless as above. Error(usage) for another name, Error(input) for gaze on a scene camera's picture.
+void write_gaze_bids(const GazeLog& log, const std::string& path);
+std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& path);  // what it would write
+bool is_bids_file_name(const std::string& path);
+
 // hold: the last row at or before the time. nearest: the row closest in time. linear: between two neighbouring usable
-// rows no farther apart than `max_interpolation_gap_ns`, so never across blinks and lost rows. Where nearest or linear
-// find no usable row they hold.
+// rows no farther apart than `max_interpolation_gap_ns`, so never across blinks and lost rows; where it is known what
+// the eye does, also only within a fixation, else the nearer row. Where nearest or linear find no usable row they hold.
 enum class GazeInterpolation { hold, nearest, linear };
 // What a frame without usable gaze does. hold: takes the last usable row however old, before the first one the first.
 enum class NoGazePolicy { hold, center, uniform, error };
@@ -172,6 +180,10 @@ struct GazeAtTime {
   std::int64_t t_log_ns = 0;                   // the time asked for, on the log's clock
   std::int64_t row_before = 0, row_after = 0;  // 1-based source lines used; 0: none
   std::int64_t age_ns = 0;                     // time asked for minus time of the row (hold, nearest) or of row_before
+  bool age_is_known = true;                    // not of a frame log, which repeats values (GazeLog::sample_age_unknown)
+  bool no_gaze = false;                        // the log has none at this time; NoGazePolicy decided
+  GazeValidity validity = GazeValidity::lost;  // of the row used; lost where none was
+  std::optional<EyeMovement> movement;         // of the eye at the time asked for; empty: not known
   std::string reason;                          // for the plan: "hold: row 118", "gap of 312 ms: held row 104"
 };
 
@@ -181,6 +193,25 @@ std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::in
 // The other way: scale (t_log - t_event) + offset, to the nearest nanosecond, under the same errors.
 std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_log_ns);
 // Error(input) under NoGazePolicy::error, naming the time and the nearest rows.
-GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns);
+// `movements`: what the eye does at each sample (EyeEvents::labels), or nothing.
+GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns,
+                   const std::vector<EyeMovement>* movements = nullptr);
+
+// One event of two clocks.
+struct ClockAnchor {
+  std::int64_t t_log_ns = 0, t_video_ns = 0;
+};
+// scale, offset and event of a GazeMapping by least squares over the anchors, and what they leave over. One anchor
+// gives the offset and a scale of 1. Error(usage) for anchors at one time of the log only, or a scale that is not
+// positive.
+struct ClockFit {
+  double scale = 1;
+  std::int64_t offset_ns = 0, event_ns = 0;
+  double rms_residual_ns = 0, max_residual_ns = 0;
+};
+ClockFit fit_clock(const std::vector<ClockAnchor>& anchors);
+// The time of the one message or event of the log whose text is `text` or, where none is, contains it. Error(input)
+// where it is not there, or there more than once.
+std::int64_t time_of_message(const GazeLog& log, std::string_view text);
 
 }  // namespace gazetrace

@@ -65,6 +65,7 @@ struct FrameHeader {
   FrameRate fps;
   Camera camera;
   GazeAtTime gaze_render, gaze_true;
+  std::vector<std::string> gaze_processing;  // FramePlan::gaze_processing
   double exposure_ev = 0;
   std::uint64_t seed = 0;
   std::string settings_digest;  // hex
@@ -96,7 +97,10 @@ struct TimingRow {
   std::array<std::uint64_t, 4> region_pixels{}, region_samples{};
   std::array<double, 4> region_cpu_ms{};
   double exposure_ev = 0;
-  std::string gaze_state;
+  std::string gaze_state;   // of the gaze that steers
+  std::string gaze_event;   // fixation, saccade, blink, ...; "none": not known
+  std::string gaze_age_ms;  // "unknown" where a log repeats values once a frame; empty without a row
+  int no_gaze = 0;          // 1: the log has none at this time, the policy decided
   double peak_memory_mib = 0;
 };
 

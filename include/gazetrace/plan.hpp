@@ -12,6 +12,7 @@
 #include "gazetrace/display.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_process.hpp"
 
 namespace gazetrace {
 
@@ -39,6 +40,14 @@ struct Shutter {
 Shutter parse_shutter(std::string_view text);
 std::string to_string(const Shutter& shutter);
 
+// Of the tracker, in degrees: systematic error and scatter.
+struct GazeUncertainty {
+  double accuracy_deg = 0, precision_deg = 0;
+};
+// What the log tells of it: the mean error of its validations, and the root mean square of the scatter in fixations.
+// NaN where it tells nothing.
+GazeUncertainty uncertainty_of(const GazeLog& log);
+
 struct PlanSettings {
   std::vector<std::int32_t> frames;
   Shutter shutter;
@@ -47,6 +56,9 @@ struct PlanSettings {
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   GazeMapping gaze;
   std::int64_t gaze_latency_ns = 0;  // gaze_render is the gaze this long ago; gaze_true stays
+  bool find_events = true;           // say what the eye does, by default_event_preset() in the recording's geometry
+  // The uncertainty of the gaze widens the fovea: accuracy + precision + age x speed, degrees.
+  std::optional<GazeUncertainty> uncertainty;
   int width_px = 1280, height_px = 720;
   std::optional<DisplayGeometry> display;  // required for a screen log
   FrameRect frame_rect;                    // default: the whole display
@@ -62,18 +74,35 @@ struct FrameRequest {
   PlanarView view;         // of the eye: display or, for gaze directions, the camera's own frustum
   GazeAtTime gaze_render;  // steers the sampling
   GazeAtTime gaze_true;    // the clean log at that time; metrics use this one
+  // The angle by which the gaze that steers may be off (PlanSettings::uncertainty); 0: not asked for.
+  double gaze_uncertainty_deg = 0;
   // In the eye's frame; empty: no gaze, render uniformly.
   std::optional<Vec3d> gaze_direction_render, gaze_direction_true;
 };
 
+// How old the gaze that steers a frame is in the middle of the time for which the frame is shown: latency, the wait of
+// a sample for the next frame and half of the frame's own time are in it. While a frame is shown its age grows from
+// half_frame_ns less to half_frame_ns more.
+struct GazeAges {
+  std::size_t frames = 0, unknown = 0;  // with a known age; with gaze of unknown age
+  double min_ns = 0, median_ns = 0, mean_ns = 0, p95_ns = 0, max_ns = 0;
+  double half_frame_ns = 0;
+};
+
 struct FramePlan {
   std::vector<FrameRequest> frames;
+  std::optional<GazeAges> ages;              // empty: no frame has gaze from a log
+  std::int64_t gaze_latency_ns = 0;          // as asked for
+  std::vector<std::string> gaze_processing;  // what was done to the log that steers, line by line
   Warnings warnings;
 };
 
 // Without a log (nullptr) every frame is rendered without gaze. Error(input) when the camera path does not cover a
 // frame, when a screen log has no display, when NoGazePolicy::error meets a gap.
-FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings);
+// `steering`: the log after processing, which gaze_render comes from; by default the log itself. Both share the clock
+// of the first.
+FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,
+                      const ProcessedGaze* steering = nullptr);
 
 std::string plan_as_table(const FramePlan& plan);
 std::string plan_as_json(const FramePlan& plan);

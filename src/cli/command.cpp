@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "gazetrace/error.hpp"
 
@@ -47,6 +48,16 @@ void bind_options(CLI::App& app, const OptionTable& table) {
     if (!positional) {
       option->group(entry.group);
     }
+  }
+}
+
+void check_output_file(const std::string& path, bool overwrite) {
+  if (!overwrite && std::filesystem::exists(path)) {
+    throw Error(ErrorKind::input, path, "this output exists already", "give --overwrite or another name");
+  }
+  if (const auto folder = std::filesystem::path(path).parent_path();
+      !folder.empty() && !std::filesystem::is_directory(folder)) {
+    throw Error(ErrorKind::input, path, "there is no folder " + folder.string(), "make it first");
   }
 }
 

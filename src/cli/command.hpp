@@ -35,6 +35,9 @@ struct Command {
 // Makes CLI11 options of a table's entries; both must live until parsing is done.
 void bind_options(CLI::App& app, const OptionTable& table);
 
+// Error(input) where the file exists and may not be replaced, or its folder does not.
+void check_output_file(const std::string& path, bool overwrite);
+
 // Writes a result to stdout. A reader that has gone away (head, a closed pager) is no error.
 void print_result(const std::string& text);
 void print_warnings(const std::vector<std::string>& warnings);

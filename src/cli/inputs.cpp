@@ -60,9 +60,10 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
     count = frames_until(static_cast<double>(camera.end_ns), job);
     reason = "as long as the camera's path";
   } else if (log != nullptr && log->samples.size() > 1) {
-    const std::int64_t begin_ns = job.gaze_start ? job.gaze_start->ns : log->samples.front().t_ns;
+    const GazeMapping mapping = gaze_mapping(job, log);
+    const std::int64_t begin_ns = mapping.event_ns.value_or(log->samples.front().t_ns);
     const double span_ns = static_cast<double>(log->samples.back().t_ns) - static_cast<double>(begin_ns);
-    count = frames_until(span_ns * job.gaze_scale + static_cast<double>(job.gaze_offset.ns), job);
+    count = frames_until(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns), job);
     reason = "as long as the gaze log";
   }
   std::vector<std::int32_t> frames(static_cast<std::size_t>(count));
@@ -81,7 +82,11 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   settings.start_ns = job.start.ns;
   settings.shutter = job.shutter;
   settings.camera_extrapolation = job.camera_extrapolation;
-  settings.gaze = gaze_mapping(job);
+  std::string clock;
+  settings.gaze = gaze_mapping(job, log, &clock);
+  if (!clock.empty()) {
+    decisions.emplace_back("gaze clock", clock);
+  }
   settings.gaze_latency_ns = job.gaze_at ? 0 : job.gaze_latency.ns;
   settings.width_px = job.size.width;
   settings.height_px = job.size.height;
@@ -115,6 +120,7 @@ void hide_times_of_day(GazeLog& log, JobSettings& job) {
   }
   if (is_wall_clock(log)) {
     const std::int64_t taken_off_ns = count_from_first_sample(log);
+    job.gaze_taken_off_ns = taken_off_ns;
     if (job.gaze_start) {
       if (__builtin_sub_overflow(job.gaze_start->ns, taken_off_ns, &job.gaze_start->ns)) {
         usage("--gaze-start", "lies ages away from the log");
@@ -128,25 +134,6 @@ bool camera_needs_scene(const JobSettings& job) {
 }
 
 }  // namespace
-
-GazeMapping gaze_mapping(const JobSettings& job) {
-  GazeMapping mapping;
-  if (job.gaze_at) {
-    mapping.max_age_ns = std::numeric_limits<std::int64_t>::max();
-    mapping.offset_ns = job.start.ns;
-    return mapping;
-  }
-  mapping.interpolation = job.gaze_mode;
-  mapping.no_gaze = job.gaze_missing;
-  mapping.max_age_ns = job.gaze_max_age.ns;
-  mapping.max_interpolation_gap_ns = job.gaze_max_gap.ns;
-  mapping.scale = job.gaze_scale;
-  mapping.offset_ns = job.gaze_offset.ns;
-  if (job.gaze_start) {
-    mapping.event_ns = job.gaze_start->ns;
-  }
-  return mapping;
-}
 
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
   const bool any = screen.size_px || screen.size_cm || screen.distance_cm || screen.eye_cm;
@@ -223,6 +210,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     if (!job.keep_ids) {
       hide_times_of_day(*inputs.gaze, job);
     }
+    complete_recording_geometry(*inputs.gaze, job.screen);
   }
   const GazeLog* log = inputs.gaze ? &*inputs.gaze : nullptr;
   {
@@ -259,8 +247,15 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     inputs.decisions.emplace_back("sampling",
                                   fmt::format("{} samples everywhere: there is no gaze", job.foveation.uniform_spp));
   }
-  const PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
-  inputs.plan = plan_frames(camera, log, settings);
+  PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
+  if (log != nullptr && !job.gaze_at) {
+    settings.uncertainty = gaze_uncertainty(job, *log);
+    if (!job.gaze_process.empty()) {
+      inputs.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
+      inputs.decisions.emplace_back("gaze processing", fmt::format("{}", fmt::join(inputs.steering->reports, "; ")));
+    }
+  }
+  inputs.plan = plan_frames(camera, log, settings, inputs.steering ? &*inputs.steering : nullptr);
   const auto& aovs = job.exr.aovs;
   if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
     usage("--aov", "there is no eccentricity without gaze", "give --gaze or --gaze-at");

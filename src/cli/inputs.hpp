@@ -23,6 +23,7 @@ namespace gazetrace {
 struct Inputs {
   std::unique_ptr<Scene> scene;
   std::optional<GazeLog> gaze;
+  std::optional<ProcessedGaze> steering;  // what --gaze-process made of it
   FramePlan plan;
   std::vector<std::int32_t> frames;
   // What was decided where the settings left a choice: "environment" -> "built-in sky, ...".
@@ -65,6 +66,11 @@ GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& scree
 // "auto" is resolved by the scene; returns what was taken, in words.
 std::string set_environment(const JobSettings& job, Scene& scene);
 CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision);
-GazeMapping gaze_mapping(const JobSettings& job);
+// Error(usage, input) of anchors; `decision` says what they gave.
+GazeMapping gaze_mapping(const JobSettings& job, const GazeLog* log, std::string* decision = nullptr);
+// Where the log of a screen knows no angles, what it does not state of its geometry is that of the given screen.
+void complete_recording_geometry(GazeLog& log, const ScreenSettings& screen);
+std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts);
+std::optional<GazeUncertainty> gaze_uncertainty(const JobSettings& job, const GazeLog& log);
 
 }  // namespace gazetrace

@@ -90,7 +90,7 @@ CameraPath head_camera(const GazeLog& log, const JobSettings& job) {
     throw Error(ErrorKind::input, log.source, "has no head pose for --camera-from-gaze",
                 "give --camera-path, or name its columns in a column map");
   }
-  const GazeMapping mapping = gaze_mapping(job);
+  const GazeMapping mapping = gaze_mapping(job, &log);
   std::vector<TimedPose> poses;
   poses.reserve(log.head.size());
   for (const HeadPose& pose : log.head) {

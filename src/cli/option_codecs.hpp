@@ -14,6 +14,7 @@
 #include "gazetrace/color.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/plan.hpp"
 #include "gazetrace/temporal.hpp"
@@ -120,6 +121,7 @@ GAZETRACE_ENUM_NAMES(EyeChoice, "eye", {E::automatic, "auto"}, {E::left, "left"}
 GAZETRACE_ENUM_NAMES(GazeFrame, "gaze frame", {E::automatic, "auto"}, {E::head, "head"},
                      {E::scene_camera, "scene-camera"})
 GAZETRACE_ENUM_NAMES(Eye, "eye", {E::left, "left"}, {E::right, "right"})
+GAZETRACE_ENUM_NAMES(GazeDevice, "device", {E::desktop, "desktop"}, {E::head_mounted, "head-mounted"})
 GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"})
 GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})
 GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light_only, "light"}, {E::bsdf_only, "bsdf"})

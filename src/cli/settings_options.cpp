@@ -96,6 +96,18 @@ void add_gaze_mapping_options(OptionTable& table, JobSettings& job) {
               "Sampling follows the gaze of this long ago; measurements keep the true gaze", kPixels);
   table.flag("--keep-ids", job.keep_ids,
              "Times of day of the log stay in plan, headers and records; otherwise time counts from its first sample");
+  table.repeated(
+      "--gaze-anchor", job.gaze_anchors, "LOG=VIDEO",
+      "An event on both clocks, in place of --gaze-start, --gaze-offset and --gaze-scale: a time of the log or "
+      "the text of its message, and the video time of it; with two or more, offset and scale are fitted",
+      kPixels);
+  add_gaze_process_options(table, job.gaze_process);
+  table.flag("--gaze-uncertainty", job.gaze_uncertainty,
+             "The fovea grows by what the gaze may be off: accuracy + precision + age x speed", kPixels);
+  table.value("--gaze-accuracy", job.gaze_accuracy_deg, "DEG",
+              "The tracker's systematic error; default: the mean error of the log's validations", kPixels);
+  table.value("--gaze-precision", job.gaze_precision_deg, "DEG",
+              "The tracker's scatter; default: the root mean square in the log's fixations", kPixels);
 }
 
 void add_frame_options(OptionTable& table, JobSettings& job) {
@@ -250,6 +262,14 @@ void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze) {
   table.flag("--gaze-decimal-comma", gaze.read.decimal_comma,
              "Numbers have decimal commas though commas separate the columns; not needed with tabs or semicolons",
              kPixels);
+}
+
+void add_gaze_process_options(OptionTable& table, std::vector<std::string>& steps) {
+  table.repeated(
+      "--gaze-process", steps, "STEP[:NAME=VALUE,...]",
+      "A step of processing, one option each, in this order ('gazetrace list gaze-steps'): "
+      "fill-gaps:max=75ms, median:samples=5, noise:sd=0.5deg,seed=1. Measurements keep the gaze as it was read",
+      kPixels);
 }
 
 void add_screen_options(OptionTable& table, ScreenSettings& screen) {

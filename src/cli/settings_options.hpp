@@ -65,6 +65,11 @@ struct JobSettings {
   std::optional<DurationNs> gaze_start;
   DurationNs gaze_latency;
   bool keep_ids = false;
+  std::vector<std::string> gaze_process;  // of parse_gaze_step()
+  std::vector<std::string> gaze_anchors;  // LOG=VIDEO
+  std::int64_t gaze_taken_off_ns = 0;     // of the log's stamps, to hide the time of day
+  bool gaze_uncertainty = false;
+  std::optional<double> gaze_accuracy_deg, gaze_precision_deg;
   ScreenSettings screen;
   std::optional<FrameRect> frame_rect;
 
@@ -105,6 +110,7 @@ void add_job_options(OptionTable& table, JobSettings& job);
 
 // Shared with `gaze`.
 void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze);
+void add_gaze_process_options(OptionTable& table, std::vector<std::string>& steps);
 void add_screen_options(OptionTable& table, ScreenSettings& screen);
 
 // Shared with `list views`.

@@ -104,6 +104,12 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
     return std::count_if(plan.frames.begin(), plan.frames.end(),
                          [&](const FrameRequest& request) { return request.gaze_render.state == state; });
   };
+  const auto held = std::count_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
+    return request.gaze_render.no_gaze && request.gaze_render.state == GazeState::held;
+  });
+  if (held > 0) {
+    warnings.push_back(fmt::format("{} frames without gaze hold the nearest one in the past, or the first", held));
+  }
   const auto centered = count(GazeState::center);
   const bool has_gaze = std::any_of(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
     return request.gaze_render.state != GazeState::none;

@@ -83,4 +83,15 @@ void check_foveation(const FoveationSettings& settings) {
   check_angles(settings);
 }
 
+FoveationSettings widened(const FoveationSettings& settings, double by_deg) {
+  FoveationSettings wider = settings;
+  const bool is_diameter = settings.reading == AngleReading::full_angle;
+  // tan(a/2) of a disc has its pole at 180 degrees.
+  const double most = settings.shape == RegionShape::disc ? 179.0 : is_diameter ? 360.0 : 180.0;
+  for (double& angle : wider.region_angles_deg) {
+    angle = std::max(angle, std::min(angle + (is_diameter ? 2 : 1) * by_deg, most));
+  }
+  return wider;
+}
+
 }  // namespace gazetrace

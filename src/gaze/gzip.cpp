@@ -76,4 +76,28 @@ std::string unpack_gzip(std::string_view bytes, const std::string& path) {
   }
 }
 
+std::string pack_gzip(std::string_view text) {
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw Error(ErrorKind::runtime, "", "gzip data cannot be packed: no memory");
+  }
+  std::string packed;
+  std::size_t used = 0;
+  for (int status = Z_OK; status != Z_STREAM_END;) {
+    constexpr std::size_t kRoom = std::size_t{1} << 20U;
+    const auto piece = static_cast<uInt>(std::min<std::size_t>(text.size() - used, std::size_t{1} << 30U));
+    const std::size_t filled = packed.size();
+    packed.resize(filled + kRoom);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data() + used));
+    stream.avail_in = piece;
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data() + filled);
+    stream.avail_out = static_cast<uInt>(kRoom);
+    status = deflate(&stream, used + piece == text.size() ? Z_FINISH : Z_NO_FLUSH);
+    used += piece - stream.avail_in;
+    packed.resize(filled + kRoom - stream.avail_out);
+  }
+  deflateEnd(&stream);
+  return packed;
+}
+
 }  // namespace gazetrace

@@ -11,4 +11,7 @@ bool is_gzip(std::string_view bytes);
 // recording does (400 times their size and 16 MiB).
 std::string unpack_gzip(std::string_view bytes, const std::string& path);
 
+// One member without name and time: the same text gives the same bytes.
+std::string pack_gzip(std::string_view text);
+
 }  // namespace gazetrace

@@ -307,6 +307,7 @@ GazeLog read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   log.kind = plan.kind;
   log.clock = preamble.clock;
   log.recording_geometry = preamble.geometry;
+  log.pixels_per_degree = preamble.pixels_per_degree;
   if (preamble.is_scene_camera) {
     if (options.frame == GazeFrame::automatic) {
       refuse_scene_camera(file, options, "--gaze-frame scene-camera looks at it");

@@ -13,6 +13,7 @@ struct GazetracePreamble {
   std::string clock;
   bool is_scene_camera = false;  // `# kind scene-camera`
   std::optional<DisplayGeometry> geometry;
+  std::optional<Vec2d> pixels_per_degree;
 };
 // Error(input) for lines that state a geometry wrongly.
 GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);

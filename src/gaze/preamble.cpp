@@ -62,6 +62,9 @@ void read_line(std::string_view line, const std::string& place, GazetracePreambl
     geometry().height_cm = size[1] / per_cm;
   } else if (key == "distance_mm" || key == "distance_cm") {
     geometry().distance_cm = numbers(1, true)[0] / (key == "distance_mm" ? 10.0 : 1.0);
+  } else if (key == "pixels_per_degree") {
+    const auto density = numbers(2, true);
+    preamble.pixels_per_degree = Vec2d{density[0], density[1]};
   } else if (key == "eye_cm") {
     const auto offset = numbers(2, false);
     geometry().eye_x_cm = offset[0];

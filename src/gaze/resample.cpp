@@ -68,13 +68,18 @@ Vec3d slerp_directions(const Vec3d& a, const Vec3d& b, double s) {
 
 class Resampler {
  public:
-  Resampler(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_ns)
-      : samples_(log.samples), log_(log), mapping_(mapping), t_ns_(t_ns) {
+  Resampler(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_ns,
+            const std::vector<EyeMovement>* movements)
+      : samples_(log.samples), log_(log), mapping_(mapping), t_ns_(t_ns), movements_(movements) {
     const auto after = std::upper_bound(samples_.begin(), samples_.end(), t_ns,
                                         [](std::int64_t t, const GazeSample& sample) { return t < sample.t_ns; });
     after_ = static_cast<std::size_t>(after - samples_.begin());
     result_.kind = log.kind;
     result_.t_log_ns = t_ns;
+    result_.age_is_known = !log.sample_age_unknown;
+    if (movements != nullptr && after_ > 0 && after_ <= movements->size()) {
+      result_.movement = (*movements)[after_ - 1];
+    }
   }
 
   GazeAtTime run() {
@@ -106,7 +111,17 @@ class Resampler {
     result_.row_before = sample.t_ns <= t_ns_ ? sample.row : 0;
     result_.row_after = sample.t_ns <= t_ns_ ? 0 : sample.row;
     result_.age_ns = age(sample);
+    result_.validity = sample.validity;
     result_.reason = std::move(reason);
+  }
+
+  // Of the two rows about the time; true where nobody knows.
+  [[nodiscard]] bool in_one_fixation() const {
+    if (movements_ == nullptr || after_ >= movements_->size()) {
+      return true;
+    }
+    const auto is_steady = [](EyeMovement m) { return m == EyeMovement::fixation || m == EyeMovement::pursuit; };
+    return is_steady((*movements_)[after_ - 1]) && is_steady((*movements_)[after_]);
   }
 
   bool linear() {
@@ -125,6 +140,13 @@ class Resampler {
     const std::int64_t gap = saturating_difference(b.t_ns, a.t_ns);
     if (gap > mapping_.max_interpolation_gap_ns) {
       return false;
+    }
+    if (!in_one_fixation()) {
+      // The gaze jumps half way between the two rows.
+      const bool first = t_ns_ - a.t_ns <= b.t_ns - t_ns_;
+      take(first ? a : b, GazeState::measured,
+           fmt::format("linear: row {}, the nearer one: not within a fixation", first ? a.row : b.row));
+      return true;
     }
     const double s = static_cast<double>(t_ns_ - a.t_ns) / static_cast<double>(gap);
     take(a, GazeState::measured, fmt::format("linear: rows {} and {}", a.row, b.row));
@@ -203,6 +225,7 @@ class Resampler {
   }
 
   void no_gaze() {
+    result_.no_gaze = true;
     const GazeSample* const before = last_usable();
     const auto first_after = std::find_if(samples_.begin() + static_cast<std::ptrdiff_t>(after_), samples_.end(),
                                           [](const GazeSample& s) { return is_usable(s.validity); });
@@ -244,6 +267,7 @@ class Resampler {
   const GazeLog& log_;
   const GazeMapping& mapping_;
   std::int64_t t_ns_;
+  const std::vector<EyeMovement>* movements_;
   std::size_t after_ = 0;  // index of the first sample later than the time
   GazeAtTime result_;
 };
@@ -295,8 +319,9 @@ std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::
   return static_cast<std::int64_t>(t);
 }
 
-GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns) {
-  return Resampler(log, mapping, log_time_ns(log, mapping, t_video_ns)).run();
+GazeAtTime gaze_at(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns,
+                   const std::vector<EyeMovement>* movements) {
+  return Resampler(log, mapping, log_time_ns(log, mapping, t_video_ns), movements).run();
 }
 
 }  // namespace gazetrace

@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <iterator>
 
+#include "gaze/write_file.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -41,6 +40,9 @@ std::string preamble(const GazeLog& log) {
     if (g.eye_x_cm != 0 || g.eye_y_cm != 0) {
       text += fmt::format("# eye_cm {} {}\n", g.eye_x_cm, g.eye_y_cm);
     }
+  }
+  if (log.pixels_per_degree) {
+    text += fmt::format("# pixels_per_degree {} {}\n", log.pixels_per_degree->x, log.pixels_per_degree->y);
   }
   if (!log.clock.empty()) {
     text += fmt::format("# clock {}\n", log.clock);
@@ -154,19 +156,7 @@ void write_gaze_csv(const GazeLog& log, const std::string& path) {
     rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind),
                origins == nullptr ? nullptr : &origins->right_mm, text);
   }
-  // Under its name only when complete.
-  const std::string part = path + ".part";
-  std::FILE* const file = std::fopen(part.c_str(), "wb");
-  bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  good = (file == nullptr || std::fclose(file) == 0) && good;
-  std::error_code code;
-  if (good) {
-    std::filesystem::rename(part, path, code);
-  }
-  if (!good || code) {
-    std::filesystem::remove(part, code);
-    throw Error(ErrorKind::runtime, path, "cannot be written", "check that its folder exists and has room");
-  }
+  write_whole_file(path, text);
 }
 
 }  // namespace gazetrace

@@ -235,9 +235,13 @@ std::string camera_text(const Camera& camera) {
 }
 
 std::string gaze_text(const GazeAtTime& gaze) {
-  return fmt::format("state={} u={} v={} direction={},{},{} t_log_ns={} rows={},{} age_ns={}", to_string(gaze.state),
-                     gaze.u, gaze.v, gaze.direction.x, gaze.direction.y, gaze.direction.z, gaze.t_log_ns,
-                     gaze.row_before, gaze.row_after, gaze.age_ns);
+  const std::string age = gaze.age_is_known ? fmt::format("{}", gaze.age_ns) : "unknown";
+  return fmt::format(
+      "state={} u={} v={} direction={},{},{} t_log_ns={} rows={},{} age_ns={} validity={} event={} "
+      "no_gaze={} reason={}",
+      to_string(gaze.state), gaze.u, gaze.v, gaze.direction.x, gaze.direction.y, gaze.direction.z, gaze.t_log_ns,
+      gaze.row_before, gaze.row_after, age, to_string(gaze.validity),
+      gaze.movement ? to_string(*gaze.movement) : "none", gaze.no_gaze ? 1 : 0, gaze.reason);
 }
 
 void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
@@ -260,6 +264,9 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   add_text(header, "camera", camera_text(frame.camera));
   add_text(header, "gaze_render", gaze_text(frame.gaze_render));
   add_text(header, "gaze_true", gaze_text(frame.gaze_true));
+  if (!frame.gaze_processing.empty()) {
+    add_text(header, "gaze_processing", fmt::format("{}", fmt::join(frame.gaze_processing, "; ")));
+  }
 }
 
 std::array<std::string, 3> names_of(const std::string& layer, const char* letters) {

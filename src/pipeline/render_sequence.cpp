@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // map -> trace -> reconstruct -> accumulate -> exposure -> colour -> files, frame by frame. Only the history and the
 // timing log outlive a frame.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -54,8 +56,10 @@ void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row
 RenderedFrame render_frame(const PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
                            TemporalHistory& history, TimingRow& row, SequenceResult& result) {
   RenderedFrame rendered;
-  rendered.map = timed(
-      row.plan_ms, [&] { return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render); });
+  rendered.map = timed(row.plan_ms, [&] {
+    return make_sampling_map(widened(settings.foveation, request.gaze_uncertainty_deg), request.view,
+                             request.gaze_direction_render);
+  });
   const SparseFrame sparse =
       timed(row.trace_ms, [&] { return tracer.trace(request.camera, request.frame, rendered.map, settings.trace); });
   Frame dense =
@@ -72,7 +76,8 @@ RenderedFrame render_frame(const PathTracer& tracer, const FrameRequest& request
   return rendered;
 }
 
-FrameHeader header_of(const FrameRequest& request, const PipelineSettings& settings, double exposure_ev) {
+FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const PipelineSettings& settings,
+                      double exposure_ev) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
@@ -80,6 +85,7 @@ FrameHeader header_of(const FrameRequest& request, const PipelineSettings& setti
   header.camera = request.camera;
   header.gaze_render = request.gaze_render;
   header.gaze_true = request.gaze_true;
+  header.gaze_processing = plan.gaze_processing;
   header.exposure_ev = exposure_ev;
   header.seed = settings.trace.seed;
   header.settings_digest = settings.settings_digest;
@@ -87,11 +93,21 @@ FrameHeader header_of(const FrameRequest& request, const PipelineSettings& setti
   return header;
 }
 
+void tell_gaze(const GazeAtTime& gaze, TimingRow& row) {
+  row.gaze_state = to_string(gaze.state);
+  row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
+  const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
+  row.gaze_age_ms = !has_row            ? ""
+                    : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
+                                        : "unknown";
+  row.no_gaze = gaze.no_gaze ? 1 : 0;
+}
+
 // The map first and the linear picture last: the file that says a frame is there comes when everything else is.
-void write_files(const FrameRequest& request, const RenderedFrame& rendered, const ColorPipeline& color,
-                 const PipelineSettings& settings, TimingRow& row, SequenceResult& result) {
+void write_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
+                 const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row, SequenceResult& result) {
   const OutputSettings& output = settings.output;
-  const FrameHeader header = header_of(request, settings, rendered.exposure_ev);
+  const FrameHeader header = header_of(request, plan, settings, rendered.exposure_ev);
   const auto& aovs = output.exr.aovs;
   const bool wants_eccentricity =
       !output.map_pattern.empty() || std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end();
@@ -161,7 +177,7 @@ SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, 
     const FrameRequest& request = plan.frames[i];
     TimingRow row;
     row.frame = request.frame;
-    row.gaze_state = to_string(request.gaze_render.state);
+    tell_gaze(request.gaze_render, row);
     row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
     if (resume.work[i] != FrameWork::skip) {
       if (observer.frame_begins) {
@@ -173,7 +189,7 @@ SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, 
         observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
       }
       if (resume.work[i] == FrameWork::render) {
-        write_files(request, rendered, color, settings, row, result);
+        write_files(request, plan, rendered, color, settings, row, result);
         row.total_ms = total.elapsed_ms();
         row.peak_memory_mib = peak_memory_mib();
         timing.add(row);

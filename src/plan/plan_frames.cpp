@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gazetrace/plan.hpp"
+#include "plan/gaze_motion.hpp"
 
 namespace gazetrace {
 namespace {
@@ -209,9 +210,21 @@ std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
 
 }  // namespace
 
-FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings) {
-  check_settings(settings);
+FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& given,
+                      const ProcessedGaze* steering) {
+  check_settings(given);
+  PlanSettings settings = given;
+  if (log != nullptr && !settings.gaze.event_ns && !log->samples.empty()) {
+    settings.gaze.event_ns = log->samples.front().t_ns;  // also where processing has lost the first sample
+  }
+  const GazeLog* const steering_log = steering != nullptr ? &steering->log : log;
+  const GazeMotion motion(log, settings);
+  const GazeMotion steering_motion = steering_log == log ? motion : GazeMotion(steering_log, settings);
   FramePlan plan;
+  plan.gaze_latency_ns = settings.gaze_latency_ns;
+  if (steering != nullptr) {
+    plan.gaze_processing = steering->reports;
+  }
   check_coverage(camera, settings, plan.warnings);
   const GazeGeometry geometry(camera, log, settings, plan.warnings);
   plan.frames.reserve(settings.frames.size());
@@ -232,10 +245,13 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
     request.camera.lens = camera.lens;
     request.camera.shutter_poses = shutter_poses(camera, request.shutter_open_ns, request.shutter_close_ns);
     if (log != nullptr) {
-      request.gaze_true = gaze_at(*log, settings.gaze, request.t_video_ns);
-      request.gaze_render = settings.gaze_latency_ns == 0
-                                ? request.gaze_true
-                                : gaze_at(*log, settings.gaze, earlier(request.t_video_ns, settings.gaze_latency_ns));
+      request.gaze_true = gaze_at(*log, settings.gaze, request.t_video_ns, motion.movements());
+      request.gaze_render =
+          settings.gaze_latency_ns == 0 && steering_log == log
+              ? request.gaze_true
+              : gaze_at(*steering_log, settings.gaze, earlier(request.t_video_ns, settings.gaze_latency_ns),
+                        steering_motion.movements());
+      request.gaze_uncertainty_deg = steering_motion.uncertainty_deg(request);
       geometry.place_center(request.gaze_render);
       geometry.place_center(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);
@@ -246,6 +262,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
     }
     plan.frames.push_back(std::move(request));
   }
+  plan.ages = gaze_ages(plan, settings);
+  warn_about_latency(settings, plan.warnings);
   return plan;
 }
 

@@ -35,7 +35,43 @@ bool has_rows(const GazeAtTime& gaze) {
 }
 
 bool same_gaze(const FrameRequest& request) {
-  return request.gaze_render.t_log_ns == request.gaze_true.t_log_ns;
+  const GazeAtTime& a = request.gaze_render;
+  const GazeAtTime& b = request.gaze_true;
+  return a.t_log_ns == b.t_log_ns && a.state == b.state && a.u == b.u && a.v == b.v && a.direction == b.direction;
+}
+
+std::string age_text(const GazeAtTime& gaze) {
+  return !has_rows(gaze)     ? "-"
+         : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
+                             : "unknown";
+}
+
+// Below the table: what was done to the gaze that steers, and how old it is when it is seen.
+std::string notes_text(const FramePlan& plan) {
+  std::string text;
+  for (const std::string& line : plan.gaze_processing) {
+    text += fmt::format("gaze_render: {}\n", line);
+  }
+  if (plan.ages && plan.gaze_latency_ns > 0) {
+    const GazeAges& a = *plan.ages;
+    const auto ms = [](double ns) { return ns * 1e-6; };
+    if (a.frames > 0) {
+      text += fmt::format(
+          "effective age at mid-display: {:.1f} ms in the median, mean {:.1f}, {:.1f} to {:.1f}, 95 % up to {:.1f}, "
+          "over "
+          "{} frames; {:.1f} ms less when a frame appears, as much more when it goes\n",
+          ms(a.median_ns), ms(a.mean_ns), ms(a.min_ns), ms(a.max_ns), ms(a.p95_ns), a.frames, ms(a.half_frame_ns));
+    }
+    if (a.unknown > 0) {
+      text += fmt::format("effective age of {} frames: unknown, the log repeats values once a frame\n", a.unknown);
+    }
+  }
+  return text;
+}
+
+Json ages_json(const GazeAges& a) {
+  return Json{{"frames", a.frames},   {"unknown", a.unknown}, {"min_ns", a.min_ns}, {"median_ns", a.median_ns},
+              {"mean_ns", a.mean_ns}, {"p95_ns", a.p95_ns},   {"max_ns", a.max_ns}, {"half_frame_ns", a.half_frame_ns}};
 }
 
 // A number that JSON can hold: NaN and infinities become null.
@@ -57,7 +93,10 @@ Json gaze_json(const GazeAtTime& gaze, const std::optional<Vec3d>& direction) {
   json["t_log_ns"] = gaze.t_log_ns;
   json["row_before"] = gaze.row_before != 0 ? Json(gaze.row_before) : Json(nullptr);
   json["row_after"] = gaze.row_after != 0 ? Json(gaze.row_after) : Json(nullptr);
-  json["age_ns"] = has_rows(gaze) ? Json(gaze.age_ns) : Json(nullptr);
+  json["age_ns"] = has_rows(gaze) && gaze.age_is_known ? Json(gaze.age_ns) : Json(nullptr);
+  json["validity"] = has_rows(gaze) ? Json(to_string(gaze.validity)) : Json(nullptr);
+  json["event"] = gaze.movement ? Json(to_string(*gaze.movement)) : Json(nullptr);
+  json["no_gaze"] = gaze.no_gaze;
   json["reason"] = gaze.reason;
   return json;
 }
@@ -86,7 +125,7 @@ std::string plan_as_table(const FramePlan& plan) {
   if (with_true) {
     rows.back().emplace_back("true gaze");
   }
-  for (const std::string_view title : {"state", "rows", "age ms", "reason"}) {
+  for (const std::string_view title : {"state", "rows", "age ms", "valid", "event", "reason"}) {
     rows.back().emplace_back(title);
   }
   for (const FrameRequest& request : plan.frames) {
@@ -99,7 +138,9 @@ std::string plan_as_table(const FramePlan& plan) {
     }
     row.emplace_back(to_string(gaze.state));
     row.push_back(rows_text(gaze));
-    row.push_back(has_rows(gaze) ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6) : "-");
+    row.push_back(age_text(gaze));
+    row.emplace_back(has_rows(gaze) ? to_string(gaze.validity) : "-");
+    row.emplace_back(gaze.movement ? to_string(*gaze.movement) : "-");
     row.push_back(gaze.reason);
     rows.push_back(std::move(row));
   }
@@ -113,12 +154,13 @@ std::string plan_as_table(const FramePlan& plan) {
   for (const Row& row : rows) {
     for (std::size_t i = 0; i + 1 < row.size(); ++i) {
       // Text to the left, numbers to the right.
-      const bool is_state = rows.front()[i] == "state";
-      text += is_state ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);
+      const std::string& title = rows.front()[i];
+      const bool is_text = title == "state" || title == "valid" || title == "event";
+      text += is_text ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);
     }
     text += row.back() + "\n";
   }
-  return text;
+  return text + notes_text(plan);
 }
 
 std::string plan_as_json(const FramePlan& plan) {
@@ -129,9 +171,13 @@ std::string plan_as_json(const FramePlan& plan) {
                           {"size_px", Json::array({request.width_px, request.height_px})},
                           {"camera", camera_json(request.camera)},
                           {"gaze_render", gaze_json(request.gaze_render, request.gaze_direction_render)},
-                          {"gaze_true", gaze_json(request.gaze_true, request.gaze_direction_true)}});
+                          {"gaze_true", gaze_json(request.gaze_true, request.gaze_direction_true)},
+                          {"gaze_uncertainty_deg", request.gaze_uncertainty_deg}});
   }
-  const Json json{{"frames", std::move(frames)}, {"warnings", plan.warnings}};
+  const Json json{{"frames", std::move(frames)},
+                  {"gaze_processing", plan.gaze_processing},
+                  {"effective_age", plan.ages ? ages_json(*plan.ages) : Json(nullptr)},
+                  {"warnings", plan.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

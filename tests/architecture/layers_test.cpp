@@ -47,6 +47,8 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"output", "output"},     {"pipeline", "pipeline"},
     {"metrics", "metrics"},   {"fovvideovdp", "metrics"},
     {"compare", "compare"},   {"gaze_inspect", "gaze"},
+    {"gaze_events", "gaze"},  {"gaze_process", "gaze"},
+    {"gaze_synth", "gaze"},
 };
 
 // Which files may meet which dependency.

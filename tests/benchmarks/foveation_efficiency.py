@@ -33,7 +33,7 @@ def render(program, scene, extra, folder, outputs):
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     with open(next(folder.glob("timing*.csv")), newline="") as file:
         row = next(csv.DictReader(file))
-    return {key: float(value) for key, value in row.items() if key != "gaze_state"}
+    return {key: float(value) for key, value in row.items() if not key.startswith("gaze_")}
 
 
 def median(rows, key):

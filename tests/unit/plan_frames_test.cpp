@@ -244,12 +244,12 @@ TEST(PrintPlan, TableIsAligned) {
   settings.frames = {1, 20};
   settings.gaze.max_age_ns = 300 * kMs;
   settings.gaze.no_gaze = NoGazePolicy::uniform;
-  EXPECT_EQ(
-      plan_as_table(plan_frames(still(), &log, settings)),
-      "frame    time s         position m       gaze u v  state     rows  age ms  reason\n"
-      "    1  0.020833  1.000 2.000 3.000  0.3125 0.5000  measured     7   0.833  hold: row 7\n"
-      "   20  0.812500  1.000 2.000 3.000              -  none         -       -  no gaze (656 ms after the log's last "
-      "row, last usable row 41 is 656 ms old (limit 300 ms)): uniform\n");
+  EXPECT_EQ(plan_as_table(plan_frames(still(), &log, settings)),
+            "frame    time s         position m       gaze u v  state     rows  age ms  valid  event  reason\n"
+            "    1  0.020833  1.000 2.000 3.000  0.3125 0.5000  measured     7   0.833  ok     -      hold: row 7\n"
+            "   20  0.812500  1.000 2.000 3.000              -  none         -       -  -      -      no gaze (656 ms "
+            "after the log's last "
+            "row, last usable row 41 is 656 ms old (limit 300 ms)): uniform\n");
 }
 
 TEST(PrintPlan, JsonHoldsExactTimesAndUnits) {

@@ -32,19 +32,22 @@ TimingRow example(std::int32_t frame) {
   row.region_cpu_ms = {0.5, 0.25, 11};
   row.exposure_ev = -0.1;
   row.gaze_state = "measured";
+  row.gaze_event = "fixation";
+  row.gaze_age_ms = "unknown";
+  row.no_gaze = 1;
   row.peak_memory_mib = 512.5;
   return row;
 }
 
 TEST(Timing, ColumnsNameTheirUnits) {
-  EXPECT_THAT(
-      timing_columns(),
-      testing::ElementsAre("frame", "plan_ms", "trace_ms", "reconstruct_ms", "temporal_ms", "exposure_ms", "color_ms",
-                           "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples", "rays_primary", "rays_bounce",
-                           "rays_shadow", "rejected_rays", "non_finite_samples", "fovea_pixels", "fovea_samples",
-                           "fovea_cpu_ms", "intermediate_pixels", "intermediate_samples", "intermediate_cpu_ms",
-                           "periphery_pixels", "periphery_samples", "periphery_cpu_ms", "uniform_pixels",
-                           "uniform_samples", "uniform_cpu_ms", "exposure_ev", "gaze_state", "peak_memory_mib"));
+  EXPECT_THAT(timing_columns(),
+              testing::ElementsAre(
+                  "frame", "plan_ms", "trace_ms", "reconstruct_ms", "temporal_ms", "exposure_ms", "color_ms",
+                  "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples", "rays_primary", "rays_bounce",
+                  "rays_shadow", "rejected_rays", "non_finite_samples", "fovea_pixels", "fovea_samples", "fovea_cpu_ms",
+                  "intermediate_pixels", "intermediate_samples", "intermediate_cpu_ms", "periphery_pixels",
+                  "periphery_samples", "periphery_cpu_ms", "uniform_pixels", "uniform_samples", "uniform_cpu_ms",
+                  "exposure_ev", "gaze_state", "gaze_event", "gaze_age_ms", "no_gaze", "peak_memory_mib"));
 }
 
 TEST(Timing, RoundTrip) {
@@ -62,6 +65,9 @@ TEST(Timing, RoundTrip) {
   EXPECT_EQ(row.region_cpu_ms[1], 0.25);
   EXPECT_EQ(row.exposure_ev, -0.1);
   EXPECT_EQ(row.gaze_state, "measured");
+  EXPECT_EQ(row.gaze_event, "fixation");
+  EXPECT_EQ(row.gaze_age_ms, "unknown");
+  EXPECT_EQ(row.no_gaze, 1);
   EXPECT_EQ(row.peak_memory_mib, 512.5);
 }
 
@@ -93,7 +99,7 @@ TEST(Timing, BrokenTables) {
   const std::string header = timing_csv_text({});
   expect_error(path, "", "first line");
   expect_error(path, "frame,ms\n", "timing.csv:1: the columns");
-  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 32");
+  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 35");
   std::string letters = timing_csv_text({example(1)});
   letters.replace(letters.find("1234.5000"), 9, "fast");
   expect_error(path, letters, "timing.csv:2: 'fast' is no number for column trace_ms");

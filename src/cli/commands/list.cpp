@@ -64,6 +64,22 @@ std::vector<Family> families() {
          }
          return members;
        }},
+      {"event-methods", "gaze events --method",
+       [](const auto&) {
+         std::vector<Member> members;
+         for (const EventPreset& preset : event_presets()) {
+           members.push_back({preset.name, fmt::format("{}: {}", to_string(preset.device), preset.description)});
+         }
+         return members;
+       }},
+      {"gaze-steps", "--gaze-process",
+       [](const auto&) {
+         std::vector<Member> members;
+         for (const GazeStepInfo& info : gaze_steps()) {
+           members.push_back({to_string(parse_gaze_step(info.name)), info.description});
+         }
+         return members;
+       }},
       {"camera-formats", "--camera-format", [](const auto&) { return members_of(camera_formats()); }},
       {"material-extensions", "scene files", [](const auto&) { return members_of(material_extensions()); }},
       {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},

@@ -34,7 +34,8 @@ struct FrameCounts {
 };
 
 FrameCounts count_samples(const FrameRequest& request, const FoveationSettings& settings) {
-  const SamplingMap map = make_sampling_map(settings, request.view, request.gaze_direction_render);
+  const SamplingMap map =
+      make_sampling_map(widened(settings, request.gaze_uncertainty_deg), request.view, request.gaze_direction_render);
   FrameCounts counts;
   counts.frame = request.frame;
   counts.regions = map.regions;

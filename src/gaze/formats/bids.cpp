@@ -8,12 +8,14 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "core/text.hpp"
 #include "gaze/bids_sidecars.hpp"
 #include "gaze/gzip.hpp"
 #include "gaze/read_support.hpp"
 #include "gaze/units.hpp"
+#include "gaze/validity.hpp"
 
 namespace gazetrace {
 namespace {
@@ -21,6 +23,17 @@ namespace {
 struct BidsColumns {
   std::size_t time = 0, x = 0, y = 0;
   std::optional<std::size_t> pupil;
+  // Of recordings that gazetrace wrote: every bit of the places, and what the standard has no name for.
+  std::optional<std::size_t> z, validity, confidence, origin_x, origin_y, origin_z;
+  bool is_fraction = false, is_direction = false;
+
+  [[nodiscard]] std::size_t needed() const {
+    std::size_t last = std::max({time, x, y});
+    for (const auto& column : {pupil, z, validity, confidence, origin_x, origin_y, origin_z}) {
+      last = std::max(last, column.value_or(0));
+    }
+    return last + 1;
+  }
 };
 
 std::string unpacked(const std::string& path) {
@@ -44,6 +57,25 @@ BidsColumns find_columns(const DelimitedTable& table, const GazeReadOptions& opt
   c.x = need(options.columns.x, {"x_coordinate", "eye1_x_coordinate", "eye2_x_coordinate"});
   c.y = need(options.columns.y, {"y_coordinate", "eye1_y_coordinate", "eye2_y_coordinate"});
   c.pupil = table.find_any({"pupil_size", "eye1_pupil_size", "eye2_pupil_size"});
+  if (!options.columns.x.empty() || !options.columns.y.empty()) {
+    return c;
+  }
+  const auto x = table.find("display_x");
+  const auto y = table.find("display_y");
+  const auto dx = table.find("direction_x");
+  const auto dy = table.find("direction_y");
+  c.z = table.find("direction_z");
+  c.is_direction = dx && dy && c.z;
+  c.is_fraction = !c.is_direction && x && y;
+  if (c.is_direction || c.is_fraction) {
+    c.x = c.is_direction ? *dx : *x;
+    c.y = c.is_direction ? *dy : *y;
+  }
+  c.validity = table.find("validity");
+  c.confidence = table.find("confidence");
+  c.origin_x = table.find("origin_x");
+  c.origin_y = table.find("origin_y");
+  c.origin_z = table.find("origin_z");
   return c;
 }
 
@@ -92,6 +124,14 @@ PositionOrigin read_geometry(const BidsName& name, GazeLog& log) {
     g.distance_cm = distance > 10 ? distance : distance * 100;
     add_fact(log, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
   }
+  if (const std::vector<double> eye = events.numbers(key("EyeOffset")); eye.size() == 2) {  // gazetrace's own, metres
+    g.eye_x_cm = eye[0] * 100;
+    g.eye_y_cm = eye[1] * 100;
+  }
+  if (const std::vector<double> density = events.numbers(key("PixelsPerDegree"));
+      density.size() == 2 && density[0] > 0 && density[1] > 0) {  // likewise
+    log.pixels_per_degree = Vec2d{density[0], density[1]};
+  }
   if (g.width_px > 0 || g.width_cm > 0 || g.distance_cm > 0) {
     log.recording_geometry = g;
   }
@@ -107,6 +147,13 @@ PositionOrigin read_geometry(const BidsName& name, GazeLog& log) {
 Eye recorded_eye(const Sidecars& sidecars) {
   const std::string eye = to_lower(sidecars.text("RecordedEye"));
   return eye == "left" ? Eye::left : eye == "right" ? Eye::right : Eye::cyclopean;
+}
+
+void add_origin(GazeLog& log, Eye eye, std::int64_t t_ns, const Vec3f& place_mm) {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  EyeOrigins origins{{kUnknown, kUnknown, kUnknown}, {kUnknown, kUnknown, kUnknown}, t_ns};
+  (eye == Eye::right ? origins.right_mm : origins.left_mm) = place_mm;
+  log.origins.push_back(origins);
 }
 
 // Where no unit is stated: that in which the steps are what SamplingFrequency says.
@@ -137,7 +184,8 @@ int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::siz
               "give --gaze-time-unit, or write \"timestamp\": {\"Units\": \"ms\"} into it");
 }
 
-void read_samples(const GazeFile& file, const Sidecars& sidecars, const GazeReadOptions& options, GazeLog& log) {
+// Of one file into the log. Returns its columns.
+BidsColumns read_samples(const GazeFile& file, const Sidecars& sidecars, const GazeReadOptions& options, GazeLog& log) {
   std::vector<std::string> names = sidecars.texts("Columns");
   if (names.empty()) {
     throw Error(ErrorKind::input, file.path, "no sidecar names its Columns",
@@ -167,14 +215,14 @@ void read_samples(const GazeFile& file, const Sidecars& sidecars, const GazeRead
       choose_time_unit(log, options, time_name, exponent, stated ? Evidence::sidecar : Evidence::statistics, file.path);
   log.pupil_unit = c.pupil ? sidecars.text(names[*c.pupil] + ".Units") : "";
   const Eye eye = recorded_eye(sidecars);
-  TableRows rows(file, table, std::max({c.time, c.x, c.y, c.pupil.value_or(0)}) + 1);
+  TableRows rows(file, table, c.needed());
   while (rows.next()) {
     rows.check_length();
     GazeSample sample;
     sample.t_ns = rows.time_ns(c.time, scale);
     sample.row = rows.line();
     sample.eye = eye;
-    sample.confidence = static_cast<float>(kNan);
+    sample.confidence = static_cast<float>(rows.number(c.confidence));
     sample.pupil = static_cast<float>(rows.number(c.pupil));
     sample.u = rows.number(c.x);
     sample.v = rows.number(c.y);
@@ -182,12 +230,25 @@ void read_samples(const GazeFile& file, const Sidecars& sidecars, const GazeRead
       sample.u = sample.v = kNan;
       sample.validity = GazeValidity::lost;
     }
+    if (c.validity) {
+      sample.validity = validity_by_name(rows.cell(*c.validity)).value_or(sample.validity);
+    }
+    if (c.is_direction) {
+      sample.direction = {sample.u, sample.v, rows.number(c.z)};
+      sample.u = sample.v = 0;
+    }
+    if (c.origin_x && c.origin_y && c.origin_z) {
+      add_origin(log, eye, sample.t_ns,
+                 to_float({rows.number(c.origin_x), rows.number(c.origin_y), rows.number(c.origin_z)}));
+    }
     log.samples.push_back(sample);
   }
+  return c;
 }
 
 // ..._physioevents.tsv(.gz): onset in the unit of its OnsetSource, duration in seconds, trial_type, blink, message.
-void read_events(const BidsName& name, const Sidecars& physio, const std::string& path, GazeLog& log) {
+void read_events(const Sidecars& physio, const std::string& path, GazeLog& log) {
+  const BidsName name = parse_bids_name(path);
   const std::size_t at = path.rfind("_physio.");
   if (at == std::string::npos) {
     return;
@@ -198,6 +259,7 @@ void read_events(const BidsName& name, const Sidecars& physio, const std::string
     if (!std::filesystem::exists(events_path, code)) {
       continue;
     }
+    const Eye eye = recorded_eye(physio);
     const Sidecars sidecars(name, "physioevents");
     const GazeFile file{events_path, unpacked(events_path)};
     const DelimitedTable table = open_headerless(file.text, '\t', sidecars.texts("Columns"));
@@ -215,6 +277,7 @@ void read_events(const BidsName& name, const Sidecars& physio, const std::string
     while (rows.next()) {
       GazeEvent event;
       event.row = rows.line();
+      event.eye = eye;
       event.begin_ns = rows.time_ns(*onset, {*exponent, 0});
       const double seconds = rows.number(duration);
       event.end_ns = event.begin_ns + (seconds > 0 && seconds < 1e6 ? std::llround(seconds * 1e9) : 0);
@@ -259,34 +322,50 @@ GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
                 "gaze-on-screen and eye-in-head can be read");
   }
   const PositionOrigin origin = read_geometry(name, log);
-  read_samples(file, sidecars, options, log);
+  const BidsColumns columns = read_samples(file, sidecars, options, log);
+  read_events(sidecars, file.path, log);
+  std::vector<Eye> read{recorded_eye(sidecars)};
   for (const std::string& path : sibling_recordings(name, name.suffix)) {
     const Sidecars other(parse_bids_name(path), name.suffix);
     const Eye eye = recorded_eye(other);
-    if (eye == Eye::cyclopean || recorded_eye(sidecars) == Eye::cyclopean || eye == recorded_eye(sidecars)) {
+    if (std::find(read.begin(), read.end(), eye) != read.end()) {
       continue;
     }
+    read.push_back(eye);
     const GazeFile sibling{path, unpacked(path)};
     GazeLog second;
     second.nominal_rate_hz = log.nominal_rate_hz;
-    read_samples(sibling, other, options, second);
+    const BidsColumns its = read_samples(sibling, other, options, second);
+    if (its.is_direction != columns.is_direction || its.is_fraction != columns.is_fraction) {
+      throw Error(ErrorKind::input, path, "says its places in other columns than the recording beside it",
+                  "read one of them alone, from another folder");
+    }
+    read_events(other, path, log);
+    log.origins.insert(log.origins.end(), second.origins.begin(), second.origins.end());
     log.samples.insert(log.samples.end(), second.samples.begin(), second.samples.end());
     std::stable_sort(log.samples.begin(), log.samples.end(),
                      [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
     add_fact(log, "other eye", std::filesystem::path(path).filename().string(), Evidence::sidecar, "RecordedEye");
-    break;
   }
-  read_events(name, sidecars, file.path, log);
+  if (columns.is_direction) {
+    finish_directions(log, options, GazeAxes::gl, Evidence::sidecar, file.path);
+    return log;
+  }
   const std::string unit_text = sidecars.text("x_coordinate.Units");
   const auto unit = position_unit_from(unit_text);
   GazeReadOptions settled = options;
   if (space == "eye-in-head") {
     settled.frame = GazeFrame::head;
   }
-  finish_places(log, settled,
-                {unit.value_or(PositionUnit::px), unit == PositionUnit::deg ? PositionOrigin::center : origin,
-                 unit ? Evidence::sidecar : Evidence::format, "x_coordinate, y_coordinate"},
-                file.path);
+  finish_places(
+      log, settled,
+      {columns.is_fraction ? PositionUnit::fraction : unit.value_or(PositionUnit::px),
+       unit == PositionUnit::deg ? PositionOrigin::center
+       : columns.is_fraction     ? PositionOrigin::top_left
+                                 : origin,
+       unit ? Evidence::sidecar : Evidence::format,
+       columns.is_fraction ? "display_x, display_y" : "x_coordinate, y_coordinate", columns.validity.has_value()},
+      file.path);
   return log;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -15,22 +14,34 @@ struct ConvertArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   OptionTable table;
+  std::vector<std::string> steps;
   std::string output;
   bool overwrite = false;
 };
 
 int run_convert(const ConvertArguments& arguments) {
-  const std::string& output = arguments.output;
-  if (!arguments.overwrite && std::filesystem::exists(output)) {
-    throw Error(ErrorKind::input, output, "this output exists already", "give --overwrite or another name");
+  const bool is_bids = is_bids_file_name(arguments.output);
+  if (!is_bids) {
+    check_output_file(arguments.output, arguments.overwrite);
   }
-  if (const auto folder = std::filesystem::path(output).parent_path();
-      !folder.empty() && !std::filesystem::is_directory(folder)) {
-    throw Error(ErrorKind::input, output, "there is no folder " + folder.string(), "make it first");
-  }
-  const GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
+  GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   print_warnings(log.warnings);
-  write_gaze_csv(log, output);
+  if (!arguments.steps.empty()) {
+    complete_recording_geometry(log, arguments.screen);
+    ProcessedGaze processed = process_gaze(log, gaze_steps_of(arguments.steps));
+    for (const std::string& report : processed.reports) {
+      print_result(report + "\n");
+    }
+    log = std::move(processed.log);
+  }
+  if (!is_bids) {
+    write_gaze_csv(log, arguments.output);
+    return exit_done;
+  }
+  for (const std::string& path : bids_file_names(log, arguments.output)) {
+    check_output_file(path, arguments.overwrite);
+  }
+  write_gaze_bids(log, arguments.output);
   return exit_done;
 }
 
@@ -40,10 +51,17 @@ Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/
   auto arguments = std::make_shared<ConvertArguments>();
   add_gaze_file_options(arguments->table, arguments->gaze);
   add_screen_options(arguments->table, arguments->screen);
+  arguments->table.group("Processing");
+  add_gaze_process_options(arguments->table, arguments->steps);
   bind_options(app, arguments->table);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
-  app.add_option("-o,--output", arguments->output, "gazetrace CSV")->required()->type_name("OUT.csv");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces OUT.csv when it is there");
+  app.add_option("-o,--output", arguments->output,
+                 "gazetrace CSV, or BIDS where the name is one of it: sub-01_task-view_physio.tsv.gz, with a file for "
+                 "each eye, "
+                 "sidecars and events beside it")
+      ->required()
+      ->type_name("OUT");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
   return {[arguments] { return run_convert(*arguments); }, nullptr};
 }
 

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/inputs.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_events.hpp"
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct EventsArguments {
+  GazeFileSettings gaze;
+  ScreenSettings screen;
+  OptionTable table;
+  std::string method = "auto";
+  std::optional<GazeDevice> device;
+  std::string output;
+  bool overwrite = false;
+};
+
+EyeEvents find_events(const EventsArguments& arguments, const GazeLog& log) {
+  if (arguments.method == "log") {
+    return events_of_log(log);
+  }
+  const EventPreset& preset =
+      arguments.method == "auto" ? default_event_preset(log, arguments.device) : event_preset(arguments.method);
+  return detect_events(log, preset, arguments.device);
+}
+
+// How many of what, for people who write the events to a file.
+std::string summary(const EyeEvents& events, const GazeLog& log) {
+  std::string text = fmt::format("{}: by {}", log.source, events.preset);
+  for (const EyeMovement movement : {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::blink, EyeMovement::lost,
+                                     EyeMovement::unclassified}) {
+    std::size_t count = 0;
+    for (const EyeEvent& event : events.events) {
+      count += event.movement == movement ? 1 : 0;
+    }
+    text += fmt::format(", {} {}", count, to_string(movement));
+  }
+  return text + "\n";
+}
+
+int run_events(const EventsArguments& arguments) {
+  if (!arguments.output.empty()) {
+    check_output_file(arguments.output, arguments.overwrite);
+  }
+  GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
+  complete_recording_geometry(log, arguments.screen);
+  print_warnings(log.warnings);
+  const EyeEvents events = find_events(arguments, log);
+  const bool json = arguments.output.ends_with(".json");
+  const std::string text = json ? events_as_json(events, log) : events_as_tsv(events, log);
+  if (arguments.output.empty()) {
+    print_result(text);
+  } else {
+    write_text_atomically(arguments.output, text);
+    print_result(summary(events, log));
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<EventsArguments>();
+  OptionTable& table = arguments->table;
+  table.group("Events");
+  table.value(
+      "--method", arguments->method, "NAME",
+      "A method with its published constants ('gazetrace list event-methods'), or log: what the log itself says "
+      "of its events; auto: ivt on a screen, ivt-hmd in a headset, ivt-attention without a head pose");
+  table.value(
+      "--device", arguments->device, "desktop|head-mounted",
+      "What it was recorded on, where places or directions do not tell: gaze in degrees from a desktop tracker");
+  add_gaze_file_options(table, arguments->gaze);
+  add_screen_options(table, arguments->screen);
+  bind_options(app, table);
+  app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
+  app.add_option("-o,--output", arguments->output, "Events, .tsv or .json; default: as TSV to stdout")
+      ->type_name("FILE");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces the file when it is there");
+  return {[arguments] { return run_events(*arguments); }, nullptr};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/inputs.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_synth.hpp"
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct SynthArguments {
+  SynthSettings synth;
+  ScreenSettings screen;
+  OptionTable table;
+  DurationNs duration{10'000'000'000};
+  DurationNs fixation{300'000'000};
+  bool head = false;
+  std::string output, truth;
+  bool overwrite = false;
+};
+
+int run_synth(const SynthArguments& arguments) {
+  check_output_file(arguments.output, arguments.overwrite);
+  if (!arguments.truth.empty()) {
+    check_output_file(arguments.truth, arguments.overwrite);
+  }
+  SynthSettings settings = arguments.synth;
+  settings.duration_ns = arguments.duration.ns;
+  settings.fixation_s = static_cast<double>(arguments.fixation.ns) * 1e-9;
+  settings.kind = arguments.head ? GazeKind::direction : GazeKind::screen;
+  settings.display = screen_geometry(arguments.screen).value_or(settings.display);
+  const SynthGaze synth = synthesize_gaze(settings);
+  write_gaze_csv(synth.log, arguments.output);
+  if (!arguments.truth.empty()) {
+    const bool json = arguments.truth.ends_with(".json");
+    write_text_atomically(arguments.truth,
+                          json ? events_as_json(synth.truth, synth.log) : events_as_tsv(synth.truth, synth.log));
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_gaze_synth_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<SynthArguments>();
+  SynthSettings& synth = arguments->synth;
+  OptionTable& table = arguments->table;
+  table.group("Synthetic gaze");
+  table.value("--duration", arguments->duration, "DURATION", "How long");
+  table.value("--rate", synth.rate_hz, "HZ", "Samples a second");
+  table.value("--seed", synth.seed, "N", "Same seed, same gaze");
+  table.flag("--head", arguments->head, "Directions from the head instead of places on a screen");
+  table.value("--fixation", arguments->fixation, "DURATION", "Mean duration of a fixation");
+  table.value("--amplitude", synth.amplitude_deg, "DEG", "Mean amplitude of a saccade, from 1 deg on");
+  table.value("--drift", synth.drift_deg, "DEG", "Root mean square of the slow wandering in fixations");
+  table.value("--pursuit-share", synth.pursuit_share, "SHARE", "Of the fixations that follow something instead");
+  table.value("--pursuit-speed", synth.pursuit_deg_s, "DEG/S", "How fast");
+  table.value("--noise", synth.noise_deg, "DEG", "Standard deviation of white noise in azimuth and in elevation");
+  table.value("--lost-share", synth.lost_share, "SHARE", "Of the samples that are lost, four at a time");
+  table.value("--blinks", synth.blinks_per_min, "N", "Blinks a minute");
+  add_screen_options(table, arguments->screen);
+  bind_options(app, table);
+  app.add_option("-o,--output", arguments->output, "gazetrace CSV")->required()->type_name("OUT.csv");
+  app.add_option("--truth", arguments->truth, "What really happened, as 'gaze events' writes it: .tsv or .json")
+      ->type_name("FILE");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
+  return {[arguments] { return run_synth(*arguments); }, nullptr};
+}
+
+}  // namespace gazetrace

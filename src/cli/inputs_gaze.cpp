@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// How gaze enters a run: its clock, what is done to it, and how far it is to be trusted.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "cli/inputs.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_process.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr const char* kAnchor = "--gaze-anchor";
+
+ClockAnchor parse_anchor(const std::string& text, const GazeLog& log, std::int64_t taken_off_ns) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) {
+    throw Error(ErrorKind::usage, kAnchor, fmt::format("'{}' has no video time", text),
+                "write LOG=VIDEO, such as 12.5s=0s or 'TRIAL 1=2s'");
+  }
+  DurationNs video;
+  parse_value(text.substr(equals + 1), kAnchor, video);
+  const std::string place = text.substr(0, equals);
+  DurationNs time;
+  try {
+    parse_value(place, kAnchor, time);
+    time.ns -= taken_off_ns;
+  } catch (const Error&) {
+    time.ns = time_of_message(log, place);  // not a time: a message
+  }
+  return {time.ns, video.ns};
+}
+
+GazeMapping mapping_from_anchors(const JobSettings& job, const GazeLog& log, std::string* decision) {
+  if (job.gaze_start || job.gaze_offset.ns != 0 || job.gaze_scale != 1.0) {
+    throw Error(ErrorKind::usage, kAnchor, "anchors already say start, offset and scale",
+                "leave --gaze-start, --gaze-offset and --gaze-scale out");
+  }
+  std::vector<ClockAnchor> anchors;
+  for (const std::string& text : job.gaze_anchors) {
+    anchors.push_back(parse_anchor(text, log, job.gaze_taken_off_ns));
+  }
+  const ClockFit fit = fit_clock(anchors);
+  if (decision != nullptr) {
+    *decision =
+        fmt::format("log time {} ns is video time {:.6f} s", fit.event_ns, static_cast<double>(fit.offset_ns) * 1e-9);
+    if (anchors.size() > 1) {
+      *decision += fmt::format(", scale {:.9f} ({:+.1f} ppm), by {} anchors; residual {:.3f} ms rms, {:.3f} ms at most",
+                               fit.scale, (fit.scale - 1) * 1e6, anchors.size(), fit.rms_residual_ns * 1e-6,
+                               fit.max_residual_ns * 1e-6);
+    }
+  }
+  GazeMapping mapping;
+  mapping.scale = fit.scale;
+  mapping.offset_ns = fit.offset_ns;
+  mapping.event_ns = fit.event_ns;
+  return mapping;
+}
+
+}  // namespace
+
+GazeMapping gaze_mapping(const JobSettings& job, const GazeLog* log, std::string* decision) {
+  GazeMapping mapping;
+  if (job.gaze_at) {
+    mapping.max_age_ns = std::numeric_limits<std::int64_t>::max();
+    mapping.offset_ns = job.start.ns;
+    return mapping;
+  }
+  if (!job.gaze_anchors.empty() && log != nullptr) {
+    mapping = mapping_from_anchors(job, *log, decision);
+  } else {
+    mapping.scale = job.gaze_scale;
+    mapping.offset_ns = job.gaze_offset.ns;
+    if (job.gaze_start) {
+      mapping.event_ns = job.gaze_start->ns;
+    }
+  }
+  mapping.interpolation = job.gaze_mode;
+  mapping.no_gaze = job.gaze_missing;
+  mapping.max_age_ns = job.gaze_max_age.ns;
+  mapping.max_interpolation_gap_ns = job.gaze_max_gap.ns;
+  return mapping;
+}
+
+void complete_recording_geometry(GazeLog& log, const ScreenSettings& screen) {
+  const std::optional<DisplayGeometry> given = screen_geometry(screen);
+  if (!given || log.kind != GazeKind::screen || knows_angles(log)) {
+    return;
+  }
+  DisplayGeometry g = log.recording_geometry.value_or(*given);
+  if (g.width_px == 0 || g.height_px == 0) {
+    g.width_px = given->width_px;
+    g.height_px = given->height_px;
+  }
+  if (!(g.width_cm > 0) || !(g.height_cm > 0)) {
+    g.width_cm = given->width_cm;
+    g.height_cm = given->height_cm;
+  }
+  if (!(g.distance_cm > 0)) {
+    g.distance_cm = given->distance_cm;
+    g.eye_x_cm = given->eye_x_cm;
+    g.eye_y_cm = given->eye_y_cm;
+  }
+  log.recording_geometry = g;
+}
+
+std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts) {
+  std::vector<GazeStep> steps;
+  for (const std::string& text : texts) {
+    steps.push_back(parse_gaze_step(text));
+  }
+  return steps;
+}
+
+std::optional<GazeUncertainty> gaze_uncertainty(const JobSettings& job, const GazeLog& log) {
+  if (!job.gaze_uncertainty) {
+    if (job.gaze_accuracy_deg || job.gaze_precision_deg) {
+      throw Error(ErrorKind::usage, job.gaze_accuracy_deg ? "--gaze-accuracy" : "--gaze-precision",
+                  "says how far the fovea grows, and it is not asked to", "add --gaze-uncertainty");
+    }
+    return std::nullopt;
+  }
+  const GazeUncertainty stated = uncertainty_of(log);
+  const GazeUncertainty uncertainty{job.gaze_accuracy_deg.value_or(stated.accuracy_deg),
+                                    job.gaze_precision_deg.value_or(stated.precision_deg)};
+  if (std::isnan(uncertainty.accuracy_deg)) {
+    throw Error(ErrorKind::input, log.source, "has no validation that would tell the tracker's accuracy",
+                "give --gaze-accuracy DEG");
+  }
+  if (std::isnan(uncertainty.precision_deg)) {
+    throw Error(ErrorKind::input, log.source, "has no fixation to measure the tracker's precision in",
+                "give --gaze-precision DEG");
+  }
+  if (!(uncertainty.accuracy_deg >= 0) || !(uncertainty.precision_deg >= 0)) {
+    throw Error(ErrorKind::usage, "--gaze-uncertainty", "an error of a tracker is not negative");
+  }
+  return uncertainty;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Small angles about a direction: where means, extents and medians of directions are taken.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/gaze_log.hpp"
+#include "gazetrace/math.hpp"
+
+namespace gazetrace {
+
+// Axes about a direction: `right` level, `up` towards the world's +y. Straight up and down, where level has no meaning,
+// -z counts as up.
+struct TangentFrame {
+  Vec3d right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
+
+  TangentFrame() = default;
+  explicit TangentFrame(const Vec3d& direction) : forward(normalize(direction)) {
+    const Vec3d level = cross(forward, Vec3d{0, 1, 0});
+    right = length(level) > 1e-6 ? normalize(level) : Vec3d{1, 0, 0};
+    up = cross(right, forward);
+  }
+
+  // Azimuth to the right and elevation, radians.
+  [[nodiscard]] Vec2d angles(const Vec3d& direction) const {
+    const double x = dot(direction, right);
+    const double z = dot(direction, forward);
+    return {std::atan2(x, z), std::atan2(dot(direction, up), std::hypot(x, z))};
+  }
+  [[nodiscard]] Vec3d direction(const Vec2d& angles) const {
+    const double level = std::cos(angles.y);
+    return right * (std::sin(angles.x) * level) + up * std::sin(angles.y) + forward * (std::cos(angles.x) * level);
+  }
+};
+
+inline bool is_seen(const Vec3d& direction) {
+  return !std::isnan(direction.x);
+}
+
+// Between two directions, s from 0 to 1, along the shorter arc.
+Vec3d between_directions(const Vec3d& a, const Vec3d& b, double s);
+
+// How u, v of a screen log become directions and back.
+class ScreenAngles {
+ public:
+  explicit ScreenAngles(const GazeLog& log);
+  [[nodiscard]] bool known() const { return width_ > 0; }
+  [[nodiscard]] Vec3d direction(double u, double v) const {
+    return normalize(Vec3d{(u - 0.5) * width_ - eye_x_, (0.5 - v) * height_ - eye_y_, -1});
+  }
+  // {NaN, NaN} for directions that never meet the screen.
+  [[nodiscard]] Vec2d place(const Vec3d& direction) const;
+
+ private:
+  double width_ = 0, height_ = 0, eye_x_ = 0, eye_y_ = 0;  // at distance 1
+};
+
+// The median step between neighbouring samples; 0 with fewer than two.
+std::int64_t median_step_ns(const std::vector<std::int64_t>& t_ns);
+std::vector<std::int64_t> times_of(const GazeLog& log);
+
+// A longer step between neighbours interrupts every event and filter: 75 ms, or three samples of a slow tracker.
+std::int64_t break_step_ns(std::int64_t median_step_ns);
+
+}  // namespace gazetrace

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// When the eye was not seen, and whether that was a blink.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/gaze_events.hpp"
+
+namespace gazetrace {
+
+// unclassified where the sample is usable, else blink or lost as the log says.
+std::vector<EyeMovement> absence_labels(const GazeLog& log, const std::vector<std::int64_t>& t_ns);
+
+// Losses as long as a blink, between two times at which the eye was seen, become blinks. One end of a blink that the
+// log names may be called lost: the whole of it is the blink. max_ns of 0: nothing changes.
+void infer_blinks(const std::vector<std::int64_t>& t_ns, std::int64_t min_ns, std::int64_t max_ns,
+                  std::vector<EyeMovement>& labels);
+
+}  // namespace gazetrace

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// I-VT: slower than a threshold is a fixation, faster a saccade.
+// Olsen, "The Tobii I-VT fixation filter", 2012: gap fill-in (linear), velocity over a window, classification, merging
+// of adjacent fixations by time and by the angle between their centres, discarding of short ones. The classification
+// is Salvucci & Goldberg 2000. Left out: the eye selection and the noise reduction of that filter, which
+// here are a matter of reading (--gaze-eye) and of processing.
+#include <cstddef>
+
+#include "gaze/angles.hpp"
+#include "gaze/events/event_method.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Lost samples between seen ones at most `max_gap_ns` apart lie on the way between.
+GazeDirections bridged(const GazeDirections& gaze, const EyeEvents& events) {
+  GazeDirections filled = gaze;
+  const std::size_t count = gaze.t_ns.size();
+  for (std::size_t i = 1; i < count; ++i) {
+    if (is_seen(gaze.direction[i]) || !is_seen(gaze.direction[i - 1])) {
+      continue;
+    }
+    std::size_t end = i;
+    bool blink = false;
+    while (end < count && !is_seen(gaze.direction[end])) {
+      blink = blink || events.labels[end] == EyeMovement::blink;
+      ++end;
+    }
+    if (end == count) {
+      break;
+    }
+    const std::int64_t gap_ns = gaze.t_ns[end] - gaze.t_ns[i - 1];
+    if (!blink && gap_ns <= events.settings.max_gap_ns) {
+      for (std::size_t k = i; k < end; ++k) {
+        const double s = static_cast<double>(gaze.t_ns[k] - gaze.t_ns[i - 1]) / static_cast<double>(gap_ns);
+        filled.direction[k] = between_directions(gaze.direction[i - 1], gaze.direction[end], s);
+      }
+    }
+    i = end;
+  }
+  return filled;
+}
+
+struct Fixation {
+  std::size_t first = 0, last = 0;
+  Vec3d sum;
+};
+
+void merge_fixations(const GazeDirections& gaze, EyeEvents& events) {
+  const EventSettings& settings = events.settings;
+  if (settings.merge_gap_ns <= 0) {
+    return;
+  }
+  Fixation before;
+  bool has_before = false;
+  for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
+    if (run.movement != EyeMovement::fixation) {
+      // What was lost is no pause between two parts of a fixation.
+      has_before = has_before && run.movement == EyeMovement::saccade;
+      continue;
+    }
+    Fixation fixation{run.first, run.last, {}};
+    for (std::size_t i = run.first; i <= run.last; ++i) {
+      fixation.sum += gaze.direction[i];
+    }
+    if (has_before && gaze.t_ns[run.first] - gaze.t_ns[before.last] <= settings.merge_gap_ns &&
+        angle_between_rad(before.sum, fixation.sum) * kDegPerRad <= settings.merge_angle_deg) {
+      for (std::size_t i = before.last + 1; i < run.first; ++i) {
+        events.labels[i] = EyeMovement::fixation;
+      }
+      before = {before.first, fixation.last, before.sum + fixation.sum};
+    } else {
+      before = fixation;
+    }
+    has_before = true;
+  }
+}
+
+}  // namespace
+
+void classify_ivt(const GazeDirections& gaze, EyeEvents& events) {
+  const GazeDirections filled = bridged(gaze, events);
+  const std::vector<double> speed = angular_speed_deg_s(filled, events.settings.velocity_window_ns);
+  for (std::size_t i = 0; i < speed.size(); ++i) {
+    if (!std::isnan(speed[i])) {
+      events.labels[i] = speed[i] < events.settings.velocity_deg_s ? EyeMovement::fixation : EyeMovement::saccade;
+    }
+  }
+  merge_fixations(filled, events);
+  drop_short_fixations(gaze, events);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// A log written as gazetrace CSV or as BIDS and read again is the same log: times to the nanosecond, everything else
+// bit by bit. Over real recordings and synthetic ones.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_synth.hpp"
+#include "support/text_file.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Equal bits, or both missing.
+template <class Number>
+void expect_same(Number a, Number b, const std::string& what) {
+  EXPECT_TRUE((std::isnan(a) && std::isnan(b)) || a == b) << what << ": " << a << " and " << b;
+}
+
+void expect_same_place(const Vec3d& a, const Vec3d& b, const std::string& what) {
+  expect_same(a.x, b.x, what + " x");
+  expect_same(a.y, b.y, what + " y");
+  expect_same(a.z, b.z, what + " z");
+}
+
+void expect_same_eye(const EyeGaze& a, const EyeGaze& b, const std::string& what) {
+  EXPECT_EQ(a.validity, b.validity) << what;
+  expect_same(a.confidence, b.confidence, what + " confidence");
+  expect_same(a.pupil, b.pupil, what + " pupil");
+  if (!std::isnan(a.at.x) || !std::isnan(b.at.x)) {
+    expect_same_place(a.at, b.at, what);
+  }
+}
+
+void expect_same_log(const GazeLog& a, const GazeLog& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.pupil_unit, b.pupil_unit);
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  ASSERT_EQ(a.eyes.size(), b.eyes.size());
+  ASSERT_EQ(a.origins.size(), b.origins.size());
+  for (std::size_t i = 0; i < a.samples.size() && !::testing::Test::HasFailure(); ++i) {
+    const GazeSample& s = a.samples[i];
+    const GazeSample& r = b.samples[i];
+    const std::string at = "sample " + std::to_string(i);
+    EXPECT_EQ(s.t_ns, r.t_ns) << at;
+    EXPECT_EQ(s.eye, a.eyes.empty() ? r.eye : s.eye) << at;
+    const auto place = [&](const GazeSample& g) {
+      return a.kind == GazeKind::direction ? g.direction : Vec3d{g.u, g.v, 0};
+    };
+    expect_same_eye({place(s), s.confidence, s.pupil, s.validity}, {place(r), r.confidence, r.pupil, r.validity}, at);
+    if (!a.eyes.empty()) {
+      expect_same_eye(a.eyes[i].left, b.eyes[i].left, at + " left");
+      expect_same_eye(a.eyes[i].right, b.eyes[i].right, at + " right");
+    }
+    if (!a.origins.empty()) {
+      expect_same_place(to_double(a.origins[i].left_mm), to_double(b.origins[i].left_mm), at + " left origin");
+      expect_same_place(to_double(a.origins[i].right_mm), to_double(b.origins[i].right_mm), at + " right origin");
+    }
+  }
+  ASSERT_EQ(a.recording_geometry.has_value(), b.recording_geometry.has_value());
+  if (a.recording_geometry) {
+    EXPECT_EQ(a.recording_geometry->width_px, b.recording_geometry->width_px);
+    EXPECT_EQ(a.recording_geometry->height_px, b.recording_geometry->height_px);
+    EXPECT_EQ(a.recording_geometry->width_cm, b.recording_geometry->width_cm);
+    EXPECT_EQ(a.recording_geometry->height_cm, b.recording_geometry->height_cm);
+    EXPECT_EQ(a.recording_geometry->distance_cm, b.recording_geometry->distance_cm);
+    EXPECT_EQ(a.recording_geometry->eye_x_cm, b.recording_geometry->eye_x_cm);
+  }
+  EXPECT_EQ(a.pixels_per_degree, b.pixels_per_degree);
+}
+
+class Conversion : public ::testing::TestWithParam<const char*> {
+ protected:
+  // Empty where there is no such recording.
+  static std::string sample() { return std::string(GAZETRACE_SHARED_DIR) + "/gaze-samples/" + GetParam(); }
+};
+
+#define SKIP_WITHOUT_SAMPLE()                                                \
+  if (!std::filesystem::exists(sample())) {                                  \
+    GTEST_SKIP() << sample() << " is not there: real recordings are needed"; \
+  }
+
+TEST_P(Conversion, ToCsvAndBack) {
+  SKIP_WITHOUT_SAMPLE();
+  const GazeLog log = load_gaze_log(sample(), {});
+  const TextFiles files;
+  write_gaze_csv(log, files.path("log.csv"));
+  expect_same_log(log, load_gaze_log(files.path("log.csv"), {}));
+}
+
+TEST_P(Conversion, ToBidsAndBack) {
+  SKIP_WITHOUT_SAMPLE();
+  const GazeLog log = load_gaze_log(sample(), {});
+  const TextFiles files;
+  write_gaze_bids(log, files.path("sub-01_task-look_physio.tsv.gz"));
+  const std::vector<std::string> names = bids_file_names(log, files.path("sub-01_task-look_physio.tsv.gz"));
+  for (const std::string& name : names) {
+    EXPECT_TRUE(std::filesystem::exists(name)) << name;
+  }
+  const GazeLog back = load_gaze_log(names.front(), {});
+  EXPECT_EQ(back.format, "bids");
+  expect_same_log(log, back);
+  // Events of the eyes come along; recordings of a tracker's blocks have no name there.
+  const auto count = [](const GazeLog& l, GazeEventType type) {
+    return std::count_if(l.events.begin(), l.events.end(), [&](const GazeEvent& e) { return e.type == type; });
+  };
+  for (const GazeEventType type : {GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink}) {
+    EXPECT_EQ(count(back, type), count(log, type)) << to_string(type);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(RealRecordings, Conversion,
+                         ::testing::Values("eyelink-asc/bino1000_blinks.asc", "eyelink-asc/bino1000.asc",
+                                           "eyelink-asc/mono500.asc", "tobii-studio-tsv/data.tsv", "arff/gaze.arff",
+                                           "vive-pro-eye/TESTNA01_360VR_Fist3.csv", "pico-neo3-pro/boxing_VR.csv",
+                                           "bids/derived-tx300/sub-01_task-view_recording-eye1_physio.tsv.gz",
+                                           "gazebase-vr/gazebase_vr_example.csv"));
+
+TEST(GazeConvert, SyntheticLogsSurviveBids) {
+  for (const GazeKind kind : {GazeKind::screen, GazeKind::direction}) {
+    SynthSettings settings;
+    settings.kind = kind;
+    settings.noise_deg = 0.3;
+    settings.lost_share = 0.1;
+    settings.blinks_per_min = 30;
+    // No number of pixels that divides without a rest.
+    settings.display = {1366, 769, 34.4, 19.35, 57.3, 1.1, -2.2};
+    GazeLog log = synthesize_gaze(settings).log;
+    for (GazeSample& sample : log.samples) {
+      sample.t_ns += 1'700'000'000'123'456'789;  // beyond 2^53
+    }
+    const TextFiles files;
+    write_gaze_bids(log, files.path("sub-02_recording-eye1_physio.tsv.gz"));
+    EXPECT_TRUE(std::filesystem::exists(files.path("sub-02_recording-cyclopean_physio.tsv.gz")));
+    expect_same_log(log, load_gaze_log(files.path("sub-02_recording-cyclopean_physio.tsv.gz"), {}));
+  }
+}
+
+TEST(GazeConvert, OtherNamesAreNoBids) {
+  EXPECT_TRUE(is_bids_file_name("a/sub-01_task-view_physio.tsv.gz"));
+  EXPECT_FALSE(is_bids_file_name("log.csv"));
+  EXPECT_FALSE(is_bids_file_name("physio.tsv.gz"));
+  EXPECT_FALSE(is_bids_file_name("sub-01_physio.tsv"));
+  EXPECT_THROW(write_gaze_bids(synthesize_gaze({}).log, "log.csv"), Error);
+}
+
+}  // namespace
+}  // namespace gazetrace
