@@ -14,6 +14,7 @@ the longer one's time. `log` is what the recording itself says of its events.
 import argparse
 import csv
 import json
+import logging
 import math
 import pathlib
 import subprocess
@@ -90,8 +91,9 @@ def remodnav_events(t, azimuth, elevation):
     data = np.rec.fromarrays([azimuth, elevation], names=["x", "y"])
     names = {"FIXA": "fixation", "PURS": "fixation", "SACC": "saccade", "ISAC": "saccade"}
     events = []
-    # Its window of 19 ms needs three samples.
-    for event in classifier(classifier.preproc(data, savgol_length=max(0.019, 3.5 / rate))):
+    # Its window of 19 ms must be an odd number of samples, three at least.
+    window = max(3, 2 * int(0.019 * rate / 2) + 1)
+    for event in classifier(classifier.preproc(data, savgol_length=(window + 0.5) / rate)):
         begin, end = (min(int(round(event[k] * rate)), len(t) - 1) for k in ("start_time", "end_time"))
         if event["label"] in names:
             events.append((names[event["label"]], int(t[begin]), int(t[end])))
@@ -118,6 +120,7 @@ def main():
     parser.add_argument("--samples", default="../shared/gaze-samples", type=pathlib.Path)
     parser.add_argument("--json", help="the table for programs")
     arguments = parser.parse_args()
+    logging.disable(logging.INFO)
     table = []
     for name in RECORDINGS:
         log = str(arguments.samples / name)
