@@ -26,7 +26,8 @@ int render(const std::string& scene_path, const std::string& exr_path, double u,
     camera.pose = look_at({3, 2, 4}, {0, 0, 0}, {0, 1, 0});
   } else {
     const CameraPath& path = scene.cameras.front().path;
-    camera = {path.pose_at(path.begin_ns), path.projection};
+    camera.pose = path.pose_at(path.begin_ns);
+    camera.projection = path.projection;
   }
 
   constexpr int kWidth = 320;

@@ -51,8 +51,9 @@ struct SequenceResult {
 
 // Renders the frames of a plan in order. With OutputSettings::resume, frames whose files carry this settings digest are
 // skipped; where history (accumulation, exposure smoothing) needs them they are rendered again, but not written.
-// timing.csv grows by a row with each finished frame, so that a killed run keeps what it measured.
-SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
+// The tracer is moved from frame to frame. timing.csv grows by a row with each finished frame, so that a killed run
+// keeps what it measured.
+SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer);
 
 // A frame depends on those before it.

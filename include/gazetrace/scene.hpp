@@ -38,7 +38,14 @@ struct Mesh {
 // warning.
 struct Instance {
   std::int32_t mesh = 0;
-  Affine to_world;
+  Affine to_world;           // of one that moves: at rest
+  std::int32_t motion = -1;  // index into Scene::motions; -1: stands still
+};
+
+// Where an instance is over time: a node's animation with those of its parents. May be called with any time; before the
+// first and after the last key of the animation it holds.
+struct Motion {
+  std::function<Affine(std::int64_t t_video_ns)> to_world_at;
 };
 
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
@@ -102,6 +109,7 @@ struct SceneFeatures {
   bool punctual_lights = false;
   bool environment = false;
   bool instances = false;  // a mesh used more than once
+  bool motion = false;     // an instance that moves
   bool unlit = false;
   MaterialLayers layers;
   bool specular = true;  // any material that is not purely diffuse (all of glTF's are not)
@@ -111,6 +119,7 @@ struct Scene {
   std::string source;
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  std::vector<Motion> motions;
   std::vector<Material> materials;  // never empty: index 0 may be glTF's default material
   std::vector<Texture> textures;
   std::vector<PunctualLight> lights;

@@ -92,6 +92,11 @@ struct SparseFrame {
   TraceStats stats;
 };
 
+// When the shutter opens and closes, video time; equal: an instant.
+struct ShutterTimes {
+  std::int64_t open_ns = 0, close_ns = 0;
+};
+
 struct TracerMemory {
   std::uint64_t bvh_bytes = 0;  // as Embree reports it to the device's memory monitor
   double build_s = 0;
@@ -107,7 +112,12 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // A pure function: same arguments, same bits, for any thread count. `frame` seeds the samples.
+  // Puts everything that moves where it is at that time: with an open shutter, over its whole way, taken as even within
+  // each sixteenth of it. Until it is called, all is at rest. Costs nothing in a scene without motions. Emitters that
+  // move are found by rays only: LightSampling::light_only does not see them.
+  void move_to(const ShutterTimes& times);
+
+  // A pure function of its arguments and the last move_to: same bits for any thread count. `frame` seeds the samples.
   [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                                   const TraceSettings& settings) const;
 

@@ -236,6 +236,10 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     inputs.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     append(inputs.warnings, inputs.scene->warnings);
     append(inputs.warnings, inputs.scene->environment.warnings);
+    if (job.accumulate == AccumulateMode::running && !inputs.scene->motions.empty()) {
+      inputs.warnings.emplace_back(
+          "--accumulate running looks at the camera alone: what moves in the scene is smeared");
+    }
   }
   if (camera_needs_scene(job)) {
     camera = choose_camera(job, inputs.scene.get(), log, decision);

@@ -53,15 +53,17 @@ void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row
   }
 }
 
-RenderedFrame render_frame(const PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
+RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
                            TemporalHistory& history, TimingRow& row, SequenceResult& result) {
   RenderedFrame rendered;
   rendered.map = timed(row.plan_ms, [&] {
     return make_sampling_map(widened(settings.foveation, request.gaze_uncertainty_deg), request.view,
                              request.gaze_direction_render);
   });
-  const SparseFrame sparse =
-      timed(row.trace_ms, [&] { return tracer.trace(request.camera, request.frame, rendered.map, settings.trace); });
+  const SparseFrame sparse = timed(row.trace_ms, [&] {
+    tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
+    return tracer.trace(request.camera, request.frame, rendered.map, settings.trace);
+  });
   Frame dense =
       timed(row.reconstruct_ms, [&] { return reconstruct(sparse, rendered.map, settings.filter, settings.threads); });
   rendered.frame = timed(row.temporal_ms, [&] {
@@ -160,7 +162,7 @@ std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settin
 
 }  // namespace
 
-SequenceResult render_sequence(const PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
+SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer) {
   SequenceResult result;
   TemporalHistory history;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "gazetrace/error.hpp"
 #include "scene/gltf_accessor.hpp"
+#include "scene/gltf_animation.hpp"
 
 namespace gazetrace {
 namespace {
@@ -109,9 +111,11 @@ std::vector<WorldNode> world_nodes(const GltfDocument& document, std::vector<int
   return nodes;
 }
 
-std::vector<Instance> make_instances(const GltfDocument& document, const std::vector<WorldNode>& nodes,
-                                     const std::vector<Mesh>& meshes, Warnings& warnings) {
-  std::vector<Instance> instances;
+PlacedMeshes make_instances(const GltfDocument& document, const std::vector<WorldNode>& nodes,
+                            const std::vector<int>& parents, const std::vector<Mesh>& meshes, Warnings& warnings) {
+  PlacedMeshes placed;
+  const std::vector<char> moved = moved_nodes(document, nodes, parents);
+  Warnings of_motions;
   std::size_t left_out = 0;
   int first_left_out = -1;
   for (const WorldNode& world : nodes) {
@@ -119,17 +123,24 @@ std::vector<Instance> make_instances(const GltfDocument& document, const std::ve
     if (node.mesh < 0 || meshes[static_cast<std::size_t>(node.mesh)].geometries.empty()) {
       continue;
     }
-    std::vector<Affine> places;
-    if (node.instancing.empty()) {
-      places.push_back(world.to_world);
-    } else {
-      for (const Affine& transform : instancing_transforms(document, world.node)) {
-        places.push_back(world.to_world * transform);
-      }
+    std::vector<Affine> places{Affine{}};  // in the node's own space
+    if (!node.instancing.empty()) {
+      places = instancing_transforms(document, world.node);
     }
-    for (const Affine& to_world : places) {
-      if (has_usable_inverse(to_world)) {
-        instances.push_back({node.mesh, to_world});
+    std::shared_ptr<const std::vector<AnimatedNode>> chain;
+    if (moved[static_cast<std::size_t>(world.node)] != 0 && node.skin < 0) {
+      chain = std::make_shared<const std::vector<AnimatedNode>>(
+          animated_chain(document, chain_to(world.node, parents), node_label(document, world.node), of_motions));
+    }
+    for (const Affine& place : places) {
+      const Affine to_world = world.to_world * place;
+      if (chain) {
+        // Whatever it is at rest: the tracer looks at where it is when.
+        placed.instances.push_back({node.mesh, to_world, static_cast<std::int32_t>(placed.motions.size())});
+        placed.motions.push_back(
+            {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; }});
+      } else if (has_usable_inverse(to_world)) {
+        placed.instances.push_back({node.mesh, to_world});
       } else if (left_out++ == 0) {
         first_left_out = world.node;
       }
@@ -140,7 +151,12 @@ std::vector<Instance> make_instances(const GltfDocument& document, const std::ve
                        " left out: a scale of zero, or too small or large for single precision (" +
                        (left_out == 1 ? "" : "first: ") + node_label(document, first_left_out) + ")");
   }
-  return instances;
+  if (!of_motions.empty()) {
+    warnings.push_back(
+        of_motions.front() +
+        (of_motions.size() == 1 ? "" : "; and " + std::to_string(of_motions.size() - 1) + " more like this"));
+  }
+  return placed;
 }
 
 std::vector<PunctualLight> make_lights(const GltfDocument& document, const std::vector<WorldNode>& nodes,

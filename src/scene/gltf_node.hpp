@@ -22,18 +22,20 @@ Affine local_transform(const GltfNode& node);
 // The rotation of an affine map where it has one, else `fallback`.
 Quatd rotation_or(const Affine& map, const Quatd& fallback);
 
-// Instances of meshes that hold triangles; those that cannot be inverted are left out with one warning.
-std::vector<Instance> make_instances(const GltfDocument& document, const std::vector<WorldNode>& nodes,
-                                     const std::vector<Mesh>& meshes, Warnings& warnings);
+// Instances of meshes that hold triangles; those that cannot be inverted are left out with one warning. Animated ones
+// get a motion each. Meshes with a skin do not follow their node (glTF 2.0 section 3.7.3.3) and stay at rest.
+struct PlacedMeshes {
+  std::vector<Instance> instances;
+  std::vector<Motion> motions;
+};
+PlacedMeshes make_instances(const GltfDocument& document, const std::vector<WorldNode>& nodes,
+                            const std::vector<int>& parents, const std::vector<Mesh>& meshes, Warnings& warnings);
 
 std::vector<PunctualLight> make_lights(const GltfDocument& document, const std::vector<WorldNode>& nodes,
                                        Warnings& warnings);
 
-// Cameras with the animation of their node and its parents. What animations do to anything else is listed in `ignored`.
+// Cameras with the animation of their node and its parents.
 std::vector<SceneCamera> make_cameras(const GltfDocument& document, const std::vector<WorldNode>& nodes,
-                                      const std::vector<int>& parents, std::vector<std::string>& ignored,
-                                      Warnings& warnings);
-
-std::string animation_name(const GltfDocument& document, std::size_t index);
+                                      const std::vector<int>& parents, Warnings& warnings);
 
 }  // namespace gazetrace

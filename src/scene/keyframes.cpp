@@ -81,20 +81,37 @@ Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns) {
   return as_quaternion(cubic(track, span));
 }
 
+namespace {
+
+Quatd own_rotation_at(const AnimatedNode& node, std::int64_t t_ns) {
+  return node.rotation_track ? rotation_at(*node.rotation_track, t_ns) : node.rotation;
+}
+
+Affine local_at(const AnimatedNode& node, std::int64_t t_ns) {
+  if (node.has_matrix) {
+    return node.matrix;
+  }
+  const Vec3d translation = node.translation_track ? vector_at(*node.translation_track, t_ns) : node.translation;
+  const Vec3d scale = node.scale_track ? vector_at(*node.scale_track, t_ns) : node.scale;
+  return make_affine(translation, own_rotation_at(node, t_ns), scale);
+}
+
+}  // namespace
+
+Affine transform_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns) {
+  Affine world;
+  for (const AnimatedNode& node : chain) {
+    world = world * local_at(node, t_ns);
+  }
+  return world;
+}
+
 CameraPose pose_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns) {
   Affine world;
   Quatd turned;
   for (const AnimatedNode& node : chain) {
-    if (node.has_matrix) {
-      world = world * node.matrix;
-      turned = turned * rotation_or(node.matrix, Quatd{});
-      continue;
-    }
-    const Vec3d translation = node.translation_track ? vector_at(*node.translation_track, t_ns) : node.translation;
-    const Quatd rotation = node.rotation_track ? rotation_at(*node.rotation_track, t_ns) : node.rotation;
-    const Vec3d scale = node.scale_track ? vector_at(*node.scale_track, t_ns) : node.scale;
-    world = world * make_affine(translation, rotation, scale);
-    turned = turned * rotation;
+    world = world * local_at(node, t_ns);
+    turned = turned * (node.has_matrix ? rotation_or(node.matrix, Quatd{}) : own_rotation_at(node, t_ns));
   }
   return {world.t, rotation_or(world, normalize(turned))};
 }

@@ -24,7 +24,7 @@ struct KeyTrack {
 Vec3d vector_at(const KeyTrack& track, std::int64_t t_ns);
 Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns);  // linear: slerp; always of unit length
 
-// A node on the way from the root to a camera.
+// A node on the way from the root to something that moves.
 struct AnimatedNode {
   bool has_matrix = false;
   Affine matrix;
@@ -33,6 +33,7 @@ struct AnimatedNode {
   std::optional<KeyTrack> translation_track, rotation_track, scale_track;
 };
 
+Affine transform_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);
 // The last node of the chain, looking along its -z.
 CameraPose pose_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);
 

@@ -8,6 +8,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "scene/gltf_accessor.hpp"
+#include "scene/gltf_animation.hpp"
 #include "scene/gltf_compression.hpp"
 #include "scene/gltf_file.hpp"
 #include "scene/gltf_material.hpp"
@@ -163,9 +164,12 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
 
   std::vector<int> parents;
   const std::vector<WorldNode> nodes = world_nodes(document, parents);
-  scene.instances = make_instances(document, nodes, scene.meshes, scene.warnings);
+  PlacedMeshes placed = make_instances(document, nodes, parents, scene.meshes, scene.warnings);
+  scene.instances = std::move(placed.instances);
+  scene.motions = std::move(placed.motions);
   scene.lights = make_lights(document, nodes, scene.warnings);
-  scene.cameras = make_cameras(document, nodes, parents, scene.ignored, scene.warnings);
+  scene.cameras = make_cameras(document, nodes, parents, scene.warnings);
+  list_unshown_motion(document, nodes, parents, scene.ignored, scene.warnings);
   for (std::size_t i = 0; i < document.animations.size(); ++i) {
     scene.animations.push_back(animation_name(document, i));
   }

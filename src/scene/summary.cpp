@@ -43,6 +43,7 @@ SceneFeatures features_of(const Scene& scene) {
   std::vector<std::size_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) {
     ++uses[static_cast<std::size_t>(instance.mesh)];
+    features.motion = features.motion || instance.motion >= 0;
   }
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (uses[m] == 0) {

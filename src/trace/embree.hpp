@@ -34,6 +34,10 @@ struct RayGeometry {
 // Column-major 3x4: x axis, y axis, z axis, translation.
 using RayTransform = std::array<float, 12>;
 
+// Embree 3 ends the process for rays with coordinates beyond 1.844e18 (its FLT_LARGE), and leaves out triangles there;
+// this is the bound with room to spare.
+inline constexpr float kLargestCoordinate = 1e18F;
+
 enum class RayShape : std::uint8_t { single, packet, coherent_packet };
 
 // One ray that was refused because the ray library would end the process over it.
@@ -51,7 +55,11 @@ class RayScene {
   std::uint32_t add_mesh(const std::vector<RayGeometry>& geometries);
   std::uint32_t add_geometry(const RayGeometry& geometry);
   std::uint32_t add_instance(std::uint32_t mesh, const RayTransform& to_world);
-  void commit();
+  // Moves an instance, for the next commit. Several transforms are at equal steps of the rays' time from 0 to 1, linear
+  // between; none: the instance is not there.
+  void place_instance(std::uint32_t id, std::span<const RayTransform> to_world);
+  // timed: rays carry a time.
+  void commit(bool timed = false);
 
   // Rays [0, count). A refused ray gets geometry == kRejected (a miss otherwise); the number refused is returned.
   int intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits) const;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
+#include "trace/duplicate_emitters.hpp"
 #include "trace/emission_average.hpp"
 
 namespace gazetrace {
@@ -130,7 +131,13 @@ double area_of(const EmissiveTriangle& triangle) {
 LightSampler::LightSampler(const Scene& scene, LightChoice choice, EnvironmentDensity density)
     : environment_(scene.environment, density) {
   const double radius = scene_radius_m(scene);
-  const std::vector<double> triangle_powers = collect_triangles(scene);
+  std::vector<double> triangle_powers = collect_triangles(scene);
+  first_of_duplicates_ = first_of_duplicates(triangles_);
+  for (std::size_t i = 0; i < first_of_duplicates_.size(); ++i) {
+    if (first_of_duplicates_[i] != i) {
+      triangle_powers[i] = 0;
+    }
+  }
   std::vector<double> punctual_powers;
   for (const PunctualLight& light : scene.lights) {
     if (const double p = power(light, radius); usable(p)) {
@@ -230,7 +237,8 @@ std::vector<double> LightSampler::collect_triangles(const Scene& scene) {
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
       const Geometry& geometry = mesh.geometries[g];
       const Material& material = scene.materials[static_cast<std::size_t>(geometry.material)];
-      if (material.unlit || !usable(luminance(to_double(material.emission)))) {
+      // What moves has no place that could be aimed at.
+      if (material.unlit || instance.motion >= 0 || !usable(luminance(to_double(material.emission)))) {
         first_emitter_.push_back(kNoEmitter);
         continue;
       }
@@ -399,8 +407,9 @@ LightSample LightSampler::sample_punctual(std::uint32_t index, float probability
     }
     result.radiance = light.intensity * (falloff / distance_squared);
   }
+  // What is too close to a light to be told in float goes on as infinity, and is counted as a non-finite sample.
   const float sum = result.radiance.x + result.radiance.y + result.radiance.z;
-  result.valid = sum > 0 && std::isfinite(sum) && faces(normal, result.direction);
+  result.valid = sum > 0 && faces(normal, result.direction);
   return result;
 }
 

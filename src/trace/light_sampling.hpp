@@ -85,7 +85,10 @@ class LightSampler {
   [[nodiscard]] std::uint32_t emitter_of(std::uint32_t instance, std::uint32_t geometry,
                                          std::uint32_t primitive) const noexcept {
     const std::uint32_t first = first_emitter_[first_geometry_[instance] + geometry];
-    return first == kNoEmitter ? kNoEmitter : first + primitive;
+    if (first == kNoEmitter) {
+      return kNoEmitter;
+    }
+    return first_of_duplicates_.empty() ? first + primitive : first_of_duplicates_[first + primitive];
   }
   [[nodiscard]] const EmissiveTriangle& triangle(std::uint32_t emitter) const noexcept { return triangles_[emitter]; }
   // cos_at_light: between the triangle's normal and the direction back to the shaded point; its sign matters for
@@ -120,6 +123,7 @@ class LightSampler {
   LightTree tree_;                             // over all triangles, then the punctual lights in their order
   std::vector<std::uint32_t> first_geometry_;  // of each instance, into first_emitter_
   std::vector<std::uint32_t> first_emitter_;
+  std::vector<std::uint32_t> first_of_duplicates_;  // duplicate_emitters.hpp
   std::vector<PunctualLight> punctual_;
   std::vector<float> punctual_pdf_;  // selection probability of each, class included
   AliasTable punctual_choice_;

@@ -23,6 +23,7 @@ struct RayBatch {
   BatchArray<float> ox, oy, oz, dx, dy, dz;
   BatchArray<float> tnear, tfar;
   BatchArray<std::uint32_t> alpha_key;  // hash of (seed, frame, pixel, sample, vertex): the stochastic alpha test
+  BatchArray<float> time;               // 0..1 while the shutter is open; only where something moves meanwhile
 };
 
 // `instance` is kNoId for triangles of the top scene; `geometry` is then the top scene's id, else the mesh's.

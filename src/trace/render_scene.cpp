@@ -3,18 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "core/hash.hpp"
 #include "core/stopwatch.hpp"
+#include "gazetrace/error.hpp"
+#include "trace/instance_transform.hpp"
 #include "trace/octahedral.hpp"
 
 namespace gazetrace {
 namespace {
-
-// Cofactor matrix: transforms normals of any invertible map, and of mirroring ones with the determinant's sign.
-std::array<Vec3d, 3> cofactors(const Affine& a) {
-  return {cross(a.y, a.z), cross(a.z, a.x), cross(a.x, a.y)};
-}
 
 Vec3d transform_normal(const std::array<Vec3d, 3>& columns, const Vec3d& v) {
   return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z;
@@ -42,6 +41,22 @@ Vec2f transformed_uv(const TextureRef* ref, const Geometry& geometry, std::uint3
 bool needs_extra(const Geometry& geometry, const ShadingMaterial& material, const LayeredMaterial* layers) {
   return (layers != nullptr && layers->any_own_uv()) || !geometry.colors.empty() || material.base.own_uv ||
          material.metal_rough.own_uv || material.normal.own_uv || material.emit.own_uv;
+}
+
+// Loading refuses such numbers; an instance's matrix or a program may still make them. The ray library would leave the
+// triangle out without a word.
+void check_positions(const std::vector<Vec3f>& positions, const Scene& scene, std::size_t mesh, std::size_t primitive) {
+  const auto usable = [](float x) { return std::fabs(x) <= kLargestCoordinate; };  // NaN is not
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3f& p = positions[i];
+    if (!usable(p.x) || !usable(p.y) || !usable(p.z)) {
+      throw Error(ErrorKind::input, scene.source,
+                  "mesh " + std::to_string(mesh) + " '" + scene.meshes[mesh].name + "', primitive " +
+                      std::to_string(primitive) + ": vertex " + std::to_string(i) +
+                      " is not finite, or beyond 1e18 m in the world",
+                  "repair the model, or the scale of its nodes");
+    }
+  }
 }
 
 std::uint32_t triangle_count(const Mesh& mesh) {
@@ -154,7 +169,8 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
   std::size_t total = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
-    baked[i] = uses[mesh] == 1 || !can_be_instanced(scene.instances[i].to_world) ? 1 : 0;
+    const Instance& instance = scene.instances[i];
+    baked[i] = instance.motion < 0 && (uses[mesh] == 1 || !can_be_instanced(instance.to_world)) ? 1 : 0;
     total += baked[i] != 0 ? triangle_count(scene.meshes[mesh]) : 0;
     shared[mesh] = static_cast<char>(shared[mesh] | (baked[i] == 0 ? 1 : 0));
   }
@@ -163,6 +179,8 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
   }
   triangles.reserve(total);
 
+  // Where something moves, all that stands still is one mesh: a new frame builds the small tree above anew, not this.
+  std::vector<RayGeometry> still;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (baked[i] == 0) {
       continue;
@@ -176,10 +194,22 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
       geometries.push_back(
           {static_cast<std::uint32_t>(triangles.size()), static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(g)});
       add_triangles(scene, mesh.geometries[g], &scene.instances[i].to_world, ray_geometry);
-      rays->add_geometry(ray_geometry);
+      check_positions(ray_geometry.positions, scene, static_cast<std::size_t>(scene.instances[i].mesh), g);
+      if (features.motion) {
+        still.push_back(std::move(ray_geometry));
+      } else {
+        rays->add_geometry(ray_geometry);
+      }
     }
   }
-  first_instance_id = static_cast<std::uint32_t>(geometries.size());
+  if (!still.empty()) {
+    ShadingInstance whole = shading_instance(Affine{});
+    whole.scene_instance = kNoId;
+    instances.push_back(whole);
+    rays->add_instance(rays->add_mesh(still), ray_transform(Affine{}));
+    still.clear();
+  }
+  first_instance_id = features.motion ? 0 : static_cast<std::uint32_t>(geometries.size());
 
   std::vector<std::uint32_t> mesh_id(scene.meshes.size(), kNoId);
   std::vector<std::uint32_t> mesh_first_geometry(scene.meshes.size(), 0);
@@ -196,6 +226,7 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
       }
       geometries.push_back({static_cast<std::uint32_t>(triangles.size()), kNoId, static_cast<std::uint32_t>(g)});
       add_triangles(scene, geometry, nullptr, parts.emplace_back());
+      check_positions(parts.back().positions, scene, m, g);
     }
     mesh_id[m] = rays->add_mesh(parts);
   }
@@ -204,29 +235,20 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
       continue;
     }
     const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
-    const Affine& m = scene.instances[i].to_world;
-    ShadingInstance instance;
-    instance.axes = {to_float(m.x), to_float(m.y), to_float(m.z)};
-    instance.translation = to_float(m.t);
-    const auto normal_map = cofactors(m);
-    const double det = determinant(m);
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Divided by the cube root's square so that tiny and huge scales stay within float.
-      instance.normal_axes[k] = to_float(normal_map[k] / (std::copysign(std::pow(std::fabs(det), 2.0 / 3.0), det)));
-    }
-    instance.flip = det < 0 ? -1.0F : 1.0F;
-    instance.lod_offset = static_cast<float>(-std::log2(std::fabs(det)) / 3.0);
+    // A motion may begin anywhere; what cannot be instanced is hidden until it can.
+    const bool usable = can_be_instanced(scene.instances[i].to_world);
+    const Affine to_world = usable ? scene.instances[i].to_world : Affine{};
+    ShadingInstance instance = shading_instance(to_world);
     instance.first_geometry = mesh_first_geometry[mesh];
     instance.scene_instance = static_cast<std::uint32_t>(i);
-    instances.push_back(instance);
-    RayTransform transform{};
-    const std::array<Vec3f, 4> columns{instance.axes[0], instance.axes[1], instance.axes[2], instance.translation};
-    for (std::size_t k = 0; k < 4; ++k) {
-      transform[3 * k] = columns[k].x;
-      transform[3 * k + 1] = columns[k].y;
-      transform[3 * k + 2] = columns[k].z;
+    if (scene.instances[i].motion >= 0) {
+      moving_.push_back({static_cast<std::uint32_t>(instances.size()), static_cast<std::uint32_t>(i)});
     }
-    rays->add_instance(mesh_id[mesh], transform);
+    instances.push_back(instance);
+    const std::uint32_t id = rays->add_instance(mesh_id[mesh], ray_transform(to_world));
+    if (!usable) {
+      rays->place_instance(id, {});
+    }
   }
   rays->commit();
   build_s = watch.elapsed_ms() * 1e-3;

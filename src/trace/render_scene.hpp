@@ -41,8 +41,12 @@ struct ShadingInstance {
   float lod_offset = 0;              // -log2 of the mean scale
   float flip = 1;                    // -1 for mirroring matrices
   std::uint32_t first_geometry = 0;  // into RenderScene::geometries
-  std::uint32_t scene_instance = 0;  // index into Scene::instances
+  std::uint32_t scene_instance = 0;  // index into Scene::instances; kNoId: the geometry's record knows
+  std::uint32_t way = kNoId;         // moves while the shutter is open: index into RenderScene::ways
 };
+
+// Where an instance is at equal steps from opening to closing of the shutter, linear between, as rays meet it.
+using InstanceWay = std::vector<RayTransform>;
 
 // One per geometry of a shared mesh, and one per (instance, geometry) of baked ones.
 struct GeometryRecord {
@@ -57,11 +61,18 @@ class RenderScene : private AlphaSource {
   RenderScene(const RenderScene&) = delete;  // the BVH's alpha test points here
   RenderScene& operator=(const RenderScene&) = delete;
 
+  // Puts what moves to where it is then; see PathTracer::move_to.
+  void move_to(const Scene& scene, const ShutterTimes& times);
+  // `time`: 0..1 while the shutter is open.
+  [[nodiscard]] ShadingInstance instance_at(std::uint32_t instance, float time) const;
+
   // Top-level hits: geometry id -> record. Instances: their id - first_instance_id -> instances.
   std::vector<ShadingTriangle> triangles;
   std::vector<TriangleExtra> extras;
   std::vector<GeometryRecord> geometries;
   std::vector<ShadingInstance> instances;
+  std::vector<InstanceWay> ways;
+  bool blurs = false;  // something moves while the shutter is open: rays need their time
   std::uint32_t first_instance_id = 0;
   TexelStore texels;
   std::vector<ShadingMaterial> materials;
@@ -73,6 +84,11 @@ class RenderScene : private AlphaSource {
  private:
   bool transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v, std::uint32_t key) const override;
   void add_triangles(const Scene& scene, const Geometry& geometry, const Affine* to_world, RayGeometry& out);
+
+  struct MovingInstance {
+    std::uint32_t instance = 0, scene_instance = 0;
+  };
+  std::vector<MovingInstance> moving_;
 };
 
 }  // namespace gazetrace

@@ -73,8 +73,9 @@ void locate_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, C
 }
 
 // From records to lanes. Instanced triangles are brought to world space here.
+// `times`: of the packed rays, read where something moves while the shutter is open.
 template <KernelFeatures kFeatures>
-void gather_triangles(const RenderScene& scene, ChunkHits& chunk, std::size_t count) {
+void gather_triangles(const RenderScene& scene, const BatchArray<float>& times, ChunkHits& chunk, std::size_t count) {
   std::array<ChunkArray<std::uint32_t>, 3> normal_code;
   std::array<ChunkArray<std::uint32_t>, 3> tangent_code;
   for (std::size_t i = 0; i < count; ++i) {
@@ -109,11 +110,7 @@ void gather_triangles(const RenderScene& scene, ChunkHits& chunk, std::size_t co
   }
   if constexpr (kFeatures.instances) {
     const auto absolute = [](const Vec3f& a) { return Vec3f{std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}; };
-    for (std::size_t i = 0; i < count; ++i) {
-      if (chunk.instance[i] == kNoId) {
-        continue;
-      }
-      const ShadingInstance& instance = scene.instances[chunk.instance[i]];
+    const auto bring_to_world = [&](std::size_t i, const ShadingInstance& instance) {
       Vec3f reach;
       for (std::size_t c = 0; c < 3; ++c) {
         const Vec3f own = chunk.corner[c].get(i);
@@ -130,6 +127,16 @@ void gather_triangles(const RenderScene& scene, ChunkHits& chunk, std::size_t co
       chunk.winding[i] = instance.flip;
       chunk.bitangent_sign[i] *= instance.flip;
       chunk.lod[i] += instance.lod_offset;
+    };
+    for (std::size_t i = 0; i < count && !scene.blurs; ++i) {
+      if (chunk.instance[i] != kNoId) {
+        bring_to_world(i, scene.instances[chunk.instance[i]]);
+      }
+    }
+    for (std::size_t i = 0; i < count && scene.blurs; ++i) {
+      if (chunk.instance[i] != kNoId) {
+        bring_to_world(i, scene.instance_at(chunk.instance[i], times[chunk.path[i]]));
+      }
     }
   }
 }

@@ -205,6 +205,10 @@ PathTracer::~PathTracer() = default;
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
+void PathTracer::move_to(const ShutterTimes& times) {
+  impl_->render_scene.move_to(*impl_->scene, times);
+}
+
 SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                               const TraceSettings& settings) const {
   const CameraRays rays(camera, map.height_px);

@@ -53,7 +53,7 @@ const std::map<std::string, std::string> kPublicHeader = {
 
 // Which files may meet which dependency.
 const std::vector<std::pair<std::string, std::string>> kDependency = {
-    {R"(embree[34]/)", R"(src/trace/embree\.(hpp|cpp))"},
+    {R"(embree[34]/)", R"(src/trace/embree(_\w+)?\.(hpp|cpp))"},
     {R"(tiny_gltf\.h)", R"(src/scene/gltf\.cpp)"},
     {R"(meshoptimizer\.h)", R"(src/scene/gltf_meshopt\.cpp)"},
     {R"(draco/)", R"(src/scene/gltf_draco\.cpp)"},

@@ -111,7 +111,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   options.threads = job.threads;
   options.bvh_quality = job.bvh;
   loading->building_tree();
-  const PathTracer tracer(*inputs.scene, options);
+  PathTracer tracer(*inputs.scene, options);
   loading.reset();
   RunRecord record = start_record(arguments, invocation, inputs, settings, tracer, color);
   record.input_digests = digests;

@@ -3,10 +3,19 @@
 // is isotropic GGX with Schlick's Fresnel and repeated scattering; layering.hpp says what the base still gets.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "material/lobes/ggx.hpp"
 #include "material/lobes/reflection.hpp"
 
 namespace gazetrace {
+
+// The share of a base's own emission that gets out: KHR_materials_clearcoat, "Emission", at the surface's own normal,
+// so that a light sample and a ray that finds the emitter agree.
+inline float passes_coat(float coat, float cosine) noexcept {
+  return 1.0F - coat * (kDielectricF0 + (1.0F - kDielectricF0) * schlick_weight(std::min(std::fabs(cosine), 1.0F)));
+}
 
 class ClearcoatLobe {
  public:

@@ -4,7 +4,9 @@
 
 #include <vector>
 
+#include "material/lobes/clearcoat.hpp"
 #include "trace/kernel/path_kernel.hpp"
+#include "trace/layered_hit.hpp"
 #include "trace/surface_hit.hpp"
 
 namespace gazetrace {
@@ -19,6 +21,14 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
     const Vec2f at = coordinates_at<kFeatures>(*frame_.scene, chunk, i, material.emit);
     const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, chunk.lod[i] + material.emit.half_log2_texels);
     emission *= Vec3f{c.x, c.y, c.z};
+  }
+  if constexpr (kLayers) {
+    const LayeredMaterial* layers = frame_.scene->layered.of(chunk.material[i]);
+    if (layers != nullptr && layers->layers.clearcoat) {
+      const float coat =
+          layers->source->clearcoat.factor * read_layer<kFeatures>(*frame_.scene, chunk, i, layers->clearcoat).x;
+      emission *= passes_coat(coat, dot(chunk.geometric.get(i), chunk.direction.get(i)));
+    }
   }
   float weight = 1;
   if (vertex > 0) {
@@ -69,6 +79,17 @@ inline Vec3f PathKernel<kFeatures, kDiffuse>::light_radiance(const LightSample& 
         const Vec2f at = place_on_emitter(emitter, material.emit, light.barycentric);
         const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, 0.0F);
         radiance *= Vec3f{c.x, c.y, c.z};
+      }
+      if constexpr (kLayers) {
+        const LayeredMaterial* layers = frame_.scene->layered.of(static_cast<std::uint32_t>(emitter.material));
+        if (layers != nullptr && layers->layers.clearcoat) {
+          float coat = layers->source->clearcoat.factor;
+          if (layers->clearcoat.texture != nullptr) {
+            const Vec2f at = place_on_emitter(emitter, layers->clearcoat, light.barycentric);
+            coat *= read_texture(*layers->clearcoat.texture, at.x, at.y, 0.0F).x;
+          }
+          radiance *= passes_coat(coat, dot(emitter.normal, light.direction));
+        }
       }
       if (material.alpha_mode != AlphaMode::opaque) {
         radiance = radiance * coverage_of_emitter(emitter, material, light.barycentric);

@@ -45,6 +45,7 @@ class PathKernel {
     for (int vertex = 0; alive > 0; ++vertex) {
       RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
       (vertex == 0 ? counts_.rays_primary : counts_.rays_bounce) += static_cast<std::uint64_t>(alive);
+      stamp(rays, work_.paths[static_cast<std::size_t>(vertex & 1)].slot, static_cast<std::size_t>(alive));
       if (vertex == last && vertex > 0 && !frame_.last_ray_needs_surface) {
         see_sky(vertex, alive);
         return;
@@ -86,6 +87,16 @@ class PathKernel {
   // When the sample looks: 0 when the shutter opens, below 1.
   [[nodiscard]] float time_of(std::size_t slot) const {
     return sample_1d(work_.samples.key[slot], work_.samples.sample[slot], dimension_of(PathDimension::time));
+  }
+
+  // Rays carry their sample's time only where something moves while the shutter is open.
+  void stamp(RayBatch& rays, const BatchArray<std::uint32_t>& slots, std::size_t count) const {
+    if (!frame_.scene->blurs) {
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      rays.time[i] = time_of(slots[i]);
+    }
   }
 
   void add(std::size_t slot, const Vec3f& radiance) {

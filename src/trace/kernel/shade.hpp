@@ -54,7 +54,7 @@ inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBa
     chunk.cone_width[i] = paths.cone_width[k];
     chunk.cone_spread[i] = paths.cone_spread[k];
   }
-  gather_triangles<kFeatures>(scene, chunk, count);
+  gather_triangles<kFeatures>(scene, rays.time, chunk, count);
   place_hits<kFeatures>(chunk, count);
   read_materials<kFeatures>(scene, chunk, count);
   if constexpr (kLayers) {

@@ -25,7 +25,8 @@ inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::trace_shadows(int vertex) {
   const int count = static_cast<int>(shadow_count_);
-  const ShadowBatch& shadows = work_.shadows;
+  ShadowBatch& shadows = work_.shadows;
+  stamp(shadows.rays, shadows.slot, shadow_count_);
   const RayShape shape = vertex == 0 ? RayShape::packet : RayShape::single;
   counts_.rays_shadow += shadow_count_;
   record(shadows.rays, count, shape, true);
