@@ -273,5 +273,51 @@ TEST(LayeredDeterminism, OneAndTwoThreadsGiveTheSameBits) {
   EXPECT_EQ(one.stats.rejected_rays, 0U);
 }
 
+// KHR_materials_clearcoat, "Emission": 1 - coat (0.04 + 0.96 (1 - cos)^5) of it passes the coat.
+TEST(LayeredRender, ACoatDimsWhatShinesUnderIt) {
+  for (const float coat : {0.0F, 0.5F, 1.0F}) {
+    for (const double cosine : {1.0, 0.5, 0.1}) {
+      Scene scene;
+      scene.materials = {diffuse_material({0, 0, 0}, {3, 2, 1})};
+      scene.materials[0].clearcoat.factor = coat;
+      add_mesh(scene, {quad({{{-90, 0, 90}, {90, 0, 90}, {90, 0, -90}, {-90, 0, -90}}}, 0)});
+      const PathTracer tracer(scene, threads(1));
+      Camera camera;
+      camera.pose = look_at(Vec3d{std::sqrt(1 - cosine * cosine), cosine, 0} * 5.0, {0, 0, 0}, {0, 0, 1});
+      camera.projection.kind = ProjectionKind::orthographic;
+      camera.projection.ymag_m = 0.1;
+      TraceSettings settings;
+      settings.max_bounces = 0;
+      const double passes = 1 - static_cast<double>(coat) * (0.04 + 0.96 * std::pow(1 - cosine, 5));
+      const Vec3d mean = mean_radiance(tracer.trace(camera, 1, uniform_map(4, 4, 4), settings));
+      EXPECT_NEAR(mean.x, 3 * passes, 1e-4) << coat << ' ' << cosine;
+      EXPECT_NEAR(mean.z, 1 * passes, 1e-4) << coat << ' ' << cosine;
+    }
+  }
+}
+
+// A coated lamp over a floor: rays that find it and samples of it see the same.
+TEST(LayeredRender, ACoatedLampIsTheSameHoweverItIsFound) {
+  Scene scene;
+  scene.materials = {white(1), diffuse_material({0, 0, 0}, {3, 3, 3})};
+  scene.materials[1].clearcoat.factor = 1;
+  add_mesh(scene, {quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}}, 0)});
+  add_mesh(scene, {quad({{{-2, 1, -2}, {2, 1, -2}, {2, 1, 2}, {-2, 1, 2}}}, 1)});
+  const PathTracer tracer(scene, threads(2));
+  std::array<Repeats, 3> found;
+  for (std::uint64_t seed = 0; seed < 32; ++seed) {
+    for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only, LightSampling::bsdf_only}) {
+      TraceSettings settings;
+      settings.seed = seed;
+      settings.light_sampling = sampling;
+      settings.max_bounces = 1;
+      found[static_cast<std::size_t>(sampling)].means.push_back(
+          mean_radiance(tracer.trace(camera_at({4, 0.5, 0}, {0, 0, 0}), 1, uniform_map(16, 16, 64), settings)).y);
+    }
+  }
+  EXPECT_LT(std::fabs(welch_t(found[0], found[1])), kCriticalT);
+  EXPECT_LT(std::fabs(welch_t(found[0], found[2])), kCriticalT);
+}
+
 }  // namespace
 }  // namespace gazetrace
