@@ -98,16 +98,12 @@ def main():
     parser.add_argument("--seconds", type=int, default=3600)
     parser.add_argument("--folder", type=Path, default=Path("/tmp/gaze_hour"))
     parser.add_argument("--svg", action="store_true", help="draw the picture as well")
-    parser.add_argument("--only-make", action="store_true")
     arguments = parser.parse_args()
-    logs = make_logs(arguments.folder, arguments.seconds)
-    if arguments.only_make:
-        return
-    measure(arguments, logs)
+    measure(arguments, make_logs(arguments.folder, arguments.seconds))
 
 
 def measure(arguments, logs):
-    print(f"{'log':<30} {'MiB':>7} {'samples':>9} {'s':>7} {'peak MiB':>9}")
+    print(f"{'log':<30} {'MiB':>7} {'samples':>9} {'s':>7} {'CPU s':>7} {'peak MiB':>9}")
     for name, (path, flags) in logs.items():
         picture = ["--svg", str(arguments.folder / "hour.svg"), "--overwrite"] if arguments.svg else []
         begin = time.perf_counter()
@@ -119,7 +115,7 @@ def measure(arguments, logs):
             raise SystemExit(f"{name}: failed")
         report = json.loads(text)
         accused = [finding for finding in report["findings"] if finding["kind"] != "note"]
-        print(f"{name:<30} {path.stat().st_size / 2**20:7.0f} {report['samples']:9} {seconds:7.2f} {usage.ru_maxrss / 1024:9.0f}"
+        print(f"{name:<30} {path.stat().st_size / 2**20:7.0f} {report['samples']:9} {seconds:7.2f} {usage.ru_utime + usage.ru_stime:7.2f} {usage.ru_maxrss / 1024:9.0f}"
               f"{'  ' + report['verdict'] if accused else ''}")
 
 
