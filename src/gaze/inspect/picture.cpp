@@ -93,15 +93,18 @@ Track make_track(const GazeLog& log, const GazeInspection& inspection) {
   const std::int64_t first = log.samples.front().t_ns;
   std::vector<double> xs;
   std::vector<double> ys;
-  for (std::vector<double>* const values : {&track.s, &track.x, &track.y, &xs, &ys}) {
+  for (std::vector<double>* const values : {&track.s, &track.x, &track.y}) {
     values->reserve(log.samples.size());
   }
+  const std::size_t stride = log.samples.size() / 200'000 + 1;  // of what decides how far the axes reach
   for (const GazeSample& sample : log.samples) {
     Vec2d at{std::nan(""), std::nan("")};
     if (is_usable(sample.validity)) {
       at = direction ? plane.of(sample) : Vec2d{sample.u * width, sample.v * height};
-      xs.push_back(at.x);
-      ys.push_back(at.y);
+      if (track.s.size() % stride == 0) {
+        xs.push_back(at.x);
+        ys.push_back(at.y);
+      }
     }
     track.s.push_back(static_cast<double>(sample.t_ns - first) * 1e-9);
     track.x.push_back(at.x);
