@@ -77,14 +77,36 @@ CameraPath static_camera(const CameraPose& pose, const Projection& projection);
 // unity: +z forward, y up, in a left-handed world; world and camera are mirrored by (x, y, z) -> (x, y, -z).
 enum class CameraAxes { gl, cv, unity };
 enum class CameraExtrapolation { error, hold };
-enum class PathInterpolation { linear, step };  // linear: positions linear, orientations slerp
+// Between two poses. Orientations always by slerp, the shorter way round, but for step. Positions:
+//   linear       on the straight line
+//   step         the earlier pose until the later one's time
+//   catmull_rom  on the cubic through all keys whose velocity at a key is that of the parabola through it and its two
+//                neighbors in time (at the ends: of the straight line to the only one), so uneven steps do no harm
+enum class PathInterpolation { linear, step, catmull_rom };
+// The order in which three Euler angles are applied about fixed axes: zxy turns about z first, then x, then y, so its
+// matrix is Ry Rx Rz.
+enum class RotationOrder { xyz, xzy, yxz, yzx, zxy, zyx };
+
+// Frames per second as a fraction, so that frame times are exact integers' quotients: 24000/1001.
+struct FrameRate {
+  std::int64_t numerator = 24;
+  std::int64_t denominator = 1;
+  friend bool operator==(const FrameRate&, const FrameRate&) = default;
+};
+// The middle of frame `frame`, counted from 1, rounded down to a nanosecond: start + (frame - 1/2) / fps. Empty beyond
+// int64, and for a rate that is not positive.
+std::optional<std::int64_t> mid_frame_ns(std::int64_t frame, const FrameRate& fps, std::int64_t start_ns);
 
 struct CameraReadOptions {
-  std::string format;  // a name of `camera_formats()`; empty: by suffix and content
-  CameraAxes axes = CameraAxes::gl;
+  std::string format;              // a name of `camera_formats()`; empty: by suffix and content
+  std::optional<CameraAxes> axes;  // empty: the format's own; gl for CSV, TUM and EuRoC, which do not say
   PathInterpolation interpolation = PathInterpolation::linear;
-  Projection projection;  // poses files carry none
-  // First stamp becomes video time 0 unless `keep_time`.
+  std::optional<double> yfov_rad;  // empty: what the file states, else 50 degrees
+  // Of formats that count frames and know no time (Nuke, NeRF, COLMAP). Their frame n lies at the middle of the video's
+  // frame n, so that every one of them is rendered as it is where the rates agree.
+  FrameRate fps;
+  RotationOrder rotation_order = RotationOrder::zxy;  // of Nuke's Euler angles; zxy is its own default
+  // The first stamp becomes video time 0, and the first frame number frame 1, unless `keep_time`.
   bool keep_time = false;
 };
 
@@ -102,8 +124,37 @@ struct CameraFormatInfo {
 };
 std::vector<CameraFormatInfo> camera_formats();
 
-// A timestamped path: gazetrace CSV (`t[s],x[m],y[m],z[m],qx,qy,qz,qw`, t also [ns|us|ms]) or TUM
-// (`t tx ty tz qx qy qz qw`, seconds, `#` comments). Error(input) with file:line.
+// A path of one of `camera_formats()`. Error(input) with file:line, also for quaternions whose length is not 1 within
+// 1 %, for matrices that are no rotations, and for stamps that do not increase. Views that change along the path,
+// shifted centres and distorted lenses are warned of: a path has one field of view.
 CameraPath load_camera_path(const std::string& path, const CameraReadOptions& options);
+
+// Where the world of a path lies in that of the scene: x' = scale * turn * (z up made y up) * x, moved so that the
+// first position comes to `start_m` where that is given.
+struct CameraPlacement {
+  bool z_up = false;    // the path's world has z up: (x, y, z) becomes (x, z, -y)
+  double turn_deg = 0;  // about +y, to the left seen from above
+  double scale = 1;     // metres per unit of the path
+  std::optional<Vec3d> start_m;
+  friend bool operator==(const CameraPlacement&, const CameraPlacement&) = default;
+};
+// Error(usage) for a scale that is not positive, and for numbers that are not finite.
+CameraPath place_camera(CameraPath path, const CameraPlacement& placement);
+
+// What a camera did in numbered frames, for other programs. The suffix chooses: .chan is Nuke's (frame, position,
+// Euler angles in `order`, vertical field of view, degrees), .tum and .txt are TUM's with the video time in seconds to
+// the nanosecond. Every digit is kept. Error(usage) for other suffixes, Error(runtime) where it cannot be written.
+struct FramePose {
+  std::int32_t frame = 1;
+  std::int64_t t_ns = 0;
+  Camera camera;
+};
+void write_camera_path(const std::vector<FramePose>& frames, RotationOrder order, const std::string& path);
+
+// Rotation by Euler angles about x, y and z, applied in `order`, and back; the second angle is then within +-90
+// degrees. Where it is +-90 the first and the third turn about one axis: any pair with the right sum will do, and one
+// is given.
+Quatd quaternion_of_euler(const Vec3d& angles_rad, RotationOrder order);
+Vec3d euler_of_quaternion(const Quatd& rotation, RotationOrder order);
 
 }  // namespace gazetrace

@@ -24,6 +24,7 @@ struct DisplayGeometry {
   // Where the eye's perpendicular meets the display, from the display's centre, right and up.
   double eye_x_cm = 0;
   double eye_y_cm = 0;
+  double luminance_cd_m2 = 0;  // of its white; 0: not stated
 };
 
 struct NamedDisplay {
@@ -35,6 +36,14 @@ struct NamedDisplay {
 // The presets that `gazetrace list displays` prints; "paper" is the source paper's 3840 x 2160 at 60 cm.
 const std::vector<NamedDisplay>& named_displays();
 DisplayGeometry display_by_name(std::string_view name);  // Error(usage) with the known names
+
+// A display as JSON: the names of DisplayGeometry's fields, of which the eye's place and the luminance may be missing,
+// and "name" and "description". Error(input) for unknown keys and for what check_display refuses.
+DisplayGeometry load_display(const std::string& path);
+
+// One of which only the pixels and how many of them a degree has, in its middle, are known: only the ratio of size to
+// distance matters, so it has the size that it would have at 100 cm.
+DisplayGeometry display_of_pixels_per_degree(int width_px, int height_px, const Vec2d& pixels_per_degree);
 
 // Error(usage) that names the field when a size or the distance is missing, non-finite or not positive.
 void check_display(const DisplayGeometry& display);

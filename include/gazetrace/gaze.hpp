@@ -94,6 +94,8 @@ struct GazeReadOptions {
   GazeColumns columns;
   // Converts px, mm and degrees to fractions; needed only for those.
   std::optional<DisplayGeometry> display;
+  // Used as `display` only for what neither the log nor `display` states: the screen that the gaze is to be shown on.
+  std::optional<DisplayGeometry> fallback_display;
   UnorderedPolicy unordered = UnorderedPolicy::error;
   EyeChoice eye = EyeChoice::automatic;
   std::optional<Eye> dominant_eye;  // left or right; required by EyeChoice::dominant

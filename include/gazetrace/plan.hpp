@@ -16,12 +16,6 @@
 
 namespace gazetrace {
 
-// Frames per second as a fraction, so that frame times are exact integers' quotients: 24000/1001.
-struct FrameRate {
-  std::int64_t numerator = 24;
-  std::int64_t denominator = 1;
-  friend bool operator==(const FrameRate&, const FrameRate&) = default;
-};
 FrameRate parse_frame_rate(std::string_view text);  // "24", "23.976" (as 2997/125), "24000/1001"
 std::string to_string(const FrameRate& rate);
 
@@ -48,6 +42,11 @@ struct GazeUncertainty {
 // NaN where it tells nothing.
 GazeUncertainty uncertainty_of(const GazeLog& log);
 
+// How gaze on one screen is carried over to another. Velocities, events and precision belong to the recording.
+//   fraction  places stay: what was at a quarter of the screen's width is so again; angles change
+//   angle     angles from the eye stay; places change, and may fall beside the screen
+enum class GazeTransfer : std::uint8_t { fraction, angle };
+
 struct PlanSettings {
   std::vector<std::int32_t> frames;
   Shutter shutter;
@@ -60,8 +59,10 @@ struct PlanSettings {
   // The uncertainty of the gaze widens the fovea: accuracy + precision + age x speed, degrees.
   std::optional<GazeUncertainty> uncertainty;
   int width_px = 1280, height_px = 720;
-  std::optional<DisplayGeometry> display;  // required for a screen log
-  FrameRect frame_rect;                    // default: the whole display
+  std::optional<DisplayGeometry> display;  // where the frame is watched; required for a screen log
+  // Needed where the log states a recording screen whose size in degrees differs by more than 2 %.
+  std::optional<GazeTransfer> transfer;
+  FrameRect frame_rect;  // default: the whole display
 };
 
 // Complete: a frame can be rendered from it and the scene alone, history apart.
@@ -98,7 +99,8 @@ struct FramePlan {
 };
 
 // Without a log (nullptr) every frame is rendered without gaze. Error(input) when the camera path does not cover a
-// frame, when a screen log has no display, when NoGazePolicy::error meets a gap.
+// frame, when a screen log has no display, or was recorded on another one and there is no
+// transfer, when NoGazePolicy::error meets a gap.
 // `steering`: the log after processing, which gaze_render comes from; by default the log itself. Both share the clock
 // of the first.
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,

@@ -15,7 +15,7 @@ namespace gazetrace {
 
 #define CAMERA_FORMAT(name, ...)                 \
   double sniff_camera_##name(const CameraFile&); \
-  std::vector<CameraKey> read_camera_##name(const CameraFile&, Warnings&);
+  CameraKeys read_camera_##name(const CameraFile&, const CameraReadOptions&);
 #include "camera/formats/formats.def"
 #undef CAMERA_FORMAT
 
@@ -44,8 +44,12 @@ const CameraFormat& choose_format(const CameraFile& file, const std::string& nam
   const auto best = std::max_element(formats().begin(), formats().end(),
                                      [&](const auto& a, const auto& b) { return a.sniff(file) < b.sniff(file); });
   if (!(best->sniff(file) > 0)) {
+    const bool scene = file.text.starts_with("glTF") || file.text.find("\"asset\"") != std::string::npos;
     throw Error(ErrorKind::input, file.path, "is not a camera path of a known format",
-                "use CSV with a header `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, or TUM with lines `t tx ty tz qx qy qz qw`");
+                scene ? "the cameras of a glTF scene, animated or not, are chosen with --camera"
+                      : fmt::format("known are {}; CSV has a header `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, TUM lines "
+                                    "`t tx ty tz qx qy qz qw`",
+                                    fmt::join(names, ", ")));
   }
   return *best;
 }
@@ -67,7 +71,10 @@ CameraPose from_axes(const CameraPose& pose, CameraAxes axes) {
   return pose;
 }
 
-void prepare_keys(std::vector<CameraKey>& keys, const std::string& path, const CameraReadOptions& options) {
+// Files that round to four digits are within 1e-4.
+constexpr double kNormTolerance = 0.01;
+
+void prepare_keys(std::vector<CameraKey>& keys, const std::string& path, CameraAxes axes) {
   if (keys.empty()) {
     throw Error(ErrorKind::input, path, "holds no pose",
                 "give at least one line with a time, a position and a quaternion");
@@ -84,13 +91,15 @@ void prepare_keys(std::vector<CameraKey>& keys, const std::string& path, const C
     }
     const Quatd& q = key.pose.orientation;
     const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    if (!(norm > 1e-6) || !std::isfinite(norm)) {
+    if (!(std::abs(norm - 1) <= kNormTolerance)) {
       throw Error(ErrorKind::input, place,
-                  fmt::format("quaternion ({}, {}, {}, {}) has no direction", q.x, q.y, q.z, q.w),
-                  "order is qx qy qz qw; no rotation is 0 0 0 1");
+                  norm > 1e-6
+                      ? fmt::format("quaternion ({}, {}, {}, {}) has length {:.4g}, not 1", q.x, q.y, q.z, q.w, norm)
+                      : fmt::format("quaternion ({}, {}, {}, {}) has no direction", q.x, q.y, q.z, q.w),
+                  "no rotation is x 0, y 0, z 0, w 1; check the order of its columns");
     }
     key.pose.orientation = normalize(q);
-    key.pose = from_axes(key.pose, options.axes);
+    key.pose = from_axes(key.pose, axes);
   }
 }
 
@@ -105,6 +114,36 @@ void rebase_times(std::vector<CameraKey>& keys, const std::string& path) {
   }
 }
 
+double step_s(const CameraKey& a, const CameraKey& b) {
+  // Unsigned: the distance of two int64 stamps always fits.
+  return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(b.t_ns) - static_cast<std::uint64_t>(a.t_ns));
+}
+
+// Of the parabola through a key and both its neighbors, at the key (Barry & Goldman 1988 at the times of the keys); at
+// an end, of the line to the only neighbor.
+Vec3d velocity_at(const std::vector<CameraKey>& keys, std::size_t i) {
+  const auto slope = [&](std::size_t a) {
+    return (keys[a + 1].pose.position_m - keys[a].pose.position_m) / step_s(keys[a], keys[a + 1]);
+  };
+  if (i == 0) {
+    return slope(0);
+  }
+  if (i + 1 == keys.size()) {
+    return slope(i - 1);
+  }
+  const double before = step_s(keys[i - 1], keys[i]);
+  const double after = step_s(keys[i], keys[i + 1]);
+  return (slope(i - 1) * after + slope(i) * before) / (before + after);
+}
+
+Vec3d on_spline(const std::vector<CameraKey>& keys, std::size_t i, double s) {
+  const double span = step_s(keys[i], keys[i + 1]);
+  const double s2 = s * s;
+  const double s3 = s2 * s;
+  return keys[i].pose.position_m * (2 * s3 - 3 * s2 + 1) + velocity_at(keys, i) * ((s3 - 2 * s2 + s) * span) +
+         keys[i + 1].pose.position_m * (3 * s2 - 2 * s3) + velocity_at(keys, i + 1) * ((s3 - s2) * span);
+}
+
 CameraPose pose_between(const std::vector<CameraKey>& keys, PathInterpolation interpolation, std::int64_t t_ns) {
   const auto after = std::upper_bound(keys.begin(), keys.end(), t_ns,
                                       [](std::int64_t t, const CameraKey& key) { return t < key.t_ns; });
@@ -116,24 +155,25 @@ CameraPose pose_between(const std::vector<CameraKey>& keys, PathInterpolation in
     return a.pose;
   }
   const CameraKey& b = *after;
-  // Unsigned: the distance of two int64 stamps always fits.
   const auto since = static_cast<std::uint64_t>(t_ns) - static_cast<std::uint64_t>(a.t_ns);
   const auto span = static_cast<std::uint64_t>(b.t_ns) - static_cast<std::uint64_t>(a.t_ns);
   const double s = static_cast<double>(since) / static_cast<double>(span);
-  return {a.pose.position_m * (1.0 - s) + b.pose.position_m * s, slerp(a.pose.orientation, b.pose.orientation, s)};
+  const auto index = static_cast<std::size_t>(std::distance(keys.begin(), after)) - 1;
+  return {interpolation == PathInterpolation::catmull_rom ? on_spline(keys, index, s)
+                                                          : a.pose.position_m * (1.0 - s) + b.pose.position_m * s,
+          slerp(a.pose.orientation, b.pose.orientation, s)};
 }
 
-CameraPath path_of_keys(std::vector<CameraKey> keys, const std::string& source, const CameraReadOptions& options) {
+CameraPath path_of_keys(std::vector<CameraKey> keys, const std::string& source, const Projection& projection,
+                        PathInterpolation interpolation) {
   CameraPath result;
   result.source = source;
-  result.projection = options.projection;
+  result.projection = projection;
   result.is_static = keys.size() == 1;
   result.begin_ns = keys.front().t_ns;
   result.end_ns = keys.back().t_ns;
   const auto shared = std::make_shared<const std::vector<CameraKey>>(std::move(keys));
-  result.pose_at = [shared, interpolation = options.interpolation](std::int64_t t_ns) {
-    return pose_between(*shared, interpolation, t_ns);
-  };
+  result.pose_at = [shared, interpolation](std::int64_t t_ns) { return pose_between(*shared, interpolation, t_ns); };
   return result;
 }
 
@@ -154,23 +194,21 @@ CameraPath camera_from_poses(const std::vector<TimedPose>& poses, const std::str
   for (const TimedPose& pose : poses) {
     keys.push_back({pose.t_ns, pose.pose, static_cast<std::int64_t>(keys.size()) + 1});
   }
-  CameraReadOptions options;
-  options.interpolation = interpolation;
-  options.projection = projection;
-  prepare_keys(keys, source, options);
-  return path_of_keys(std::move(keys), source, options);
+  prepare_keys(keys, source, CameraAxes::gl);
+  return path_of_keys(std::move(keys), source, projection, interpolation);
 }
 
 CameraPath load_camera_path(const std::string& path, const CameraReadOptions& options) {
   const CameraFile file{path, read_text_file(path)};
-  Warnings warnings;
-  std::vector<CameraKey> keys = choose_format(file, options.format).read(file, warnings);
-  prepare_keys(keys, path, options);
-  if (!options.keep_time) {
-    rebase_times(keys, path);
+  CameraKeys read = choose_format(file, options.format).read(file, options);
+  prepare_keys(read.keys, path, options.axes.value_or(read.axes));
+  if (!options.keep_time && !read.counts_frames) {
+    rebase_times(read.keys, path);
   }
-  CameraPath result = path_of_keys(std::move(keys), path, options);
-  result.warnings = std::move(warnings);
+  Projection projection;
+  projection.yfov_rad = options.yfov_rad.value_or(read.yfov_rad.value_or(projection.yfov_rad));
+  CameraPath result = path_of_keys(std::move(read.keys), path, projection, options.interpolation);
+  result.warnings = std::move(read.warnings);
   return result;
 }
 

@@ -74,6 +74,21 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   return frames;
 }
 
+// With the size that the log's pixels per degree mean where it does not state one: only its ratio to the distance
+// matters.
+DisplayGeometry recording_display(const GazeLog& log, std::vector<std::pair<std::string, std::string>>& decisions) {
+  const DisplayGeometry& stated = *log.recording_geometry;
+  const bool no_angles = !(stated.width_cm > 0) || !(stated.height_cm > 0) || !(stated.distance_cm > 0);
+  const auto& ppd = log.pixels_per_degree;
+  if (no_angles && stated.width_px > 0 && stated.height_px > 0 && ppd && ppd->x > 0 && ppd->y > 0) {
+    decisions.emplace_back(
+        "screen", fmt::format("that of the recording, by the log's {:.4g} x {:.4g} pixels a degree", ppd->x, ppd->y));
+    return display_of_pixels_per_degree(stated.width_px, stated.height_px, *ppd);
+  }
+  decisions.emplace_back("screen", "that of the recording, as the gaze log states it");
+  return stated;
+}
+
 PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_t>& frames, const GazeLog* log,
                            std::vector<std::pair<std::string, std::string>>& decisions) {
   PlanSettings settings;
@@ -97,9 +112,9 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   if (settings.display) {
     decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
   } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {
-    settings.display = log->recording_geometry;
-    decisions.emplace_back("screen", "that of the recording, as the gaze log states it");
+    settings.display = recording_display(*log, decisions);
   }
+  settings.transfer = job.gaze_transfer;
   if (job.frame_rect) {
     settings.frame_rect = *job.frame_rect;
   }
@@ -135,21 +150,47 @@ bool camera_needs_scene(const JobSettings& job) {
 
 }  // namespace
 
+namespace {
+
+DisplayGeometry known_screen(const std::string& name, const std::string& option) {
+  if (name.ends_with(".json")) {
+    return load_display(name);
+  }
+  std::vector<std::string> known;
+  for (const NamedDisplay& display : named_displays()) {
+    known.push_back(display.name);
+  }
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    usage(option, unknown_name_message("screen", name, known));
+  }
+  return display_by_name(name);
+}
+
+void set_pixels_per_degree(const ScreenSettings& screen, DisplayGeometry& geometry) {
+  const double ppd = *screen.pixels_per_degree;
+  if (!(ppd > 0) || !std::isfinite(ppd)) {
+    usage("--screen-ppd", fmt::format("{} pixels a degree are not a positive number", ppd));
+  }
+  if (screen.size_cm || screen.distance_cm) {
+    usage("--screen-ppd", "it stands for the screen's size and distance",
+          "leave out --screen-cm and --screen-distance-cm");
+  }
+  if (geometry.width_px <= 0 || geometry.height_px <= 0) {
+    usage("--screen-ppd", "the screen's pixels are not known", "give --screen-px as well");
+  }
+  geometry = display_of_pixels_per_degree(geometry.width_px, geometry.height_px, {ppd, ppd});
+}
+
+}  // namespace
+
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
-  const bool any = screen.size_px || screen.size_cm || screen.distance_cm || screen.eye_cm;
+  const bool any = screen.size_px || screen.size_cm || screen.distance_cm || screen.eye_cm || screen.pixels_per_degree;
   if (screen.name.empty() && !any) {
     return std::nullopt;
   }
   DisplayGeometry geometry;
   if (!screen.name.empty()) {
-    std::vector<std::string> known;
-    for (const NamedDisplay& display : named_displays()) {
-      known.push_back(display.name);
-    }
-    if (std::find(known.begin(), known.end(), screen.name) == known.end()) {
-      usage("--screen", unknown_name_message("screen", screen.name, known));
-    }
-    geometry = display_by_name(screen.name);
+    geometry = known_screen(screen.name, "--screen");
   }
   if (screen.size_px) {
     const Vec2d& px = *screen.size_px;
@@ -164,6 +205,9 @@ std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
     geometry.height_cm = screen.size_cm->y;
   }
   geometry.distance_cm = screen.distance_cm.value_or(geometry.distance_cm);
+  if (screen.pixels_per_degree) {
+    set_pixels_per_degree(screen, geometry);
+  }
   if (screen.eye_cm) {
     geometry.eye_x_cm = screen.eye_cm->x;
     geometry.eye_y_cm = screen.eye_cm->y;
@@ -194,6 +238,20 @@ GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& scree
   return load_gaze_log(gaze.path, read_options(gaze, screen));
 }
 
+namespace {
+
+// --screen is where the pictures are watched; of the recording it says only what nobody else does.
+GazeLog read_job_gaze(const JobSettings& job) {
+  GazeReadOptions options = read_options(job.gaze, {});
+  options.fallback_display = screen_geometry(job.screen);
+  if (!job.recording_screen.empty()) {
+    options.display = known_screen(job.recording_screen, "--recording-screen");
+  }
+  return load_gaze_log(job.gaze.path, options);
+}
+
+}  // namespace
+
 Inputs load_inputs(const JobSettings& given, InputScope scope,
                    const std::function<void(std::size_t, std::size_t)>& progress) {
   Inputs inputs;
@@ -206,7 +264,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     }
     inputs.gaze = fixed_gaze(*job.gaze_at);
   } else if (!job.gaze.path.empty()) {
-    inputs.gaze = read_gaze_file(job.gaze, job.screen);
+    inputs.gaze = read_job_gaze(job);
     if (!job.keep_ids) {
       hide_times_of_day(*inputs.gaze, job);
     }

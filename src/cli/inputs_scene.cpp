@@ -99,6 +99,12 @@ CameraPath head_camera(const GazeLog& log, const JobSettings& job) {
   return camera_from_poses(poses, log.source, perspective(job), job.camera_read.interpolation);
 }
 
+CameraPlacement placement_of(const JobSettings& job) {
+  CameraPlacement placement = job.camera_placement;
+  placement.z_up = job.camera_up == WorldUp::z;
+  return placement;
+}
+
 CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const GazeLog* log, std::string& decision) {
   const int ways = (job.camera.empty() ? 0 : 1) + (job.camera_path.empty() ? 0 : 1) + (job.camera_from_gaze ? 1 : 0) +
                    (job.eye || job.target ? 1 : 0);
@@ -111,7 +117,11 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
       throw Error(ErrorKind::usage, "--camera-from-gaze", "there is no gaze log", "give --gaze");
     }
     decision = "the head's pose in " + log->source;
-    return head_camera(*log, job);
+    return place_camera(head_camera(*log, job), placement_of(job));
+  }
+  if (job.camera_path.empty() && placement_of(job) != CameraPlacement{}) {
+    throw Error(ErrorKind::usage, "", "--camera-up, --camera-turn, --camera-scale and --camera-start move paths",
+                "give them with --camera-path or --camera-from-gaze");
   }
   if (job.target && !job.eye) {
     throw Error(ErrorKind::usage, "--target", "a still camera needs --eye as well");
@@ -122,9 +132,12 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
   }
   if (!job.camera_path.empty()) {
     CameraReadOptions options = job.camera_read;
-    options.projection = perspective(job);
+    if (job.yfov_deg) {
+      options.yfov_rad = checked_yfov_rad(*job.yfov_deg);
+    }
+    options.fps = job.camera_fps.value_or(job.fps);
     decision = job.camera_path;
-    return load_camera_path(job.camera_path, options);
+    return place_camera(load_camera_path(job.camera_path, options), placement_of(job));
   }
   CameraPath camera;
   if (scene == nullptr) {

@@ -25,6 +25,9 @@ namespace gazetrace {
 struct DurationNs {
   std::int64_t ns = 0;
 };
+// The axis that points up.
+enum class WorldUp : std::uint8_t { y, z };
+
 struct SizePx {
   int width = 0, height = 0;
 };
@@ -104,7 +107,12 @@ GAZETRACE_ENUM_NAMES(SampleUnit, "sample unit", {E::per_block, "block"}, {E::per
 GAZETRACE_ENUM_NAMES(RegionShape, "region shape", {E::cone, "cone"}, {E::disc, "disc"})
 GAZETRACE_ENUM_NAMES(CameraAxes, "axes", {E::gl, "gl"}, {E::cv, "cv"}, {E::unity, "unity"})
 GAZETRACE_ENUM_NAMES(CameraExtrapolation, "extrapolation", {E::error, "error"}, {E::hold, "hold"})
-GAZETRACE_ENUM_NAMES(PathInterpolation, "interpolation", {E::linear, "linear"}, {E::step, "step"})
+GAZETRACE_ENUM_NAMES(PathInterpolation, "interpolation", {E::linear, "linear"}, {E::step, "step"},
+                     {E::catmull_rom, "catmull-rom"})
+GAZETRACE_ENUM_NAMES(GazeTransfer, "gaze transfer", {E::fraction, "fraction"}, {E::angle, "angle"})
+GAZETRACE_ENUM_NAMES(RotationOrder, "rotation order", {E::xyz, "xyz"}, {E::xzy, "xzy"}, {E::yxz, "yxz"},
+                     {E::yzx, "yzx"}, {E::zxy, "zxy"}, {E::zyx, "zyx"})
+GAZETRACE_ENUM_NAMES(WorldUp, "up axis", {E::y, "y"}, {E::z, "z"})
 GAZETRACE_ENUM_NAMES(TimeUnit, "time unit", {E::automatic, "auto"}, {E::ns, "ns"}, {E::us, "us"}, {E::ms, "ms"},
                      {E::s, "s"})
 GAZETRACE_ENUM_NAMES(PositionUnit, "gaze unit", {E::automatic, "auto"}, {E::fraction, "fraction"}, {E::px, "px"},

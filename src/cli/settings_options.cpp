@@ -33,14 +33,27 @@ void add_camera_options(OptionTable& table, JobSettings& job) {
               "first one, or a view of the whole scene when it has none",
               kPixels);
   table.value("--camera-path", job.camera_path, "FILE",
-              "Timestamped poses, gazetrace CSV (t[s],x[m],y[m],z[m],qx,qy,qz,qw) or TUM", kFile);
+              "Poses over time: gazetrace CSV (t[s],x[m],y[m],z[m],qx,qy,qz,qw), TUM, EuRoC, Nuke .chan, NeRF "
+              "transforms.json or COLMAP images.txt",
+              kFile);
   table.flag("--camera-from-gaze", job.camera_from_gaze,
              "The head's pose in a head-mounted display's log is the camera's path", kPixels);
   table.value("--camera-format", job.camera_read.format, "NAME", "Format of --camera-path; default: by its content",
               kPixels);
   table.value("--camera-axes", job.camera_read.axes, choices<CameraAxes>(),
-              "Axes of the poses: gl looks along -z with y up, cv along +z with y down, unity left-handed along +z",
+              "Axes of the poses: gl looks along -z with y up, cv along +z with y down, unity left-handed along +z; "
+              "default: the format's own, gl for CSV, TUM and EuRoC",
               kPixels);
+  table.value("--camera-rotation-order", job.camera_read.rotation_order, choices<RotationOrder>(),
+              "Order in which the angles of a .chan file turn, the first letter first", kPixels);
+  table.value("--camera-fps", job.camera_fps, "RATE",
+              "Frames a second of paths that count frames: .chan, NeRF, COLMAP; default: --fps", kPixels);
+  table.value("--camera-up", job.camera_up, choices<WorldUp>(), "The axis of the path's world that points up", kPixels);
+  table.value("--camera-turn", job.camera_placement.turn_deg, "DEG",
+              "Turns a path or a head's poses about the scene's +y, to the left, degrees", kPixels);
+  table.value("--camera-scale", job.camera_placement.scale, "FACTOR", "Metres per unit of the path", kPixels);
+  table.value("--camera-start", job.camera_placement.start_m, "X,Y,Z",
+              "Moves a path or a head's poses so that the first one is here, metres", kPixels);
   table.value("--camera-interpolation", job.camera_read.interpolation, choices<PathInterpolation>(),
               "Between two poses of the path", kPixels);
   table.value("--camera-extrapolation", job.camera_extrapolation, choices<CameraExtrapolation>(),
@@ -274,13 +287,28 @@ void add_gaze_process_options(OptionTable& table, std::vector<std::string>& step
 
 void add_screen_options(OptionTable& table, ScreenSettings& screen) {
   table.group("Screen (where the eye is)");
-  table.value("--screen", screen.name, "NAME",
-              "A known screen and its distance ('gazetrace list screens'); default: what the gaze log states", kPixels);
+  table.value("--screen", screen.name, "NAME|FILE",
+              "A known screen and its distance ('gazetrace list screens'), or a .json file; default: what the gaze log "
+              "states",
+              kPixels);
   table.value("--screen-px", screen.size_px, "W,H", "Resolution of the screen", kPixels);
   table.value("--screen-cm", screen.size_cm, "W,H", "Size of its active area, centimetres", kPixels);
   table.value("--screen-distance-cm", screen.distance_cm, "CM", "Eye to screen, centimetres", kPixels);
   table.value("--screen-eye-cm", screen.eye_cm, "X,Y",
               "Where the eye's perpendicular meets the screen, from its centre, right and up, centimetres", kPixels);
+  table.value("--screen-ppd", screen.pixels_per_degree, "PIXELS",
+              "Pixels a degree in the middle of the screen, in place of its size and distance", kPixels);
+}
+
+// Only what is rendered is watched on another screen than it was recorded on.
+void add_transfer_options(OptionTable& table, JobSettings& job) {
+  table.value("--recording-screen", job.recording_screen, "NAME|FILE",
+              "The screen of the recording where it is not --screen; default: what the gaze log states", kPixels);
+  table.value(
+      "--gaze-transfer", job.gaze_transfer, choices<GazeTransfer>(),
+      "From the recording's screen to another: places stay (fraction) or angles do; needed where they differ by "
+      "more than 2 %",
+      kPixels);
 }
 
 void add_ocio_config_options(OptionTable& table, ColorSettings& color) {
@@ -298,6 +326,7 @@ void add_job_options(OptionTable& table, JobSettings& job) {
   add_gaze_file_options(table, job.gaze);
   add_gaze_mapping_options(table, job);
   add_screen_options(table, job.screen);
+  add_transfer_options(table, job);
   add_frame_options(table, job);
   add_foveation_options(table, job);
   add_trace_options(table, job);

@@ -20,6 +20,7 @@ struct ScreenSettings {
   std::optional<Vec2d> size_px, size_cm;
   std::optional<double> distance_cm;
   std::optional<Vec2d> eye_cm;
+  std::optional<double> pixels_per_degree;
 };
 
 struct GazeFileSettings {
@@ -42,6 +43,9 @@ struct JobSettings {
   std::string camera_path;
   bool camera_from_gaze = false;
   CameraReadOptions camera_read;
+  std::optional<FrameRate> camera_fps;  // empty: that of the video
+  CameraPlacement camera_placement;     // `camera_up` says what z_up is
+  WorldUp camera_up = WorldUp::y;
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   std::optional<Vec3d> eye, target;
   Vec3d up{0, 1, 0};
@@ -71,6 +75,8 @@ struct JobSettings {
   bool gaze_uncertainty = false;
   std::optional<double> gaze_accuracy_deg, gaze_precision_deg;
   ScreenSettings screen;
+  std::string recording_screen;  // a name or a file
+  std::optional<GazeTransfer> gaze_transfer;
   std::optional<FrameRect> frame_rect;
 
   // Frames

@@ -52,6 +52,16 @@ void check_display(const DisplayGeometry& display) {
   }
 }
 
+DisplayGeometry display_of_pixels_per_degree(int width_px, int height_px, const Vec2d& pixels_per_degree) {
+  constexpr double kDistanceCm = 100;
+  const auto size_cm = [](int px, double ppd) { return px / ppd * kRadPerDeg * kDistanceCm; };
+  return {.width_px = width_px,
+          .height_px = height_px,
+          .width_cm = size_cm(width_px, pixels_per_degree.x),
+          .height_cm = size_cm(height_px, pixels_per_degree.y),
+          .distance_cm = kDistanceCm};
+}
+
 double pixels_per_degree(const DisplayGeometry& display) {
   return display.distance_cm * kRadPerDeg * display.width_px / display.width_cm;
 }

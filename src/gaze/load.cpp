@@ -63,6 +63,21 @@ std::vector<Guess> sniff(const GazeFile& file) {
   return guesses;
 }
 
+// A file of another format than the one that was named is told so.
+GazeLog read_named(const GazeFormat& format, const GazeFile& file, const GazeReadOptions& options) {
+  try {
+    return format.read(file, options);
+  } catch (const Error& error) {
+    const std::vector<Guess> guesses = sniff(file);
+    constexpr double kSure = 0.8;
+    if (error.kind() != ErrorKind::input || guesses.empty() || guesses.front().format == &format ||
+        guesses.front().confidence < kSure) {
+      throw;
+    }
+    throw Error(ErrorKind::input, "", error.what(), "it looks like --gaze-format " + guesses.front().format->name);
+  }
+}
+
 // A folder stands for the recording in it.
 std::string file_of(const std::string& path) {
   namespace fs = std::filesystem;
@@ -257,7 +272,7 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
       confidence = guesses.front().confidence;
     }
     commas = join_decimal_commas(file, options);
-    log = format->read(file, options);
+    log = options.format.empty() ? format->read(file, options) : read_named(*format, file, options);
     if (commas) {
       log.faults.push_back(*commas);
     }

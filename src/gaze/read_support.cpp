@@ -21,14 +21,46 @@ void mark_off_screen(std::vector<GazeSample>& samples) {
   }
 }
 
-// What the log states, completed and overruled by what the user gave.
+DisplayGeometry completed(DisplayGeometry geometry, const DisplayGeometry& by) {
+  if (geometry.width_px <= 0 || geometry.height_px <= 0) {
+    geometry.width_px = by.width_px;
+    geometry.height_px = by.height_px;
+  }
+  if (!(geometry.width_cm > 0) || !(geometry.height_cm > 0)) {
+    geometry.width_cm = by.width_cm;
+    geometry.height_cm = by.height_cm;
+  }
+  geometry.distance_cm = geometry.distance_cm > 0 ? geometry.distance_cm : by.distance_cm;
+  return geometry;
+}
+
+void warn_about_size(GazeLog& log, const DisplayGeometry& given, const DisplayGeometry& stated,
+                     const std::string& place) {
+  const auto differ = [](double a, double b) { return a > 0 && b > 0 && std::abs(a - b) > 0.02 * b; };
+  if (differ(given.width_cm, stated.width_cm) || differ(given.height_cm, stated.height_cm)) {
+    log.warnings.push_back(
+        fmt::format("{}: the log states a display of {:.4g} x {:.4g} cm; the given {:.4g} x {:.4g} cm are used", place,
+                    stated.width_cm, stated.height_cm, given.width_cm, given.height_cm));
+  }
+  if (differ(given.distance_cm, stated.distance_cm)) {
+    log.warnings.push_back(fmt::format("{}: the log states a distance of {:.4g} cm; the given {:.4g} cm are used",
+                                       place, stated.distance_cm, given.distance_cm));
+  }
+}
+
+// What the log states, overruled by what the user gave, which is the recording's geometry from then on.
 std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOptions& options,
                                                   const std::string& place) {
-  if (!options.display || log.kind == GazeKind::scene_camera) {
+  if (log.kind == GazeKind::scene_camera) {
     return log.recording_geometry;
   }
+  if (!options.display) {
+    return log.recording_geometry && options.fallback_display
+               ? completed(*log.recording_geometry, *options.fallback_display)
+           : log.recording_geometry ? log.recording_geometry
+                                    : options.fallback_display;
+  }
   const DisplayGeometry& given = *options.display;
-  DisplayGeometry merged = given;
   if (log.recording_geometry) {
     const DisplayGeometry& stated = *log.recording_geometry;
     if (stated.width_px > 0 && given.width_px > 0 &&
@@ -36,17 +68,12 @@ std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOp
       log.warnings.push_back(fmt::format("{}: the log states a display of {}x{} px; the given {}x{} px are used", place,
                                          stated.width_px, stated.height_px, given.width_px, given.height_px));
     }
-    if (merged.width_px <= 0 || merged.height_px <= 0) {
-      merged.width_px = stated.width_px;
-      merged.height_px = stated.height_px;
-    }
-    if (!(merged.width_cm > 0) || !(merged.height_cm > 0)) {
-      merged.width_cm = stated.width_cm;
-      merged.height_cm = stated.height_cm;
-    }
-    merged.distance_cm = merged.distance_cm > 0 ? merged.distance_cm : stated.distance_cm;
+    warn_about_size(log, given, stated, place);
+    log.recording_geometry = completed(given, stated);
+  } else {
+    log.recording_geometry = given;
   }
-  return merged;
+  return log.recording_geometry;
 }
 
 // The smallest usual display that holds nearly all places: good enough to look at a log, never to render from one.

@@ -6,26 +6,23 @@
 #include <limits>
 
 #include "gazetrace/plan.hpp"
+#include "plan/gaze_geometry.hpp"
 #include "plan/gaze_motion.hpp"
 
 namespace gazetrace {
 namespace {
 
-__extension__ using Int128 = __int128;
-
 std::string seconds(std::int64_t t_ns) {
   return fmt::format("{:.3f} s", static_cast<double>(t_ns) * 1e-9);
 }
 
-// start + floor((2 k - 1) 10^9 den / (2 num)): the middle of frame k, rounded down to a nanosecond.
 std::int64_t frame_time_ns(const PlanSettings& settings, std::int32_t frame) {
-  const Int128 numerator = Int128{2 * std::int64_t{frame} - 1} * 1'000'000'000 * settings.fps.denominator;
-  const Int128 t = settings.start_ns + numerator / (Int128{2} * settings.fps.numerator);
-  if (t > std::numeric_limits<std::int64_t>::max()) {
+  const auto t_ns = mid_frame_ns(frame, settings.fps, settings.start_ns);
+  if (!t_ns) {
     throw Error(ErrorKind::usage, "", fmt::format("frame {} lies beyond int64 nanoseconds", frame),
                 "check --frames, --fps and --start");
   }
-  return static_cast<std::int64_t>(t);
+  return *t_ns;
 }
 
 void check_settings(const PlanSettings& settings) {
@@ -97,112 +94,6 @@ void check_coverage(const CameraPath& camera, const PlanSettings& settings, Warn
   warnings.push_back(fmt::format("{}: {}; its first or last pose is held", camera.source, what));
 }
 
-const DisplayGeometry& display_for_screen_log(const GazeLog& log, const PlanSettings& settings) {
-  constexpr std::string_view kRemedy = "give --screen NAME, or --screen-px W,H --screen-cm W,H --screen-distance-cm D";
-  if (!settings.display) {
-    throw Error(ErrorKind::input, log.source, "gaze on a screen means no angle without the screen's size and distance",
-                kRemedy);
-  }
-  try {
-    check_display(*settings.display);
-  } catch (const Error& error) {
-    throw Error(ErrorKind::input, log.source,
-                fmt::format("gaze on a screen means no angle without its geometry: {}", error.what()), kRemedy);
-  }
-  return *settings.display;
-}
-
-double width_deg(const DisplayGeometry& display) {
-  return 2.0 * std::atan2(0.5 * display.width_cm, display.distance_cm) * kDegPerRad;
-}
-
-void warn_about_display(const DisplayGeometry& display, const GazeLog* log, Warnings& warnings) {
-  const double square = (display.height_cm / display.height_px) / (display.width_cm / display.width_px);
-  if (std::abs(square - 1.0) > 0.01) {
-    warnings.push_back(fmt::format("the display's pixels are not square: height to width {:.3f}", square));
-  }
-  if (log == nullptr || log->kind != GazeKind::screen || !log->recording_geometry) {
-    return;
-  }
-  const DisplayGeometry& recording = *log->recording_geometry;
-  if (!(recording.width_cm > 0) || !(recording.distance_cm > 0)) {
-    return;
-  }
-  const double gain = (display.width_cm / display.distance_cm) / (recording.width_cm / recording.distance_cm);
-  if (std::abs(gain - 1.0) > 0.02) {
-    warnings.push_back(
-        fmt::format("{}: recorded on a display {:.1f} deg wide and shown on one {:.1f} deg wide; gaze is carried over "
-                    "as a fraction "
-                    "of the display, so angles near its center change by a factor of {:.2f}",
-                    log->source, width_deg(recording), width_deg(display), gain));
-  }
-}
-
-// What is the same for every frame: how the eye sees the frame, and how a gaze becomes a direction from the eye.
-class GazeGeometry {
- public:
-  GazeGeometry(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings, Warnings& warnings) {
-    const bool directions = log != nullptr && log->kind == GazeKind::direction;
-    if (directions && camera.projection.kind != ProjectionKind::perspective) {
-      throw Error(ErrorKind::input, log->source,
-                  "gaze directions need a perspective camera: an orthographic one has no eye",
-                  "use a perspective camera, or a log of gaze on a screen");
-    }
-    if (log != nullptr && log->kind == GazeKind::scene_camera) {
-      throw Error(ErrorKind::input, log->source,
-                  "gaze on a scene camera's picture is no place on a display, and no direction either",
-                  "use a log mapped to a surface, or --gaze-frame head");
-    }
-    const bool on_screen = log != nullptr && !directions;
-    if (on_screen) {
-      display_for_screen_log(*log, settings);
-    }
-    if (settings.display && !directions) {
-      const DisplayGeometry& display = *settings.display;
-      view_ = view_of_display(display, settings.frame_rect, settings.width_px, settings.height_px);
-      screen_ = view_of_display(display, {}, display.width_px, display.height_px);
-      warn_about_display(display, log, warnings);
-    } else {
-      if (settings.display) {
-        warnings.push_back(fmt::format("{}: gaze directions need no display; the given one is not used", log->source));
-      }
-      // Without a display the camera's own frustum is the view; an orthographic camera has none and gets the default's.
-      const Projection projection =
-          camera.projection.kind == ProjectionKind::perspective ? camera.projection : Projection{};
-      view_ = view_of_perspective(projection.yfov_rad, settings.width_px, settings.height_px);
-    }
-  }
-
-  [[nodiscard]] const PlanarView& view() const { return view_; }
-
-  // The view's center belongs to the frame, which need not fill the display.
-  void place_center(GazeAtTime& gaze) const {
-    if (gaze.state != GazeState::center) {
-      return;
-    }
-    gaze.direction = normalize(view_.direction(0.5 * view_.width_px, 0.5 * view_.height_px));
-    if (gaze.kind == GazeKind::screen) {
-      const Vec2d pixel = screen_.pixel(gaze.direction);
-      gaze.u = pixel.x / screen_.width_px;
-      gaze.v = pixel.y / screen_.height_px;
-    }
-  }
-
-  [[nodiscard]] std::optional<Vec3d> direction(const GazeAtTime& gaze) const {
-    if (gaze.state == GazeState::none) {
-      return std::nullopt;
-    }
-    if (gaze.kind == GazeKind::direction || gaze.state == GazeState::center) {
-      return gaze.direction;
-    }
-    return normalize(screen_.direction(gaze.u * screen_.width_px, gaze.v * screen_.height_px));
-  }
-
- private:
-  PlanarView view_;
-  PlanarView screen_;  // of the whole display, in its own pixels
-};
-
 std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
   std::int64_t result = 0;
   return __builtin_sub_overflow(t_ns, by_ns, &result) ? std::numeric_limits<std::int64_t>::min() : result;
@@ -252,8 +143,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
               : gaze_at(*steering_log, settings.gaze, earlier(request.t_video_ns, settings.gaze_latency_ns),
                         steering_motion.movements());
       request.gaze_uncertainty_deg = steering_motion.uncertainty_deg(request);
-      geometry.place_center(request.gaze_render);
-      geometry.place_center(request.gaze_true);
+      geometry.settle(request.gaze_render);
+      geometry.settle(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);
       request.gaze_direction_true = geometry.direction(request.gaze_true);
     } else {

@@ -47,7 +47,8 @@ TEST(CameraPath, CsvInterpolatesPositionsLinearlyAndOrientationsBySlerp) {
   // No rotation, then a quarter turn to the left (about +y).
   const std::string path = files.write("path.csv",
                                        "# by hand\nt[ms],x[m],y[m],z[m],qx,qy,qz,qw\n"
-                                       "1000,0,1,2,0,0,0,1\n1500.000001,4,1,-2,0,2,0,2\n");
+                                       "1000,0,1,2,0,0,0,1\n"
+                                       "1500.000001,4,1,-2,0,0.70710678118654752,0,0.70710678118654752\n");
   const CameraPath camera = load_camera_path(path, {});
   EXPECT_FALSE(camera.is_static);
   EXPECT_EQ(camera.begin_ns, 0);
@@ -82,7 +83,7 @@ TEST(CameraPath, TumIsReadInNanosecondsAndOneKeyIsStatic) {
   EXPECT_EQ(camera.end_ns, 1'305'031'102'211'214'000);
   expect_near(camera.pose_at(camera.begin_ns).position_m, {1.3405, 0.6266, 1.6575});
 
-  const CameraPath one = load_camera_path(files.write("one.txt", "5 1 2 3 0 0 0 2\n"), {});
+  const CameraPath one = load_camera_path(files.write("one.txt", "5 1 2 3 0 0 0 1.0001\n"), {});
   EXPECT_TRUE(one.is_static);
   EXPECT_EQ(one.pose_at(123).orientation, (Quatd{0, 0, 0, 1}));
 }
@@ -140,7 +141,12 @@ TEST(CameraPath, ErrorsHavePlaceAndRemedy) {
       {"twice.csv", header + "1,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n",
        "twice.csv:3: time 1000000000 ns repeats that of line 2; times of a camera path must increase"},
       {"zero.csv", header + "1,0,0,0,0,0,0,0\n",
-       "zero.csv:2: quaternion (0, 0, 0, 0) has no direction; order is qx qy qz qw; no rotation is 0 0 0 1"},
+       "zero.csv:2: quaternion (0, 0, 0, 0) has no direction; no rotation is x 0, y 0, z 0, w 1; check the order of "
+       "its "
+       "columns"},
+      {"two.csv", header + "1,0,0,0,0,0,0,2\n",
+       "two.csv:2: quaternion (0, 0, 0, 2) has length 2, not 1; no rotation is x 0, y 0, z 0, w 1; check the order of "
+       "its columns"},
       {"short.csv", header + "1,0,0,0,0,0\n",
        "short.csv:2: 6 cells where the header has 8; the file may be cut off; remove or mend the line"},
       {"text.csv", header + "1,0,zero,0,0,0,0,1\n",
@@ -159,8 +165,8 @@ TEST(CameraPath, ErrorsHavePlaceAndRemedy) {
       {"nan.tum", "1 0 0 0 0 0 0 1\n2 nan 0 0 0 0 0 1\n", "nan.tum:2: 'nan' is not a finite number" + tum_form},
       {"time.tum", "1 0 0 0 0 0 0 1\ntwo 0 0 0 0 0 0 1\n", "time.tum:2: time 'two' is not a number" + tum_form},
       {"prose.txt", "Dear reader,\n",
-       "prose.txt: is not a camera path of a known format; use CSV with a header `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, or "
-       "TUM with lines `t tx ty tz qx qy qz qw`"},
+       "prose.txt: is not a camera path of a known format; known are csv, tum, euroc, chan, nerf, colmap; CSV has a "
+       "header `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, TUM lines `t tx ty tz qx qy qz qw`"},
   };
   const TextFiles files;
   for (const Case& c : cases) {
@@ -185,7 +191,19 @@ TEST(CameraPath, ErrorsHavePlaceAndRemedy) {
     load_camera_path(files.write("a.txt", "0 0 0 0 0 0 0 1\n"), options);
     ADD_FAILURE();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "unknown camera path format 'tun'; did you mean 'tum'? Known: csv, tum");
+    EXPECT_STREQ(error.what(),
+                 "unknown camera path format 'tun'; did you mean 'tum'? Known: csv, tum, euroc, chan, nerf, colmap");
+  }
+}
+
+// A quaternion and its negative are the same rotation: between them nothing turns.
+TEST(CameraPath, TheSignOfAQuaternionDoesNotMatter) {
+  const TextFiles files;
+  const CameraPath camera =
+      load_camera_path(files.write("sign.txt", "0 0 0 0 0.6 0 0 0.8\n1 0 0 0 -0.6 0 0 -0.8\n"), {});
+  const Vec3d ahead = rotate({0.6, 0, 0, 0.8}, kForward);
+  for (const std::int64_t t_ns : {0, 250'000'000, 500'000'000, 1'000'000'000}) {
+    expect_near(rotate(camera.pose_at(t_ns).orientation, kForward), ahead);
   }
 }
 

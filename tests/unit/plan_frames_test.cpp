@@ -207,7 +207,9 @@ TEST(PlanFrames, PoliciesForFramesWithoutGaze) {
 TEST(PlanFrames, RecordingAndViewingGeometryAreCompared) {
   GazeLog log = screen_log();
   log.recording_geometry = display_by_name("tx300");
-  const FramePlan plan = plan_frames(still(), &log, paper_settings());
+  PlanSettings chosen = paper_settings();
+  chosen.transfer = GazeTransfer::fraction;
+  const FramePlan plan = plan_frames(still(), &log, chosen);
   ASSERT_EQ(plan.warnings.size(), 1U);
   // (70.848 / 60) / (50.9174 / 65) = 1.5074
   EXPECT_EQ(plan.warnings[0],

@@ -132,8 +132,8 @@ double sniff_camera_csv(const CameraFile& file) {
   return 0.0;
 }
 
-std::vector<CameraKey> read_camera_csv(const CameraFile& file, Warnings& /*warnings*/) {
-  std::vector<CameraKey> keys;
+CameraKeys read_camera_csv(const CameraFile& file, const CameraReadOptions& /*options*/) {
+  CameraKeys result;
   LineReader lines(file.text);
   std::vector<std::string_view> cells;
   bool have_header = false;
@@ -149,10 +149,10 @@ std::vector<CameraKey> read_camera_csv(const CameraFile& file, Warnings& /*warni
       continue;
     }
     split_cells(line, layout.separator, cells);
-    keys.push_back(parse_row(cells, layout, place));
-    keys.back().row = lines.number();
+    result.keys.push_back(parse_row(cells, layout, place));
+    result.keys.back().row = lines.number();
   }
-  return keys;
+  return result;
 }
 
 }  // namespace gazetrace

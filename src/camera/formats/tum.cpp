@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 #include "camera/path_format.hpp"
 #include "core/text.hpp"
@@ -21,18 +22,22 @@ double sniff_camera_tum(const CameraFile& file) {
     if (cells.size() != 8) {
       return 0.0;
     }
-    for (const std::string_view cell : cells) {
-      if (!number_from(cell)) {
+    double square = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto value = number_from(cells[i]);
+      if (!value) {
         return 0.0;
       }
+      square += i < 4 ? 0 : *value * *value;
     }
-    return 0.9;
+    // Nuke's lines can have eight numbers too, but no quaternion in them.
+    return std::abs(square - 1) < 0.1 ? 0.9 : 0.5;
   }
   return 0.0;
 }
 
-std::vector<CameraKey> read_camera_tum(const CameraFile& file, Warnings& /*warnings*/) {
-  std::vector<CameraKey> keys;
+CameraKeys read_camera_tum(const CameraFile& file, const CameraReadOptions& /*options*/) {
+  CameraKeys result;
   LineReader lines(file.text);
   std::vector<std::string_view> cells;
   constexpr std::string_view kForm = "a TUM line is `t tx ty tz qx qy qz qw`, in seconds and metres";
@@ -48,26 +53,15 @@ std::vector<CameraKey> read_camera_tum(const CameraFile& file, Warnings& /*warni
     }
     CameraKey key;
     key.row = lines.number();
-    const NumberStatus status = scaled_integer(cells[0], 9, key.t_ns);
-    if (status != NumberStatus::ok) {
-      throw Error(
-          ErrorKind::input, place,
-          fmt::format("time '{}' {}", cells[0],
-                      status == NumberStatus::overflow ? "in s does not fit int64 nanoseconds" : "is not a number"),
-          kForm);
+    key.t_ns = time_at(cells[0], 9, place, kForm);
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      v[i] = number_at(cells[i + 1], place, kForm);
     }
-    std::array<double, 7> values{};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto value = number_from(cells[i + 1]);
-      if (!value) {
-        throw Error(ErrorKind::input, place, fmt::format("'{}' is not a finite number", cells[i + 1]), kForm);
-      }
-      values[i] = *value;
-    }
-    key.pose = {{values[0], values[1], values[2]}, {values[3], values[4], values[5], values[6]}};
-    keys.push_back(key);
+    key.pose = {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
+    result.keys.push_back(key);
   }
-  return keys;
+  return result;
 }
 
 }  // namespace gazetrace

@@ -17,6 +17,7 @@ namespace {
 struct PlanArguments {
   JobSettings job;
   OptionTable table;
+  std::string save_camera;
   bool counts = false;
   bool json = false;
 };
@@ -100,6 +101,13 @@ int run_plan(const PlanArguments& arguments) {
   }
   const Inputs inputs = load_inputs(job, InputScope::plan_only);
   print_warnings(inputs.warnings);
+  if (!arguments.save_camera.empty()) {
+    std::vector<FramePose> frames;
+    for (const FrameRequest& request : inputs.plan.frames) {
+      frames.push_back({request.frame, request.t_video_ns, request.camera});
+    }
+    write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
+  }
   if (!arguments.counts) {
     print_result(arguments.json ? plan_as_json(inputs.plan) : plan_as_table(inputs.plan));
     return exit_done;
@@ -122,6 +130,9 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--counts", arguments->counts,
                "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");
+  app.add_option("--save-camera", arguments->save_camera,
+                 "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM")
+      ->type_name("FILE");
   app.add_flag("--json", arguments->json, "As JSON");
   return {[arguments] { return run_plan(*arguments); },
           std::shared_ptr<const OptionTable>(arguments, &arguments->table)};

@@ -6,7 +6,7 @@
 namespace gazetrace {
 
 double sniff_gaze_generic(const GazeFile& file) {
-  if (head_of(file).find('\0') != std::string_view::npos) {
+  if (head_of(file).find_first_of(std::string_view("\0\xFF", 2)) != std::string_view::npos) {
     return 0.0;  // binary
   }
   LineReader lines(file.text);
@@ -14,6 +14,9 @@ double sniff_gaze_generic(const GazeFile& file) {
     const std::string_view text = trim(line);
     if (text.empty() || text.front() == '#') {
       continue;
+    }
+    if (text.front() == '{' || text.front() == '[') {
+      return 0.0;  // JSON, such as a sidecar
     }
     return text.find_first_of(",;\t") == std::string_view::npos ? 0.05 : 0.2;
   }

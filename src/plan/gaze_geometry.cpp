@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plan/gaze_geometry.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace gazetrace {
+namespace {
+
+constexpr double kSameSize = 0.02;  // of size over distance
+
+const DisplayGeometry& display_for_screen_log(const GazeLog& log, const PlanSettings& settings) {
+  constexpr std::string_view kRemedy = "give --screen NAME, or --screen-px W,H --screen-cm W,H --screen-distance-cm D";
+  if (!settings.display) {
+    throw Error(ErrorKind::input, log.source, "gaze on a screen means no angle without the screen's size and distance",
+                kRemedy);
+  }
+  try {
+    check_display(*settings.display);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::input, log.source,
+                fmt::format("gaze on a screen means no angle without its geometry: {}", error.what()), kRemedy);
+  }
+  return *settings.display;
+}
+
+double width_deg(const DisplayGeometry& display) {
+  return 2.0 * std::atan2(0.5 * display.width_cm, display.distance_cm) * kDegPerRad;
+}
+
+void warn_about_pixels(const DisplayGeometry& display, Warnings& warnings) {
+  const double square = (display.height_cm / display.height_px) / (display.width_cm / display.width_px);
+  if (std::abs(square - 1.0) > 0.01) {
+    warnings.push_back(fmt::format("the display's pixels are not square: height to width {:.3f}", square));
+  }
+}
+
+// Only ratios to the distance matter; pixels do not.
+bool is_complete(const std::optional<DisplayGeometry>& g) {
+  return g && g->width_cm > 0 && g->height_cm > 0 && g->distance_cm > 0;
+}
+
+bool same_place(const DisplayGeometry& a, const DisplayGeometry& b) {
+  const auto close = [](double x, double y, double scale) { return std::abs(x - y) <= kSameSize * scale; };
+  const double width = b.width_cm / b.distance_cm;
+  const double height = b.height_cm / b.distance_cm;
+  return close(a.width_cm / a.distance_cm, width, width) && close(a.height_cm / a.distance_cm, height, height) &&
+         close(a.eye_x_cm / a.distance_cm, b.eye_x_cm / b.distance_cm, width) &&
+         close(a.eye_y_cm / a.distance_cm, b.eye_y_cm / b.distance_cm, height);
+}
+
+// The recording's screen where gaze is carried over by angle; empty where places are the same.
+std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometry& display,
+                                        const std::optional<GazeTransfer>& how, Warnings& warnings) {
+  if (!is_complete(log.recording_geometry)) {
+    if (how == GazeTransfer::angle) {
+      throw Error(ErrorKind::input, log.source, "the size and distance of the recording's screen are not known",
+                  "give --recording-screen to carry gaze over by angle");
+    }
+    return std::nullopt;
+  }
+  const DisplayGeometry& recording = *log.recording_geometry;
+  if (same_place(recording, display)) {
+    return std::nullopt;
+  }
+  const double gain = (display.width_cm / display.distance_cm) / (recording.width_cm / recording.distance_cm);
+  const std::string what = fmt::format("recorded on a display {:.1f} deg wide and shown on one {:.1f} deg wide",
+                                       width_deg(recording), width_deg(display));
+  if (!how) {
+    throw Error(ErrorKind::input, log.source, what,
+                fmt::format("choose with --gaze-transfer: fraction keeps places on the display (angles near its center "
+                            "change by a factor of {:.2f}), angle keeps angles",
+                            gain));
+  }
+  if (*how == GazeTransfer::fraction) {
+    warnings.push_back(
+        fmt::format("{}: {}; gaze is carried over as a fraction of the display, so angles near its "
+                    "center change by a factor of {:.2f}",
+                    log.source, what, gain));
+    return std::nullopt;
+  }
+  warnings.push_back(
+      fmt::format("{}: {}; gaze is carried over by angle, so distances on the display change by a "
+                  "factor of {:.2f}",
+                  log.source, what, 1 / gain));
+  DisplayGeometry screen = recording;
+  if (screen.width_px <= 0 || screen.height_px <= 0) {
+    screen.width_px = screen.height_px = 1;  // fractions are all that is asked of it
+  }
+  return screen;
+}
+
+}  // namespace
+
+GazeGeometry::GazeGeometry(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,
+                           Warnings& warnings) {
+  const bool directions = log != nullptr && log->kind == GazeKind::direction;
+  if (directions && camera.projection.kind != ProjectionKind::perspective) {
+    throw Error(ErrorKind::input, log->source,
+                "gaze directions need a perspective camera: an orthographic one has no eye",
+                "use a perspective camera, or a log of gaze on a screen");
+  }
+  if (log != nullptr && log->kind == GazeKind::scene_camera) {
+    throw Error(ErrorKind::input, log->source,
+                "gaze on a scene camera's picture is no place on a display, and no direction either",
+                "use a log mapped to a surface, or --gaze-frame head");
+  }
+  const bool on_screen = log != nullptr && !directions;
+  if (on_screen) {
+    display_for_screen_log(*log, settings);
+  }
+  if (settings.display && !directions) {
+    const DisplayGeometry& display = *settings.display;
+    view_ = view_of_display(display, settings.frame_rect, settings.width_px, settings.height_px);
+    screen_ = view_of_display(display, {}, display.width_px, display.height_px);
+    warn_about_pixels(display, warnings);
+    if (on_screen) {
+      if (const auto recording = transfer(*log, display, settings.transfer, warnings)) {
+        recording_ = view_of_display(*recording, {}, recording->width_px, recording->height_px);
+      }
+    }
+  } else {
+    if (settings.display) {
+      warnings.push_back(fmt::format("{}: gaze directions need no display; the given one is not used", log->source));
+    }
+    // Without a display the camera's own frustum is the view; an orthographic camera has none and gets the default's.
+    const Projection projection =
+        camera.projection.kind == ProjectionKind::perspective ? camera.projection : Projection{};
+    view_ = view_of_perspective(projection.yfov_rad, settings.width_px, settings.height_px);
+  }
+}
+
+void GazeGeometry::settle(GazeAtTime& gaze) const {
+  const bool is_center = gaze.state == GazeState::center;
+  if (gaze.state == GazeState::none || (!is_center && !recording_)) {
+    return;
+  }
+  // The view's center belongs to the frame, which need not fill the display.
+  const Vec3d direction = is_center
+                              ? normalize(view_.direction(0.5 * view_.width_px, 0.5 * view_.height_px))
+                              : recording_->direction(gaze.u * recording_->width_px, gaze.v * recording_->height_px);
+  if (is_center) {
+    gaze.direction = direction;
+  }
+  if (gaze.kind == GazeKind::screen) {
+    const Vec2d pixel = screen_.pixel(direction);
+    gaze.u = pixel.x / screen_.width_px;
+    gaze.v = pixel.y / screen_.height_px;
+  }
+}
+
+std::optional<Vec3d> GazeGeometry::direction(const GazeAtTime& gaze) const {
+  if (gaze.state == GazeState::none) {
+    return std::nullopt;
+  }
+  if (gaze.kind == GazeKind::direction || gaze.state == GazeState::center) {
+    return gaze.direction;
+  }
+  return normalize(screen_.direction(gaze.u * screen_.width_px, gaze.v * screen_.height_px));
+}
+
+}  // namespace gazetrace

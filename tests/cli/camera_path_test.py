@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Camera paths from outside: formats, placement, export and back; screens of recording and viewing."""
+
+import json
+import math
+
+import harness
+
+PATH = "0 1 2 3 0 0 0 1\n1 4 2 3 0 0.7071067811865476 0 0.7071067811865476\n2 4 2 0 0.5 0.5 0.5 0.5\n"
+
+
+class CameraPaths(harness.CliTest):
+    def frames(self, *arguments):
+        return json.loads(self.run_ok("plan", "--size", "64x36", *arguments, "--json").stdout)["frames"]
+
+    def cameras(self, *arguments):
+        return [frame["camera"] for frame in self.frames(*arguments)]
+
+    def assert_same_cameras(self, first, second):
+        self.assertEqual(len(first), len(second))
+        for a, b in zip(first, second):
+            self.assertLess(math.dist(a["position_m"], b["position_m"]), 1e-9)
+            sign = math.copysign(1, sum(x * y for x, y in zip(a["orientation_xyzw"], b["orientation_xyzw"])))
+            turned = [sign * x for x in b["orientation_xyzw"]]
+            self.assertLess(2 * math.dist(a["orientation_xyzw"], turned), 1e-9)
+
+    def test_out_and_in_again(self):
+        self.write("path.tum", PATH)
+        first = self.cameras("--camera-path", "path.tum", "--fps", "24000/1001", "--yfov", "40")
+        self.assertEqual(len(first), 47)  # 2 s
+        for name, flags in (("again.chan", []), ("again.tum", ["--camera-keep-time", "--yfov", "40"]),
+                            ("xyz.chan", ["--camera-rotation-order", "xyz"])):
+            order = flags if "--camera-rotation-order" in flags else []
+            self.run_ok("plan", "--size", "64x36", "--camera-path", "path.tum", "--fps", "24000/1001", "--yfov", "40",
+                        "--save-camera", name, *order)
+            again = self.cameras("--camera-path", name, "--fps", "24000/1001", "--frames", "1-47", *flags)
+            self.assert_same_cameras(first, again)
+            self.assertAlmostEqual(again[0]["yfov_deg"], 40, places=12)
+        self.assert_refused(["plan", "--size", "64x36", "--camera-path", "path.tum", "--save-camera", "x.fbx"],
+                            ["x.fbx", ".chan"])
+
+    def test_a_path_is_placed(self):
+        self.write("path.tum", PATH)
+        placed = self.cameras("--camera-path", "path.tum", "--fps", "2", "--camera-turn", "90", "--camera-scale", "2",
+                              "--camera-start", "10,20,30")
+        # A quarter of the way from (1, 2, 3) to (4, 2, 3) is 0.75 m along x, 1.5 m along -z after the turn and the scale.
+        self.assertLess(math.dist(placed[0]["position_m"], [10, 20, 28.5]), 1e-9)
+        self.assert_refused(["plan", "--eye", "0,0,0", "--target", "0,0,1", "--camera-turn", "5"], ["--camera-turn"])
+
+    def test_screens_differ(self):
+        self.write("log.csv", "# display_px 1920 1080\n# display_mm 400 225\n# distance_mm 500\nt[ms],u[1],v[1]\n0,0.75,0.5\n")
+        self.write("wall.json", '{"width_px": 3840, "height_px": 2160, "width_cm": 80, "height_cm": 45, "distance_cm": 50}')
+        arguments = ["--gaze", "log.csv", "--screen", "wall.json", "--eye", "0,0,0", "--target", "0,0,-1"]
+        self.assert_refused(["plan", "--size", "64x36", *arguments], ["log.csv", "--gaze-transfer"])
+        self.assertAlmostEqual(self.frames(*arguments, "--gaze-transfer", "fraction")[0]["gaze_render"]["u"], 0.75)
+        self.assertAlmostEqual(self.frames(*arguments, "--gaze-transfer", "angle")[0]["gaze_render"]["u"], 0.625)
+        self.assertAlmostEqual(self.frames(*arguments, "--recording-screen", "wall.json")[0]["gaze_render"]["u"], 0.75)
+
+    def test_pixels_a_degree_are_enough(self):
+        self.write("log.csv", "t[ms],x[px],y[px]\n0,960,540\n")
+        arguments = ["--gaze", "log.csv", "--eye", "0,0,0", "--target", "0,0,-1", "--screen-px", "1920,1080"]
+        self.assert_refused(["plan", "--size", "64x36", *arguments], ["log.csv", "width in cm"])
+        self.assertEqual(self.frames(*arguments, "--screen-ppd", "40")[0]["gaze_render"]["u"], 0.5)
+
+
+if __name__ == "__main__":
+    harness.main()

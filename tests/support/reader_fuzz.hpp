@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// One entry for every reader of gaze logs and camera paths: any bytes are either read, and then hold what the headers
+// promise, or refused with one line of text. Anything else ends the program. The fuzzers and the mutation test share
+// it.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/camera.hpp"
+#include "gazetrace/gaze.hpp"
+
+namespace gazetrace {
+
+// "gaze-eyelink-asc", "camera-tum", ...; "gaze-any" and "camera-any" choose the format by sniffing.
+inline std::vector<std::string> fuzz_readers() {
+  std::vector<std::string> names{"gaze-any", "camera-any"};
+  for (const GazeFormatInfo& format : gaze_formats()) {
+    names.push_back("gaze-" + format.name);
+  }
+  for (const CameraFormatInfo& format : camera_formats()) {
+    names.push_back("camera-" + format.name);
+  }
+  return names;
+}
+
+// A folder with the files of one input. Formats of several files have them in one input: `\n%%FILE name\n` begins the
+// next one.
+class FuzzFolder {
+ public:
+  explicit FuzzFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::filesystem::create_directories(folder_);
+    write("dataset_description.json", "{}");  // BIDS looks no higher than this
+  }
+  FuzzFolder(const FuzzFolder&) = delete;
+  FuzzFolder& operator=(const FuzzFolder&) = delete;
+  ~FuzzFolder() {
+    std::error_code code;
+    std::filesystem::remove_all(folder_, code);
+  }
+
+  // The first file's path.
+  std::string put(const std::string& first_name, std::string_view input) {
+    constexpr std::string_view kNext = "\n%%FILE ";
+    std::set<std::string> written;
+    std::string name = first_name;
+    for (;;) {
+      const std::size_t next = input.find(kNext);
+      write(name, input.substr(0, next));
+      written.insert(name);
+      if (next == std::string_view::npos || written.size() == 6) {
+        break;
+      }
+      input.remove_prefix(next + kNext.size());
+      const std::size_t end = input.find('\n');
+      name = safe_name(input.substr(0, end));
+      input.remove_prefix(end == std::string_view::npos ? input.size() : end + 1);
+    }
+    for (const std::string& old : names_) {
+      if (written.count(old) == 0) {
+        std::filesystem::remove(folder_ / old);
+      }
+    }
+    names_ = written;
+    return (folder_ / first_name).string();
+  }
+
+ private:
+  void write(const std::string& name, std::string_view bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+  static std::string safe_name(std::string_view text) {
+    std::string name;
+    for (const char c : text.substr(0, 80)) {
+      const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+      name += plain || c == '.' || c == '_' || c == '-' || c == ' ' ? c : '_';
+    }
+    return name.empty() || name.front() == '.' ? "_" + name : name;
+  }
+
+  std::filesystem::path folder_;
+  std::set<std::string> names_;
+};
+
+namespace fuzz {
+
+inline void require(bool holds, const char* what) {
+  if (!holds) {
+    std::fprintf(stderr, "promise broken: %s\n", what);
+    std::abort();
+  }
+}
+
+inline bool is_unit(const Vec3d& v) {
+  return std::abs(length(v) - 1) < 1e-6;
+}
+
+inline void check_log(const GazeLog& log) {
+  require(!log.samples.empty(), "a log has samples");
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample& s = log.samples[i];
+    require(i == 0 || log.samples[i - 1].t_ns < s.t_ns, "times increase");
+    const bool known =
+        log.kind == GazeKind::direction ? is_unit(s.direction) : std::isfinite(s.u) && std::isfinite(s.v);
+    require(known || !is_usable(s.validity), "usable gaze is finite, directions have length 1");
+  }
+  require(log.eyes.empty() || log.eyes.size() == log.samples.size(), "both eyes, or none, for every sample");
+  require(log.origins.empty() || log.origins.size() == log.samples.size(), "origins, or none, for every sample");
+  for (std::size_t i = 0; i < log.head.size(); ++i) {
+    const HeadPose& pose = log.head[i];
+    require(i == 0 || log.head[i - 1].t_ns < pose.t_ns, "times of head poses increase");
+    require(is_finite(pose.position_m), "a head is somewhere");
+    const Quatd& q = pose.orientation;
+    require(std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1) < 1e-6, "a head's turn is a rotation");
+  }
+  for (const std::string& warning : log.warnings) {
+    require(warning.find('\n') == std::string::npos, "a warning has one line");
+  }
+  const GazeMapping mapping;
+  for (const std::int64_t t_ns : {std::int64_t{0}, std::int64_t{1'000'000'000}}) {
+    gaze_at(log, mapping, t_ns);
+  }
+}
+
+inline void check_path(const CameraPath& path) {
+  require(path.begin_ns <= path.end_ns, "a path begins before it ends");
+  const std::int64_t middle = path.begin_ns / 2 + path.end_ns / 2;
+  for (const std::int64_t t_ns : {path.begin_ns, middle, path.end_ns}) {
+    const CameraPose pose = path.pose_at(t_ns);
+    const Quatd& q = pose.orientation;
+    require(is_finite(pose.position_m), "a camera is somewhere");
+    require(std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1) < 1e-6, "a camera's turn is a rotation");
+  }
+  require(path.projection.yfov_rad > 0 && path.projection.yfov_rad < kPi, "a field of view is one");
+}
+
+inline std::string first_name(const std::string& reader) {
+  return reader == "gaze-bids"          ? "sub-01_task-view_recording-eye1_physio.tsv"
+         : reader == "gaze-neon-native" ? "gaze ps1.raw"
+         : reader == "gaze-pupil-cloud" ? "gaze.csv"
+         : reader == "camera-colmap"    ? "images.txt"
+                                        : "log";
+}
+
+// Options follow the length of the input, so that an input alone repeats what it found.
+inline void read_gaze(const std::string& format, const std::string& path, std::size_t length) {
+  GazeReadOptions options;
+  options.format = format;
+  options.guess_display = length % 2 == 0;
+  options.unordered = length % 3 == 0 ? UnorderedPolicy::error : UnorderedPolicy::sort;
+  options.frame = length % 5 < 2 ? GazeFrame::automatic : length % 5 < 4 ? GazeFrame::head : GazeFrame::scene_camera;
+  if (length % 7 < 3) {
+    options.display = DisplayGeometry{
+        .width_px = 1920, .height_px = 1080, .width_cm = 51, .height_cm = 29, .distance_cm = 65, .eye_y_cm = 2};
+  }
+  check_log(load_gaze_log(path, options));
+}
+
+inline void read_camera(const std::string& format, const std::string& path, std::size_t length) {
+  CameraReadOptions options;
+  options.format = format;
+  options.axes = length % 3 == 0 ? CameraAxes::gl : length % 3 == 1 ? CameraAxes::cv : CameraAxes::unity;
+  options.interpolation = length % 2 == 0 ? PathInterpolation::linear : PathInterpolation::step;
+  options.keep_time = length % 5 == 0;
+  check_path(load_camera_path(path, options));
+}
+
+}  // namespace fuzz
+
+// True when the bytes were read, false when they were refused as they should be.
+inline bool fuzz_reader(const std::string& reader, std::string_view input, FuzzFolder& folder) {
+  const bool gaze = reader.starts_with("gaze-");
+  const std::string name = reader.substr(reader.find('-') + 1);
+  const std::string format = name == "any" ? "" : name;
+  const std::string path = folder.put(fuzz::first_name(reader), input);
+  try {
+    gaze ? fuzz::read_gaze(format, path, input.size()) : fuzz::read_camera(format, path, input.size());
+    return true;
+  } catch (const Error& error) {
+    const std::string_view message = error.what();
+    fuzz::require(!message.empty() && message.find('\n') == std::string_view::npos, "a refusal has one line");
+    return false;
+  }
+}
+
+}  // namespace gazetrace
