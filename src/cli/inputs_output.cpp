@@ -169,6 +169,7 @@ void check_settings(const JobSettings& job) {
     throw Error(ErrorKind::usage, job.gaze_max_age.ns < 0 ? "--gaze-max-age" : "--gaze-max-gap",
                 "an age cannot be negative");
   }
+  gaze_steps_of(job.gaze_process);  // names and values of the steps
   if (!(job.gaze_scale > 0)) {
     throw Error(ErrorKind::usage, "--gaze-scale", "the scale must be positive");
   }

@@ -118,6 +118,15 @@ TEST(GazeEvents, IvtMergesNeighboursAndDropsTheShort) {
   EXPECT_EQ(summary(detect_events(azimuths(b), settings)), "f0-41 ");
   settings.merge_angle_deg = 0.1;
   EXPECT_EQ(summary(detect_events(azimuths(b), settings)), "f0-18 s19-22 f23-41 ");
+  // Away and back within 120 ms: too long for a pause of one fixation.
+  settings.merge_angle_deg = 0.5;
+  std::vector<double> c;
+  append(c, 20, 0);
+  c.insert(c.end(), {2, 4, 6, 8, 10, 7, 5, 3, 1});
+  append(c, 20, 0.2);
+  EXPECT_EQ(summary(detect_events(azimuths(c), settings)), "f0-18 s19-29 f30-48 ");
+  settings.merge_gap_ns = 130'000'000;
+  EXPECT_EQ(summary(detect_events(azimuths(c), settings)), "f0-48 ");
 }
 
 TEST(GazeEvents, IdtIsTheDispersionOfTheWindow) {
