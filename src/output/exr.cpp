@@ -12,6 +12,7 @@
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
@@ -394,6 +395,21 @@ std::string read_exr_text(const std::string& path, const std::string& attribute)
   } catch (const std::exception&) {
     return {};
   }
+}
+
+std::optional<double> read_exr_number(const std::string& path, const std::string& attribute) {
+  try {
+    Imf::InputFile file(path.c_str(), 0);
+    if (const auto* number = file.header().findTypedAttribute<Imf::DoubleAttribute>(attribute)) {
+      return number->value();
+    }
+    if (const auto* fraction = file.header().findTypedAttribute<Imf::RationalAttribute>(attribute)) {
+      return static_cast<double>(fraction->value());
+    }
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace gazetrace

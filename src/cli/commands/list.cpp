@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/settings_options.hpp"
+#include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -82,6 +83,7 @@ std::vector<Family> families() {
        }},
       {"camera-formats", "--camera-format", [](const auto&) { return members_of(camera_formats()); }},
       {"material-extensions", "scene files", [](const auto&) { return members_of(material_extensions()); }},
+      {"metrics", "--metrics", [](const auto&) { return members_of(comparison_metrics()); }},
       {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},
       {"views", "--view", view_members},
       {"aovs", "--aov",

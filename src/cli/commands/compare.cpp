@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/compare_inputs.hpp"
+#include "cli/compare_report.hpp"
+#include "cli/exit_codes.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct CompareArguments {
+  CompareJob job;
+  OptionTable table;
+};
+
+struct Limit {
+  std::string metric;
+  double value = 0;
+  bool above = true;
+};
+
+Limit parse_limit(const std::string& text, bool above) {
+  const std::string place = above ? "--fail-above" : "--fail-below";
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw Error(ErrorKind::usage, place, "'" + text + "' is not METRIC=VALUE", "write flip=0.05");
+  }
+  Limit limit{text.substr(0, equals), 0, above};
+  parse_value(text.substr(equals + 1), place, limit.value);
+  for (const MetricInfo& info : comparison_metrics()) {
+    if (info.name == limit.metric && (info.better == MetricDirection::lower) != above) {
+      throw Error(ErrorKind::usage, place, fmt::format("{} {} is better", above ? "more" : "less", limit.metric),
+                  above ? "use --fail-below" : "use --fail-above");
+    }
+  }
+  return limit;
+}
+
+std::vector<Limit> limits_of(const CompareJob& job, const std::vector<std::string>& metrics) {
+  std::vector<Limit> limits;
+  for (const std::string& text : job.fail_above) {
+    limits.push_back(parse_limit(text, true));
+  }
+  for (const std::string& text : job.fail_below) {
+    limits.push_back(parse_limit(text, false));
+  }
+  for (const Limit& limit : limits) {
+    if (std::find(metrics.begin(), metrics.end(), limit.metric) == metrics.end()) {
+      throw Error(ErrorKind::usage, limit.above ? "--fail-above" : "--fail-below",
+                  "metric '" + limit.metric + "' is not among those compared", "add it to --metrics");
+    }
+  }
+  return limits;
+}
+
+// What needs neither gaze nor much time, and what is there for the asking: FovVideoVDP wants a screen, HDR-FLIP linear
+// light.
+std::vector<std::string> chosen_metrics(const CompareJob& job, const CompareInputs& inputs, bool is_linear) {
+  std::vector<std::string> metrics = job.metrics;
+  if (metrics.empty()) {
+    metrics = {"mse", "relmse", "psnr", "ssim", "flip"};
+    if (inputs.screen && (inputs.frames.size() == 1 || inputs.frames_per_second > 0)) {
+      metrics.emplace_back("fovvideovdp");
+    }
+  }
+  if (!is_linear && std::find(metrics.begin(), metrics.end(), "hdr_flip") != metrics.end()) {
+    throw Error(ErrorKind::usage, "--metrics", "hdr_flip needs scene-linear pictures (.exr)", "leave it out");
+  }
+  return metrics;
+}
+
+// FovVideoVDP looks back in time: its frames must follow each other.
+void check_consecutive(const CompareInputs& inputs, const std::vector<std::string>& metrics) {
+  if (std::find(metrics.begin(), metrics.end(), "fovvideovdp") == metrics.end() || inputs.frames.size() < 2) {
+    return;
+  }
+  if (inputs.frames.back() - inputs.frames.front() + 1 != static_cast<std::int32_t>(inputs.frames.size())) {
+    throw Error(ErrorKind::usage, "fovvideovdp", "sees time, but frames are missing between the first and the last",
+                "name consecutive frames with --frames, or leave the metric out");
+  }
+  if (inputs.frames_per_second == 0) {
+    throw Error(ErrorKind::usage, "fovvideovdp", "the pictures do not say their frame rate", "give --fps");
+  }
+}
+
+class PairReader {
+ public:
+  PairReader(const CompareJob& job, const CompareInputs& inputs)
+      : job_(job), inputs_(inputs), color_(color_settings(job, inputs)) {}
+
+  // Light and code values of both, the test through the reference's view and exposure.
+  FramePair read(std::int32_t frame) {
+    const std::string reference_path = path_of(job_.reference, frame);
+    const std::string test_path = path_of(job_.test, frame);
+    ComparedPicture reference = read_compared_picture(reference_path);
+    ComparedPicture test = read_compared_picture(test_path);
+    check_comparable(job_, inputs_, reference, test, reference_path, test_path);
+    is_linear_ = reference.is_linear;
+    const double ev = job_.exposure_ev.value_or(reference.facts.exposure_ev.value_or(0));
+    FramePair pair;
+    pair.frame = frame;
+    for (ComparedPicture* one : {&reference, &test}) {
+      MetricPicture& picture = one->picture;
+      if (one->is_linear) {
+        picture.code = viewed(picture.light, color_, ev, job_.settings.metric.threads);
+      } else {
+        picture.light = emitted(picture.code, job_.settings.metric.response, job_.settings.metric.threads);
+      }
+    }
+    const ComparedGaze gaze = compared_gaze(job_, inputs_, reference.facts, frame, reference.picture.code.width_px,
+                                            reference.picture.code.height_px);
+    pair.gaze_px = gaze.px;
+    pair.gaze_class = gaze.state;
+    pair.reference = std::move(reference.picture);
+    pair.test = std::move(test.picture);
+    return pair;
+  }
+  [[nodiscard]] bool is_linear() const { return is_linear_; }
+  [[nodiscard]] std::string view() const { return is_linear_ ? color_.description() : "display images as they are"; }
+
+ private:
+  static ColorSettings color_settings(const CompareJob& job, const CompareInputs& inputs) {
+    const ColorSettings& given = job.shared.color;
+    const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
+    return any || !inputs.reference_run ? given : inputs.reference_run->color;
+  }
+  static std::string path_of(const std::string& pattern, std::int32_t frame) {
+    return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
+  }
+  const CompareJob& job_;
+  const CompareInputs& inputs_;
+  ColorPipeline color_;
+  bool is_linear_ = false;
+};
+
+CompareConditions conditions_of(const CompareJob& job, const CompareInputs& inputs, const PairReader& reader,
+                                const ComparisonSettings& settings, int width, int height) {
+  CompareConditions conditions{{"reference", job.reference},
+                               {"test", job.test},
+                               {"size", fmt::format("{}x{}", width, height)},
+                               {"view", reader.view()},
+                               {"ppd", fmt::format("{:.4f}{}", settings.metric.pixels_per_degree,
+                                                   inputs.screen ? "" : " (FLIP's default: no screen is known)")}};
+  if (inputs.screen) {
+    const DisplayGeometry& g = *inputs.screen;
+    conditions.emplace_back("screen", fmt::format("{}x{} px, {:g}x{:g} cm at {:g} cm", g.width_px, g.height_px,
+                                                  g.width_cm, g.height_cm, g.distance_cm));
+  }
+  if (inputs.frames_per_second > 0) {
+    conditions.emplace_back("frame rate", fmt::format("{:g}", inputs.frames_per_second));
+  }
+  if (const auto& metrics = settings.metrics;
+      std::find(metrics.begin(), metrics.end(), "fovvideovdp") != metrics.end()) {
+    const DisplayPhotometry& p = settings.photometry;
+    conditions.emplace_back("fovvideovdp",
+                            fmt::format("{}; peak {:g} cd/m2, contrast {:g}, {:g} lux; blind to uniform "
+                                        "differences, not comparable between gaze positions",
+                                        kFovVideoVdpParameters, p.peak_cd_m2, p.contrast, p.ambient_lux));
+  }
+  return conditions;
+}
+
+void write_maps(const CompareJob& job, const FrameScores& frame) {
+  for (std::size_t m = 0; m < frame.maps.size(); ++m) {
+    if (frame.maps[m].empty()) {
+      continue;
+    }
+    const std::string pattern = job.maps + "/" + frame.scores[m].metric + ".####.png";
+    FrameHeader header;
+    header.frame = frame.frame;
+    write_display_image(frame_file_name(pattern, frame.frame), error_map_picture(frame.scores[m].metric, frame.maps[m]),
+                        header, {});
+  }
+}
+
+bool fails(const std::vector<Limit>& limits, const SequenceScores& all) {
+  bool failed = false;
+  for (const Limit& limit : limits) {
+    for (const Scores& scores : all.scores) {
+      const bool over = limit.above ? scores.value > limit.value : scores.value < limit.value;
+      if (scores.metric == limit.metric && over) {
+        print_warnings({fmt::format("{} is {:g}, {} {:g}", limit.metric, scores.value, limit.above ? "above" : "below",
+                                    limit.value)});
+        failed = true;
+      }
+    }
+  }
+  return failed;
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code problem;
+  if (!folder.empty() && !std::filesystem::is_directory(folder) &&
+      !std::filesystem::create_directories(folder, problem)) {
+    throw Error(ErrorKind::usage, "--maps", "cannot make the folder '" + folder + "': " + problem.message());
+  }
+}
+
+std::ofstream open_csv(const std::string& path) {
+  std::ofstream csv;
+  if (!path.empty()) {
+    csv.open(path, std::ios::binary);
+    if (!csv) {
+      throw Error(ErrorKind::usage, path, "cannot be written", "check the folder");
+    }
+    csv << compare_csv_header();
+  }
+  return csv;
+}
+
+int run_compare(const CompareJob& job) {
+  const CompareInputs inputs = load_compare_inputs(job);
+  PairReader reader(job, inputs);
+  FramePair pair = reader.read(inputs.frames.front());
+  const int width = pair.reference.code.width_px;
+  const int height = pair.reference.code.height_px;
+
+  ComparisonSettings settings = job.settings;
+  settings.metrics = chosen_metrics(job, inputs, reader.is_linear());
+  settings.view = compare_view(inputs, width, height);
+  settings.frames_per_second = inputs.frames_per_second;
+  settings.metric.threads = job.shared.threads;
+  settings.original_border = !job.correct_border;
+  settings.want_maps = !job.maps.empty();
+  if (inputs.screen) {
+    settings.metric.pixels_per_degree = 1 / (settings.view->step_x * kDegPerRad);
+  }
+  const std::vector<Limit> limits = limits_of(job, settings.metrics);
+  check_consecutive(inputs, settings.metrics);
+  if (std::find(settings.metrics.begin(), settings.metrics.end(), "hdr_flip") != settings.metrics.end()) {
+    // One set of exposures for the whole sequence, or its frames would not compare.
+    const FlipExposures exposures = flip_exposures(pair.reference.light, settings.metric.hdr_flip);
+    settings.metric.hdr_flip.start_ev = exposures.start_ev;
+    settings.metric.hdr_flip.stop_ev = exposures.stop_ev;
+    settings.metric.hdr_flip.count = exposures.count;
+  }
+  Comparison comparison(settings, width, height);
+  std::ofstream csv = open_csv(job.csv);
+  make_folder(job.maps);
+  std::vector<FrameScores> frames;
+  for (std::size_t i = 0; i < inputs.frames.size(); ++i) {
+    if (i > 0) {
+      pair = reader.read(inputs.frames[i]);
+    }
+    FrameScores scores = comparison.add(pair);
+    if (!job.maps.empty()) {
+      write_maps(job, scores);
+      scores.maps.clear();
+    }
+    if (csv.is_open()) {
+      csv << compare_csv_rows(scores) << std::flush;
+    }
+    if (!job.json.empty()) {
+      frames.push_back(std::move(scores));
+    }
+  }
+  if (csv.is_open() && !csv) {
+    throw Error(ErrorKind::runtime, job.csv, "could not be written completely");
+  }
+  const std::vector<SequenceScores> summary = comparison.summary();
+  const CompareConditions conditions = conditions_of(job, inputs, reader, settings, width, height);
+  if (!job.json.empty()) {
+    write_text_atomically(job.json, compare_json(conditions, summary, frames));
+  }
+  print_result(compare_text(conditions, summary));
+  return fails(limits, summary.front()) ? exit_over_threshold : exit_done;
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<CompareArguments>();
+  CompareJob& job = arguments->job;
+  OptionTable& table = arguments->table;
+  add_compare_options(table, job);
+  bind_options(app, table);
+  app.add_option("reference", job.reference, "Picture, or sequence as name.####.exr")->required()->type_name("PATTERN");
+  app.add_option("test", job.test, "What is measured against it")->required()->type_name("PATTERN");
+  app.footer(std::string(kConfigHelp) + kExitCodesHelp);
+  return {[arguments] { return run_compare(arguments->job); },
+          std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+}
+
+}  // namespace gazetrace

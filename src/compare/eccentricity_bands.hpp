@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which band of eccentricity a pixel lies in and how much of the visual cortex sees it, and sums over maps by both.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "gazetrace/compare.hpp"
+
+namespace gazetrace {
+
+struct BandSum {
+  double sum = 0;
+  double pixels = 0;
+};
+
+struct BandSums {
+  std::array<BandSum, kEccentricityBandsDeg.size()> bands;
+  double weighted_sum = 0, weight = 0;
+  void add(const BandSums& other);
+};
+
+struct EccentricityBands {
+  Image<std::uint8_t> band;
+  ImageGray weight;
+};
+
+EccentricityBands eccentricity_bands(const PlanarView& view, const Vec2d& gaze_px, int threads);
+BandSums sum_by_band(const EccentricityBands& bands, const ImageGray& map, int margin_px, int threads);
+
+}  // namespace gazetrace

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "core/image_io.hpp"
+#include "gazetrace/compare.hpp"
+#include "gazetrace/error.hpp"
+#include "metrics/code_values.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_exr(const std::string& path) {
+  std::string suffix = fs::path(path).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return suffix == ".exr";
+}
+
+// The number that makes `path` of the pattern: one of the runs of digits in its name.
+std::optional<std::int32_t> frame_of(const std::string& pattern, const std::string& path) {
+  const std::size_t name = path.find_last_of('/') == std::string::npos ? 0 : path.find_last_of('/') + 1;
+  for (std::size_t at = path.find_first_of("0123456789", name); at != std::string::npos;
+       at = path.find_first_of("0123456789", at)) {
+    const std::size_t end = std::min(path.find_first_not_of("0123456789", at), path.size());
+    std::int32_t frame = 0;
+    const auto [rest, problem] = std::from_chars(&path[at], path.data() + end, frame);
+    if (problem == std::errc() && rest == path.data() + end && frame_file_name(pattern, frame) == path) {
+      return frame;
+    }
+    at = end;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> find_frames(const std::string& pattern) {
+  if (!has_frame_number(pattern)) {
+    if (!fs::is_regular_file(pattern)) {
+      throw Error(ErrorKind::input, pattern, "there is no such picture",
+                  "name a picture, or a sequence as name.####.exr");
+    }
+    return {0};
+  }
+  const fs::path folder = fs::path(pattern).parent_path();
+  std::vector<std::int32_t> frames;
+  std::error_code problem;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, problem)) {
+    const std::string path = (folder / entry.path().filename()).string();
+    if (const auto frame = frame_of((folder / fs::path(pattern).filename()).string(), path)) {
+      frames.push_back(*frame);
+    }
+  }
+  if (frames.empty()) {
+    throw Error(ErrorKind::input, pattern, "there are no such pictures", "check the folder and the name");
+  }
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+ComparedPicture read_compared_picture(const std::string& path) {
+  ComparedPicture result;
+  result.is_linear = is_exr(path);
+  (result.is_linear ? result.picture.light : result.picture.code) =
+      result.is_linear ? read_exr_rgb(path) : read_image_rgb_float(path);
+  result.facts = read_frame_facts(path);
+  return result;
+}
+
+ImageRgb viewed(const ImageRgb& light, const ColorPipeline& color, double exposure_ev, int threads) {
+  const DisplayImage display = color.apply(light, exposure_ev, 8, threads);
+  ImageRgb code(light.width_px, light.height_px);
+  std::array<float, 256> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(i) / 255.0F;
+  }
+  for (std::size_t i = 0; i < code.pixels.size(); ++i) {
+    const std::uint8_t* bytes = &display.bytes[3 * i];
+    code.pixels[i] = {values[bytes[0]], values[bytes[1]], values[bytes[2]]};
+  }
+  return code;
+}
+
+ImageRgb emitted(const ImageRgb& code, DisplayResponse response, int threads) {
+  return light_of_code(code, response, threads);
+}
+
+}  // namespace gazetrace

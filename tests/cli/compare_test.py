@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`gazetrace compare` from outside: numbers worked out by hand, sequences of our own, and what is refused."""
+
+import csv
+import json
+import math
+import struct
+import zlib
+
+import harness
+
+
+def png(width, height, pixel):
+    """8-bit RGB; pixel(x, y) gives three code values."""
+    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in pixel(x, y)) for y in range(height))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def grey(value):
+    return lambda x, y: (value, value, value)
+
+
+class Compare(harness.CliTest):
+    def compare(self, *arguments):
+        self.run_ok("compare", *arguments, "--json", "out.json")
+        result = json.loads((self.folder / "out.json").read_text())
+        return {score["metric"]: score for score in result["sequence"][0]["scores"]}, result
+
+    def render(self, folder, *more):
+        self.write("gaze.csv", harness.moving_gaze())
+        self.run_ok("render", "box.gltf", "--gaze", "gaze.csv", "--size", "64x36", "--frames", "1-3", "--fps", "24",
+                    "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", "--quiet", *harness.SCREEN, *more)
+
+    def test_uniform_pictures_by_hand(self):
+        self.write("a.png", png(32, 32, grey(100)))
+        self.write("b.png", png(32, 32, grey(110)))
+        scores, _ = self.compare("a.png", "b.png", "--metrics", "psnr,mse,smape")
+        light = [((v / 255 + 0.055) / 1.055) ** 2.4 for v in (100, 110)]
+        self.assertAlmostEqual(scores["psnr"]["value"], -20 * math.log10(10 / 255), 5)
+        self.assertAlmostEqual(scores["mse"]["value"], (light[1] - light[0]) ** 2, 8)
+        self.assertAlmostEqual(scores["smape"]["value"], 2 * (light[1] - light[0]) / sum(light), 5)
+
+    def test_sequences_average_before_the_logarithm(self):
+        for frame, value in ((1, 100), (2, 100), (3, 100)):
+            self.write(f"a/p.{frame:04}.png", png(32, 32, grey(value)))
+            self.write(f"b/p.{frame:04}.png", png(32, 32, grey(value + 10 * frame)))
+        scores, result = self.compare("a/p.####.png", "b/p.####.png", "--metrics", "psnr")
+        mean = sum((10 * n / 255) ** 2 for n in (1, 2, 3)) / 3
+        self.assertAlmostEqual(scores["psnr"]["value"], -10 * math.log10(mean), 5)
+        self.assertEqual(scores["psnr"]["worst_frame"], 3)
+        self.assertEqual([frame["frame"] for frame in result["frames"]], [1, 2, 3])
+
+    def test_bands_are_in_degrees_around_the_gaze(self):
+        # A screen of 36 x 36 cm at 60 cm and 36 pixels: a pixel is 0.95 degrees. The error is within 2 pixels of the gaze.
+        self.write("a.png", png(36, 36, grey(100)))
+        self.write("b.png", png(36, 36, lambda x, y: grey(110 if abs(x - 8) <= 1 and abs(y - 17) <= 1 else 100)(x, y)))
+        screen = ["--screen-px", "36,36", "--screen-cm", "36,36", "--screen-distance-cm", "60"]
+        scores, _ = self.compare("a.png", "b.png", "--metrics", "mse", *screen, "--gaze-at", f"{8.5 / 36},{17.5 / 36}")
+        near = scores["mse"]["bands"]
+        self.assertGreater(near["0-2.6"], 0)
+        self.assertEqual(near["5.2-8.5"], 0)
+        self.assertEqual(near["17-30"], 0)
+        self.assertIsNone(near["60+"])
+        self.assertGreater(scores["mse"]["weighted"], scores["mse"]["value"])
+        scores, _ = self.compare("a.png", "b.png", "--metrics", "mse", *screen, "--gaze-at", f"{28.5 / 36},{17.5 / 36}")
+        self.assertEqual(scores["mse"]["bands"]["0-2.6"], 0)
+        self.assertGreater(scores["mse"]["bands"]["17-30"], 0)
+        self.assertLess(scores["mse"]["weighted"], scores["mse"]["value"])
+
+    def test_rendered_sequences(self):
+        self.render("ref", "--falloff", "uniform", "--spp", "16", "--seed", "1")
+        self.render("fov", "--seed", "2")
+        metrics = "mse,rmse,relmse,smape,psnr,ssim,flip,hdr_flip,fovvideovdp"
+        scores, result = self.compare("ref/p.####.exr", "fov/p.####.exr", "--metrics", metrics, "--csv", "out.csv",
+                                      "--maps", "maps")
+        self.assertEqual(list(scores), metrics.split(","))
+        self.assertAlmostEqual(scores["rmse"]["value"], math.sqrt(scores["mse"]["value"]), 9)
+        self.assertTrue(0 < scores["flip"]["value"] < 1)
+        self.assertLess(scores["fovvideovdp"]["value"], 10)
+        # Screen, gaze and frame rate came with the run.
+        self.assertIn("64x36 px", result["conditions"]["screen"])
+        self.assertEqual(result["conditions"]["frame rate"], "24")
+        self.assertEqual({frame["gaze"] for frame in result["frames"]}, {"measured"})
+        self.assertIsNotNone(scores["flip"]["bands"]["0-2.6"])
+        with open(self.folder / "out.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 3 * len(scores))
+        self.assertIn("maps/flip.0002.png", self.files())
+        # The same numbers for any number of threads; nothing against itself.
+        self.run_ok("compare", "ref/p.####.exr", "fov/p.####.exr", "--metrics", metrics, "--csv", "one.csv", "--threads", "1")
+        self.assertEqual((self.folder / "one.csv").read_bytes(), (self.folder / "out.csv").read_bytes())
+        scores, _ = self.compare("ref/p.####.exr", "ref/p.####.exr", "--metrics", "mse,flip,fovvideovdp")
+        self.assertEqual([scores[name]["value"] for name in ("mse", "flip", "fovvideovdp")], [0, 0, 10])
+        # Display images of the same runs give what the linear ones give through the view.
+        from_exr, _ = self.compare("ref/p.####.exr", "fov/p.####.exr", "--metrics", "flip")
+        from_png, _ = self.compare("ref/p.####.png", "fov/p.####.png", "--metrics", "flip")
+        self.assertAlmostEqual(from_exr["flip"]["value"], from_png["flip"]["value"], 3)
+
+    def test_exit_code_over_a_limit(self):
+        self.write("a.png", png(32, 32, grey(100)))
+        self.write("b.png", png(32, 32, grey(110)))
+        self.run_ok("compare", "a.png", "b.png", "--metrics", "flip,psnr", "--fail-above", "flip=0.9", "--fail-below", "psnr=20")
+        self.assertEqual(self.run_program("compare", "a.png", "b.png", "--metrics", "flip", "--fail-above", "flip=0.01").returncode, 1)
+        self.assertEqual(self.run_program("compare", "a.png", "b.png", "--metrics", "psnr", "--fail-below", "psnr=40").returncode, 1)
+        self.assert_refused(["compare", "a.png", "b.png", "--fail-above", "psnr=40"], ["--fail-below"])
+        self.assert_refused(["compare", "a.png", "b.png", "--fail-above", "flip"], ["METRIC=VALUE"])
+        self.assert_refused(["compare", "a.png", "b.png", "--fail-above", "smape=1"], ["--metrics"])
+
+    def test_what_is_refused(self):
+        self.write("a.png", png(32, 32, grey(100)))
+        self.write("b.png", png(32, 31, grey(110)))
+        self.assert_refused(["compare", "a.png", "b.png"], ["b.png", "32x31", "32x32"])
+        self.assert_refused(["compare", "a.png", "none.png"], ["none.png"])
+        self.assert_refused(["compare", "a.png", "none.####.png"], ["none.####.png"])
+        self.assert_refused(["compare", "a.png", "a.png", "--metrics", "fliip"], ["did you mean 'flip'"])
+        self.assert_refused(["compare", "a.png", "a.png", "--metrics", "hdr_flip"], [".exr"])
+        self.assert_refused(["compare", "a.png", "a.png", "--metrics", "fovvideovdp"], ["--screen"])
+        self.write("c.png", b"no picture")
+        self.assert_refused(["compare", "a.png", "c.png"], ["c.png"])
+        for frame in (1, 2):
+            self.write(f"s/p.{frame}.png", png(16, 16, grey(100)))
+        self.write("t/p.1.png", png(16, 16, grey(100)))
+        self.assert_refused(["compare", "s/p.#.png", "t/p.#.png"], ["1-2", "--anyway"])
+        self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--anyway")
+        self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--frames", "1")
+
+    def test_exposures_must_agree(self):
+        self.render("a", "--exposure", "0", "--spp", "1", "--falloff", "uniform")
+        self.render("b", "--exposure", "1", "--spp", "1", "--falloff", "uniform")
+        self.assert_refused(["compare", "a/p.####.png", "b/p.####.png"], ["stops", "--anyway"])
+        self.assert_refused(["compare", "a/p.####.exr", "b/p.####.exr"], ["stops"])
+        scores, _ = self.compare("a/p.####.exr", "b/p.####.exr", "--anyway", "--metrics", "flip")
+        self.assertEqual(scores["flip"]["value"], 0)
+        scores, _ = self.compare("a/p.####.png", "b/p.####.png", "--anyway", "--metrics", "flip")
+        self.assertGreater(scores["flip"]["value"], 0.01)
+
+
+if __name__ == "__main__":
+    harness.main()
