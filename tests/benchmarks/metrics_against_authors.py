@@ -11,6 +11,7 @@ side and not on theirs. Needs numpy and Pillow.
 
 import argparse
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -77,7 +78,7 @@ def write_pair(folder, random, width, height, kind):
 
 
 def screen_cm(width, height):
-    width_cm = 2 * DISTANCE_CM * np.tan(np.radians(FOV_DEG / 2))
+    width_cm = 2 * DISTANCE_CM * math.tan(math.radians(FOV_DEG / 2))
     return width_cm, width_cm * height / width
 
 
