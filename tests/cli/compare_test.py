@@ -85,7 +85,10 @@ class Compare(harness.CliTest):
         # Screen, gaze and frame rate came with the run.
         self.assertIn("64x36 px", result["conditions"]["screen"])
         self.assertEqual(result["conditions"]["frame rate"], "24")
-        self.assertEqual({frame["gaze"] for frame in result["frames"]}, {"measured"})
+        with open(self.folder / "ref/timing.csv", newline="") as file:
+            events = [row["gaze_event"] for row in csv.DictReader(file)]
+        self.assertNotIn("none", events)
+        self.assertEqual([frame["gaze"] for frame in result["frames"]], events)
         self.assertIsNotNone(scores["flip"]["bands"]["0-2.6"])
         with open(self.folder / "out.csv", newline="") as file:
             rows = list(csv.DictReader(file))
