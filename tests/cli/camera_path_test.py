@@ -27,13 +27,13 @@ class CameraPaths(harness.CliTest):
     def test_out_and_in_again(self):
         self.write("path.tum", PATH)
         first = self.cameras("--camera-path", "path.tum", "--fps", "24000/1001", "--yfov", "40")
-        self.assertEqual(len(first), 47)  # 2 s
+        self.assertEqual(len(first), 48)  # the middle of frame 48, 1.981 s, is still on the path of 2 s
         for name, flags in (("again.chan", []), ("again.tum", ["--camera-keep-time", "--yfov", "40"]),
                             ("xyz.chan", ["--camera-rotation-order", "xyz"])):
             order = flags if "--camera-rotation-order" in flags else []
             self.run_ok("plan", "--size", "64x36", "--camera-path", "path.tum", "--fps", "24000/1001", "--yfov", "40",
                         "--save-camera", name, *order)
-            again = self.cameras("--camera-path", name, "--fps", "24000/1001", "--frames", "1-47", *flags)
+            again = self.cameras("--camera-path", name, "--fps", "24000/1001", "--frames", "1-48", *flags)
             self.assert_same_cameras(first, again)
             self.assertAlmostEqual(again[0]["yfov_deg"], 40, places=12)
         self.assert_refused(["plan", "--size", "64x36", "--camera-path", "path.tum", "--save-camera", "x.fbx"],
@@ -59,7 +59,7 @@ class CameraPaths(harness.CliTest):
     def test_pixels_a_degree_are_enough(self):
         self.write("log.csv", "t[ms],x[px],y[px]\n0,960,540\n")
         arguments = ["--gaze", "log.csv", "--eye", "0,0,0", "--target", "0,0,-1", "--screen-px", "1920,1080"]
-        self.assert_refused(["plan", "--size", "64x36", *arguments], ["log.csv", "width in cm"])
+        self.assert_refused(["plan", "--size", "64x36", *arguments], ["display", "width in cm"])
         self.assertEqual(self.frames(*arguments, "--screen-ppd", "40")[0]["gaze_render"]["u"], 0.5)
 
 

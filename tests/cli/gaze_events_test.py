@@ -23,7 +23,9 @@ class GazeTools(harness.CliTest):
     def test_events_of_a_synthetic_log_are_its_truth(self):
         self.synth()
         with open(self.folder / "truth.tsv") as file:
-            truth = [row["movement"] for row in csv.DictReader(file, delimiter="\t")]
+            rows = list(csv.DictReader(file, delimiter="\t"))
+        # A movement that the log's end cuts after a sample or two is not there to be found.
+        truth = [row["movement"] for row in rows if row is not rows[-1] or float(row["duration_ms"]) >= 10]
         found = [row["movement"] for row in self.events("log.csv")]
         for movement in ("fixation", "saccade"):
             self.assertEqual(found.count(movement), truth.count(movement))
