@@ -7,7 +7,7 @@ source "$(dirname "$0")/find_gazetrace.sh"
 
 "$gazetrace" scene scenes/courtyard/courtyard.gltf
 echo
-"$gazetrace" gaze gazelogs/tx300_left.csv
+"$gazetrace" gaze inspect gazelogs/tx300_left.csv
 echo
 "$gazetrace" plan --config examples/example.toml --frames 21-30
 echo

@@ -46,6 +46,7 @@ struct Instance {
 // first and after the last key of the animation it holds.
 struct Motion {
   std::function<Affine(std::int64_t t_video_ns)> to_world_at;
+  std::int64_t end_ns = 0;  // of the last key: nothing moves afterwards
 };
 
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };

@@ -48,8 +48,19 @@ std::int64_t frames_until(double end_ns, const JobSettings& job) {
   return static_cast<std::int64_t>(std::max(std::floor(frames + 0.5), 1.0));
 }
 
+std::int64_t last_motion_ns(const Scene* scene) {
+  std::int64_t last = 0;
+  if (scene != nullptr) {
+    for (const Motion& motion : scene->motions) {
+      last = std::max(last, motion.end_ns);
+    }
+  }
+  return last;
+}
+
+// As long as the camera's path; without one, the gaze log; without one, the scene's bodies.
 std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
-                                        std::string& decision) {
+                                        const Scene* scene, std::string& decision) {
   if (job.frames) {
     decision = format_frame_list(job.frames->frames);
     return job.frames->frames;
@@ -65,6 +76,9 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
     const double span_ns = static_cast<double>(log->samples.back().t_ns) - static_cast<double>(begin_ns);
     count = frames_until(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns), job);
     reason = "as long as the gaze log";
+  } else if (const std::int64_t end_ns = last_motion_ns(scene); end_ns > 0) {
+    count = frames_until(static_cast<double>(end_ns), job);
+    reason = "as long as the scene's animation";
   }
   std::vector<std::int32_t> frames(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -303,7 +317,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     camera = choose_camera(job, inputs.scene.get(), log, decision);
   }
   inputs.decisions.emplace_back("camera", decision);
-  inputs.frames = choose_frames(job, camera, log, decision);
+  inputs.frames = choose_frames(job, camera, log, inputs.scene.get(), decision);
   inputs.decisions.emplace_back("frames", decision);
   if (log == nullptr) {
     inputs.decisions.emplace_back("sampling",

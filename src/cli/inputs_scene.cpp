@@ -163,8 +163,15 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
   return camera;
 }
 
+// Beyond these a float's squares end; no camera comes near.
+constexpr double kLeastFocus_m = 1e-6, kMostFocus_m = 1e9;
+constexpr double kMostRadius_m = 1e6;
+
 Lens chosen_lens(const JobSettings& job, const Projection& projection) {
   const Aperture& aperture = job.aperture;
+  if (job.sensor_height_mm != JobSettings{}.sensor_height_mm && !(aperture.f_number > 0)) {
+    throw Error(ErrorKind::usage, "--sensor-height", "only an f-number needs it", "give --aperture f/N as well");
+  }
   if (!(aperture.f_number > 0) && !(aperture.radius_m > 0)) {
     if (job.focus_distance_m) {
       throw Error(ErrorKind::usage, "--focus-distance", "a pinhole focuses nowhere", "give --aperture as well");
@@ -174,9 +181,10 @@ Lens chosen_lens(const JobSettings& job, const Projection& projection) {
   if (!job.focus_distance_m) {
     throw Error(ErrorKind::usage, "--aperture", "a lens needs a distance that is sharp", "give --focus-distance");
   }
-  if (!(*job.focus_distance_m > 0)) {
+  if (!(*job.focus_distance_m >= kLeastFocus_m && *job.focus_distance_m <= kMostFocus_m)) {
     throw Error(ErrorKind::usage, "--focus-distance",
-                fmt::format("{} is not in front of the lens", *job.focus_distance_m));
+                fmt::format("{:g} m is not within {:g} to {:g} m before the lens", *job.focus_distance_m, kLeastFocus_m,
+                            kMostFocus_m));
   }
   if (!(job.sensor_height_mm > 0)) {
     throw Error(ErrorKind::usage, "--sensor-height", fmt::format("{} mm is no height", job.sensor_height_mm));
@@ -188,6 +196,9 @@ Lens chosen_lens(const JobSettings& job, const Projection& projection) {
                   "give a radius in metres");
     }
     radius_m = lens_radius_m(aperture.f_number, job.sensor_height_mm, projection.yfov_rad);
+  }
+  if (!(radius_m <= kMostRadius_m)) {
+    throw Error(ErrorKind::usage, "--aperture", fmt::format("a lens of {:g} m radius is too large", radius_m));
   }
   return {radius_m, *job.focus_distance_m};
 }

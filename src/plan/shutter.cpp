@@ -29,6 +29,9 @@ Shutter parse_shutter(std::string_view text) {
     if (!open || !close) {
       bad_shutter(text, "is not two numbers");
     }
+    if (*open == *close) {
+      bad_shutter(text, "opens for no time");
+    }
     shutter = {*open, *close};
   } else {
     const bool angle = trimmed.ends_with("deg");

@@ -133,6 +133,16 @@ std::vector<int> chain_to(int node, const std::vector<int>& parents) {
   return chain;
 }
 
+std::int64_t last_key_ns(const std::vector<AnimatedNode>& nodes) {
+  std::int64_t last = 0;
+  for (const AnimatedNode& node : nodes) {
+    for (const auto* track : {&node.translation_track, &node.rotation_track, &node.scale_track}) {
+      last = *track ? std::max(last, (*track)->times_ns.back()) : last;
+    }
+  }
+  return last;
+}
+
 std::vector<AnimatedNode> animated_chain(const GltfDocument& document, const std::vector<int>& chain,
                                          const std::string& what, Warnings& warnings) {
   std::vector<AnimatedNode> nodes;

@@ -22,6 +22,9 @@ std::vector<int> chain_to(int node, const std::vector<int>& parents);
 std::vector<AnimatedNode> animated_chain(const GltfDocument& document, const std::vector<int>& chain,
                                          const std::string& what, Warnings& warnings);
 
+// Of all tracks; 0 where there is none.
+std::int64_t last_key_ns(const std::vector<AnimatedNode>& nodes);
+
 // By node: 1 where it or a parent has a channel of translation, rotation or scale.
 std::vector<char> moved_nodes(const GltfDocument& document, const std::vector<WorldNode>& nodes,
                               const std::vector<int>& parents);

@@ -138,7 +138,8 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
         // Whatever it is at rest: the tracer looks at where it is when.
         placed.instances.push_back({node.mesh, to_world, static_cast<std::int32_t>(placed.motions.size())});
         placed.motions.push_back(
-            {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; }});
+            {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; },
+             last_key_ns(*chain)});
       } else if (has_usable_inverse(to_world)) {
         placed.instances.push_back({node.mesh, to_world});
       } else if (left_out++ == 0) {

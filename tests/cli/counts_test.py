@@ -60,7 +60,7 @@ class Counts(harness.CliTest):
 
     def test_along_a_log(self):
         self.write("log.csv", harness.moving_gaze())
-        frames = self.counts("--gaze", "log.csv", "--frames", "1-3")
+        frames = self.counts("--gaze", "log.csv", "--frames", "1-3", "--gaze-transfer", "fraction")
         self.assertEqual([frame["frame"] for frame in frames], [1, 2, 3])
         self.assertEqual({sum(region["pixels"] for region in frame["regions"]) for frame in frames}, {3840 * 2160})
 

@@ -87,7 +87,7 @@ TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
 
 // Emission of 1e30 and 1e-30 (what loading lets through): the series holds to float's precision, and nothing overflows
 // or vanishes. It ends where radiance does: at 3.4e38 over the number of samples above, at 1.2e-38 (smaller floats are
-// flushed to zero) below; the sum of squares saturates from a radiance of 1.8e19 on and is zero below 1e-23.
+// flushed to zero) below; the sum of squares saturates from a radiance of 1.8e19 on and is zero below about 1e-19.
 TEST(TracerLight, ExtremeEmissionKeepsTheSeries) {
   for (const float emission : {1e30F, 1e-30F}) {
     Scene scene;
