@@ -105,7 +105,8 @@ struct Material {
   // emissiveFactor * KHR_materials_emissive_strength, radiance. From 1e-30 to 1e30 pictures hold to float's precision:
   // light weights come from ratios of densities, sums are double. It ends where a float does: at 1.2e-38 below (smaller
   // ones are flushed to zero), above where the sum over a pixel's samples passes 3.4e38 (non-finite samples are
-  // counted); the sum of squares behind the variance saturates from a radiance of 1.8e19 on and is zero below about 1e-19.
+  // counted); the sum of squares behind the variance saturates from a radiance of 1.8e19 on and is zero below about
+  // 1e-19.
   Vec3f emission{0, 0, 0};
   float normal_scale = 1.0F;
   AlphaMode alpha_mode = AlphaMode::opaque;  // loading turns mask and blend into opaque where nothing is transparent
