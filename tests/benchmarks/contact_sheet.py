@@ -38,7 +38,7 @@ def main():
             draw.text((x + 4, y + 2), scene.stem, fill="black")
             done = subprocess.run(
                 [arguments.program, "render", scene, "-o", picture, "--size", f"{WIDTH}x{HEIGHT}", "--spp", arguments.spp,
-                 "--bounces", "8", "--quiet", "--overwrite", *extra], stderr=subprocess.PIPE, text=True)
+                 "--frames", "1", "--bounces", "8", "--quiet", "--overwrite", *extra], stderr=subprocess.PIPE, text=True)
             if done.returncode == 0:
                 sheet.paste(Image.open(picture), (x, y + LABEL))
             else:

@@ -13,7 +13,8 @@ class SmallScenes(harness.CliTest):
         for scene in scenes:
             with self.subTest(scene=scene.name):
                 folder = scene.stem
-                result = self.run_program("render", scene, "-o", f"{folder}/f.exr", "--size", "64x36", "--spp", "4", "--quiet")
+                result = self.run_program("render", scene, "-o", f"{folder}/f.exr", "--frames", "1", "--size", "64x36",
+                                          "--spp", "4", "--quiet")
                 self.assertEqual(result.returncode, 0, result.stderr)
                 self.assertTrue((self.folder / folder / "f.exr").is_file())
                 summary = self.run_program("scene", scene)
