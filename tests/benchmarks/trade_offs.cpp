@@ -235,7 +235,7 @@ int run(int argc, char** argv) {
       ratios.push_back(with / measure(high, {}, options.view, seeds, options.spp).us_per_sample);
     }
     const double time = median(ratios);
-    const double noise = relative_mse(measured, measured.mean, 1) / relative_mse(plain, plain.mean, 1);
+    const double noise = relative_mse(measured, plain.mean, 1) / relative_mse(plain, plain.mean, 1);
     fmt::print("{:<32} {:6.3f} {:6.3f} {:6.3f} {}\n", row.name, time, noise, time * noise, bias_text(row, options));
     std::fflush(stdout);
   }

@@ -3,7 +3,7 @@
 # Fuzzes readers one after another, in slots, and says for each how long it ran and what came of it.
 # usage: tests/fuzz/run.sh SECONDS [READER...]      without readers: all of them
 #   GAZETRACE_FUZZ_PROGRAM   the program, default build/fuzz/tests/fuzz/gazetrace_fuzz_reader
-#   GAZETRACE_FUZZ_WORK      corpora, logs, findings and results.tsv, default build/fuzz/work; kept from run to run
+#   GAZETRACE_FUZZ_WORK      corpora, logs, findings and results.tsv, default build/fuzz/state; kept from run to run
 #   GAZETRACE_FUZZ_PREFIX    words before the program, such as "nice -n 19"
 # Build: cmake -S . -B build/fuzz -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DGAZETRACE_BUILD_FUZZERS=ON &&
 #        cmake --build build/fuzz --target gazetrace_fuzz_reader
@@ -13,7 +13,7 @@ cd "$(dirname "$0")/../.."
 seconds=${1:?$(sed -n '3,9s/^# \?//p' "$0")}
 shift
 program=${GAZETRACE_FUZZ_PROGRAM:-build/fuzz/tests/fuzz/gazetrace_fuzz_reader}
-work=${GAZETRACE_FUZZ_WORK:-build/fuzz/work}
+work=${GAZETRACE_FUZZ_WORK:-build/fuzz/state}
 read -ra prefix <<< "${GAZETRACE_FUZZ_PREFIX:-}"
 mkdir -p "$work/corpus" "$work/findings" "$work/log"
 

@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "gaze/inspect/inspect.hpp"
+#include "gaze/inspect/svg.hpp"
 
 namespace gazetrace {
 namespace {
@@ -32,39 +33,6 @@ class Svg {
  private:
   std::string text_;
 };
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return out;
-}
-
-// A linear map from values to the picture.
-struct Axis {
-  double low = 0, high = 1;   // values
-  double begin = 0, end = 1;  // picture
-  [[nodiscard]] double at(double value) const { return begin + (value - low) / (high - low) * (end - begin); }
-  // 1, 2 or 5 times a power of ten, for about `count` ticks.
-  [[nodiscard]] double tick(double count) const {
-    const double rough = std::abs(high - low) / count;
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    const double digit = rough / power;
-    return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
-  }
-};
-
-std::vector<double> ticks(const Axis& axis, double count) {
-  std::vector<double> values;
-  const double step = axis.tick(count);
-  const double low = std::min(axis.low, axis.high);
-  const double high = std::max(axis.low, axis.high);
-  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step && values.size() < 40; ++k) {
-    values.push_back(k == 0 ? 0 : k * step);
-  }
-  return values;
-}
 
 // What is drawn: two coordinates over seconds.
 struct Track {
@@ -288,23 +256,6 @@ double draw_events(Svg& svg, const GazeLog& log, const Axis& time, double top) {
     top += kStrip;
   }
   return top;
-}
-
-std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve(bytes.size() * 4 / 3 + 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t block = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      block = block << 8U | (k < count ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i + k])) : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? kDigits[block >> (18U - 6U * k) & 63U] : '=';
-    }
-  }
-  return text;
 }
 
 void draw_density(Svg& svg, const Track& track, const Axis& x, const Axis& y) {
