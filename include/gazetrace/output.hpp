@@ -64,6 +64,7 @@ struct FrameHeader {
   std::int64_t t_video_ns = 0;
   FrameRate fps;
   Camera camera;
+  std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: an instant
   GazeAtTime gaze_render, gaze_true;
   std::vector<std::string> gaze_processing;  // FramePlan::gaze_processing
   double exposure_ev = 0;

@@ -165,7 +165,8 @@ void add_foveation_options(OptionTable& table, JobSettings& job) {
 void add_trace_options(OptionTable& table, JobSettings& job) {
   table.group("Light transport");
   table.value("--bounces", job.trace.max_bounces, "N", "Scattering events on a path; 0 shows emission only", kPixels);
-  table.flag("--russian-roulette", job.trace.russian_roulette, "Ends dim paths early, without bias", kPixels);
+  table.flag("--russian-roulette", job.trace.russian_roulette,
+             "Ends dim paths early from the third bounce on, without bias", kPixels);
   table.value("--diffuse", job.trace.diffuse, choices<DiffuseModel>(), "Diffuse lobe", kPixels);
   table.value("--light-sampling", job.trace.light_sampling, choices<LightSampling>(),
               "Lights and surfaces together (mis), or one of them alone", kPixels);
@@ -175,8 +176,10 @@ void add_trace_options(OptionTable& table, JobSettings& job) {
               "Most that a sample may add after more than one scattering event: fewer fireflies, with bias; 0: off",
               kPixels);
   table.value("--pixel-filter", job.trace.filter, choices<PixelFilter>(), "Spread of the samples of a pixel", kPixels);
-  table.value("--pixel-cone", job.trace.pixel_cone, "PIXELS",
-              "Texture detail at first hits: width of a camera ray's footprint; 0 reads full resolution", kPixels);
+  table.value(
+      "--pixel-cone", job.trace.pixel_cone, "PIXELS",
+      "Texture detail at first hits: width of a camera ray's footprint; 0: full resolution, averaged by the samples",
+      kPixels);
   table.value("--bounce-cone", job.trace.bounce_cone_rad, "RADIANS",
               "Texture detail after bounces: how much a diffuse bounce widens the footprint; 0: not at all", kPixels);
   table.value("--seed", job.trace.seed, "N", "Same seed, same pictures, for any number of threads", kPixels);

@@ -231,8 +231,11 @@ std::string camera_text(const Camera& camera) {
   const std::string view = projection.kind == ProjectionKind::perspective
                                ? fmt::format("perspective yfov_rad={}", projection.yfov_rad)
                                : fmt::format("orthographic ymag_m={}", projection.ymag_m);
-  return fmt::format("position_m={},{},{} orientation_xyzw={},{},{},{} projection={} near_m={} far_m={}", p.x, p.y, p.z,
-                     q.x, q.y, q.z, q.w, view, projection.near_m, projection.far_m);
+  const std::string lens = camera.lens.radius_m > 0 ? fmt::format(" aperture_radius_m={} focus_distance_m={}",
+                                                                  camera.lens.radius_m, camera.lens.focus_distance_m)
+                                                    : "";
+  return fmt::format("position_m={},{},{} orientation_xyzw={},{},{},{} projection={} near_m={} far_m={}{}", p.x, p.y,
+                     p.z, q.x, q.y, q.z, q.w, view, projection.near_m, projection.far_m, lens);
 }
 
 std::string gaze_text(const GazeAtTime& gaze) {
@@ -263,6 +266,9 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   add_text(header, "seed", std::to_string(frame.seed));
   add_text(header, "settings_digest", frame.settings_digest);
   add_text(header, "camera", camera_text(frame.camera));
+  if (frame.shutter_close_ns > frame.shutter_open_ns) {
+    add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));
+  }
   add_text(header, "gaze_render", gaze_text(frame.gaze_render));
   add_text(header, "gaze_true", gaze_text(frame.gaze_true));
   if (!frame.gaze_processing.empty()) {

@@ -85,6 +85,8 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.t_video_ns = request.t_video_ns;
   header.fps = settings.fps;
   header.camera = request.camera;
+  header.shutter_open_ns = request.shutter_open_ns;
+  header.shutter_close_ns = request.shutter_close_ns;
   header.gaze_render = request.gaze_render;
   header.gaze_true = request.gaze_true;
   header.gaze_processing = plan.gaze_processing;

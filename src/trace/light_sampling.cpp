@@ -131,8 +131,8 @@ double area_of(const EmissiveTriangle& triangle) {
 LightSampler::LightSampler(const Scene& scene, LightChoice choice, EnvironmentDensity density)
     : environment_(scene.environment, density) {
   const double radius = scene_radius_m(scene);
-  std::vector<double> triangle_powers = collect_triangles(scene);
-  first_of_duplicates_ = first_of_duplicates(triangles_);
+  auto [triangle_powers, places] = collect_triangles(scene);
+  first_of_duplicates_ = first_of_duplicates(places);
   for (std::size_t i = 0; i < first_of_duplicates_.size(); ++i) {
     if (first_of_duplicates_[i] != i) {
       triangle_powers[i] = 0;
@@ -226,9 +226,9 @@ void LightSampler::build_tree(const std::vector<double>& triangle_powers) {
   tree_ = LightTree(all);
 }
 
-// Fills triangles_ and the maps into it; returns each one's power in watts, 0 for what is never chosen.
-std::vector<double> LightSampler::collect_triangles(const Scene& scene) {
-  std::vector<double> powers;
+// Fills triangles_ and the maps into it.
+LightSampler::Collected LightSampler::collect_triangles(const Scene& scene) {
+  Collected found;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
@@ -247,11 +247,11 @@ std::vector<double> LightSampler::collect_triangles(const Scene& scene) {
         const auto corner = [&](std::size_t k) {
           return transform_point(instance.to_world, to_double(geometry.positions[geometry.triangles[t][k]]));
         };
-        const Vec3d origin = corner(0);
+        const std::array<Vec3d, 3> corners{corner(0), corner(1), corner(2)};
         EmissiveTriangle triangle;
-        triangle.origin = to_float(origin);
-        triangle.edge1 = to_float(corner(1) - origin);
-        triangle.edge2 = to_float(corner(2) - origin);
+        triangle.origin = to_float(corners[0]);
+        triangle.edge1 = to_float(corners[1] - corners[0]);
+        triangle.edge2 = to_float(corners[2] - corners[0]);
         triangle.normal = to_float(normalize(cross(to_double(triangle.edge1), to_double(triangle.edge2))) * side);
         triangle.emission = material.emission;
         triangle.instance = static_cast<std::int32_t>(i);
@@ -263,11 +263,14 @@ std::vector<double> LightSampler::collect_triangles(const Scene& scene) {
         const double emitted = luminance(average_emission(scene, material, geometry, t));
         const double p = emitted * area * kPi * (material.double_sided ? 2 : 1);
         triangles_.push_back(triangle);
-        powers.push_back(area >= kSmallestArea && usable(p) ? p : 0.0);
+        found.powers.push_back(area >= kSmallestArea && usable(p) ? p : 0.0);
+        // Corners in the order that turns about the front.
+        found.places.push_back({side < 0 ? std::array{corners[0], corners[2], corners[1]} : corners, geometry.material,
+                                material.double_sided});
       }
     }
   }
-  return powers;
+  return found;
 }
 
 LightSample LightSampler::sample(const Vec3f& position, const Vec3f& normal, const Vec2f& u,

@@ -15,6 +15,7 @@
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
 #include "trace/alias_table.hpp"
+#include "trace/duplicate_emitters.hpp"
 #include "trace/environment_sampling.hpp"
 #include "trace/light_tree.hpp"
 
@@ -114,7 +115,11 @@ class LightSampler {
   [[nodiscard]] static float density(const EmissiveTriangle& triangle, float selection, float cos_at_light,
                                      float distance_squared) noexcept;
 
-  std::vector<double> collect_triangles(const Scene& scene);
+  struct Collected {
+    std::vector<double> powers;  // watts; 0 for what is never chosen
+    std::vector<EmitterPlace> places;
+  };
+  Collected collect_triangles(const Scene& scene);
   void build_tree(const std::vector<double>& triangle_powers);
 
   EnvironmentSampler environment_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every setting that trades accuracy for speed, on a scene under a sky: its cost and its error, in one table.
 //   gazetrace_trade_offs scene.gltf sky.hdr [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--seeds N] [--spp N]
-//       [--rounds N] [--only TEXT]
+//       [--rounds N] [--height PX] [--only TEXT]
 //   time    CPU time per sample by that of the default settings: median over rounds that alternate the two
-//   noise   mean relative squared error of a pixel at one sample, by that of the default settings
+//   noise   mean relative squared error of a pixel at one sample, by that of the default settings, with its standard
+//           error over four groups of seeds: a few fireflies decide it, so that it may be wide
+//   typical the median over the pixels of their variance by that of the default settings
 //   cost    time * noise: CPU time to a given noise
 //   mean    change of the frame's mean against the exact settings, with its standard error over the seeds
 //   pixel   root mean square over the pixels of the bias against the exact settings, relative to the pixel plus the
@@ -62,6 +64,9 @@ Options parse(int argc, char** argv) {
       options.view.target = parse_point(value);
     } else if (name == "--fov") {
       options.view.yfov_rad = std::strtod(value, nullptr) * kRadPerDeg;
+    } else if (name == "--height") {
+      options.view.height_px = static_cast<int>(std::strtol(value, nullptr, 10));
+      options.view.width_px = options.view.height_px * 16 / 9;
     } else if (name == "--seeds") {
       options.seeds = static_cast<int>(std::strtol(value, nullptr, 10));
     } else if (name == "--spp") {
@@ -77,7 +82,7 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-std::vector<Row> make_rows(const PathTracer& high, const PathTracer& medium) {
+std::vector<Row> make_rows(const PathTracer& high, const PathTracer& medium, double frame_mean) {
   std::vector<Row> rows;
   TraceSettings exact;
   exact.pixel_cone = 0;
@@ -111,8 +116,9 @@ std::vector<Row> make_rows(const PathTracer& high, const PathTracer& medium) {
       reference.bounce_cone_rad = 0;
     });
   }
-  for (const double limit : {30.0, 10.0, 3.0, 1.0}) {
-    add(fmt::format("--clamp-indirect {}", limit), true,
+  for (const double means : {100.0, 10.0, 3.0, 1.0}) {
+    const double limit = means * frame_mean;
+    add(fmt::format("--clamp-indirect {:.3g} ({} means)", limit, means), true,
         [&](auto& settings, auto&) { settings.clamp_indirect = limit; });
   }
   add("--compensate-environment", false, [](auto& settings, auto&) { settings.compensate_environment = true; });
@@ -131,6 +137,40 @@ std::vector<Row> make_rows(const PathTracer& high, const PathTracer& medium) {
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
+}
+
+struct Ratio {
+  double value = 0, error = 0;
+};
+
+// Of two estimators' noise: each group of seeds gives one ratio, measured with the same random numbers for both.
+Ratio noise_ratio(const Row& row, const PathTracer& plain, const std::vector<double>& truth, const Options& options) {
+  constexpr int kGroups = 4;
+  const int seeds = std::max(2, options.seeds / kGroups);
+  std::vector<double> ours;
+  std::vector<double> theirs;
+  for (int group = 0; group < kGroups; ++group) {
+    const int first = 1 + group * seeds;
+    ours.push_back(relative_mse(measure(*row.tracer, row.settings, options.view, seeds, options.spp, first), truth, 1));
+    theirs.push_back(relative_mse(measure(plain, {}, options.view, seeds, options.spp, first), truth, 1));
+  }
+  const double ratio = average(ours) / average(theirs);
+  double spread = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    const double off = (ours[i] - ratio * theirs[i]) / average(theirs);
+    spread += off * off;
+  }
+  return {ratio, std::sqrt(spread / (kGroups - 1) / kGroups)};
+}
+
+double typical_ratio(const PixelStatistics& ours, const PixelStatistics& theirs) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < ours.variance.size(); ++i) {
+    if (theirs.variance[i] > 0) {
+      ratios.push_back(ours.variance[i] / theirs.variance[i]);
+    }
+  }
+  return ratios.empty() ? 0 : median(std::move(ratios));
 }
 
 struct Bias {
@@ -202,7 +242,7 @@ void print_half(const PixelStatistics& plain) {
   }
   fmt::print(
       "half instead of float pixels: {:.3f} % root mean square of the relative rounding, {} bytes a pixel less\n",
-      100 * std::sqrt(sum / static_cast<double>(plain.mean.size())), 6);
+      100 * std::sqrt(sum / static_cast<double>(plain.mean.size())), 3 * (sizeof(float) - sizeof(std::uint16_t)));
 }
 
 int run(int argc, char** argv) {
@@ -215,15 +255,16 @@ int run(int argc, char** argv) {
   one_thread.bvh_quality = BvhQuality::medium;
   const PathTracer medium(scene, one_thread);
   const PixelStatistics plain = measure(high, {}, options.view, options.seeds, options.spp);
-  fmt::print("{}, {} x {}, {} seeds of {} spp; default {:.3f} us/sample, relative MSE at 1 spp {:.3f}\n", scene.source,
-             options.view.width_px, options.view.height_px, options.seeds, options.spp, plain.us_per_sample,
-             relative_mse(plain, plain.mean, 1));
+  fmt::print("{}, {} x {}, {} seeds of {} spp; default {:.3f} us/sample, mean {:.4g}, relative MSE at 1 spp {:.3f}\n",
+             scene.source, options.view.width_px, options.view.height_px, options.seeds, options.spp,
+             plain.us_per_sample, average(plain.mean), relative_mse(plain, plain.mean, 1));
   fmt::print("tree: high {:.2f} s, {:.1f} MiB; medium {:.2f} s, {:.1f} MiB\n", high.memory().build_s,
              static_cast<double>(high.memory().bvh_bytes) * 0x1p-20, medium.memory().build_s,
              static_cast<double>(medium.memory().bvh_bytes) * 0x1p-20);
   print_half(plain);
-  fmt::print("{:<32} {:>6} {:>6} {:>6} {:>22} {:>9}\n", "setting", "time", "noise", "cost", "mean", "pixel");
-  for (const Row& row : make_rows(high, medium)) {
+  fmt::print("{:<32} {:>6} {:>16} {:>7} {:>6} {:>22} {:>9}\n", "setting", "time", "noise", "typical", "cost", "mean",
+             "pixel");
+  for (const Row& row : make_rows(high, medium, average(plain.mean))) {
     if (row.name.find(options.only) == std::string::npos) {
       continue;
     }
@@ -235,8 +276,9 @@ int run(int argc, char** argv) {
       ratios.push_back(with / measure(high, {}, options.view, seeds, options.spp).us_per_sample);
     }
     const double time = median(ratios);
-    const double noise = relative_mse(measured, plain.mean, 1) / relative_mse(plain, plain.mean, 1);
-    fmt::print("{:<32} {:6.3f} {:6.3f} {:6.3f} {}\n", row.name, time, noise, time * noise, bias_text(row, options));
+    const Ratio noise = noise_ratio(row, high, plain.mean, options);
+    fmt::print("{:<32} {:6.3f} {:7.3f} +- {:5.3f} {:7.3f} {:6.3f} {}\n", row.name, time, noise.value, noise.error,
+               typical_ratio(measured, plain), time * noise.value, bias_text(row, options));
     std::fflush(stdout);
   }
   return 0;

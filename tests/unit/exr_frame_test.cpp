@@ -158,8 +158,23 @@ TEST(ExrFrame, TheHeaderSaysHowItWasMade) {
   EXPECT_THAT(text.at("gazetrace:gaze_render"), testing::HasSubstr("state=held u=0.25"));
   EXPECT_THAT(text.at("gazetrace:gaze_true"), testing::HasSubstr("state=measured u=0.5 v=0.75"));
   EXPECT_THAT(text.at("gazetrace:camera"), testing::HasSubstr("position_m=1,2,3"));
+  EXPECT_THAT(text.at("gazetrace:camera"), testing::Not(testing::HasSubstr("aperture")));
+  EXPECT_EQ(text.count("gazetrace:shutter_ns"), 0U);
   EXPECT_EQ(text.count("capDate"), 0U);
   EXPECT_EQ(read_settings_digest(path), "0123456789abcdef0123456789abcdef");
+}
+
+TEST(ExrFrame, TheHeaderTellsOfLensAndShutter) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "lens.exr";
+  FrameHeader header = example_header();
+  header.camera.lens = {0.025, 4.5};
+  header.shutter_open_ns = -7;
+  header.shutter_close_ns = 9'007'199'254'740'993;
+  write_frame_exr(path, example_frame(4, 2), nullptr, header, settings(ExrPixels::half, "zip"));
+  const auto text = exr_attributes(path);
+  EXPECT_THAT(text.at("gazetrace:camera"), testing::HasSubstr("aperture_radius_m=0.025 focus_distance_m=4.5"));
+  EXPECT_EQ(text.at("gazetrace:shutter_ns"), "-7,9007199254740993");
 }
 
 TEST(ExrFrame, MatricesTakeTheWorldToTheScreen) {

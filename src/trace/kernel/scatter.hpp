@@ -210,8 +210,8 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   const std::size_t k = chunk.path[i];
   const std::size_t slot = paths.slot[k];
   Vec3f weight = Vec3f{paths.r[k], paths.g[k], paths.b[k]} * chunk.next_weight.get(i);
-  if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 0) {
-    const float survive = std::min(std::max(std::max(weight.x, weight.y), weight.z), 0.95F);
+  if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 1) {
+    const float survive = std::min(std::sqrt(std::max(std::max(weight.x, weight.y), weight.z)), 0.95F);
     if (!(sample_1d(work_.samples.key[slot], work_.samples.sample[slot],
                     dimension_of(vertex, BounceDimension::roulette)) < survive)) {
       return;
