@@ -3,10 +3,12 @@
 // tracer chooses and, of the same scene, with everything compiled in. Rounds of both alternate; medians are printed.
 //   gazetrace_feature_removal Sponza.gltf sky.hdr [--rounds N] [--spp N]
 // The scene gets what it lacks first: a clearcoat on every second material, vertex colours, a shining triangle, a
-// second copy far away, so that its mesh is instanced.
+// second copy far away, so that its mesh is instanced, and turns meanwhile; the camera a lens, an open shutter and a
+// slide. Lens, shutter and movement are no part of a kernel: what they cost when off shows beside the row above.
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <functional>
@@ -25,6 +27,23 @@ namespace {
 using namespace gazetrace;
 using namespace gazetrace::benchmark;
 
+struct Step {
+  std::string name;
+  std::function<void(Scene&, View&)> apply;
+};
+
+// The far copy, about a vertical axis through its middle: one turn in ten seconds.
+Motion turning(const Affine& place) {
+  Motion motion;
+  motion.end_ns = 10'000'000'000;
+  motion.to_world_at = [place](std::int64_t t_ns) {
+    const double half_turn_rad = kPi * static_cast<double>(t_ns) * 1e-10;
+    const Quatd turn{0, std::sin(half_turn_rad), 0, std::cos(half_turn_rad)};
+    return place * make_affine({}, turn, {1, 1, 1});
+  };
+  return motion;
+}
+
 void add_everything(Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); i += 2) {
     scene.materials[i].clearcoat.factor = 0.5F;
@@ -37,6 +56,8 @@ void add_everything(Scene& scene) {
   }
   Instance far = scene.instances.front();
   far.to_world.t.x += 1e4;
+  far.motion = static_cast<std::int32_t>(scene.motions.size());
+  scene.motions.push_back(turning(far.to_world));
   scene.instances.push_back(far);
 
   Material glow;
@@ -53,20 +74,18 @@ void add_everything(Scene& scene) {
   scene.instances.push_back({static_cast<std::int32_t>(scene.meshes.size()) - 1, {}});
 }
 
-struct Step {
-  std::string name;
-  std::function<void(Scene&)> apply;
-};
-
 std::vector<Step> removals() {
   const auto of_each_material = [](void (*change)(Material&)) {
-    return [change](Scene& scene) { std::for_each(scene.materials.begin(), scene.materials.end(), change); };
+    return [change](Scene& scene, View&) { std::for_each(scene.materials.begin(), scene.materials.end(), change); };
   };
   return {
-      {"everything", [](Scene&) {}},
+      {"everything", [](Scene&, View&) {}},
+      {"no lens", [](Scene&, View& view) { view.lens = {}; }},
+      {"a closed shutter", [](Scene&, View& view) { view.slide_m = {}; }},
+      {"nothing moves", [](Scene& scene, View&) { scene.instances[scene.instances.size() - 2].motion = -1; }},
       {"no clearcoat", of_each_material([](Material& m) { m.clearcoat.factor = 0; })},
       {"no vertex colours",
-       [](Scene& scene) {
+       [](Scene& scene, View&) {
          for (Mesh& mesh : scene.meshes) {
            for (Geometry& geometry : mesh.geometries) {
              geometry.colors.clear();
@@ -74,11 +93,11 @@ std::vector<Step> removals() {
          }
        }},
       {"no shining triangle",
-       [](Scene& scene) {
+       [](Scene& scene, View&) {
          scene.instances.pop_back();
          scene.meshes.pop_back();
        }},
-      {"no instances", [](Scene& scene) { scene.instances.pop_back(); }},
+      {"no instances", [](Scene& scene, View&) { scene.instances.pop_back(); }},
       {"no alpha mask", of_each_material([](Material& m) { m.alpha_mode = AlphaMode::opaque; })},
       {"no normal maps", of_each_material([](Material& m) { m.normal_texture = {}; })},
       {"no textures", of_each_material([](Material& m) {
@@ -87,7 +106,7 @@ std::vector<Step> removals() {
          m.metallic = 0;
        })},
       {"a sun for the sky",
-       [](Scene& scene) {
+       [](Scene& scene, View&) {
          scene.environment = {};
          PunctualLight sun;
          sun.kind = LightKind::directional;
@@ -122,19 +141,27 @@ int run(int argc, char** argv) {
   Scene scene = load_scene(path);
   scene.environment = sky.empty() ? builtin_sky() : load_environment(sky);
   add_everything(scene);
-  View view{{8, 2, -0.3}, {-8, 3, -0.3}};
+  View view;
+  view.eye = {8, 2, -0.3};
+  view.target = {-8, 3, -0.3};
   view.width_px = 480;
   view.height_px = 270;
+  view.lens = {0.02, 6};
+  view.slide_m = {0.1, 0, 0};
   fmt::print("{}, {} x {}, {} spp, one thread, {} rounds\n", path, view.width_px, view.height_px, spp, rounds);
   fmt::print("{:<22} {:<22} {:>12} {:>16} {:>7}\n", "scene", "kernel", "us/sample", "everything in", "ratio");
   for (const Step& step : removals()) {
-    step.apply(scene);
+    step.apply(scene, view);
     TracerOptions options;
     options.threads = 1;
     const RenderScene render_scene(scene, options);
-    const PathTracer chosen(scene, options);
+    PathTracer chosen(scene, options);
     options.all_features = true;
-    const PathTracer all(scene, options);
+    PathTracer all(scene, options);
+    // The far copy turns while the shutter is open.
+    const ShutterTimes times{0, length(view.slide_m) > 0 ? 20'000'000 : 0};
+    chosen.move_to(times);
+    all.move_to(times);
     std::vector<double> small;
     std::vector<double> large;
     std::vector<double> ratio;

@@ -18,6 +18,8 @@ struct View {
   Vec3d eye, target;
   double yfov_rad = 50 * kRadPerDeg;
   int width_px = 160, height_px = 90;
+  Lens lens{};
+  Vec3d slide_m{};  // of the camera while the shutter is open
 };
 
 struct PixelStatistics {
@@ -40,6 +42,11 @@ inline PixelStatistics measure(const PathTracer& tracer, TraceSettings settings,
   Camera camera;
   camera.pose = look_at(view.eye, view.target, {0, 1, 0});
   camera.projection.yfov_rad = view.yfov_rad;
+  camera.lens = view.lens;
+  if (length(view.slide_m) > 0) {
+    camera.shutter_poses = {camera.pose, camera.pose};
+    camera.shutter_poses.back().position_m = view.eye + view.slide_m;
+  }
   const SamplingMap map =
       make_sampling_map(uniform, view_of_perspective(view.yfov_rad, view.width_px, view.height_px), {});
   PixelStatistics result;
