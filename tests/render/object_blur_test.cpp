@@ -188,6 +188,23 @@ TEST(ObjectBlur, NormalsTurnWithTheirBody) {
   }
 }
 
+// A mirroring matrix turns the winding round, not the front: a lamp that shines forwards does so while it slides, too.
+TEST(ObjectBlur, MirroredBodiesKeepTheirFront) {
+  for (const double mirror : {1.0, -1.0}) {
+    Scene scene;
+    scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
+    add_mesh(scene, {quad({{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}}, 0)});
+    scene.instances[0].motion = add_motion(scene, [=](std::int64_t t) {
+      return make_affine({1e-9 * static_cast<double>(t), 0, 0}, {}, {mirror, 1, 1});
+    });
+    PathTracer tracer(scene, threads(1));
+    tracer.move_to({0, kSecond});
+    const SamplingMap map = uniform_map(8, 8, 4);
+    EXPECT_EQ(mean_radiance(tracer.trace(camera_at({0, 0, 5}, {}), 1, map, emission_only())).y, 1) << mirror;
+    EXPECT_EQ(mean_radiance(tracer.trace(camera_at({0, 0, -5}, {}), 1, map, emission_only())).y, 0) << mirror;
+  }
+}
+
 TEST(ObjectBlur, ShadowsMoveToo) {
   // A plate slides in front of the sun: half of the time the floor is in its shadow.
   Scene scene;

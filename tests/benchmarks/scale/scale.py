@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time and memory as a scene, a picture and its sampling grow. Needs numpy; run by hand (10^8 triangles: minutes, 20 GB).
 
-  scale.py GAZETRACE --out FOLDER [--curves triangles,instances,lights,width,spp] [--most 8] [--threads 2]
+  scale.py GAZETRACE --out FOLDER [--curves triangles,instances,lights,width,spp] [--most 8] [--threads 0]
 
 Each curve renders generated scenes (generate.py) and prints a row a step:
 
@@ -57,7 +57,7 @@ class Program:
             sys.exit(f"{' '.join(words)}\n{done.stderr}")
         with open(next(self.folder.glob("timing*.csv")), newline="") as file:
             row = next(csv.DictReader(file))
-        return {k: float(v) for k, v in row.items() if k != "gaze_state"}, picture
+        return {k: float(v) for k, v in row.items() if not k.startswith("gaze_")}, picture
 
 
 def sample_us(row):
@@ -90,7 +90,7 @@ def lights(program, _most):
 def width(program, _most):
     path = generate.unique(program.folder / "scene.gltf", 10**5)
     for n in (1, 4, 16, 64, 256, 1024, 2048, 4096, 8192, 16384):
-        row, _ = program.render(path, f"{n}x{max(1, n * 9 // 16)}", 4 if n > 64 else 64, "--env", "sky", "--exr-pixels",
+        row, _ = program.render(path, f"{n}x{max(1, n * 9 // 16)}", 1 if n > 2048 else 4 if n > 64 else 64, "--env", "sky", "--exr-pixels",
                                 "half")
         megapixels = row["pixels"] / 1e6
         yield {"n": n, "us_a_sample": sample_us(row), "reconstruct_ms_a_mpx": row["reconstruct_ms"] / megapixels,
