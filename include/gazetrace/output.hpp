@@ -87,7 +87,7 @@ std::string read_settings_digest(const std::string& path);
 
 struct TimingRow {
   std::int32_t frame = 0;
-  double plan_ms = 0, trace_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0, color_ms = 0, write_ms = 0,
+  double plan_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0, color_ms = 0, write_ms = 0,
          total_ms = 0;
   double trace_cpu_ms = 0;
   std::uint64_t pixels = 0, samples = 0;

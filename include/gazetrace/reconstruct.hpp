@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/guides.hpp"
 #include "gazetrace/image.hpp"
 #include "gazetrace/trace.hpp"
 
@@ -23,10 +24,15 @@ struct Frame {
 struct FilterInfo {
   std::string name;  // "none": constant over a site's pixels. "linear": bilinear between sites' centroids
   std::string description;
+  bool needs_guides = false;  // and samples traced with TraceSettings::surfaces
 };
 std::vector<FilterInfo> reconstruction_filters();
+bool filter_needs_guides(const std::string& filter);  // false for unknown names
 
 // A site without samples takes its value from its neighbours; pixels of a 1x1 site pass through bit-equal.
-Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads = 0);
+// "guided" changes the sites that NeedsFiltering names and no others. `guides`: of the map's size; nullptr unless the
+// filter needs them. Error(usage) for an unknown name, Error(runtime) for inputs that do not belong together.
+Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads = 0,
+                  const Guides* guides = nullptr);
 
 }  // namespace gazetrace

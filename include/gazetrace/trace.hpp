@@ -10,6 +10,7 @@
 
 #include "gazetrace/camera.hpp"
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/guides.hpp"
 #include "gazetrace/image.hpp"
 #include "gazetrace/material.hpp"
 #include "gazetrace/scene.hpp"
@@ -41,6 +42,7 @@ struct TraceSettings {
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
   bool guides = false;                   // collect albedo, normal and depth of the first hit
+  bool surfaces = false;                 // sums per surface, for sites that NeedsFiltering names
   std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
 };
 
@@ -62,6 +64,19 @@ struct GuideSums {
   float depth_m = 0;  // distance along the view axis; a miss adds nothing
   std::uint32_t hits = 0;
 };
+
+// What a site's samples found on one surface: first hits of one kind, facing one way, about in one plane. A site's
+// samples fall on at most kMostSurfaces; what is left joins the one it is nearest to.
+struct SurfaceSums {
+  Vec3f reflected;   // radiance but what the first hit itself shines, sum
+  Vec3f albedo;      // as Guides::albedo, sum
+  Vec3f normal;      // shading normals, sum
+  Vec3f place_m;     // relative to the eye, world axes, sum
+  float square = 0;  // of luminance of `reflected` over that of `albedo`, sum over samples
+  std::uint32_t count = 0;
+  SurfaceKind kind = SurfaceKind::diffuse;
+};
+inline constexpr std::size_t kMostSurfaces = 3;
 
 struct BadSample {
   std::int32_t frame = 0;
@@ -92,7 +107,24 @@ struct SparseFrame {
   std::vector<float> sum_square_luminance;  // of samples' luminance (Rec.709), for variance; at most float's largest
   std::vector<std::uint32_t> count;
   std::vector<GuideSums> guides;  // empty unless TraceSettings::guides
+  // Those of site i are surfaces[first_surface[i]] up to, not including, first_surface[i + 1]; samples that miss are on
+  // none. Both empty unless TraceSettings::surfaces.
+  std::vector<SurfaceSums> surfaces;
+  std::vector<std::uint32_t> first_surface;
   TraceStats stats;
+};
+
+// Whether a guided filter changes a site. Sites of several pixels are, and single pixels with few samples: less than
+// 16, or less than any other single pixel has in a map that has coarser sites too. All others keep their own mean.
+class NeedsFiltering {
+ public:
+  explicit NeedsFiltering(const SamplingMap& map);
+  [[nodiscard]] bool operator()(const SamplingMap& map, const Site& site) const {
+    return map.regions[site.region].block_px > 1 || site.samples < full_samples_;
+  }
+
+ private:
+  std::uint32_t full_samples_ = 16;
 };
 
 // When the shutter opens and closes, video time; equal: an instant.
@@ -123,6 +155,9 @@ class PathTracer {
   // A pure function of its arguments and the last move_to: same bits for any thread count. `frame` seeds the samples.
   [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                                   const TraceSettings& settings) const;
+
+  // First hits of every pixel, for filters and reprojection. A pure function of its arguments and the last move_to.
+  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
 
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.

@@ -16,8 +16,9 @@ struct Stage {
   const char* name;
   double TimingRow::*ms;
 };
-constexpr std::array<Stage, 8> kStages{{{"plan", &TimingRow::plan_ms},
+constexpr std::array<Stage, 9> kStages{{{"plan", &TimingRow::plan_ms},
                                         {"trace", &TimingRow::trace_ms},
+                                        {"guides", &TimingRow::guides_ms},
                                         {"reconstruct", &TimingRow::reconstruct_ms},
                                         {"temporal", &TimingRow::temporal_ms},
                                         {"exposure", &TimingRow::exposure_ms},

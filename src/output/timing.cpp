@@ -20,6 +20,7 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("frame", row.frame);
   visit("plan_ms", row.plan_ms);
   visit("trace_ms", row.trace_ms);
+  visit("guides_ms", row.guides_ms);
   visit("reconstruct_ms", row.reconstruct_ms);
   visit("temporal_ms", row.temporal_ms);
   visit("exposure_ms", row.exposure_ms);

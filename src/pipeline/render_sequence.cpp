@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// map -> trace -> reconstruct -> accumulate -> exposure -> colour -> files, frame by frame. Only the history and the
-// timing log outlive a frame.
+// map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure -> colour -> files,
+// frame by frame. Only the history and the timing log outlive a frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,12 +60,21 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
     return make_sampling_map(widened(settings.foveation, request.gaze_uncertainty_deg), request.view,
                              request.gaze_direction_render);
   });
+  TraceSettings trace = settings.trace;
+  trace.surfaces = filter_needs_guides(settings.filter);
   const SparseFrame sparse = timed(row.trace_ms, [&] {
     tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
-    return tracer.trace(request.camera, request.frame, rendered.map, settings.trace);
+    return tracer.trace(request.camera, request.frame, rendered.map, trace);
   });
-  Frame dense =
-      timed(row.reconstruct_ms, [&] { return reconstruct(sparse, rendered.map, settings.filter, settings.threads); });
+  std::optional<Guides> guides;
+  if (trace.surfaces) {
+    guides = timed(row.guides_ms, [&] {
+      return tracer.guides(request.camera, request.width_px, request.height_px, {.diffuse = trace.diffuse});
+    });
+  }
+  Frame dense = timed(row.reconstruct_ms, [&] {
+    return reconstruct(sparse, rendered.map, settings.filter, settings.threads, guides ? &*guides : nullptr);
+  });
   rendered.frame = timed(row.temporal_ms, [&] {
     return accumulate(std::move(dense), request, settings.accumulate, history, settings.threads);
   });

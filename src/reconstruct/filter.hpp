@@ -10,8 +10,16 @@
 
 namespace gazetrace {
 
+struct FilterInput {
+  const SparseFrame& sparse;
+  const SiteValues& values;
+  const SamplingMap& map;
+  const Guides* guides;  // of the map's size where the filter needs them
+  int threads;
+};
+
 // One function `filter_<name>` per line of filters.def.
-#define FILTER(name, description) Frame filter_##name(const SiteValues& values, const SamplingMap& map, int threads);
+#define FILTER(name, needs_guides, description) Frame filter_##name(const FilterInput& input);
 #include "reconstruct/filters.def"
 #undef FILTER
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazetrace/reconstruct.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -12,18 +13,51 @@
 
 namespace gazetrace {
 
+namespace {
+
+// As users write it.
+std::string user_name(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+void check_guides(const FilterInput& input) {
+  if (input.guides == nullptr || input.sparse.first_surface.size() != input.map.sites.size() + 1) {
+    throw Error(ErrorKind::runtime, "reconstruct", "the filter needs guides and sums per surface",
+                "trace with TraceSettings::surfaces and pass PathTracer::guides");
+  }
+  if (input.guides->albedo.width_px != input.map.width_px || input.guides->albedo.height_px != input.map.height_px) {
+    throw Error(ErrorKind::runtime, "reconstruct", "the guides are of another size than the sampling map",
+                "make them for the map's frame");
+  }
+}
+
+}  // namespace
+
 std::vector<FilterInfo> reconstruction_filters() {
   return {
-#define FILTER(name, description) {#name, description},
+#define FILTER(name, needs_guides, description) {user_name(#name), description, needs_guides},
 #include "reconstruct/filters.def"
 #undef FILTER
   };
 }
 
-Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads) {
-#define FILTER(name, description)                                \
-  if (filter == #name) {                                         \
-    return filter_##name(SiteValues(sparse, map), map, threads); \
+bool filter_needs_guides(const std::string& filter) {
+  const std::vector<FilterInfo> filters = reconstruction_filters();
+  return std::any_of(filters.begin(), filters.end(),
+                     [&](const FilterInfo& info) { return info.name == filter && info.needs_guides; });
+}
+
+Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads,
+                  const Guides* guides) {
+  const SiteValues values(sparse, map);
+  const FilterInput input{sparse, values, map, guides, threads};
+  if (filter_needs_guides(filter)) {
+    check_guides(input);
+  }
+#define FILTER(name, needs_guides, description) \
+  if (filter == user_name(#name)) {             \
+    return filter_##name(input);                \
   }
 #include "reconstruct/filters.def"
 #undef FILTER

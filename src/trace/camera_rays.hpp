@@ -42,6 +42,8 @@ class CameraRays {
 
   [[nodiscard]] float cone_width() const { return width_; }  // at the origin, m
   [[nodiscard]] const Vec3f& forward() const { return placement_.forward; }
+  [[nodiscard]] const Placement& placement() const { return placement_; }  // in the middle of the frame's time
+  [[nodiscard]] bool is_perspective() const { return perspective_; }
   [[nodiscard]] const Vec3f& origin() const { return placement_.origin; }
 
  private:

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "gazetrace/guides.hpp"
 #include "gazetrace/math.hpp"
 #include "trace/chunk.hpp"
 #include "trace/ray_batch.hpp"
@@ -29,6 +30,13 @@ struct RadianceBatch {
 struct GuideBatch {
   BatchArray<float> albedo_r, albedo_g, albedo_b, normal_x, normal_y, normal_z, depth;
   BatchArray<std::uint8_t> hit;
+};
+
+// First hits, for sums per surface.
+struct SurfaceBatch {
+  BatchArray<float> albedo_r, albedo_g, albedo_b, normal_x, normal_y, normal_z, place_x, place_y, place_z;
+  BatchArray<float> shone_r, shone_g, shone_b;  // what the sample sees directly
+  BatchArray<SurfaceKind> kind;
 };
 
 struct BatchVec3 {
@@ -57,11 +65,12 @@ struct ShadowBatch {
   BatchArray<float> r, g, b;  // what arrives if nothing is in the way
 };
 
-// One a thread, about 0.4 MiB.
+// One a thread, about 0.5 MiB.
 struct Workspace {
   SampleBatch samples;
   RadianceBatch radiance;
   GuideBatch guides;
+  SurfaceBatch surfaces;
   std::array<RayBatch, 2> rays;
   std::array<PathBatch, 2> paths;
   HitBatch hits;

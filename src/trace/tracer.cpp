@@ -10,8 +10,10 @@
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/trace.hpp"
+#include "trace/guides.hpp"
 #include "trace/kernel.hpp"
 #include "trace/sample_list.hpp"
+#include "trace/surface_sums.hpp"
 
 namespace gazetrace {
 namespace {
@@ -23,6 +25,7 @@ struct TileResult {
   std::uint64_t samples = 0, non_finite = 0;
   std::vector<BadSample> bad;  // the first ones in pixel order
   std::vector<RegionTraceStats> regions;
+  std::vector<SurfaceSums> surfaces;  // of the tile's sites, one after the other
 };
 
 bool before(const BadSample& a, const BadSample& b) {
@@ -84,6 +87,20 @@ struct SiteRange {
   std::uint32_t first = 0, count = 0;
 };
 
+// Tiles' surfaces in the order of the sites; first_surface holds each site's number of them before.
+void join_surfaces(const std::vector<SiteRange>& ranges, std::vector<TileResult>& tiles, SparseFrame& out) {
+  std::uint32_t total = 0;
+  for (std::uint32_t& entry : out.first_surface) {
+    total += std::exchange(entry, total);
+  }
+  out.surfaces.resize(total);
+  for (std::size_t t = 0; t < tiles.size(); ++t) {
+    std::copy(tiles[t].surfaces.begin(), tiles[t].surfaces.end(),
+              out.surfaces.begin() + out.first_surface[ranges[t].first]);
+    tiles[t].surfaces = {};
+  }
+}
+
 // The one site that holds a pixel; an empty range outside the frame.
 SiteRange site_of_pixel(const SamplingMap& map, const PixelIndex& pixel) {
   if (pixel.x >= map.width_px || pixel.y >= map.height_px) {
@@ -130,14 +147,24 @@ struct PathTracer::Impl {
   std::unique_ptr<LightSampler> compensated_lights;
 
   void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
-                   const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
-                   SparseFrame& out) const;
+                   const SamplingMap& map, const NeedsFiltering& needs_filtering, const SiteRange& range,
+                   Workspace& work, TileResult& tile, SparseFrame& out) const;
 };
 
 void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter,
-                                   std::int32_t frame, const SamplingMap& map, const SiteRange& range, Workspace& work,
-                                   TileResult& tile, SparseFrame& out) const {
+                                   std::int32_t frame, const SamplingMap& map, const NeedsFiltering& needs_filtering,
+                                   const SiteRange& range, Workspace& work, TileResult& tile, SparseFrame& out) const {
   tile.regions.resize(map.regions.size());
+  const bool surfaces = context.settings.surfaces;
+  SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
+                       context.camera->is_perspective());
+  const auto finish_site = [&](std::size_t site) {
+    if (surfaces) {
+      const std::size_t before = tile.surfaces.size();
+      sorter.finish_site(tile.surfaces);
+      out.first_surface[site] = static_cast<std::uint32_t>(tile.surfaces.size() - before);
+    }
+  };
   SampleList list(map, range.first, range.count, context.settings.seed, frame);
   SiteSum sum;
   std::uint32_t current = range.first;
@@ -154,6 +181,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       if (work.samples.site[i] != current) {
         store(sum, current, out);
+        finish_site(current);
         sum = {};
         current = work.samples.site[i];
       }
@@ -186,6 +214,9 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
       const double luminance =
           0.2126 * static_cast<double>(r) + 0.7152 * static_cast<double>(g) + 0.0722 * static_cast<double>(b);
       sum.luminance2 += luminance * luminance;
+      if (surfaces && needs_filtering(map, map.sites[current])) {
+        sorter.add(work.surfaces, i, {r, g, b});
+      }
     }
     const std::int64_t spent_ns = thread_cpu_ns() - begin_ns;
     for (std::size_t region = 0; region < in_region.size(); ++region) {
@@ -196,6 +227,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
   }
   if (sum.count > 0) {
     store(sum, current, out);
+    finish_site(current);
   }
 }
 
@@ -227,6 +259,7 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   out.sum_square_luminance.resize(map.sites.size());
   out.count.resize(map.sites.size());
   out.guides.resize(settings.guides ? map.sites.size() : 0);
+  out.first_surface.resize(settings.surfaces ? map.sites.size() + 1 : 0);
   out.stats.kernel = variant.name;
   out.stats.regions.resize(map.regions.size());
 
@@ -240,13 +273,14 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   }
   std::vector<TileResult> results(ranges.size());
   WorkspacePool pool;
+  const NeedsFiltering needs_filtering(map);
   const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
   parallel_for(ranges.size(), impl_->options.threads, [&](std::size_t i) {
     const FlushDenormals flush;
     auto work = pool.take();
-    impl_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
+    impl_->trace_sites(context, kernel, filter, frame, map, needs_filtering, ranges[i], *work, results[i], out);
     pool.give(std::move(work));
   });
 
@@ -266,7 +300,15 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
       stats.regions[region].cpu_ns += tile.regions[region].cpu_ns;
     }
   }
+  if (settings.surfaces) {
+    join_surfaces(ranges, results, out);
+  }
   return out;
+}
+
+Guides PathTracer::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {
+  return trace_guides(impl_->render_scene, impl_->lights, CameraRays(camera, height_px), width_px, height_px, settings,
+                      impl_->options.threads);
 }
 
 TracerMemory PathTracer::memory() const {

@@ -13,6 +13,7 @@ TimingRow example(std::int32_t frame) {
   row.frame = frame;
   row.plan_ms = 0.125;
   row.trace_ms = 1234.5;
+  row.guides_ms = 3;
   row.reconstruct_ms = 8;
   row.temporal_ms = 0.0625;
   row.exposure_ms = 1.5;
@@ -40,14 +41,15 @@ TimingRow example(std::int32_t frame) {
 }
 
 TEST(Timing, ColumnsNameTheirUnits) {
-  EXPECT_THAT(timing_columns(),
-              testing::ElementsAre(
-                  "frame", "plan_ms", "trace_ms", "reconstruct_ms", "temporal_ms", "exposure_ms", "color_ms",
-                  "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples", "rays_primary", "rays_bounce",
-                  "rays_shadow", "rejected_rays", "non_finite_samples", "fovea_pixels", "fovea_samples", "fovea_cpu_ms",
-                  "intermediate_pixels", "intermediate_samples", "intermediate_cpu_ms", "periphery_pixels",
-                  "periphery_samples", "periphery_cpu_ms", "uniform_pixels", "uniform_samples", "uniform_cpu_ms",
-                  "exposure_ev", "gaze_state", "gaze_event", "gaze_age_ms", "no_gaze", "peak_memory_mib"));
+  EXPECT_THAT(
+      timing_columns(),
+      testing::ElementsAre("frame", "plan_ms", "trace_ms", "guides_ms", "reconstruct_ms", "temporal_ms", "exposure_ms",
+                           "color_ms", "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples", "rays_primary",
+                           "rays_bounce", "rays_shadow", "rejected_rays", "non_finite_samples", "fovea_pixels",
+                           "fovea_samples", "fovea_cpu_ms", "intermediate_pixels", "intermediate_samples",
+                           "intermediate_cpu_ms", "periphery_pixels", "periphery_samples", "periphery_cpu_ms",
+                           "uniform_pixels", "uniform_samples", "uniform_cpu_ms", "exposure_ev", "gaze_state",
+                           "gaze_event", "gaze_age_ms", "no_gaze", "peak_memory_mib"));
 }
 
 TEST(Timing, RoundTrip) {

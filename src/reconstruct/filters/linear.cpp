@@ -240,7 +240,10 @@ class LinearFilter {
 
 }  // namespace
 
-Frame filter_linear(const SiteValues& values, const SamplingMap& map, int threads) {
+Frame filter_linear(const FilterInput& input) {
+  const SiteValues& values = input.values;
+  const SamplingMap& map = input.map;
+  const int threads = input.threads;
   Frame frame = make_frame(map, values.has_guides());
   const std::vector<CellGrid> grids = make_cell_grids(values, map, frame, threads);
   const LinearFilter filter(map, grids, frame);

@@ -5,9 +5,11 @@
 
 namespace gazetrace {
 
-Frame filter_none(const SiteValues& values, const SamplingMap& map, int threads) {
+Frame filter_none(const FilterInput& input) {
+  const SiteValues& values = input.values;
+  const SamplingMap& map = input.map;
   Frame frame = make_frame(map, values.has_guides());
-  parallel_for(map.tiles.size(), threads, [&](std::size_t t) {
+  parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
     for (std::size_t site = tile.first_site; site < tile.first_site + tile.site_count; ++site) {
       paint_site(frame, map, values, site);

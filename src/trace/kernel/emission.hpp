@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "material/lobes/clearcoat.hpp"
+#include "trace/first_hit.hpp"
 #include "trace/kernel/path_kernel.hpp"
 #include "trace/layered_hit.hpp"
 #include "trace/surface_hit.hpp"
@@ -16,20 +17,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
                                                           const Vec3f& throughput, const ShadingMaterial& material,
                                                           float pdf_bsdf) {
   const ChunkHits& chunk = work_.chunk;
-  Vec3f emission = material.emission;
-  if (material.emit.texture != nullptr) {
-    const Vec2f at = coordinates_at<kFeatures>(*frame_.scene, chunk, i, material.emit);
-    const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, chunk.lod[i] + material.emit.half_log2_texels);
-    emission *= Vec3f{c.x, c.y, c.z};
-  }
-  if constexpr (kLayers) {
-    const LayeredMaterial* layers = frame_.scene->layered.of(chunk.material[i]);
-    if (layers != nullptr && layers->layers.clearcoat) {
-      const float coat =
-          layers->source->clearcoat.factor * read_layer<kFeatures>(*frame_.scene, chunk, i, layers->clearcoat).x;
-      emission *= passes_coat(coat, dot(chunk.geometric.get(i), chunk.direction.get(i)));
-    }
-  }
+  const Vec3f emission = emitted_radiance<kFeatures, kLayers>(*frame_.scene, chunk, i, material);
   float weight = 1;
   if (vertex > 0) {
     float pdf_light = 0;

@@ -49,6 +49,11 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
       work_.guides.hit[i] = 0;
     }
   }
+  if (frame_.settings.surfaces) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      work_.surfaces.kind[i] = SurfaceKind::miss;
+    }
+  }
 }
 
 }  // namespace gazetrace

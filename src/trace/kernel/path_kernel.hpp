@@ -55,6 +55,9 @@ class PathKernel {
       counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
       shadow_count_ = 0;
       alive = shade(vertex, alive);
+      if (vertex == 0 && frame_.settings.surfaces) {
+        keep_shone(static_cast<std::size_t>(count));
+      }
       trace_shadows(vertex);
     }
   }
@@ -151,6 +154,8 @@ class PathKernel {
   void shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths, std::size_t begin, std::size_t end);
   bool goes_on(int vertex, std::size_t i, const PathBatch& paths);
   void record_guides(std::size_t slot, std::size_t i);
+  void record_surface(std::size_t slot, std::size_t i);
+  void keep_shone(std::size_t count);
 
   // emission.hpp
   void add_emission(int vertex, std::size_t i, std::size_t slot, const Vec3f& throughput,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "trace/first_hit.hpp"
 #include "trace/kernel/path_kernel.hpp"
 #include "trace/surface_hit.hpp"
 
@@ -83,6 +84,9 @@ inline bool PathKernel<kFeatures, kDiffuse>::goes_on(int vertex, std::size_t i, 
   if (vertex == 0 && frame_.settings.guides) {
     record_guides(slot, i);
   }
+  if (vertex == 0 && frame_.settings.surfaces) {
+    record_surface(slot, i);
+  }
   if constexpr (kFeatures.emission) {
     const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
     const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
@@ -111,6 +115,32 @@ inline void PathKernel<kFeatures, kDiffuse>::record_guides(std::size_t slot, std
   const Vec3f forward = camera.moves() ? camera.placement_at(time_of(slot)).forward : camera.forward();
   guides.depth[slot] = chunk.t[i] * dot(chunk.direction.get(i), forward);
   guides.hit[slot] = 1;
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::record_surface(std::size_t slot, std::size_t i) {
+  const ChunkHits& chunk = work_.chunk;
+  SurfaceBatch& out = work_.surfaces;
+  const Vec3f albedo = albedo_to_divide_by(*frame_.scene, chunk, i, kDiffuse);
+  const Vec3f place = chunk.position.get(i) - frame_.camera->origin();
+  out.albedo_r[slot] = albedo.x;
+  out.albedo_g[slot] = albedo.y;
+  out.albedo_b[slot] = albedo.z;
+  out.normal_x[slot] = chunk.shading.x[i];
+  out.normal_y[slot] = chunk.shading.y[i];
+  out.normal_z[slot] = chunk.shading.z[i];
+  out.place_x[slot] = place.x;
+  out.place_y[slot] = place.y;
+  out.place_z[slot] = place.z;
+  out.kind[slot] = kind_of_hit(*frame_.scene, chunk, i, kDiffuse);
+}
+
+// Before the first shadow rays come back, a sample's radiance is what its camera ray itself has found.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::keep_shone(std::size_t count) {
+  std::copy_n(work_.radiance.r.data, count, work_.surfaces.shone_r.data);
+  std::copy_n(work_.radiance.g.data, count, work_.surfaces.shone_g.data);
+  std::copy_n(work_.radiance.b.data, count, work_.surfaces.shone_b.data);
 }
 
 }  // namespace gazetrace

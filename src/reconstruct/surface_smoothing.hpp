@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Smooths light along surfaces: an edge-stopping a-trous transform on the sites (Dammertz et al., "Edge-Avoiding
+// A-Trous Wavelet Transform for fast Global Illumination Filtering", HPG 2010), steered by the noise of the light
+// itself (Schied et al., "Spatiotemporal Variance-Guided Filtering", HPG 2017).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "reconstruct/surface_cells.hpp"
+
+namespace gazetrace {
+
+struct SmoothingSettings {
+  int levels = 4;          // steps of 1, 2, 4 ... blocks
+  float light_sigmas = 4;  // differences of light up to so many standard deviations are taken for noise
+  int normal_power = 16;   // of the cosine between normals
+  float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance
+};
+
+// 1 at 0, falls like exp(-x) and ends at x = 3: what is across an edge weighs nothing, not little.
+inline float falling(float x) {
+  const float t = std::max(1.0F - x * (1.0F / 3.0F), 0.0F);
+  return t * t * t;
+}
+
+inline float cosine_power(float cosine, int power) {
+  float result = 1;
+  float base = std::max(cosine, 0.0F);
+  for (int bits = power; bits > 0; bits >>= 1) {
+    result *= (bits & 1) != 0 ? base : 1.0F;
+    base *= base;
+  }
+  return result;
+}
+
+// How alike two places are: 1 on one plane with one normal, 0 across an edge. `slack_m`: as much apart is nothing.
+inline float surface_likeness(const Vec3f& normal_a, const Vec3f& place_a, const Vec3f& normal_b, const Vec3f& place_b,
+                              float slack_m, const SmoothingSettings& settings) {
+  const float facing = cosine_power(dot(normal_a, normal_b), settings.normal_power);
+  if (facing <= 0) {
+    return 0;
+  }
+  const Vec3f way = place_b - place_a;
+  const float off = std::max(std::fabs(dot(normal_a, way)), std::fabs(dot(normal_b, way)));
+  return facing * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack_m));
+}
+
+void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads);
+
+}  // namespace gazetrace

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guided filter on planted guides and samples: what it must keep, and what must not cross an edge.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+
+#include "foveation/sites.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/reconstruct.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kSize = 64;
+
+// A wall 10 m ahead, seen by parallel rays, one millimetre a pixel.
+Guides wall() {
+  Guides guides;
+  guides.camera = {false, {0, 0, -1}, {0.001F, 0, 0}, {0, 0.001F, 0}};
+  guides.albedo = ImageRgb(kSize, kSize, {0.5F, 0.5F, 0.5F});
+  guides.normal = ImageRgb(kSize, kSize, {0, 0, 1});
+  guides.depth_m = ImageGray(kSize, kSize, 10);
+  guides.emission = ImageRgb(kSize, kSize);
+  guides.object = Image<std::uint32_t>(kSize, kSize, 1);
+  guides.material = Image<std::uint32_t>(kSize, kSize, 1);
+  guides.kind = Image<SurfaceKind>(kSize, kSize, SurfaceKind::diffuse);
+  return guides;
+}
+
+// Blocks of 4 with 8 samples; with `fovea`, single pixels with 32 in the middle.
+SamplingMap block_map(bool fovea = false) {
+  Layout layout;
+  layout.regions = {{"fovea", 1, 32, SampleUnit::per_block}, {"periphery", 4, 8, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kSize, kSize, 1);
+  for (int y = 22; fovea && y < 41; ++y) {
+    for (int x = 21; x < 42; ++x) {
+      layout.region(x, y) = 0;
+    }
+  }
+  return map_from_layout(std::move(layout));
+}
+
+// One sample in every other pixel of each site, on what the guides show there; `light_at(x, y)` falls on it.
+template <class LightAt>
+SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const LightAt& light_at) {
+  SparseFrame sparse;
+  sparse.width_px = map.width_px;
+  sparse.height_px = map.height_px;
+  for (const Site& site : map.sites) {
+    sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
+    const std::size_t first = sparse.surfaces.size();
+    Vec3f sum;
+    std::uint32_t count = 0;
+    for_each_pixel(map, site, [&](int x, int y) {
+      if (site.pixels > 1 && (x + y) % 2 != 0) {
+        return;
+      }
+      const std::uint32_t samples = site.pixels > 1 ? 1 : site.samples;
+      const auto n = static_cast<float>(samples);
+      count += samples;
+      sum += n * guides.emission(x, y);
+      const SurfaceKind kind = guides.kind(x, y);
+      if (kind == SurfaceKind::miss || kind == SurfaceKind::unlit) {
+        return;
+      }
+      const auto light = static_cast<float>(light_at(x, y));
+      const Vec3f albedo = guides.albedo(x, y);
+      sum += n * light * albedo;
+      const Vec3f place = guides.camera.place(static_cast<float>(x) + 0.5F - 0.5F * kSize,
+                                              static_cast<float>(y) + 0.5F - 0.5F * kSize, guides.depth_m(x, y));
+      SurfaceSums* surface = nullptr;
+      for (std::size_t s = first; s < sparse.surfaces.size(); ++s) {
+        const auto m = static_cast<float>(sparse.surfaces[s].count);
+        if (dot(sparse.surfaces[s].normal / m, guides.normal(x, y)) > 0.9F &&
+            std::fabs(sparse.surfaces[s].place_m.z / m - place.z) < 0.002F && sparse.surfaces[s].kind == kind) {
+          surface = &sparse.surfaces[s];
+        }
+      }
+      if (surface == nullptr) {
+        surface = &sparse.surfaces.emplace_back();
+        surface->kind = kind;
+      }
+      surface->reflected += n * light * albedo;
+      surface->albedo += n * albedo;
+      surface->normal += n * guides.normal(x, y);
+      surface->place_m += n * place;
+      surface->square += n * light * light;
+      surface->count += samples;
+    });
+    sparse.sum.push_back(sum);
+    sparse.count.push_back(count);
+    sparse.sum_square_luminance.push_back(0);
+  }
+  sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
+  return sparse;
+}
+
+Frame guided(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides, int threads = 1) {
+  return reconstruct(sparse, map, "guided", threads, &guides);
+}
+
+TEST(ReconstructGuided, EvenLightOnTextureGivesTheTextureExactly) {
+  Guides guides = wall();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> uniform(0.05F, 0.95F);
+  for (Vec3f& albedo : guides.albedo.pixels) {
+    albedo = {uniform(random), uniform(random), uniform(random)};
+  }
+  const SamplingMap map = block_map();
+  const Frame frame = guided(trace_planted(map, guides, [](int, int) { return 3; }), map, guides);
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    EXPECT_NEAR(frame.radiance.pixels[i].x, 3 * guides.albedo.pixels[i].x, 1e-5);
+    EXPECT_NEAR(frame.radiance.pixels[i].z, 3 * guides.albedo.pixels[i].z, 1e-5);
+  }
+}
+
+// An edge through the middle of blocks, at pixel 30: beyond it another normal, another depth, or light of its own. What
+// is on each side has nothing of the other's, to rounding.
+TEST(ReconstructGuided, NothingCrossesAnEdgeOfNormalDepthOrEmission) {
+  const SamplingMap map = block_map();
+  for (const int what : {0, 1, 2, 3}) {
+    Guides guides = wall();
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 30; x < kSize; ++x) {
+        if (what == 0) {
+          guides.normal(x, y) = {1, 0, 0};
+        } else if (what == 1) {
+          guides.depth_m(x, y) = 10.5F;
+        } else {
+          guides.kind(x, y) = what == 2 ? SurfaceKind::miss : SurfaceKind::unlit;
+          guides.depth_m(x, y) = what == 2 ? kInfinity : 10.0F;
+          guides.normal(x, y) = {};
+          guides.albedo(x, y) = {1, 1, 1};
+          guides.emission(x, y) = {1e4F, 2e4F, 3e4F};
+        }
+      }
+    }
+    const SparseFrame sparse = trace_planted(map, guides, [](int x, int) { return x < 30 ? 1 : 1000; });
+    const Frame frame = guided(sparse, map, guides);
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        const float expected = x < 30 ? 0.5F : what < 2 ? 500.0F : 1e4F;
+        ASSERT_NEAR(frame.radiance(x, y).x / expected, 1, 1e-5) << what << ' ' << x << ',' << y;
+      }
+    }
+  }
+}
+
+TEST(ReconstructGuided, FullRatePixelsPassBitByBit) {
+  const SamplingMap map = block_map(true);
+  const Guides guides = wall();
+  std::mt19937 random(5);
+  std::exponential_distribution<float> noise(1);
+  const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
+  const Frame none = reconstruct(sparse, map, "none", 1);
+  const Frame frame = guided(sparse, map, guides);
+  int compared = 0;
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    if (map.region.pixels[i] == 0) {
+      ++compared;
+      EXPECT_EQ(frame.radiance.pixels[i], none.radiance.pixels[i]);
+      EXPECT_EQ(frame.variance.pixels[i], none.variance.pixels[i]);
+    }
+    EXPECT_EQ(frame.sample_count.pixels[i], none.sample_count.pixels[i]);
+  }
+  EXPECT_EQ(compared, 19 * 21);
+}
+
+// Noise shrinks by far, and the mean of the frame stays: here every sample has the same weight in it, borders apart.
+TEST(ReconstructGuided, NoiseIsSmoothedAndTheMeanKept) {
+  const SamplingMap map = block_map();
+  const Guides guides = wall();
+  std::mt19937 random(17);
+  std::uniform_real_distribution<float> noise(0, 2);
+  const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
+  const auto mean_and_spread = [&](const Frame& frame) {
+    double sum = 0;
+    double squares = 0;
+    for (const Vec3f& c : frame.radiance.pixels) {
+      sum += static_cast<double>(c.x);
+      squares += static_cast<double>(c.x) * static_cast<double>(c.x);
+    }
+    const double n = kSize * kSize;
+    return std::pair{sum / n, squares / n - (sum / n) * (sum / n)};
+  };
+  const auto [none_mean, none_variance] = mean_and_spread(reconstruct(sparse, map, "none", 1));
+  const auto [mean, variance] = mean_and_spread(guided(sparse, map, guides));
+  EXPECT_LT(variance, none_variance / 16);
+  EXPECT_NEAR(mean / none_mean, 1, 0.02);
+}
+
+TEST(ReconstructGuided, SitesWithoutSamplesTakeFromLikeSurfacesAndNoSamplesAtAllLeaveWhatShines) {
+  const SamplingMap map = block_map();
+  Guides guides = wall();
+  guides.emission(3, 3) = {7, 7, 7};
+  SparseFrame sparse = trace_planted(map, guides, [](int, int) { return 4; });
+  SparseFrame holes = sparse;
+  holes.surfaces.clear();
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    holes.first_surface[i] = static_cast<std::uint32_t>(holes.surfaces.size());
+    if (map.sites[i].block_x % 3 == 0 && map.sites[i].block_y % 3 == 0) {
+      holes.surfaces.push_back(sparse.surfaces[sparse.first_surface[i]]);
+    } else {
+      holes.sum[i] = {};
+      holes.count[i] = 0;
+    }
+  }
+  holes.first_surface.back() = static_cast<std::uint32_t>(holes.surfaces.size());
+  const Frame frame = guided(holes, map, guides);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      EXPECT_NEAR(frame.radiance(x, y).x, 2 + guides.emission(x, y).x, 1e-5);
+    }
+  }
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    sparse.first_surface[i] = 0;
+    sparse.sum[i] = {};
+    sparse.count[i] = 0;
+  }
+  sparse.first_surface.back() = 0;
+  sparse.surfaces.clear();
+  for (const Vec3f& c : guided(sparse, map, guides).radiance.pixels) {
+    EXPECT_TRUE(is_finite(to_double(c)));
+  }
+}
+
+TEST(ReconstructGuided, FiniteForBlackAlbedoAndFarPlaces) {
+  const SamplingMap map = block_map();
+  Guides guides = wall();
+  guides.camera.perspective = true;
+  std::mt19937 random(23);
+  for (std::size_t i = 0; i < guides.depth_m.pixels.size(); ++i) {
+    guides.depth_m.pixels[i] = std::pow(10.0F, std::uniform_real_distribution<float>(-6, 15)(random));
+    guides.albedo.pixels[i] = i % 3 == 0 ? Vec3f{} : Vec3f{1, 0, 0.5F};
+    guides.normal.pixels[i] = i % 7 == 0 ? Vec3f{} : Vec3f{0, 0, 1};
+    if (i % 5 == 0) {
+      guides.kind.pixels[i] = SurfaceKind::miss;
+      guides.depth_m.pixels[i] = kInfinity;
+    }
+  }
+  const Frame frame =
+      guided(trace_planted(map, guides, [](int x, int) { return x % 2 == 0 ? 0.0 : 1e15; }), map, guides);
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    EXPECT_TRUE(is_finite(to_double(frame.radiance.pixels[i])));
+    EXPECT_TRUE(std::isfinite(frame.variance.pixels[i]));
+  }
+}
+
+TEST(ReconstructGuided, SameBitsForAnyNumberOfThreads) {
+  const SamplingMap map = block_map(true);
+  const Guides guides = wall();
+  std::mt19937 random(29);
+  std::exponential_distribution<float> noise(1);
+  const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
+  EXPECT_EQ(guided(sparse, map, guides, 1).radiance, guided(sparse, map, guides, 2).radiance);
+}
+
+TEST(ReconstructGuided, RefusesInputsWithoutGuides) {
+  const SamplingMap map = block_map();
+  const Guides guides = wall();
+  SparseFrame sparse = trace_planted(map, guides, [](int, int) { return 1; });
+  EXPECT_THROW((void)reconstruct(sparse, map, "guided", 1), Error);
+  sparse.first_surface.clear();
+  EXPECT_THROW((void)guided(sparse, map, guides), Error);
+}
+
+}  // namespace
+}  // namespace gazetrace
