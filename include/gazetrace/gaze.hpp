@@ -73,12 +73,11 @@ enum class UnorderedPolicy { error, sort };
 
 // Which gaze a binocular log gives.
 //   automatic  the log's own combined gaze where it has one; else the mean, or, where the eyes differ vertically by
-//   more
-//              than 0.5 deg in the median, the best eye, with a warning
+//              over 0.5 deg in the median, the best eye, with a warning. A combined gaze may jump when an eye is lost
 //   left, right  that eye alone
-//   mean       of both eyes, in angle. While one eye is lost the other stands in, moved by half the running offset
-//              between them
-//   dominant   `dominant_eye`; while it is lost the other, moved by the running offset
+//   mean       of both eyes, in angle. While one eye is lost the other stands in, moved by half the offset between
+//              them: for up to 75 ms straight from the one before to the one after, else the running one
+//   dominant   `dominant_eye`; while it is lost the other, moved by the offset
 //   best       as dominant, with the eye that has more usable samples, or less noise where both have as many
 enum class EyeChoice { automatic, left, right, mean, dominant, best };
 
@@ -115,6 +114,9 @@ struct GazeReadOptions {
   // on a scene camera's picture is taken.
   bool for_inspection = false;
 };
+
+// What `stated` leaves open (pixels, size, distance and with it the place of the eye) is that of `by`.
+DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry& by);
 
 // How a format was tried.
 enum class FormatProof : std::uint8_t { recording, synthetic };

@@ -56,7 +56,8 @@ struct EventSettings {
   // ivt: fixations no farther apart than both become one. 0 ns: not.
   std::int64_t merge_gap_ns = 75'000'000;
   double merge_angle_deg = 0.5;
-  // All: shorter fixations are unclassified.
+  // All: shorter fixations are unclassified. n samples last n steps of the clock, as in Tobii Studio's exports; the
+  // window of idt is measured from its first to its last sample.
   std::int64_t min_fixation_ns = 60'000'000;
   // idt: extent of azimuth plus extent of elevation. Salvucci & Goldberg 2000, eq. for D.
   double dispersion_deg = 1.0;

@@ -89,21 +89,7 @@ void complete_recording_geometry(GazeLog& log, const ScreenSettings& screen) {
   if (!given || log.kind != GazeKind::screen || knows_angles(log)) {
     return;
   }
-  DisplayGeometry g = log.recording_geometry.value_or(*given);
-  if (g.width_px == 0 || g.height_px == 0) {
-    g.width_px = given->width_px;
-    g.height_px = given->height_px;
-  }
-  if (!(g.width_cm > 0) || !(g.height_cm > 0)) {
-    g.width_cm = given->width_cm;
-    g.height_cm = given->height_cm;
-  }
-  if (!(g.distance_cm > 0)) {
-    g.distance_cm = given->distance_cm;
-    g.eye_x_cm = given->eye_x_cm;
-    g.eye_y_cm = given->eye_y_cm;
-  }
-  log.recording_geometry = g;
+  log.recording_geometry = completed_geometry(log.recording_geometry.value_or(*given), *given);
 }
 
 std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts) {

@@ -15,7 +15,8 @@ namespace gazetrace {
 namespace {
 
 constexpr double kMaxVerticalDisparityDeg = 0.5;
-constexpr double kOffsetTimeNs = 1e9;  // of the running offset
+constexpr double kOffsetTimeNs = 1e9;                 // of the running offset
+constexpr std::int64_t kShortAbsenceNs = 75'000'000;  // that which trackers bridge: Olsen 2012
 
 // Places of the eyes as two angles: azimuth and elevation where the geometry is known, else what the log has.
 class AnglePlane {
@@ -82,13 +83,17 @@ Vec2d operator-(const Vec2d& a, const Vec2d& b) {
   return {a.x - b.x, a.y - b.y};
 }
 
+bool sees_both(const BothEyes& eyes) {
+  return is_usable(eyes.left.validity) && is_usable(eyes.right.validity);
+}
+
 // left minus right, smoothed over time; known before the first pair from the first ones, as the whole log is there.
 class RunningOffset {
  public:
   RunningOffset(const GazeLog& log, const AnglePlane& plane) {
     for (std::size_t i = 0; i < log.eyes.size() && count_ < 50; ++i) {
       const BothEyes& eyes = log.eyes[i];
-      if (is_usable(eyes.left.validity) && is_usable(eyes.right.validity)) {
+      if (sees_both(eyes)) {
         add(plane.angles(eyes.left.at) - plane.angles(eyes.right.at), log.samples[i].t_ns);
       }
     }
@@ -114,6 +119,52 @@ class RunningOffset {
   std::size_t count_ = 0;
   std::int64_t last_ns_ = 0;
   double passed_ = 0, forgotten_ = 0;
+};
+
+// left minus right while one eye is away for a short time: straight from the difference before to the one after, so
+// that the gaze jumps at neither end.
+class ShortAbsences {
+ public:
+  ShortAbsences(const GazeLog& log, const AnglePlane& plane) : log_(log), plane_(plane) {}
+
+  // At sample `i`, which sees one eye; to be asked in the order of time. Empty in long absences.
+  [[nodiscard]] std::optional<Vec2d> difference(std::size_t i) {
+    if (after_ <= i) {
+      for (std::size_t k = after_; k < i; ++k) {
+        if (sees_both(log_.eyes[k])) {
+          before_ = k;
+          has_before_ = true;
+        }
+      }
+      after_ = i + 1;
+      while (after_ < log_.eyes.size() && !sees_both(log_.eyes[after_])) {
+        ++after_;
+      }
+    }
+    if (!has_before_ || after_ == log_.eyes.size()) {
+      return std::nullopt;
+    }
+    const std::int64_t begin_ns = log_.samples[before_].t_ns;
+    const std::int64_t absence_ns = log_.samples[after_].t_ns - begin_ns;
+    if (absence_ns > kShortAbsenceNs || absence_ns <= 0) {
+      return std::nullopt;
+    }
+    const double s = static_cast<double>(log_.samples[i].t_ns - begin_ns) / static_cast<double>(absence_ns);
+    const Vec2d a = difference_of(before_);
+    const Vec2d b = difference_of(after_);
+    return Vec2d{a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)};
+  }
+
+ private:
+  [[nodiscard]] Vec2d difference_of(std::size_t i) const {
+    return plane_.angles(log_.eyes[i].left.at) - plane_.angles(log_.eyes[i].right.at);
+  }
+
+  const GazeLog& log_;
+  const AnglePlane& plane_;
+  std::size_t before_ = 0;  // the last pair before after_
+  bool has_before_ = false;
+  std::size_t after_ = 0;  // the first pair behind the sample last asked for
 };
 
 EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
@@ -220,7 +271,7 @@ std::optional<double> median_vertical_disparity_deg(const GazeLog& log, const An
   const std::size_t stride = std::max<std::size_t>(1, log.eyes.size() / 100'000);
   for (std::size_t i = 0; i < log.eyes.size(); i += stride) {
     const BothEyes& eyes = log.eyes[i];
-    if (is_usable(eyes.left.validity) && is_usable(eyes.right.validity)) {
+    if (sees_both(eyes)) {
       differences.push_back((plane.angles(eyes.left.at).y - plane.angles(eyes.right.at).y) * kDegPerRad);
     }
   }
@@ -252,6 +303,7 @@ void take_mean(GazeSample& sample, const BothEyes& eyes, const Vec2d& left, cons
 // `preferred` is cyclopean for the mean. Returns how many times one eye stood in.
 std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
   RunningOffset offset(log, plane);
+  ShortAbsences short_absences(log, plane);
   std::size_t alone = 0;
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     GazeSample& sample = log.samples[i];
@@ -282,9 +334,10 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
     const Eye seen = use_left ? Eye::left : Eye::right;
     const double share = seen == preferred ? 0 : preferred == Eye::cyclopean ? 0.5 : 1.0;
     const double sign = seen == Eye::left ? -1.0 : 1.0;  // left minus right is taken from the left eye
-    if (share > 0 && (offset.value().x != 0 || offset.value().y != 0)) {
+    const Vec2d apart = short_absences.difference(i).value_or(offset.value());
+    if (share > 0 && (apart.x != 0 || apart.y != 0)) {
       const Vec2d at = plane.angles(used.at);
-      plane.place({at.x + sign * share * offset.value().x, at.y + sign * share * offset.value().y}, sample);
+      plane.place({at.x + sign * share * apart.x, at.y + sign * share * apart.y}, sample);
     }
   }
   return alone;

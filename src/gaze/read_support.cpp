@@ -21,19 +21,6 @@ void mark_off_screen(std::vector<GazeSample>& samples) {
   }
 }
 
-DisplayGeometry completed(DisplayGeometry geometry, const DisplayGeometry& by) {
-  if (geometry.width_px <= 0 || geometry.height_px <= 0) {
-    geometry.width_px = by.width_px;
-    geometry.height_px = by.height_px;
-  }
-  if (!(geometry.width_cm > 0) || !(geometry.height_cm > 0)) {
-    geometry.width_cm = by.width_cm;
-    geometry.height_cm = by.height_cm;
-  }
-  geometry.distance_cm = geometry.distance_cm > 0 ? geometry.distance_cm : by.distance_cm;
-  return geometry;
-}
-
 void warn_about_size(GazeLog& log, const DisplayGeometry& given, const DisplayGeometry& stated,
                      const std::string& place) {
   const auto differ = [](double a, double b) { return a > 0 && b > 0 && std::abs(a - b) > 0.02 * b; };
@@ -56,7 +43,7 @@ std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOp
   }
   if (!options.display) {
     return log.recording_geometry && options.fallback_display
-               ? completed(*log.recording_geometry, *options.fallback_display)
+               ? completed_geometry(*log.recording_geometry, *options.fallback_display)
            : log.recording_geometry ? log.recording_geometry
                                     : options.fallback_display;
   }
@@ -69,7 +56,7 @@ std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOp
                                          stated.width_px, stated.height_px, given.width_px, given.height_px));
     }
     warn_about_size(log, given, stated, place);
-    log.recording_geometry = completed(given, stated);
+    log.recording_geometry = completed_geometry(given, stated);
   } else {
     log.recording_geometry = given;
   }
@@ -203,6 +190,23 @@ PlaceSpace overrule(GazeLog& log, const GazeReadOptions& options, const PlaceSpa
 }
 
 }  // namespace
+
+DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry& by) {
+  if (stated.width_px <= 0 || stated.height_px <= 0) {
+    stated.width_px = by.width_px;
+    stated.height_px = by.height_px;
+  }
+  if (!(stated.width_cm > 0) || !(stated.height_cm > 0)) {
+    stated.width_cm = by.width_cm;
+    stated.height_cm = by.height_cm;
+  }
+  if (!(stated.distance_cm > 0)) {
+    stated.distance_cm = by.distance_cm;
+    stated.eye_x_cm = by.eye_x_cm;
+    stated.eye_y_cm = by.eye_y_cm;
+  }
+  return stated;
+}
 
 void add_fact(GazeLog& log, std::string what, std::string value, Evidence evidence, std::string detail) {
   log.facts.push_back({std::move(what), std::move(value), evidence, std::move(detail)});

@@ -50,7 +50,9 @@ def read_csv(path):
     else:
         width, height = (float(px) / float(density) * math.tan(math.radians(1))
                          for px, density in zip(preamble["display_px"], preamble["pixels_per_degree"]))
-    x, y = (u - 0.5) * width, (0.5 - v) * height
+    # Where the eye's perpendicular meets the display, from its center, in distances.
+    eye = [10 * float(x) / float(preamble["distance_mm"][0]) for x in preamble["eye_cm"]] if "eye_cm" in preamble else (0, 0)
+    x, y = (u - 0.5) * width - eye[0], (0.5 - v) * height - eye[1]
     azimuth, elevation = np.degrees(np.arctan2(x, 1)), np.degrees(np.arctan2(y, np.hypot(x, 1)))
     azimuth[~usable], elevation[~usable] = np.nan, np.nan
     return t, azimuth, elevation

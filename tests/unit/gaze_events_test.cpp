@@ -129,6 +129,33 @@ TEST(GazeEvents, IvtMergesNeighboursAndDropsTheShort) {
   EXPECT_EQ(summary(detect_events(azimuths(c), settings)), "f0-48 ");
 }
 
+// As in Tobii Studio's exports: eight samples of 120 Hz are a fixation of 67 ms.
+TEST(GazeEvents, AFixationLastsAStepForEachSample) {
+  EventSettings settings = plain_ivt();
+  settings.min_fixation_ns = 60'000'000;
+  for (const auto& [count, expected] :
+       {std::pair(7U, "f0-18 s19-20 u21-25 s26-27 f28-46 "), std::pair(8U, "f0-18 s19-20 f21-26 s27-28 f29-47 ")}) {
+    std::vector<double> a;
+    append(a, 20, 0);
+    append(a, count, 4);  // of these the first and the last are faster
+    append(a, 20, 0);
+    EXPECT_EQ(summary(detect_events(azimuths(a), settings)), expected);
+  }
+}
+
+// A tracker that bridged a gap says one fixation; a blink within it is still one.
+TEST(GazeEvents, OfTheLogGoOnWhereSamplesAreLost) {
+  std::vector<double> a;
+  append(a, 10, 0);
+  append(a, 3, kLost);
+  append(a, 10, 0);
+  GazeLog log = azimuths(a);
+  log.events = {{GazeEventType::fixation, Eye::cyclopean, 20'000'000, 200'000'000, {}, 0}};
+  EXPECT_EQ(summary(events_of_log(log)), "u0-1 f2-20 u21-22 ");
+  log.samples[11].validity = GazeValidity::blink;
+  EXPECT_EQ(summary(events_of_log(log)), "u0-1 f2-10 b11-11 f12-20 u21-22 ");
+}
+
 TEST(GazeEvents, IdtIsTheDispersionOfTheWindow) {
   EventSettings settings = plain_ivt();
   settings.method = "idt";

@@ -67,6 +67,22 @@ TEST_F(GazeEyes, BeforeTheSecondEyeIsFoundItsOffsetIsKnownFromLater) {
   EXPECT_NEAR(read(text, EyeChoice::mean).samples[0].u, 0.5, 1e-12);
 }
 
+// Eyes that differ more and more: over a short absence the difference is taken from both ends, not from what was.
+TEST_F(GazeEyes, AShortAbsenceJumpsAtNeitherEnd) {
+  std::string text = "t[ns],u[1],v[1],valid,eye\n";
+  for (int i = 0; i < 40; ++i) {
+    const bool lost = i >= 20 && i < 25;  // 60 ms between the pairs
+    text += fmt::format("{},{},0.5,ok,left\n", i * 10'000'000LL, 0.5 + 0.001 * i);
+    text += lost ? fmt::format("{},,,lost,right\n", i * 10'000'000LL)
+                 : fmt::format("{},{},0.5,ok,right\n", i * 10'000'000LL, 0.5 - 0.001 * i);
+  }
+  for (const GazeSample& s : read(text, EyeChoice::mean).samples) {
+    EXPECT_NEAR(s.u, 0.5, 1e-12) << s.row;
+  }
+  const GazeLog right = read(text, EyeChoice::dominant, Eye::right);
+  EXPECT_NEAR(right.samples[22].u, 0.5 - 0.022, 1e-12);
+}
+
 TEST_F(GazeEyes, TheMeanIsOneOfAnglesNotOfPlaces) {
   // At 50 cm from a screen of 50 cm: the right edge is at 26.565 deg, its middle at 0. Half of the angle is not half
   // way.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -59,7 +60,7 @@ class XdfBytes {
   std::string bytes = "XDF:";
 };
 
-std::string gaze_xdf() {
+XdfBytes xdf_with_header() {
   XdfBytes xdf;
   xdf.chunk(1, "<?xml version=\"1.0\"?><info><version>1.0</version></info>");
   xdf.chunk(2,
@@ -69,6 +70,11 @@ std::string gaze_xdf() {
                 "<channel><label>Screen_X</label><eye>both</eye><type>ScreenX</type><unit>normalized</unit></channel>"
                 "<channel><label>Screen_Y</label><eye>both</eye><type>ScreenY</type><unit>normalized</unit></channel>"
                 "<channel><label>Confidence</label></channel></channels></desc></info>");
+  return xdf;
+}
+
+std::string gaze_xdf() {
+  XdfBytes xdf = xdf_with_header();
   for (int k = 0; k < 4; ++k) {
     xdf.chunk(4, XdfBytes::pack(std::uint32_t{7}, 1000 + k * 0.1, 5.5 + 0.001 * k));
   }
@@ -83,6 +89,28 @@ std::string gaze_xdf() {
   return xdf.bytes;
 }
 
+// Two stretches of 40 samples. The sender's clock stands at `begin_s` at each, and is `offset_s` behind the recorder's
+// where it was asked, twelve times a second apart; NaN: not asked again.
+struct Stretch {
+  double begin_s, offset_s;
+};
+std::string xdf_of_two(const Stretch& first, const Stretch& second) {
+  XdfBytes xdf = xdf_with_header();
+  for (const Stretch& part : {first, second}) {
+    for (int k = 0; k < 12 && !std::isnan(part.offset_s); ++k) {
+      xdf.chunk(4, XdfBytes::pack(std::uint32_t{7}, part.begin_s + k, part.offset_s + 0.001 * k));
+    }
+    std::string samples = XdfBytes::pack(std::uint32_t{7}) + XdfBytes::length(40);
+    for (int i = 0; i < 40; ++i) {
+      const double jitter = 0.001 * ((i * 7) % 5 - 2);
+      samples += XdfBytes::pack(std::uint8_t{8}, part.begin_s + i * 0.01 + jitter);
+      samples += XdfBytes::pack(0.25F + static_cast<float>(i) / 1024, 0.5F, 1.0F);
+    }
+    xdf.chunk(3, samples);
+  }
+  return xdf.bytes;
+}
+
 TEST_F(GazeFormats, XdfOnTheRecordersClock) {
   const GazeLog log = read("t.xdf", gaze_xdf());
   EXPECT_EQ(log.format, "xdf");
@@ -94,6 +122,27 @@ TEST_F(GazeFormats, XdfOnTheRecordersClock) {
   EXPECT_NEAR(static_cast<double>(log.samples[39].t_ns), 1005'894'284'293.0, 1.5);
   EXPECT_EQ(log.samples[4].u, 0.25 + 4.0 / 256);
   EXPECT_EQ(log.samples[5].validity, GazeValidity::lost);
+}
+
+// Expected times are pyxdf 1.17.5's of the same bytes, to 1 ns.
+void expect_times(const GazeLog& log, const std::array<double, 4>& expected_s) {
+  ASSERT_EQ(log.samples.size(), 80U);
+  const std::array<std::size_t, 4> at{0, 39, 40, 79};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(static_cast<double>(log.samples[at[i]].t_ns), expected_s[i] * 1e9, 1.5) << at[i];
+  }
+}
+
+// The sender was started anew: its clock is back at 2 s while the recorder's goes on.
+TEST_F(GazeFormats, XdfWhoseSenderStartedAnew) {
+  expect_times(read("reset.xdf", xdf_of_two({1000, 5.5}, {2, 1010.5})),
+               {1005.499853512, 1005.890536488, 1012.499853512, 1012.890536488});
+}
+
+// Ten seconds without samples are no jitter: each stretch is evened out by itself.
+TEST_F(GazeFormats, XdfWithAGap) {
+  expect_times(read("gap.xdf", xdf_of_two({1000, 5.5}, {1010, std::nan("")})),
+               {1005.499853512, 1005.890536488, 1015.509853512, 1015.900536488});
 }
 
 TEST_F(GazeFormats, ADamagedXdfGoesOnAtTheNextBoundary) {

@@ -171,10 +171,13 @@ TEST(GazeSamples, TobiiStudio) {
   EXPECT_EQ(log.samples[1000].u, 1228.0 / 1920);
   EXPECT_EQ(log.samples[1000].row, 1007);
   EXPECT_EQ(log.samples[2909].v, 542.0 / 1080);
-  // 513 x 353 mm, as its README derives from (ADCSmm); the eyes at 555.78 mm in the median.
+  // 513 x 353 mm, as its README derives from (ADCSmm); medians of the middle between the eyes in 2,483 rows: 245.675 mm
+  // from the left edge, 50.375 mm above the lower one and 553.605 mm before the display.
   EXPECT_NEAR(log.recording_geometry->width_cm, 51.3, 0.05);
   EXPECT_NEAR(log.recording_geometry->height_cm, 35.3, 0.05);
-  EXPECT_NEAR(log.recording_geometry->distance_cm, 55.578, 0.01);
+  EXPECT_NEAR(log.recording_geometry->distance_cm, 55.3605, 1e-9);
+  EXPECT_NEAR(log.recording_geometry->eye_x_cm, 24.5675 - 51.3 / 2, 0.03);
+  EXPECT_NEAR(log.recording_geometry->eye_y_cm, 5.0375 - 35.3 / 2, 0.03);
   GazeReadOptions options;
   options.columns.time = "EyeTrackerTimestamp";
   EXPECT_EQ(load_gaze_log(sample("tobii-studio-tsv/data.tsv"), options).samples[0].t_ns, 123'210'798'000);

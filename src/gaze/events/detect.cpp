@@ -66,9 +66,11 @@ std::vector<LabelRun> label_runs(const std::vector<EyeMovement>& labels, const s
 }
 
 void drop_short_fixations(const GazeDirections& gaze, EyeEvents& events) {
+  // Each sample stands for one step of the clock.
+  const std::int64_t step_ns = median_step_ns(gaze.t_ns);
   for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
     if (run.movement == EyeMovement::fixation &&
-        gaze.t_ns[run.last] - gaze.t_ns[run.first] < events.settings.min_fixation_ns) {
+        gaze.t_ns[run.last] - gaze.t_ns[run.first] + step_ns < events.settings.min_fixation_ns) {
       std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(run.first),
                 events.labels.begin() + static_cast<std::ptrdiff_t>(run.last) + 1, EyeMovement::unclassified);
     }

@@ -52,7 +52,8 @@ EyeEvents events_of_log(const GazeLog& log) {
       continue;
     }
     for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
-      if (events.labels[i] == EyeMovement::unclassified) {
+      // Lost samples too: where a tracker bridged a gap, the event went on.
+      if (events.labels[i] == EyeMovement::unclassified || events.labels[i] == EyeMovement::lost) {
         events.labels[i] = event.type == GazeEventType::fixation ? EyeMovement::fixation : EyeMovement::saccade;
       }
     }

@@ -20,7 +20,8 @@ struct StudioColumns {
   std::size_t time = 0;
   std::optional<std::size_t> x, y, left_x, left_y, right_x, right_y, left_validity, right_validity, left_pupil,
       right_pupil, left_distance, right_distance, left_x_mm, left_y_mm, event_type, fixation, saccade;
-  std::vector<std::size_t> events;  // texts of what happened
+  std::array<std::array<std::optional<std::size_t>, 3>, 2> eye_mm;  // places of the left and right eye
+  std::vector<std::size_t> events;                                  // texts of what happened
   std::size_t needed = 0;
 };
 
@@ -50,6 +51,11 @@ StudioColumns find_columns(const DelimitedTable& table, const GazeReadOptions& o
   c.right_distance = own("DistanceRight");
   c.left_x_mm = own("GazePointLeftX (ADCSmm)");
   c.left_y_mm = own("GazePointLeftY (ADCSmm)");
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      c.eye_mm[eye][axis] = own(fmt::format("EyePos{}{} (ADCSmm)", eye == 0 ? "Left" : "Right", "XYZ"[axis]));
+    }
+  }
   c.event_type = own("GazeEventType");
   c.fixation = own("FixationIndex");
   c.saccade = own("SaccadeIndex");
@@ -86,6 +92,12 @@ class Slope {
  private:
   double n_ = 0, sx_ = 0, sy_ = 0, sxx_ = 0, sxy_ = 0;
 };
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 class StudioReader {
  public:
@@ -169,7 +181,26 @@ class StudioReader {
         distances_mm_.push_back(distance);
       }
     }
+    read_eye_places();
     read_label(t_ns);
+  }
+
+  // The middle of both eyes, from the bottom left corner of the display and before it.
+  void read_eye_places() {
+    Vec3d sum;
+    double eyes = 0;
+    for (const auto& columns : c_.eye_mm) {
+      const Vec3d at{rows_.number(columns[0]), rows_.number(columns[1]), rows_.number(columns[2])};
+      if (is_finite(at) && at.z > 0) {
+        sum += at;
+        ++eyes;
+      }
+    }
+    if (eyes == 2) {
+      eyes_x_mm_.push_back(0.5 * sum.x);
+      eyes_y_mm_.push_back(0.5 * sum.y);
+      eyes_z_mm_.push_back(0.5 * sum.z);
+    }
   }
 
   void add(std::int64_t t_ns, Eye eye, std::size_t x, std::size_t y, double validity, double pupil) {
@@ -201,7 +232,23 @@ class StudioReader {
     }
   }
 
-  // Millimetres against pixels of the same points give the display's size; the eyes' distance is in every row.
+  void place_eyes(DisplayGeometry& g) {
+    if (!eyes_z_mm_.empty() && g.width_cm > 0) {
+      g.distance_cm = median_of(eyes_z_mm_) / 10;
+      g.eye_x_cm = median_of(eyes_x_mm_) / 10 - 0.5 * g.width_cm;
+      g.eye_y_cm = median_of(eyes_y_mm_) / 10 - 0.5 * g.height_cm;
+      add_fact(log_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
+               "median of EyePosLeftZ and EyePosRightZ (ADCSmm)");
+      add_fact(log_, "eye off the display's center", fmt::format("{:.1f}, {:.1f} cm", g.eye_x_cm, g.eye_y_cm),
+               Evidence::header, "right, up: medians of EyePos (ADCSmm)");
+    } else if (!distances_mm_.empty()) {
+      g.distance_cm = median_of(distances_mm_) / 10;
+      add_fact(log_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
+               "median of DistanceLeft and DistanceRight");
+    }
+  }
+
+  // Millimetres against pixels of the same points give the display's size; the eyes' place or distance is in every row.
   void finish() {
     if (log_.recording_geometry) {
       DisplayGeometry& g = *log_.recording_geometry;
@@ -215,13 +262,7 @@ class StudioReader {
         add_fact(log_, "display size", fmt::format("{:.1f} x {:.1f} cm", width_cm, height_cm), Evidence::header,
                  "(ADCSmm) against (ADCSpx)");
       }
-      if (!distances_mm_.empty()) {
-        const auto middle = distances_mm_.begin() + static_cast<std::ptrdiff_t>(distances_mm_.size() / 2);
-        std::nth_element(distances_mm_.begin(), middle, distances_mm_.end());
-        g.distance_cm = *middle / 10;
-        add_fact(log_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
-                 "median of DistanceLeft and DistanceRight");
-      }
+      place_eyes(g);
     }
     millimetres_.finish(log_, "the left eye in millimetres (ADCSmm)");
     finish_places(log_, options_,
@@ -240,7 +281,7 @@ class StudioReader {
   LabelRuns runs_;
   Slope width_, height_;
   WitnessTally millimetres_;
-  std::vector<double> distances_mm_;
+  std::vector<double> distances_mm_, eyes_x_mm_, eyes_y_mm_, eyes_z_mm_;
 };
 
 }  // namespace

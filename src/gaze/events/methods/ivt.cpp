@@ -46,11 +46,10 @@ struct Fixation {
   Vec3d sum;
 };
 
-void merge_fixations(const GazeDirections& gaze, EyeEvents& events) {
+// One pass over neighbours; says whether any became one.
+bool merge_neighbours(const GazeDirections& gaze, EyeEvents& events) {
   const EventSettings& settings = events.settings;
-  if (settings.merge_gap_ns <= 0) {
-    return;
-  }
+  bool merged = false;
   Fixation before;
   bool has_before = false;
   for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
@@ -69,11 +68,13 @@ void merge_fixations(const GazeDirections& gaze, EyeEvents& events) {
         events.labels[i] = EyeMovement::fixation;
       }
       before = {before.first, fixation.last, before.sum + fixation.sum};
+      merged = true;
     } else {
       before = fixation;
     }
     has_before = true;
   }
+  return merged;
 }
 
 }  // namespace
@@ -86,7 +87,9 @@ void classify_ivt(const GazeDirections& gaze, EyeEvents& events) {
       events.labels[i] = speed[i] < events.settings.velocity_deg_s ? EyeMovement::fixation : EyeMovement::saccade;
     }
   }
-  merge_fixations(filled, events);
+  // A fixation that has grown may reach the next: until nothing is left to merge.
+  while (events.settings.merge_gap_ns > 0 && merge_neighbours(filled, events)) {
+  }
   drop_short_fixations(gaze, events);
 }
 
