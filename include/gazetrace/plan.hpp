@@ -106,6 +106,8 @@ struct FramePlan {
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,
                       const ProcessedGaze* steering = nullptr);
 
+// "50.0 ms in the median, mean 50.1, ...": one line.
+std::string gaze_ages_text(const GazeAges& ages);
 std::string plan_as_table(const FramePlan& plan);
 std::string plan_as_json(const FramePlan& plan);
 

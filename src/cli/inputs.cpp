@@ -332,6 +332,9 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     }
   }
   inputs.plan = plan_frames(camera, log, settings, inputs.steering ? &*inputs.steering : nullptr);
+  if (inputs.plan.ages && !job.gaze_at) {
+    inputs.decisions.emplace_back("effective gaze age", gaze_ages_text(*inputs.plan.ages));
+  }
   const auto& aovs = job.exr.aovs;
   if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
     usage("--aov", "there is no eccentricity without gaze", "give --gaze or --gaze-at");

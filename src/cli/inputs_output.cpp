@@ -288,8 +288,12 @@ void prepare_outputs(const PipelineSettings& settings, const std::vector<std::in
 }
 
 std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
-  std::vector<std::string> files = existing({job.environment, job.camera_path, job.gaze.path, job.gaze.columns_file,
-                                             job.screen.name, job.recording_screen, ocio_file(job)});
+  const fs::path camera_path(job.camera_path);
+  // COLMAP's lenses stand beside its pictures.
+  const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
+  std::vector<std::string> files =
+      existing({job.environment, job.camera_path, lenses.string(), job.gaze.path, job.gaze.columns_file,
+                job.screen.name, job.recording_screen, ocio_file(job)});
   if (!job.scene.empty()) {
     const std::vector<std::string> scene = scene_files(job.scene);
     files.insert(files.end(), scene.begin(), scene.end());

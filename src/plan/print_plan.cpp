@@ -53,18 +53,7 @@ std::string notes_text(const FramePlan& plan) {
     text += fmt::format("gaze_render: {}\n", line);
   }
   if (plan.ages && plan.gaze_latency_ns > 0) {
-    const GazeAges& a = *plan.ages;
-    const auto ms = [](double ns) { return ns * 1e-6; };
-    if (a.frames > 0) {
-      text += fmt::format(
-          "effective age at mid-display: {:.1f} ms in the median, mean {:.1f}, {:.1f} to {:.1f}, 95 % up to {:.1f}, "
-          "over "
-          "{} frames; {:.1f} ms less when a frame appears, as much more when it goes\n",
-          ms(a.median_ns), ms(a.mean_ns), ms(a.min_ns), ms(a.max_ns), ms(a.p95_ns), a.frames, ms(a.half_frame_ns));
-    }
-    if (a.unknown > 0) {
-      text += fmt::format("effective age of {} frames: unknown, the log repeats values once a frame\n", a.unknown);
-    }
+    text += fmt::format("effective age at mid-display: {}\n", gaze_ages_text(*plan.ages));
   }
   return text;
 }
@@ -114,6 +103,21 @@ Json camera_json(const Camera& camera) {
 }
 
 }  // namespace
+
+std::string gaze_ages_text(const GazeAges& ages) {
+  const auto ms = [](double ns) { return ns * 1e-6; };
+  const std::string unknown =
+      ages.unknown > 0 ? fmt::format("unknown for {} frames, as the log repeats values once a frame", ages.unknown)
+                       : "";
+  if (ages.frames == 0) {
+    return unknown;
+  }
+  return fmt::format(
+      "{:.1f} ms in the median, mean {:.1f}, {:.1f} to {:.1f}, 95 % up to {:.1f}, over {} frames; {:.1f} ms less "
+      "when a frame appears, as much more when it goes{}{}",
+      ms(ages.median_ns), ms(ages.mean_ns), ms(ages.min_ns), ms(ages.max_ns), ms(ages.p95_ns), ages.frames,
+      ms(ages.half_frame_ns), unknown.empty() ? "" : "; ", unknown);
+}
 
 std::string plan_as_table(const FramePlan& plan) {
   const bool with_true = !std::all_of(plan.frames.begin(), plan.frames.end(), same_gaze);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """How long `gazetrace gaze inspect` takes for an hour of binocular gaze at 1000 Hz, 3.6 million samples, and how much
-memory at most. Makes the logs itself: EyeLink ASC, gazetrace CSV with a row for each eye, and a TSV of one's own.
+memory at most. Makes the logs itself: EyeLink ASC, gazetrace CSV with a row for each eye, the same with a row for the
+mean as well (as `gaze convert` writes it), and a TSV of one's own.
 
   tests/benchmarks/gaze_inspect.py build/dev/bin/gazetrace [--seconds 3600] [--folder /tmp/gaze_hour] [--svg]
 """
@@ -17,6 +18,8 @@ from pathlib import Path
 
 RATE_HZ = 1000
 BLOCK_S = 20  # of movements, which then repeat
+CSV_HEAD = ("# gazetrace-gaze 1\n# display_px 1920 1080\n# display_mm 510 287\n# distance_mm 650\n"
+            "t[ns],u[1],v[1],valid,eye,pupil\n")
 
 
 def movements(seed=7):
@@ -55,16 +58,19 @@ def make_logs(folder, seconds):
     logs = {}
     asc = []
     both = []
+    mean = []
     tsv = []
     for sample in block:
         if sample is None:
             asc.append("\t   .\t   .\t    0.0\t   .\t   .\t    0.0\t.....\n")
             both.append((",,,lost,left,\n", ",,,lost,right,\n"))
+            mean.append((",,,lost,cyclopean,\n", *both[-1]))
             tsv.append("\t\t\t\t\t\n")
             continue
         lx, ly, rx, ry = sample
         asc.append(f"\t {lx:6.1f}\t {ly:6.1f}\t 1103.0\t {rx:6.1f}\t {ry:6.1f}\t 1085.0\t.....\n")
         both.append((f",{lx / 1920:.6f},{ly / 1080:.6f},ok,left,1103\n", f",{rx / 1920:.6f},{ry / 1080:.6f},ok,right,1085\n"))
+        mean.append((f",{(lx + rx) / 3840:.6f},{(ly + ry) / 2160:.6f},ok,cyclopean,1094\n", *both[-1]))
         tsv.append(f"\t{lx:.2f}\t{ly:.2f}\t{rx:.2f}\t{ry:.2f}\t3.41\n")
 
     logs["EyeLink ASC"] = (folder / "hour.asc", [])
@@ -78,10 +84,12 @@ def make_logs(folder, seconds):
         file.write(f"END\t{5_000_000 + seconds * RATE_HZ} \tSAMPLES\tEVENTS\tRES\t  36.00\t  36.00\n")
 
     logs["gazetrace CSV, a row an eye"] = (folder / "hour.csv", [])
-    write_blocks(logs["gazetrace CSV, a row an eye"][0],
-                 "# gazetrace-gaze 1\n# display_px 1920 1080\n# display_mm 510 287\n# distance_mm 650\n"
-                 "t[ns],u[1],v[1],valid,eye,pupil\n",
-                 both, seconds, lambda t, tail: f"{t}000000{tail[0]}{t}000000{tail[1]}")
+    write_blocks(logs["gazetrace CSV, a row an eye"][0], CSV_HEAD, both, seconds,
+                 lambda t, tail: f"{t}000000{tail[0]}{t}000000{tail[1]}")
+
+    logs["gazetrace CSV, three rows a time"] = (folder / "hour3.csv", [])
+    write_blocks(logs["gazetrace CSV, three rows a time"][0], CSV_HEAD, mean, seconds,
+                 lambda t, tail: f"{t}000000{tail[0]}{t}000000{tail[1]}{t}000000{tail[2]}")
 
     logs["TSV with a column map"] = (folder / "hour.tsv", ["--gaze-columns", str(folder / "map.json"), "--screen-px", "1920,1080"])
     (folder / "map.json").write_text(json.dumps({
@@ -103,7 +111,7 @@ def main():
 
 
 def measure(arguments, logs):
-    print(f"{'log':<30} {'MiB':>7} {'samples':>9} {'s':>7} {'CPU s':>7} {'peak MiB':>9}")
+    print(f"{'log':<33} {'MiB':>7} {'samples':>9} {'s':>7} {'CPU s':>7} {'peak MiB':>9}")
     for name, (path, flags) in logs.items():
         picture = ["--svg", str(arguments.folder / "hour.svg"), "--overwrite"] if arguments.svg else []
         begin = time.perf_counter()
@@ -115,7 +123,7 @@ def measure(arguments, logs):
             raise SystemExit(f"{name}: failed")
         report = json.loads(text)
         accused = [finding for finding in report["findings"] if finding["kind"] != "note"]
-        print(f"{name:<30} {path.stat().st_size / 2**20:7.0f} {report['samples']:9} {seconds:7.2f} {usage.ru_utime + usage.ru_stime:7.2f} {usage.ru_maxrss / 1024:9.0f}"
+        print(f"{name:<33} {path.stat().st_size / 2**20:7.0f} {report['samples']:9} {seconds:7.2f} {usage.ru_utime + usage.ru_stime:7.2f} {usage.ru_maxrss / 1024:9.0f}"
               f"{'  ' + report['verdict'] if accused else ''}")
 
 

@@ -3,6 +3,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import harness
 
@@ -46,6 +47,18 @@ class CameraPaths(harness.CliTest):
         # A quarter of the way from (1, 2, 3) to (4, 2, 3) is 0.75 m along x, 1.5 m along -z after the turn and the scale.
         self.assertLess(math.dist(placed[0]["position_m"], [10, 20, 28.5]), 1e-9)
         self.assert_refused(["plan", "--eye", "0,0,0", "--target", "0,0,1", "--camera-turn", "5"], ["--camera-turn"])
+
+    def test_lenses_beside_the_pictures_are_inputs(self):
+        self.write("images.txt", "1 1 0 0 0 0 0 -4 7 a.png\n\n2 1 0 0 0 0 0.1 -4 7 b.png\n\n")
+        digests = []
+        for i, focal in enumerate((900, 800)):
+            self.write("cameras.txt", f"7 PINHOLE 1920 1080 {focal} {focal} 960 540\n")
+            self.run_ok("render", "box.gltf", "--camera-path", "images.txt", "--size", "16x9", "--spp", "1", "--frames", "1",
+                        "-o", f"{i}/f.####.exr", "--quiet")
+            inputs = json.loads((self.folder / f"{i}/run.json").read_text())["input_digests"]
+            digests.append({Path(name).name: digest for name, digest in inputs.items()})
+        self.assertEqual(digests[0]["images.txt"], digests[1]["images.txt"])
+        self.assertNotEqual(digests[0]["cameras.txt"], digests[1]["cameras.txt"])
 
     def test_screens_differ(self):
         self.write("log.csv", "# display_px 1920 1080\n# display_mm 400 225\n# distance_mm 500\nt[ms],u[1],v[1]\n0,0.75,0.5\n")

@@ -51,6 +51,10 @@ class GazeLogs(harness.CliTest):
     def test_formats_say_what_they_were_tried_on(self):
         text = self.run_ok("list", "gaze-formats").stdout
         lines = {line.split()[0]: line for line in text.splitlines()[1:]}
+        self.assertGreater(len(lines), 20)
+        for name, line in lines.items():
+            says = [text for text in ("tried on a real recording", "unconfirmed: synthetic files only") if text in line]
+            self.assertEqual(len(says), 1, name)
         self.assertIn("unconfirmed", lines["varjo"])
         self.assertIn("real recording", lines["eyelink-asc"])
 

@@ -61,7 +61,7 @@ std::vector<Family> families() {
          for (const GazeFormatInfo& format : gaze_formats()) {
            const bool real = format.proof == FormatProof::recording;
            members.push_back({format.name, format.description + (real ? " (tried on a real recording)"
-                                                                      : " (unconfirmed: synthetic files only)")});
+                                                                      : " (unconfirmed: synthetic files only, made after its documentation)")});
          }
          return members;
        }},
