@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "gazetrace/image.hpp"
 #include "gazetrace/material.hpp"
@@ -23,6 +24,7 @@ struct GuideSettings {
   int spp = 1;            // rays a pixel, 1..64: one goes through the centre, more are spread over the pixel
   double pixel_cone = 1;  // as TraceSettings::pixel_cone
   DiffuseModel diffuse = DiffuseModel::burley;
+  int edge_rays = 0;  // more rays through pixels that an edge may cross, 0..64: Guides::edge_rays
 };
 
 // From pixels to places as the guides' rays go.
@@ -34,6 +36,15 @@ struct GuideCamera {
     const Vec3f across = right_step * x - up_step * y;
     return perspective ? (forward + across) * depth_m : forward * depth_m + across;
   }
+};
+
+// What one more ray through a pixel sees; members as in Guides.
+struct EdgeRay {
+  std::uint32_t pixel = 0;  // index into Guides' images
+  float x = 0, y = 0;       // continuous pixel coordinates from the frame's centre
+  Vec3f albedo, normal, emission;
+  float depth_m = 0;
+  SurfaceKind kind = SurfaceKind::miss;
 };
 
 // One entry a pixel. Lens and shutter are left out: the camera is a pinhole in the middle of the frame's time, and so
@@ -52,6 +63,9 @@ struct Guides {
   Image<std::uint32_t> object;    // 1 + index into Scene::instances; 0: miss
   Image<std::uint32_t> material;  // 1 + index into Scene::materials; 0: miss
   Image<SurfaceKind> kind;
+  // GuideSettings::edge_rays for each pixel that differs from one of its four neighbours in object, material or kind,
+  // in normal by more than 25 degrees, or leaves their plane; in the order of the pixels. The images do not hold them.
+  std::vector<EdgeRay> edge_rays;
 };
 
 // Albedos are divided by.

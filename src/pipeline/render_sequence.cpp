@@ -19,6 +19,8 @@
 namespace gazetrace {
 namespace {
 
+constexpr int kEdgeRays = 4;  // measured in tests/benchmarks/filters.cpp
+
 // Adds the wall time of a stage to `ms` and passes its result through.
 template <class Stage>
 auto timed(double& ms, Stage&& stage) {
@@ -69,7 +71,8 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
   std::optional<Guides> guides;
   if (trace.surfaces) {
     guides = timed(row.guides_ms, [&] {
-      return tracer.guides(request.camera, request.width_px, request.height_px, {.diffuse = trace.diffuse});
+      return tracer.guides(request.camera, request.width_px, request.height_px,
+                           {.diffuse = trace.diffuse, .edge_rays = kEdgeRays});
     });
   }
   Frame dense = timed(row.reconstruct_ms, [&] {

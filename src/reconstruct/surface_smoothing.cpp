@@ -11,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::array<float, 3> kSpline{3.0F / 8, 1.0F / 4, 1.0F / 16};  // cubic B-spline, half
+constexpr std::array<float, 2> kBinomial{0.5F, 0.25F};  // 1 2 1 in x and y, half
 
 float luminance(const Vec3f& c) {
   return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
@@ -30,13 +30,11 @@ class Smoother {
       double weight = 0;
       double light = 0;
       double square = 0;
-      double samples = 0;
       for_each_neighbor(site, 1, 1, [&](const SurfaceCell& other, int, int) {
         const double w = static_cast<double>(likeness(own, other) * other.samples);
         weight += w;
         light += w * static_cast<double>(other.light);
         square += w * static_cast<double>(other.square);
-        samples += w;
       });
       const double mean = weight > 0 ? light / weight : 0;
       const double spread = weight > 0 ? std::max(square / weight - mean * mean, 0.0) : 0;
@@ -51,17 +49,22 @@ class Smoother {
     std::vector<SurfaceCell> out = lattice_.cells;
     for_each_cell([&](std::size_t site, std::size_t i) {
       const SurfaceCell& own = lattice_.cells[i];
-      const float noise = settings_.light_sigmas * std::sqrt(own.variance) + 1e-6F * std::fabs(own.light) + 1e-30F;
       Vec3f reflected;
       Vec3f albedo;
       float variance = 0;
       float weight = 0;
-      for_each_neighbor(site, step, 2, [&](const SurfaceCell& other, int dx, int dy) {
-        const float spline =
-            kSpline[static_cast<std::size_t>(std::abs(dx))] * kSpline[static_cast<std::size_t>(std::abs(dy))];
-        float w = spline * other.samples;
+      for_each_neighbor(site, step, 1, [&](const SurfaceCell& other, int dx, int dy) {
+        float w = kBinomial[static_cast<std::size_t>(std::abs(dx))] *
+                  kBinomial[static_cast<std::size_t>(std::abs(dy))] * other.samples;
         if (&other != &own) {
           w *= likeness(own, other);
+          if (w <= 0) {
+            return;
+          }
+          // Of the difference, so that both sides judge alike: were each to go by its own noise alone, quiet places
+          // would refuse what loud ones have to give, and light would be lost.
+          const float noise =
+              settings_.light_sigmas * std::sqrt(own.variance + other.variance) + 1e-6F * std::fabs(own.light) + 1e-30F;
           w *= falling(std::fabs(other.light - own.light) / noise);
         }
         weight += w;

@@ -12,7 +12,7 @@
 namespace gazetrace {
 
 struct SmoothingSettings {
-  int levels = 4;          // steps of 1, 2, 4 ... blocks
+  int levels = 5;          // steps of 1, 2, 4 ... blocks
   float light_sigmas = 4;  // differences of light up to so many standard deviations are taken for noise
   int normal_power = 16;   // of the cosine between normals
   float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance

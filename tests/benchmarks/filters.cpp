@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a reconstruction filter makes of few samples: error against a reference of many, by eccentricity, and time.
 //   gazetrace_filters SCENE SKY --reference FILE [--reference-spp 256] [--size 960x540] [--map half|regions|SPP]
-//       [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--ev 2] [--ppd 67.02] [--rounds 3] [--pictures FOLDER]
+//       [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--ev 2] [--ppd 67.02] [--rounds 3] [--edge-rays 4] [--pictures
+//       FOLDER]
 // FILE keeps the reference between runs; it is rendered (seed 12345) where it is missing. Maps: `half` is 8 samples in
 // each 4x4 block everywhere, 0.5 a pixel; `regions` 32 / 16 / 8 about the centre of the paper's display; a number is
 // that many samples in every pixel. Pictures are compared as displayed: Reinhard's x / (1 + x) of luminance at the
@@ -41,7 +42,7 @@ struct Options {
   std::string map = "half";
   int width_px = 960, height_px = 540;
   std::uint32_t reference_spp = 256;
-  int rounds = 3;
+  int rounds = 3, edge_rays = 4;
   Vec3d eye{8, 2, -0.3}, target{-8, 3, -0.3};
   double fov_deg = 50, ev = 2, ppd = kFlipDefaultPixelsPerDegree;
 };
@@ -73,6 +74,8 @@ Options parse(int argc, char** argv) {
       options.reference_spp = static_cast<std::uint32_t>(std::strtoul(value, nullptr, 10));
     } else if (name == "--map") {
       options.map = value;
+    } else if (name == "--edge-rays") {
+      options.edge_rays = std::atoi(value);
     } else if (name == "--rounds") {
       options.rounds = std::atoi(value);
     } else if (name == "--eye") {
@@ -296,7 +299,7 @@ Run run_filter(const Bench& bench, const std::string& filter, const SamplingMap&
     run.samples = static_cast<double>(sparse.stats.samples);
     Guides guides;
     if (proto || settings.surfaces) {
-      const GuideSettings guide_settings{.spp = proto ? 2 : 1};
+      const GuideSettings guide_settings{.spp = proto ? 2 : 1, .edge_rays = proto ? 0 : bench.options.edge_rays};
       guides = timed(run.guides_ms,
                      [&] { return bench.tracer.guides(bench.camera, map.width_px, map.height_px, guide_settings); });
     }

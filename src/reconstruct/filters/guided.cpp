@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "foveation/sites.hpp"
@@ -38,8 +39,7 @@ struct Light {
 
 struct PixelSurface {
   Vec3f normal, place_m;
-  float slack_m;
-  SurfaceKind kind;
+  SurfaceKind kind = SurfaceKind::diffuse;
 };
 
 class Gather {
@@ -47,9 +47,8 @@ class Gather {
   Gather(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings)
       : map_(input.map), guides_(*input.guides), lattice_(lattice), settings_(settings) {}
 
-  // What falls on the surface that a pixel sees; nothing (weight 0) where no sample is near.
-  [[nodiscard]] Light light_at(int x, int y, int block) const {
-    const PixelSurface pixel = surface_of(x, y);
+  // What falls on a surface that pixel (x, y) sees; nothing (weight 0) where no sample is near.
+  [[nodiscard]] Light light_at(int x, int y, int block, const PixelSurface& pixel) const {
     Light light = nearest_four(x, y, block, pixel);
     if (light.weight > kEnoughLike * light.all && light.weight > 0) {
       return light;
@@ -58,19 +57,19 @@ class Gather {
     return light.weight > 0 ? light : square(x, y, block, pixel, false);
   }
 
- private:
   [[nodiscard]] PixelSurface surface_of(int x, int y) const {
-    const float depth = guides_.depth_m(x, y);
     const float half_width = 0.5F * static_cast<float>(map_.width_px);
     const float half_height = 0.5F * static_cast<float>(map_.height_px);
-    PixelSurface pixel;
-    pixel.normal = guides_.normal(x, y);
-    pixel.place_m = guides_.camera.place(static_cast<float>(x) + 0.5F - half_width,
-                                         static_cast<float>(y) + 0.5F - half_height, depth);
-    pixel.kind = guides_.kind(x, y);
-    return pixel;
+    return {guides_.normal(x, y),
+            guides_.camera.place(static_cast<float>(x) + 0.5F - half_width, static_cast<float>(y) + 0.5F - half_height,
+                                 guides_.depth_m(x, y)),
+            guides_.kind(x, y)};
+  }
+  [[nodiscard]] PixelSurface surface_of(const EdgeRay& ray) const {
+    return {ray.normal, guides_.camera.place(ray.x, ray.y, ray.depth_m), ray.kind};
   }
 
+ private:
   void visit(int px, int py, float tent, const PixelSurface& pixel, bool alike, Light& light) const {
     const std::uint32_t site = lattice_.site_of_pixel(px, py);
     for (std::size_t k = lattice_.first[site]; k < lattice_.first[site + 1]; ++k) {
@@ -141,6 +140,67 @@ bool only_shines(SurfaceKind kind) {
   return kind == SurfaceKind::miss || kind == SurfaceKind::unlit;
 }
 
+struct PixelValue {
+  Vec3f radiance;
+  float variance = 0;
+};
+
+// What one ray sees. `unknown`: for a surface that no sample is near to.
+PixelValue shade(const Gather& gather, int x, int y, int block, const PixelSurface& surface, const Vec3f& albedo,
+                 const Vec3f& emission, const SiteValue& unknown) {
+  if (only_shines(surface.kind)) {
+    return {emission};
+  }
+  const Light light = gather.light_at(x, y, block, surface);
+  if (!(light.weight > 0)) {
+    return {unknown.radiance, unknown.variance};
+  }
+  const float least = kLeastAlbedo * light.weight;
+  const float scale = luminance(albedo) / light.weight;
+  return {emission + Vec3f{albedo.x * light.reflected.x / std::max(light.albedo.x, least),
+                           albedo.y * light.reflected.y / std::max(light.albedo.y, least),
+                           albedo.z * light.reflected.z / std::max(light.albedo.z, least)},
+          scale * scale * light.variance};
+}
+
+// Pixels that edges cross are the mean of all their rays.
+void blend_edges(const FilterInput& input, const Gather& gather, const NeedsFiltering& needs_filtering,
+                 const Image<std::uint32_t>& site_of_pixel, Frame& frame) {
+  const std::vector<EdgeRay>& rays = input.guides->edge_rays;
+  constexpr std::size_t kRaysPerTask = 4096;
+  parallel_for((rays.size() + kRaysPerTask - 1) / kRaysPerTask, input.threads, [&](std::size_t task) {
+    // A pixel belongs to the task in which its first ray is.
+    std::size_t k = task * kRaysPerTask;
+    while (k > 0 && k < rays.size() && rays[k].pixel == rays[k - 1].pixel) {
+      ++k;
+    }
+    while (k < std::min((task + 1) * kRaysPerTask, rays.size())) {
+      const std::uint32_t pixel = rays[k].pixel;
+      const std::uint32_t index = site_of_pixel.pixels[pixel];
+      const Site& site = input.map.sites[index];
+      const bool changed = needs_filtering(input.map, site);
+      const int x = static_cast<int>(pixel) % input.map.width_px;
+      const int y = static_cast<int>(pixel) / input.map.width_px;
+      const int block = input.map.regions[site.region].block_px;
+      PixelValue sum{frame.radiance.pixels[pixel], frame.variance.pixels[pixel]};
+      float count = 1;
+      for (; k < rays.size() && rays[k].pixel == pixel; ++k) {
+        if (changed) {
+          const PixelValue value = shade(gather, x, y, block, gather.surface_of(rays[k]), rays[k].albedo,
+                                         rays[k].emission, input.values.value(index));
+          sum.radiance += value.radiance;
+          sum.variance += value.variance;
+          ++count;
+        }
+      }
+      if (changed) {
+        frame.radiance.pixels[pixel] = sum.radiance / count;
+        frame.variance.pixels[pixel] = sum.variance / count;  // at most: they may share their samples
+      }
+    }
+  });
+}
+
 }  // namespace
 
 Frame filter_guided(const FilterInput& input) {
@@ -151,7 +211,7 @@ Frame filter_guided(const FilterInput& input) {
   SurfaceCells lattice = make_surface_cells(input.sparse, map, guides.camera, input.threads);
   smooth_surfaces(lattice, map, settings, input.threads);
 
-  // AOVs and what no sample is near to come from the linear filter.
+  // AOVs are those of the linear filter.
   Frame frame = input.values.has_guides() ? filter_linear(input) : make_frame(map, false);
   const Gather gather(input, lattice, settings);
   parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
@@ -164,31 +224,18 @@ Frame filter_guided(const FilterInput& input) {
       }
       const int block = map.regions[site.region].block_px;
       const float density = static_cast<float>(input.values.count(i)) / static_cast<float>(site.pixels);
+      const SiteValue unknown = input.values.value(i);
       for_each_pixel(map, site, [&](int x, int y) {
         const std::size_t p = frame.radiance.index(x, y);
+        const PixelValue value = shade(gather, x, y, block, gather.surface_of(x, y), guides.albedo.pixels[p],
+                                       guides.emission.pixels[p], unknown);
+        frame.radiance.pixels[p] = value.radiance;
+        frame.variance.pixels[p] = value.variance;
         frame.sample_count.pixels[p] = density;
-        frame.variance.pixels[p] = 0;
-        frame.radiance.pixels[p] = guides.emission.pixels[p];
-        if (only_shines(guides.kind.pixels[p])) {
-          return;
-        }
-        const Light light = gather.light_at(x, y, block);
-        if (!(light.weight > 0)) {
-          const SiteValue value = input.values.value(i);
-          frame.radiance.pixels[p] = value.radiance;
-          frame.variance.pixels[p] = value.variance;
-          return;
-        }
-        const Vec3f& albedo = guides.albedo.pixels[p];
-        const float least = kLeastAlbedo * light.weight;
-        frame.radiance.pixels[p] += Vec3f{albedo.x * light.reflected.x / std::max(light.albedo.x, least),
-                                          albedo.y * light.reflected.y / std::max(light.albedo.y, least),
-                                          albedo.z * light.reflected.z / std::max(light.albedo.z, least)};
-        const float scale = luminance(albedo) / light.weight;
-        frame.variance.pixels[p] = scale * scale * light.variance;
       });
     }
   });
+  blend_edges(input, gather, needs_filtering, lattice.site_of_pixel, frame);
   return frame;
 }
 

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums per surface as the tracer makes them, and the guided filter on traced frames.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "gazetrace/reconstruct.hpp"
+#include "render/tracer_scenes.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+constexpr int kWidth = 96;
+constexpr int kHeight = 64;
+
+// A floor, a box on it and a lamp in view, under an even sky.
+Scene lit_scene() {
+  Scene scene;
+  scene.materials = {diffuse_material({0.7F, 0.5F, 0.3F}), diffuse_material({0.2F, 0.4F, 0.8F}),
+                     diffuse_material({0.5F, 0.5F, 0.5F}, {20, 10, 5})};
+  add_mesh(scene, {quad({{{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}}}, 0)});
+  add_mesh(scene, box(0.6F, false, 1), make_affine({0, 0.7, 0}, {0, 0.2, 0, 0.98}, {1, 1, 1}));
+  add_mesh(scene, {quad({{{-2, 1, -2}, {-1, 1, -2}, {-1, 2, -2}, {-2, 2, -2}}}, 2)});
+  scene.environment = constant_environment({0.4F, 0.5F, 0.6F});
+  return scene;
+}
+
+const Camera kCamera = camera_at({2, 2, 5}, {-0.5, 0.8, 0});
+
+// Single pixels of 32 samples in the middle, blocks of 2 and 4 around.
+SamplingMap foveated_map() {
+  FoveationSettings settings;
+  settings.region_angles_deg = {10, 24};
+  return make_sampling_map(settings, view_of_perspective(50 * kRadPerDeg, kWidth, kHeight), Vec3d{0, 0, -1});
+}
+
+TraceSettings with_surfaces() {
+  TraceSettings settings;
+  settings.surfaces = true;
+  return settings;
+}
+
+TEST(SurfaceSums, AskingForThemChangesNoBitOfTheSums) {
+  const Scene scene = lit_scene();
+  const PathTracer tracer(scene, threads(2));
+  const SamplingMap map = foveated_map();
+  const SparseFrame plain = tracer.trace(kCamera, 0, map, {});
+  const SparseFrame sparse = tracer.trace(kCamera, 0, map, with_surfaces());
+  EXPECT_EQ(plain.sum, sparse.sum);
+  EXPECT_EQ(plain.sum_square_luminance, sparse.sum_square_luminance);
+  EXPECT_EQ(plain.count, sparse.count);
+  EXPECT_TRUE(plain.surfaces.empty() && plain.first_surface.empty());
+}
+
+// What a site's samples see shining and what its surfaces reflect is all of its light. The first is known where a path
+// tracer of no bounces sees the same samples.
+TEST(SurfaceSums, ShiningAndReflectedLightAreTheWholeSum) {
+  const Scene scene = lit_scene();
+  const PathTracer tracer(scene, threads(2));
+  const SamplingMap map = foveated_map();
+  const SparseFrame sparse = tracer.trace(kCamera, 0, map, with_surfaces());
+  TraceSettings only_seen;
+  only_seen.max_bounces = 0;
+  const SparseFrame seen = tracer.trace(kCamera, 0, map, only_seen);
+  ASSERT_EQ(sparse.first_surface.size(), map.sites.size() + 1);
+  ASSERT_EQ(sparse.first_surface.back(), sparse.surfaces.size());
+  std::size_t several = 0;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    if (map.regions[map.sites[i].region].block_px == 1) {
+      EXPECT_EQ(sparse.first_surface[i], sparse.first_surface[i + 1]);
+      continue;
+    }
+    Vec3d sum = to_double(seen.sum[i]);
+    std::uint32_t count = 0;
+    for (std::size_t s = sparse.first_surface[i]; s < sparse.first_surface[i + 1]; ++s) {
+      const SurfaceSums& surface = sparse.surfaces[s];
+      sum += to_double(surface.reflected);
+      count += surface.count;
+      EXPECT_GT(surface.count, 0U);
+      EXPECT_LE(dot(surface.normal, surface.normal), 1.0001F * static_cast<float>(surface.count * surface.count));
+    }
+    several += sparse.first_surface[i + 1] - sparse.first_surface[i] > 1 ? 1 : 0;
+    EXPECT_LE(count, sparse.count[i]);
+    const double tolerance = 1e-5 * static_cast<double>(sparse.sum[i].x) + 1e-6;
+    EXPECT_NEAR(sum.x, static_cast<double>(sparse.sum[i].x), tolerance) << i;
+    EXPECT_NEAR(sum.z, static_cast<double>(sparse.sum[i].z), tolerance) << i;
+  }
+  EXPECT_GT(several, 20U);  // edges of box, lamp and floor
+}
+
+TEST(SurfaceSums, SameBitsForAnyThreadCount) {
+  const Scene scene = lit_scene();
+  const SamplingMap map = foveated_map();
+  const PathTracer one(scene, threads(1));
+  const PathTracer two(scene, threads(2));
+  const GuideSettings settings{.edge_rays = 3};
+  const Guides guides_one = one.guides(kCamera, kWidth, kHeight, settings);
+  const Guides guides_two = two.guides(kCamera, kWidth, kHeight, settings);
+  EXPECT_GT(guides_one.edge_rays.size(), 300U);
+  const Frame a = reconstruct(one.trace(kCamera, 0, map, with_surfaces()), map, "guided", 1, &guides_one);
+  const Frame b = reconstruct(two.trace(kCamera, 0, map, with_surfaces()), map, "guided", 2, &guides_two);
+  EXPECT_EQ(a.radiance, b.radiance);
+  EXPECT_EQ(a.variance, b.variance);
+}
+
+// Against many samples: the foveal pixels are the linear filter's to the bit, the others nearer to the truth, and the
+// mean of the frame within a per cent of the truth's.
+TEST(GuidedFilter, IsNearerToManySamplesThanLinear) {
+  const Scene scene = lit_scene();
+  const PathTracer tracer(scene, threads(2));
+  const SamplingMap map = foveated_map();
+  TraceSettings other;
+  other.seed = 99;
+  const SamplingMap full = uniform_map(kWidth, kHeight, 512);
+  const Frame truth = reconstruct(tracer.trace(kCamera, 0, full, other), full, "none");
+  const SparseFrame sparse = tracer.trace(kCamera, 0, map, with_surfaces());
+  const Guides guides = tracer.guides(kCamera, kWidth, kHeight, {.edge_rays = 4});
+  const Frame linear = reconstruct(sparse, map, "linear");
+  const Frame guided = reconstruct(sparse, map, "guided", 0, &guides);
+  double linear_error = 0;
+  double guided_error = 0;
+  double truth_sum = 0;
+  double guided_sum = 0;
+  for (std::size_t i = 0; i < truth.radiance.pixels.size(); ++i) {
+    if (map.regions[map.region.pixels[i]].block_px == 1) {
+      EXPECT_EQ(linear.radiance.pixels[i], guided.radiance.pixels[i]);
+      continue;
+    }
+    const Vec3d t = to_double(truth.radiance.pixels[i]);
+    const Vec3d l = to_double(linear.radiance.pixels[i]) - t;
+    const Vec3d g = to_double(guided.radiance.pixels[i]) - t;
+    linear_error += dot(l, l) / (0.01 + dot(t, t));
+    guided_error += dot(g, g) / (0.01 + dot(t, t));
+    truth_sum += t.y;
+    guided_sum += static_cast<double>(guided.radiance.pixels[i].y);
+  }
+  EXPECT_LT(guided_error, 0.25 * linear_error);
+  EXPECT_NEAR(guided_sum / truth_sum, 1, 0.01);
+}
+
+}  // namespace
+}  // namespace gazetrace
