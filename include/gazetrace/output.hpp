@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -85,6 +86,8 @@ ImageRgb read_exr_rgb(const std::string& path);
 // The digest stored in an EXR or display image of ours; empty: not ours, unreadable or incomplete.
 std::string read_settings_digest(const std::string& path);
 
+constexpr std::size_t kTimingRegions = 9;
+
 struct TimingRow {
   std::int32_t frame = 0;
   double plan_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0, color_ms = 0, write_ms = 0,
@@ -93,10 +96,9 @@ struct TimingRow {
   std::uint64_t pixels = 0, samples = 0;
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0, non_finite_samples = 0;
-  // fovea, intermediate, periphery; a uniform frame counts as fovea.
   // In the order of timing_regions().
-  std::array<std::uint64_t, 4> region_pixels{}, region_samples{};
-  std::array<double, 4> region_cpu_ms{};
+  std::array<std::uint64_t, kTimingRegions> region_pixels{}, region_samples{};
+  std::array<double, kTimingRegions> region_cpu_ms{};
   double exposure_ev = 0;
   std::string gaze_state;   // of the gaze that steers
   std::string gaze_event;   // fixation, saccade, blink, ...; "none": not known
@@ -106,7 +108,8 @@ struct TimingRow {
 };
 
 std::vector<std::string> timing_columns();
-// Names of the regions that have columns; "uniform" holds frames without regions and models of other regions.
+// Names of the regions that have columns: those of "regions", "uniform" for frames without regions, and the block sizes
+// of density models.
 const std::vector<std::string>& timing_regions();
 std::string timing_row_text(const TimingRow& row);                // one line, without its end
 std::string timing_csv_text(const std::vector<TimingRow>& rows);  // header and rows

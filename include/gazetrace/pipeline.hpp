@@ -56,6 +56,9 @@ struct SequenceResult {
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer);
 
+// What the sampling map of a frame depends on beside settings, view and gaze.
+MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);
+
 // A frame depends on those before it.
 bool uses_history(const PipelineSettings& settings);
 

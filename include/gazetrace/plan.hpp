@@ -58,6 +58,7 @@ struct PlanSettings {
   bool find_events = true;           // say what the eye does, by default_event_preset() in the recording's geometry
   // The uncertainty of the gaze widens the fovea: accuracy + precision + age x speed, degrees.
   std::optional<GazeUncertainty> uncertainty;
+  bool find_speed = false;  // say how fast the eye turns
   int width_px = 1280, height_px = 720;
   std::optional<DisplayGeometry> display;  // where the frame is watched; required for a screen log
   // Needed where the log states a recording screen whose size in degrees differs by more than 2 %.
@@ -77,6 +78,9 @@ struct FrameRequest {
   GazeAtTime gaze_true;    // the clean log at that time; metrics use this one
   // The angle by which the gaze that steers may be off (PlanSettings::uncertainty); 0: not asked for.
   double gaze_uncertainty_deg = 0;
+  // Of the eye by the clean log, at the time whose gaze steers: known without foresight. Speed only if asked for.
+  double eye_speed_deg_s = 0;
+  bool eye_in_saccade = false;
   // In the eye's frame; empty: no gaze, render uniformly.
   std::optional<Vec3d> gaze_direction_render, gaze_direction_true;
 };

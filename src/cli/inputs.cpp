@@ -320,12 +320,16 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
   inputs.frames = choose_frames(job, camera, log, inputs.scene.get(), decision);
   inputs.decisions.emplace_back("frames", decision);
   if (log == nullptr) {
-    inputs.decisions.emplace_back("sampling",
-                                  fmt::format("{} samples everywhere: there is no gaze", job.foveation.uniform_spp));
+    const FoveationSettings& fov = job.foveation;
+    const std::string rate = fov.budget_spp       ? fmt::format("{} samples a pixel", *fov.budget_spp)
+                             : fov.budget_samples ? fmt::format("{} samples in all", *fov.budget_samples)
+                                                  : fmt::format("{} samples", fov.uniform_spp);
+    inputs.decisions.emplace_back("sampling", rate + " everywhere: there is no gaze");
   }
   PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
   if (log != nullptr && !job.gaze_at) {
     settings.uncertainty = gaze_uncertainty(job, *log);
+    settings.find_speed = job.foveation.retinal_velocity;
     if (!job.gaze_process.empty()) {
       inputs.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
       inputs.decisions.emplace_back("gaze processing", fmt::format("{}", fmt::join(inputs.steering->reports, "; ")));

@@ -352,6 +352,14 @@ std::string format_value(const std::vector<std::string>& value) {
   return fmt::format("{}", fmt::join(value, ","));
 }
 
+void parse_value(std::string_view text, const std::string& /*place*/, FalloffTable& value) {
+  value = load_falloff_table(std::string(text));
+}
+
+std::string format_value(const FalloffTable& value) {
+  return value.path;
+}
+
 std::string format_value(const ExposureSettings& value) {
   if (value.mode == ExposureMode::fixed) {
     return format_value(value.ev);

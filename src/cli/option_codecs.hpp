@@ -61,6 +61,7 @@ void parse_value(std::string_view text, const std::string& place, std::array<std
 void parse_value(std::string_view text, const std::string& place, std::array<int, 2>& value);
 void parse_value(std::string_view text, const std::string& place, std::array<double, 2>& value);
 void parse_value(std::string_view text, const std::string& place, std::vector<std::string>& value);  // a,b,c
+void parse_value(std::string_view text, const std::string& place, FalloffTable& value);  // a file, which it reads
 // "auto", "auto+0.5" or stops: sets mode and ev, leaves the rest.
 void parse_value(std::string_view text, const std::string& place, ExposureSettings& value);
 
@@ -84,6 +85,7 @@ std::string format_value(const std::array<std::uint32_t, 3>& value);
 std::string format_value(const std::array<int, 2>& value);
 std::string format_value(const std::array<double, 2>& value);
 std::string format_value(const std::vector<std::string>& value);
+std::string format_value(const FalloffTable& value);
 std::string format_value(const ExposureSettings& value);
 
 // The names of an enumeration's values, in the order of the help.
@@ -105,6 +107,8 @@ using NameList = std::vector<std::pair<E, const char*>>;
 GAZETRACE_ENUM_NAMES(AngleReading, "angle reading", {E::full_angle, "full-angle"}, {E::eccentricity, "eccentricity"})
 GAZETRACE_ENUM_NAMES(SampleUnit, "sample unit", {E::per_block, "block"}, {E::per_pixel, "pixel"})
 GAZETRACE_ENUM_NAMES(RegionShape, "region shape", {E::cone, "cone"}, {E::disc, "disc"})
+GAZETRACE_ENUM_NAMES(FalloffNormalization, "normalisation", {E::display, "display"}, {E::relative, "relative"})
+GAZETRACE_ENUM_NAMES(FalloffEye, "eye", {E::both, "both"}, {E::left, "left"}, {E::right, "right"})
 GAZETRACE_ENUM_NAMES(CameraAxes, "axes", {E::gl, "gl"}, {E::cv, "cv"}, {E::unity, "unity"})
 GAZETRACE_ENUM_NAMES(CameraExtrapolation, "extrapolation", {E::error, "error"}, {E::hold, "hold"})
 GAZETRACE_ENUM_NAMES(PathInterpolation, "interpolation", {E::linear, "linear"}, {E::step, "step"},
@@ -147,6 +151,16 @@ std::vector<std::string> enum_names() {
     names.emplace_back(name);
   }
   return names;
+}
+
+// "a|b|c", for the help.
+template <class E>
+std::string choices() {
+  std::string text;
+  for (const std::string& name : enum_names<E>()) {
+    text += (text.empty() ? "" : "|") + name;
+  }
+  return text;
 }
 
 template <class E>

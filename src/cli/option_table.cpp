@@ -21,6 +21,12 @@ OptionEntry OptionTable::start(const std::string& flags, const std::string& unit
 
 void OptionTable::finish(OptionEntry entry) {
   entry.defaults = entry.values();
+  entry.given = std::make_shared<bool>(false);
+  entry.assign_default = entry.assign;
+  entry.assign = [assign = entry.assign_default, given = entry.given](const auto& values, const auto& place) {
+    assign(values, place);
+    *given = true;
+  };
   entries_.push_back(std::move(entry));
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,8 +30,11 @@ struct OptionEntry {
   std::string help;
   OptionShape shape = OptionShape::value;
   Influence influence = Influence::none;
-  // Sets the target; throws Error(usage, place, ...).
+  // Sets the target; throws Error(usage, place, ...). The same for a default of a preset, which does not count as
+  // given.
   std::function<void(const std::vector<std::string>& values, const std::string& place)> assign;
+  std::function<void(const std::vector<std::string>& values, const std::string& place)> assign_default;
+  std::shared_ptr<bool> given;  // by the command line or a settings file
   // The same without touching the target.
   std::function<void(const std::vector<std::string>& values, const std::string& place)> check;
   // The target's present value in canonical form; empty: not set.
@@ -89,6 +93,8 @@ class OptionTable {
   }
 
   [[nodiscard]] const std::vector<OptionEntry>& entries() const { return entries_; }
+  // The option added last, for one that does more than set a value.
+  [[nodiscard]] OptionEntry& last() { return entries_.back(); }
   [[nodiscard]] const OptionEntry* find(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> names() const;
 

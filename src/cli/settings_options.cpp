@@ -3,16 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "cli/foveation_options.hpp"
+#include "cli/presets.hpp"
+
 namespace gazetrace {
 namespace {
 
 constexpr Influence kPixels = Influence::pixels;
 constexpr Influence kFile = Influence::file;
-
-template <class E>
-std::string choices() {
-  return fmt::format("{}", fmt::join(enum_names<E>(), "|"));
-}
 
 void add_scene_options(OptionTable& table, JobSettings& job) {
   table.group("Scene and light");
@@ -138,25 +136,8 @@ void add_frame_options(OptionTable& table, JobSettings& job) {
               "Where the frame lies on the screen, in screen pixels; default: it fills the screen", kPixels);
 }
 
-void add_foveation_options(OptionTable& table, JobSettings& job) {
-  FoveationSettings& fov = job.foveation;
-  table.group("Where the samples go");
-  table.value("--falloff", fov.falloff, "NAME", "How sampling falls off with eccentricity ('gazetrace list falloffs')",
-              kPixels);
-  table.value("--spp", fov.uniform_spp, "N", "Samples a pixel of uniform frames; plan --counts compares with it",
-              kPixels);
-  table.value("--region-samples", fov.region_samples, "N,N,N", "Samples in fovea, intermediate region and periphery",
-              kPixels);
-  table.value("--region-blocks", fov.region_blocks_px, "N,N",
-              "Block sizes of intermediate region and periphery, pixels", kPixels);
-  table.value("--region-angles", fov.region_angles_deg, "DEG,DEG", "Where fovea and intermediate region end, degrees",
-              kPixels);
-  table.value("--angle-reading", fov.reading, choices<AngleReading>(),
-              "The angles are diameters (full-angle) or eccentricities", kPixels);
-  table.value("--sample-unit", fov.unit, choices<SampleUnit>(), "Samples count for a block or for each of its pixels",
-              kPixels);
-  table.value("--region-shape", fov.shape, choices<RegionShape>(),
-              "cone: by the angle between rays; disc: the paper's circle in pixels", kPixels);
+void add_reconstruction_options(OptionTable& table, JobSettings& job) {
+  table.group("Between the samples");
   table.value("--filter", job.filter, "NAME", "Fills pixels between samples ('gazetrace list filters')", kPixels);
   table.value("--accumulate", job.accumulate, choices<AccumulateMode>(),
               "running: mean over frames while the camera stands still", kPixels);
@@ -321,6 +302,7 @@ void add_ocio_config_options(OptionTable& table, ColorSettings& color) {
 }
 
 void add_job_options(OptionTable& table, JobSettings& job) {
+  add_preset_option(table, job.preset);  // first: other options go over it
   add_scene_options(table, job);
   add_camera_options(table, job);
   add_lens_options(table, job);
@@ -331,7 +313,8 @@ void add_job_options(OptionTable& table, JobSettings& job) {
   add_screen_options(table, job.screen);
   add_transfer_options(table, job);
   add_frame_options(table, job);
-  add_foveation_options(table, job);
+  add_foveation_options(table, job.foveation);
+  add_reconstruction_options(table, job);
   add_trace_options(table, job);
   add_color_options(table, job);
   add_output_options(table, job);

@@ -32,6 +32,8 @@ struct GazeFileSettings {
 };
 
 struct JobSettings {
+  std::string preset;
+
   // Scene and light
   std::string scene;
   std::string environment = "auto";

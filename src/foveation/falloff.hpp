@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a fall-off model returns: regions, and the region of each pixel. Sites and tiles follow from it in one place.
+// What a fall-off model returns: either a layout, the region of each pixel with whole rates, or a density, from which
+// blocks and counts follow in one place (blocks.hpp, whole_counts.hpp).
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "gazetrace/foveation.hpp"
@@ -22,13 +26,51 @@ struct Layout {
   Image<std::uint8_t> region;
 };
 
-// One function `layout_<name>` per line of falloffs.def. `gaze_direction` is finite and not zero.
-#define FALLOFF(name, description) \
-  Layout layout_##name(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction);
+// A place as a density model sees it.
+struct FalloffPlace {
+  double eccentricity_deg = 0;
+  Vec2d meridian{1, 0};  // unit vector from the gaze in the visual field, right and up; only if `uses_meridian`
+  double radius_px = 0;  // from the gaze point in the frame's plane, infinite if there is none; only if `uses_radius`
+};
+
+struct DensityModel {
+  enum class Quantity : std::uint8_t {
+    cutoff_cpd,  // highest frequency seen, >= 0, may be infinite: the density is its square by the normalization
+    density      // of the full rate, >= 0
+  };
+  Quantity quantity = Quantity::cutoff_cpd;
+  std::function<double(const FalloffPlace&)> value;
+  bool uses_meridian = false, uses_radius = false;
+  std::optional<double> full_rate_spp;  // default: the settings' uniform_spp
+};
+
+using Falloff = std::variant<Layout, DensityModel>;
+
+// One function `falloff_<file>` per line of falloffs.def. `gaze_direction` is finite and not zero.
+#define FALLOFF(file, name, description) \
+  Falloff falloff_##file(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction);
 #include "foveation/falloffs.def"
 #undef FALLOFF
 
+// The one that the settings name, which check_foveation has accepted.
+Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction);
+
 // `samples_per_pixel` at every pixel: the fall-off "uniform", and any frame without gaze.
 Layout uniform_layout(std::uint32_t samples_per_pixel, int width_px, int height_px);
+
+// A model of cut-off that is the same in every direction.
+template <class Cutoff>
+DensityModel isotropic_cutoff(const Cutoff& cutoff) {
+  DensityModel model;
+  model.value = [cutoff](const FalloffPlace& place) { return cutoff(place.eccentricity_deg); };
+  return model;
+}
+template <class Density>
+DensityModel isotropic_density(const Density& density) {
+  DensityModel model;
+  model.quantity = DensityModel::Quantity::density;
+  model.value = [density](const FalloffPlace& place) { return density(place.eccentricity_deg); };
+  return model;
+}
 
 }  // namespace gazetrace

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
+#include "core/parallel.hpp"
+#include "foveation/blocks.hpp"
 #include "foveation/sites.hpp"
+#include "foveation/whole_counts.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 
@@ -11,6 +18,7 @@ namespace gazetrace {
 namespace {
 
 constexpr int kMaxFramePx = 65535;  // blocks and pixels are counted in 16 bits
+constexpr double kMaxSpp = 1e6;     // times 64 x 64 pixels of a block still fits 32 bits
 
 void check_view(const PlanarView& view) {
   if (view.width_px < 1 || view.height_px < 1 || view.width_px > kMaxFramePx || view.height_px > kMaxFramePx) {
@@ -28,14 +36,45 @@ void check_gaze(const Vec3d& direction) {
   }
 }
 
-Layout make_layout(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
-#define FALLOFF(name, description)                        \
-  if (settings.falloff == #name) {                        \
-    return layout_##name(settings, view, gaze_direction); \
+// A budget in samples a frame, or nothing.
+std::optional<double> budget_of(const FoveationSettings& settings, const PlanarView& view) {
+  if (settings.budget_samples) {
+    return static_cast<double>(*settings.budget_samples);
   }
-#include "foveation/falloffs.def"
-#undef FALLOFF
-  return {};  // not reached: check_foveation knows the same list
+  if (settings.budget_spp) {
+    return *settings.budget_spp * view.width_px * view.height_px;
+  }
+  return std::nullopt;
+}
+
+SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, const MapContext& context) {
+  SamplingMap map = map_from_layout(std::move(layout));
+  if (budget) {
+    std::vector<double> weights(map.sites.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      weights[i] = map.sites[i].samples;
+    }
+    const double rate = rate_of_budget(map, weights, *budget, kMaxSpp);
+    set_whole_counts(map, weights, rate, kMaxSpp, context.seed, context.frame);
+  }
+  return map;
+}
+
+SamplingMap map_of_density(DensityModel model, const FoveationSettings& settings, const PlanarView& view,
+                           const Vec3d& gaze_direction, const std::optional<double>& budget,
+                           const MapContext& context) {
+  double rate = model.full_rate_spp.value_or(settings.uniform_spp);
+  const DensityField field(settings, view, gaze_direction, context, std::move(model));
+  if (budget) {
+    rate = std::min(*budget / sum_of_density(field, view.width_px, view.height_px, context.threads), kMaxSpp);
+  }
+  WeighedMap blocks = blocks_of_density(field, settings, view.width_px, view.height_px, rate, context.threads);
+  if (budget) {
+    rate = rate_of_budget(blocks.map, blocks.weights, *budget, kMaxSpp);
+  }
+  blocks.map.full_rate_spp = std::min(rate, kMaxSpp);
+  set_whole_counts(blocks.map, blocks.weights, rate, kMaxSpp, context.seed, context.frame);
+  return std::move(blocks.map);
 }
 
 }  // namespace
@@ -49,14 +88,43 @@ std::uint64_t SamplingMap::samples() const {
 }
 
 SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarView& view,
-                              const std::optional<Vec3d>& gaze_direction) {
+                              const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
   check_foveation(settings);
   check_view(view);
+  const std::optional<double> budget = budget_of(settings, view);
   if (!gaze_direction) {
-    return map_from_layout(uniform_layout(settings.uniform_spp, view.width_px, view.height_px));
+    return map_of_layout(uniform_layout(settings.uniform_spp, view.width_px, view.height_px), budget, context);
   }
   check_gaze(*gaze_direction);
-  return map_from_layout(make_layout(settings, view, *gaze_direction));
+  Falloff falloff = make_falloff(settings, view, *gaze_direction);
+  if (auto* model = std::get_if<DensityModel>(&falloff)) {
+    return map_of_density(std::move(*model), settings, view, *gaze_direction, budget, context);
+  }
+  if (context.uncertainty_deg > 0) {
+    falloff = make_falloff(widened(settings, context.uncertainty_deg), view, *gaze_direction);
+  }
+  return map_of_layout(std::get<Layout>(std::move(falloff)), budget, context);
+}
+
+std::optional<ImageGray> falloff_density(const FoveationSettings& settings, const PlanarView& view,
+                                         const Vec3d& gaze_direction, const MapContext& context) {
+  check_foveation(settings);
+  check_view(view);
+  check_gaze(gaze_direction);
+  Falloff falloff = make_falloff(settings, view, gaze_direction);
+  auto* model = std::get_if<DensityModel>(&falloff);
+  if (model == nullptr) {
+    return std::nullopt;
+  }
+  const DensityField field(settings, view, gaze_direction, context, std::move(*model));
+  ImageGray image(view.width_px, view.height_px);
+  parallel_for(static_cast<std::size_t>(view.height_px), context.threads, [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < view.width_px; ++x) {
+      image(x, y) = static_cast<float>(field.at(x + 0.5, y + 0.5));
+    }
+  });
+  return image;
 }
 
 void pixels_of_site(const SamplingMap& map, const Site& site, std::vector<PixelIndex>& out) {

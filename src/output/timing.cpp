@@ -12,7 +12,8 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::array<const char*, 4> kRegions{"fovea", "intermediate", "periphery", "uniform"};
+constexpr std::array<const char*, kTimingRegions> kRegions{"fovea",   "intermediate", "periphery", "uniform", "block_1",
+                                                           "block_2", "block_4",      "block_8",   "block_16"};
 
 // Calls visit(name, field) for every column, in order. Row is TimingRow or const TimingRow.
 template <class Row, class Visit>

@@ -13,6 +13,7 @@
 #include "core/stopwatch.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "gazetrace/version.hpp"
+#include "pipeline/contrast_prepass.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
 
@@ -46,21 +47,43 @@ void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row
   const std::vector<std::string>& names = timing_regions();
   for (std::size_t i = 0; i < map.regions.size(); ++i) {
     const auto name = std::find(names.begin(), names.end(), map.regions[i].name);
-    // Models of other regions are summed under the last name.
-    const auto column = static_cast<std::size_t>(std::min(name - names.begin(), std::ptrdiff_t{3}));
-    row.region_pixels[column] += map.regions[i].pixels;
-    row.region_samples[column] += stats.regions[i].samples;
-    row.region_cpu_ms[column] += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
+    if (name != names.end()) {
+      const auto column = static_cast<std::size_t>(name - names.begin());
+      row.region_pixels.at(column) += map.regions[i].pixels;
+      row.region_samples.at(column) += stats.regions[i].samples;
+      row.region_cpu_ms.at(column) += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
+    }
     row.trace_cpu_ms += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
+  }
+}
+
+// Samples of the first look belong to no region of the map.
+void count_first_look(const TraceStats& stats, TimingRow& row) {
+  row.samples += stats.samples;
+  row.rays_primary += stats.rays_primary;
+  row.rays_bounce += stats.rays_bounce;
+  row.rays_shadow += stats.rays_shadow;
+  row.rejected_rays += stats.rejected_rays;
+  row.non_finite_samples += stats.non_finite_samples;
+  for (const RegionTraceStats& region : stats.regions) {
+    row.trace_cpu_ms += static_cast<double>(region.cpu_ns) * 1e-6;
   }
 }
 
 RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
                            TemporalHistory& history, TimingRow& row, SequenceResult& result) {
   RenderedFrame rendered;
+  MapContext context = map_context(request, settings.trace.seed, settings.threads);
+  ContrastPrepass first_look;
+  if (settings.foveation.contrast_strength > 0 && request.gaze_direction_render) {
+    first_look = timed(row.trace_ms, [&] {
+      tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
+      return trace_contrast(tracer, request, settings.trace, settings.foveation.contrast_strength);
+    });
+    context.contrast = &first_look.multiplier;
+  }
   rendered.map = timed(row.plan_ms, [&] {
-    return make_sampling_map(widened(settings.foveation, request.gaze_uncertainty_deg), request.view,
-                             request.gaze_direction_render);
+    return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render, context);
   });
   TraceSettings trace = settings.trace;
   trace.surfaces = filter_needs_guides(settings.filter);
@@ -86,6 +109,7 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
   });
   row.exposure_ev = rendered.exposure_ev;
   count_trace(sparse.stats, rendered.map, row);
+  count_first_look(first_look.stats, row);
   result.bad_samples.insert(result.bad_samples.end(), sparse.stats.bad_samples.begin(), sparse.stats.bad_samples.end());
   return rendered;
 }
@@ -222,6 +246,17 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   }
   timing.finish();
   return result;
+}
+
+MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads) {
+  MapContext context;
+  context.seed = seed;
+  context.frame = request.frame;
+  context.uncertainty_deg = request.gaze_uncertainty_deg;
+  context.gaze_speed_deg_s = request.eye_speed_deg_s;
+  context.in_saccade = request.eye_in_saccade;
+  context.threads = threads;
+  return context;
 }
 
 std::vector<std::string> output_files(const OutputSettings& output, const std::vector<std::int32_t>& frames,

@@ -28,9 +28,27 @@ GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings)
   if (settings.find_events) {
     movements_ = detect_events(*log, default_event_preset(*log)).labels;
   }
-  if (uncertainty_) {
+  if (uncertainty_ || settings.find_speed) {
     speed_deg_s_ = angular_speed_deg_s(gaze_directions(*log), kSpeedWindowNs);
   }
+}
+
+std::size_t GazeMotion::row_at(std::int64_t t_log_ns) const {
+  const auto after = std::upper_bound(log_->samples.begin(), log_->samples.end(), t_log_ns,
+                                      [](std::int64_t t, const GazeSample& sample) { return t < sample.t_ns; });
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - log_->samples.begin() - 1, 0));
+}
+
+double GazeMotion::speed_deg_s(std::int64_t t_log_ns) const {
+  if (speed_deg_s_.empty()) {
+    return 0;
+  }
+  const double speed = speed_deg_s_[row_at(t_log_ns)];
+  return std::isnan(speed) ? 0 : speed;
+}
+
+bool GazeMotion::in_saccade(std::int64_t t_log_ns) const {
+  return !movements_.empty() && movements_[row_at(t_log_ns)] == EyeMovement::saccade;
 }
 
 double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
@@ -38,15 +56,8 @@ double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
   if (!uncertainty_ || !age_ns) {
     return 0;
   }
-  double moved_deg = 0;
-  if (!speed_deg_s_.empty()) {
-    const std::int64_t t_ns = request.gaze_true.t_log_ns - *age_ns;
-    const auto after = std::upper_bound(log_->samples.begin(), log_->samples.end(), t_ns,
-                                        [](std::int64_t t, const GazeSample& sample) { return t < sample.t_ns; });
-    const auto row = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - log_->samples.begin() - 1, 0));
-    const double speed = speed_deg_s_[row];
-    moved_deg = std::isnan(speed) ? 0 : speed * std::abs(static_cast<double>(*age_ns)) * 1e-9;
-  }
+  const double moved_deg =
+      speed_deg_s(request.gaze_true.t_log_ns - *age_ns) * std::abs(static_cast<double>(*age_ns)) * 1e-9;
   return uncertainty_->accuracy_deg + uncertainty_->precision_deg + moved_deg;
 }
 

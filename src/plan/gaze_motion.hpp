@@ -2,6 +2,8 @@
 // What the eye does at the time of a frame, how fast it goes, and how old a frame's gaze is.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -19,8 +21,15 @@ class GazeMotion {
   [[nodiscard]] const std::vector<EyeMovement>* movements() const { return movements_.empty() ? nullptr : &movements_; }
   // accuracy + precision + age x speed of the gaze that steers the frame; 0 where not asked for or without gaze.
   [[nodiscard]] double uncertainty_deg(const FrameRequest& request) const;
+  // At a time on the log's clock: how fast the gaze goes (0 where nobody asked or nothing is known), and whether the
+  // eye is in a saccade.
+  [[nodiscard]] double speed_deg_s(std::int64_t t_log_ns) const;
+  [[nodiscard]] bool in_saccade(std::int64_t t_log_ns) const;
 
  private:
+  // The last sample that is not after the time; the first, where all are.
+  [[nodiscard]] std::size_t row_at(std::int64_t t_log_ns) const;
+
   const GazeLog* log_;
   std::optional<GazeUncertainty> uncertainty_;
   std::vector<EyeMovement> movements_;

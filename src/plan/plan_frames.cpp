@@ -143,6 +143,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
               : gaze_at(*steering_log, settings.gaze, earlier(request.t_video_ns, settings.gaze_latency_ns),
                         steering_motion.movements());
       request.gaze_uncertainty_deg = steering_motion.uncertainty_deg(request);
+      request.eye_speed_deg_s = motion.speed_deg_s(request.gaze_render.t_log_ns);
+      request.eye_in_saccade = motion.in_saccade(request.gaze_render.t_log_ns);
       geometry.settle(request.gaze_render);
       geometry.settle(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);

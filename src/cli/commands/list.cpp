@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/presets.hpp"
 #include "cli/settings_options.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
@@ -54,6 +55,18 @@ std::vector<Member> view_members(const ListArguments& arguments) {
 std::vector<Family> families() {
   return {
       {"falloffs", "--falloff", [](const auto&) { return members_of(falloffs()); }},
+      {"presets", "--preset",
+       [](const auto&) {
+         std::vector<Member> members;
+         for (const Preset& preset : presets()) {
+           std::string settings;
+           for (const auto& [option, value] : preset.settings) {
+             settings += fmt::format("{}{}={}", settings.empty() ? "" : " ", option, value);
+           }
+           members.push_back({preset.name, preset.description + ": " + settings});
+         }
+         return members;
+       }},
       {"filters", "--filter", [](const auto&) { return members_of(reconstruction_filters()); }},
       {"gaze-formats", "--gaze-format",
        [](const auto&) {

@@ -34,9 +34,10 @@ struct FrameCounts {
   }
 };
 
-FrameCounts count_samples(const FrameRequest& request, const FoveationSettings& settings) {
-  const SamplingMap map =
-      make_sampling_map(widened(settings, request.gaze_uncertainty_deg), request.view, request.gaze_direction_render);
+FrameCounts count_samples(const FrameRequest& request, const JobSettings& job) {
+  const FoveationSettings& settings = job.foveation;
+  const SamplingMap map = make_sampling_map(settings, request.view, request.gaze_direction_render,
+                                            map_context(request, job.trace.seed, job.threads));
   FrameCounts counts;
   counts.frame = request.frame;
   counts.regions = map.regions;
@@ -108,13 +109,17 @@ int run_plan(const PlanArguments& arguments) {
     }
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
+  if (arguments.counts && job.foveation.contrast_strength > 0) {
+    throw Error(ErrorKind::usage, "--contrast-strength", "counts that follow the picture are known once it is rendered",
+                "leave it out, or render and read timing.csv");
+  }
   if (!arguments.counts) {
     print_result(arguments.json ? plan_as_json(inputs.plan) : plan_as_table(inputs.plan));
     return exit_done;
   }
   std::vector<FrameCounts> counts;
   for (const FrameRequest& request : inputs.plan.frames) {
-    counts.push_back(count_samples(request, job.foveation));
+    counts.push_back(count_samples(request, job));
   }
   const std::uint32_t spp = job.foveation.uniform_spp;
   print_result(arguments.json ? counts_as_json(counts, spp) : counts_as_table(counts, spp));

@@ -8,7 +8,10 @@
 // cone: e is the angle at the eye between gaze and pixel centre, by atan2, and ends at a/2 (full_angle) or a
 // (eccentricity). disc: pixels whose centre is within r of the gaze point, with eq. (1) of the paper,
 // 2 d R tan(a/2) / S, taken as the diameter (full_angle) or the radius (eccentricity). Borders are inclusive.
-// Left out: the paper's blending between regions, which it names without saying how it is done.
+// The paper names a blending between regions without saying how it is done. Here, if asked for: over a rim of W degrees
+// about each border the logarithm of the density (tau / n^2) goes from one region's to the other's by
+// smoothstep(t) = t^2 (3 - 2 t); such regions are a density model, whose blocks follow from the density. With discs the
+// rim is measured in the angle of eq. (1).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -85,9 +88,52 @@ void fill_disc(Image<std::uint8_t>& region, const std::array<double, 2>& radii_p
   }
 }
 
+double smoothstep(double t) {
+  const double u = std::clamp(t, 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
+
+// Samples a pixel of each region.
+std::array<double, 3> rates_of(const FoveationSettings& settings) {
+  const bool per_block = settings.unit == SampleUnit::per_block;
+  std::array<double, 3> rates{};
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const double side = i == 0 || !per_block ? 1.0 : settings.region_blocks_px.at(i - 1);
+    rates.at(i) = settings.region_samples.at(i) / (side * side);
+  }
+  return rates;
+}
+
+DensityModel blended_regions(const FoveationSettings& settings, const PlanarView& view) {
+  const std::array<double, 3> rates = rates_of(settings);
+  const double full = *std::max_element(rates.begin(), rates.end());
+  const double part = settings.reading == AngleReading::full_angle ? 0.5 : 1.0;
+  const bool disc = settings.shape == RegionShape::disc;
+  DensityModel model;
+  model.quantity = DensityModel::Quantity::density;
+  model.full_rate_spp = full;
+  model.uses_radius = disc;
+  model.value = [=, angles = settings.region_angles_deg, width = settings.border_blend_deg,
+                 step = view.step_x](const FalloffPlace& place) {
+    // Eq. (1) solved for the angle, as an eccentricity.
+    const double e =
+        disc ? part * 2 * std::atan(0.5 * place.radius_px * step / part) * kDegPerRad : place.eccentricity_deg;
+    double log_rate = std::log(rates[0] / full);
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      const double way = smoothstep((e - part * angles[i]) / width + 0.5);
+      log_rate += way * std::log(rates[i + 1] / rates[i]);
+    }
+    return std::exp(log_rate);
+  };
+  return model;
+}
+
 }  // namespace
 
-Layout layout_regions(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
+Falloff falloff_regions(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
+  if (settings.border_blend_deg > 0) {
+    return blended_regions(settings, view);
+  }
   Layout layout;
   layout.regions = {{"fovea", 1, settings.region_samples[0], settings.unit},
                     {"intermediate", settings.region_blocks_px[0], settings.region_samples[1], settings.unit},

@@ -8,7 +8,7 @@ Layout uniform_layout(std::uint32_t samples_per_pixel, int width_px, int height_
   return {{{"uniform", 1, samples_per_pixel, SampleUnit::per_pixel}}, Image<std::uint8_t>(width_px, height_px, 0)};
 }
 
-Layout layout_uniform(const FoveationSettings& settings, const PlanarView& view, const Vec3d& /*gaze_direction*/) {
+Falloff falloff_uniform(const FoveationSettings& settings, const PlanarView& view, const Vec3d& /*gaze_direction*/) {
   return uniform_layout(settings.uniform_spp, view.width_px, view.height_px);
 }
 

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foveation/density_field.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "foveation/terms/terms.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Horizontal in the eye's frame, to the right of where the gaze goes; for a gaze straight up or down, the eye's own.
+Vec3d right_of(const Vec3d& gaze) {
+  const Vec3d right = cross(gaze, Vec3d{0, 1, 0});
+  const double size = length(right);
+  return size > 1e-12 ? right / size : Vec3d{1, 0, 0};
+}
+
+// Two pixels are the shortest cycle that a display shows: f_disp = pixels per degree / 2, apart for either axis.
+double density_per_cpd2(const FoveationSettings& settings, const PlanarView& view, const DensityModel& model) {
+  if (model.quantity == DensityModel::Quantity::density) {
+    return 1;
+  }
+  if (settings.parameters.normalization == FalloffNormalization::relative) {
+    const double foveal = model.value({});
+    if (!(foveal > 0) || !std::isfinite(foveal)) {
+      throw Error(ErrorKind::usage, "--falloff-normalisation",
+                  "the model's cut-off at the gaze itself is " + std::string(foveal > 0 ? "infinite" : "zero"),
+                  "normalise to the display");
+    }
+    return 1 / (foveal * foveal);
+  }
+  const double plane_per_degree = std::tan(kRadPerDeg);
+  return 4 * view.step_x * view.step_y / (plane_per_degree * plane_per_degree);
+}
+
+}  // namespace
+
+DensityField::DensityField(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction,
+                           const MapContext& context, DensityModel model)
+    : view_(&view),
+      contrast_(context.contrast != nullptr && !context.contrast->empty() ? context.contrast : nullptr),
+      model_(std::move(model)),
+      gaze_(gaze_direction / length(gaze_direction)),
+      right_(right_of(gaze_)),
+      up_(cross(right_, gaze_)),
+      gaze_px_(view.pixel(gaze_)),
+      uncertainty_deg_(context.uncertainty_deg),
+      floor_(settings.density_floor),
+      step_deg_(std::max(view.step_x, view.step_y) * kDegPerRad),
+      per_cpd2_(density_per_cpd2(settings, view, model_)),
+      shrinks_(model_.quantity == DensityModel::Quantity::cutoff_cpd &&
+               settings.parameters.normalization == FalloffNormalization::display) {
+  if (settings.retinal_velocity) {
+    factor_ *= retinal_velocity_factor(context.gaze_speed_deg_s);
+  }
+  if (context.in_saccade) {
+    factor_ *= settings.saccade_density;
+  }
+}
+
+Vec2d DensityField::meridian(const Vec3d& direction) const {
+  const double x = dot(direction, right_);
+  const double y = dot(direction, up_);
+  const double size = std::hypot(x, y);
+  return size > 0 ? Vec2d{x / size, y / size} : Vec2d{1, 0};
+}
+
+DensityField::Seen DensityField::seen(double x_px, double y_px) const {
+  Seen seen;
+  seen.direction = view_->direction(x_px, y_px);
+  const double angle_deg = angle_between_rad(gaze_, seen.direction) * kDegPerRad;
+  seen.place.eccentricity_deg = std::max(0.0, angle_deg - uncertainty_deg_);
+  if (model_.uses_meridian) {
+    seen.place.meridian = meridian(seen.direction);
+  }
+  if (model_.uses_radius) {
+    const double radius_px = std::hypot(x_px - gaze_px_.x, y_px - gaze_px_.y);
+    const double uncertain_px = uncertainty_deg_ / step_deg_;
+    seen.place.radius_px =
+        std::isfinite(radius_px) ? std::max(0.0, radius_px - uncertain_px) : std::numeric_limits<double>::infinity();
+  }
+  return seen;
+}
+
+double DensityField::density(const FalloffPlace& place, double cos_off_axis) const {
+  const double value = model_.value(place);
+  if (model_.quantity == DensityModel::Quantity::density) {
+    return value * factor_;
+  }
+  const double solid_angle = shrinks_ ? cos_off_axis * cos_off_axis * cos_off_axis : 1.0;
+  return value * value * per_cpd2_ * solid_angle * factor_;
+}
+
+double DensityField::limited(double density) const {
+  return std::clamp(density, floor_, 1.0);
+}
+
+double DensityField::at(double x_px, double y_px) const {
+  const Seen point = seen(x_px, y_px);
+  double value = density(point.place, 1 / length(point.direction));
+  if (contrast_ != nullptr) {
+    value *= contrast_at(*contrast_, x_px / view_->width_px, y_px / view_->height_px);
+  }
+  return limited(value);
+}
+
+DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const {
+  const double half = 0.5 * side_px;
+  const double x = x_px + half;
+  const double y = y_px + half;
+  const Seen center = seen(x, y);
+  const double reach_px = half * std::sqrt(2.0);
+  const double reach_deg = reach_px * step_deg_;
+  const double distance = length(center.direction);
+  const double reach = reach_deg * kRadPerDeg;
+  const double most_cos = 1 / std::max(1.0, distance - reach);
+  const double least_cos = 1 / (distance + reach);
+
+  std::array<Vec2d, 5> meridians{center.place.meridian};
+  std::size_t directions = 1;
+  // Far from the gaze a square lies in one direction.
+  if (model_.uses_meridian && center.place.eccentricity_deg < 16 * reach_deg) {
+    for (const auto& [dx, dy] : {std::pair{-half, -half}, {half, -half}, {-half, half}, {half, half}}) {
+      meridians.at(directions++) = meridian(view_->direction(x + dx, y + dy));
+    }
+  }
+  Bounds bounds{std::numeric_limits<double>::infinity(), 0};
+  for (std::size_t d = 0; d < directions; ++d) {
+    for (const double step : {-1.0, 0.0, 1.0}) {
+      FalloffPlace place = center.place;
+      place.eccentricity_deg = std::clamp(place.eccentricity_deg + step * reach_deg, 0.0, 180.0);
+      place.radius_px = std::max(0.0, place.radius_px + step * reach_px);
+      place.meridian = meridians.at(d);
+      bounds.most = std::max(bounds.most, density(place, most_cos));
+      bounds.least = std::min(bounds.least, density(place, least_cos));
+    }
+  }
+  if (contrast_ != nullptr) {
+    const auto [least, most] = contrast_within(*contrast_, x_px / static_cast<double>(view_->width_px),
+                                               y_px / static_cast<double>(view_->height_px),
+                                               (x_px + side_px) / static_cast<double>(view_->width_px),
+                                               (y_px + side_px) / static_cast<double>(view_->height_px));
+    bounds.least *= least;
+    bounds.most *= most;
+  }
+  return {limited(bounds.least), limited(bounds.most)};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The list of fall-offs as a table of functions.
+#include "foveation/falloff.hpp"
+
+#include <cmath>
+
+namespace gazetrace {
+
+std::vector<FalloffInfo> falloffs() {
+  return {
+#define FALLOFF(file, name, description) {name, description},
+#include "foveation/falloffs.def"
+#undef FALLOFF
+  };
+}
+
+Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
+#define FALLOFF(file, name, description)                   \
+  if (settings.falloff == (name)) {                        \
+    return falloff_##file(settings, view, gaze_direction); \
+  }
+#include "foveation/falloffs.def"
+#undef FALLOFF
+  return {};  // not reached: check_foveation knows the same list
+}
+
+std::optional<double> falloff_cutoff_cpd(const FoveationSettings& settings, double eccentricity_deg,
+                                         double meridian_deg) {
+  check_foveation(settings);
+  // A cut-off does not depend on how the eye sees the frame; any view will do.
+  const Falloff falloff = make_falloff(settings, view_of_perspective(1, 2, 2), {0, 0, -1});
+  const auto* model = std::get_if<DensityModel>(&falloff);
+  if (model == nullptr || model->quantity != DensityModel::Quantity::cutoff_cpd) {
+    return std::nullopt;
+  }
+  const double meridian_rad = meridian_deg * kRadPerDeg;
+  return model->value({eccentricity_deg, {std::cos(meridian_rad), std::sin(meridian_rad)}, 0});
+}
+
+}  // namespace gazetrace

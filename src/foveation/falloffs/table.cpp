@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// A density over eccentricity from a table, which makes any other model reproducible: monotone cubic interpolation
+// (falloff_table.hpp), the first and last value held beyond the ends.
+#include <memory>
+
+#include "foveation/falloff.hpp"
+#include "foveation/falloff_table.hpp"
+
+namespace gazetrace {
+
+Falloff falloff_table(const FoveationSettings& settings, const PlanarView& /*view*/, const Vec3d& /*gaze_direction*/) {
+  const auto curve = std::make_shared<const MonotoneCubic>(settings.parameters.table.points);
+  return isotropic_density([curve](double e) { return (*curve)(e); });
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// A first look at the frame, small and cheap, that tells where there is contrast to be seen.
+#pragma once
+
+#include <cstdint>
+
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/plan.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+struct ContrastPrepass {
+  ImageGray multiplier;  // of the density, in [1 - 3/4 strength, 1]
+  TraceStats stats;
+};
+
+// Traces the request's picture at an eighth of its size with 4 samples a pixel (a sixteenth of a sample for each pixel
+// of the frame), under a seed of its own: the density does not depend on the samples that it places, and estimates stay
+// unbiased.
+ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
+                               double strength);
+
+// Root mean square contrast of the luminance in the 3 x 3 pixels about each pixel, the part of its square that the
+// samples' own noise explains taken off.
+ImageGray local_contrast(const SparseFrame& sparse, const SamplingMap& map);
+// 1 where the contrast is 1/4 or more, less in proportion below it, 1 - 3/4 strength where there is none.
+ImageGray contrast_multiplier(const ImageGray& contrast, double strength);
+
+}  // namespace gazetrace

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Fall-off models, budgets and presets from the command line."""
+
+import csv
+import json
+
+import harness
+
+GAZE = [*harness.SCREEN, "--size", "64x36", "--gaze-at", "0.4,0.5"]
+TABLE = "ecc_deg,density\n0,1\n5,0.5\n30,0.1\n"
+
+
+def config(text):
+    """The settings that --print-config wrote."""
+    lines = [line.split(" = ", 1) for line in text.splitlines() if " = " in line and not line.startswith("#")]
+    return {name: value.strip('"') for name, value in lines}
+
+
+class Foveation(harness.CliTest):
+    def counts(self, *arguments, at=GAZE):
+        return json.loads(self.run_ok("plan", "--counts", "--json", *at, *arguments).stdout)[0]
+
+    def names(self, family):
+        return json.loads(self.run_ok("list", family, "--json").stdout)[family]
+
+    def print_config(self, *arguments):
+        return self.run_ok("render", *arguments, "--print-config").stdout
+
+    def test_every_model_meets_its_budget_and_renders(self):
+        self.write("table.csv", TABLE)
+        models = [member["name"] for member in self.names("falloffs")]
+        self.assertIn("geisler-perry", models)
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        for model in models:
+            with self.subTest(model=model):
+                arguments = ["--falloff", model, "--budget-spp", "1.5", "--falloff-table", "table.csv"]
+                traced = self.counts(*arguments)["traced_samples"]
+                self.assertAlmostEqual(traced, 1.5 * 64 * 36, delta=1.1)
+                self.run_ok("render", "box.gltf", *GAZE, *arguments, "-o", f"{model}/f.exr", "--map", f"{model}/map.exr",
+                            "--quiet")
+                with open(self.folder / model / "timing.csv", newline="") as file:
+                    row = next(csv.DictReader(file))
+                self.assertEqual(int(row["samples"]), traced)
+                regions = [name[:-7] for name in row if name.endswith("_pixels")]
+                self.assertEqual(sum(int(row[f"{name}_samples"]) for name in regions), traced)
+                self.assertEqual(sum(int(row[f"{name}_pixels"]) for name in regions), 64 * 36)
+
+    def test_terms_and_rims(self):
+        fine = [*harness.SCREEN, "--size", "640x360", "--gaze-at", "0.4,0.5"]
+        steep = self.counts(*fine, "--falloff", "mar", at=[])["traced_samples"]
+        flat = self.counts(*fine, "--falloff", "mar", "--falloff-mar-slope", "0.01", at=[])["traced_samples"]
+        self.assertGreater(flat, 1.2 * steep)
+        soft = self.counts("--border-blend-deg", "2", "--region-angles", "20,40")
+        self.assertEqual([region["name"] for region in soft["regions"]],
+                         ["block_1", "block_2", "block_4", "block_8", "block_16"])
+        self.write("gaze.csv", harness.gaze_csv(
+            # Half a second still, then 20 ms of 400 deg/s, then still again.
+            f"{i * 2_000_000},{0.3 + 0.4 * min(max((i - 250) / 10, 0), 1):.4f},0.5,ok,cyclopean" for i in range(500)))
+        plan = json.loads(self.run_ok("plan", "--gaze", "gaze.csv", *harness.SCREEN, "--size", "64x36", "--fps", "250",
+                                      "--retinal-velocity", "--falloff", "acuity", "--eye", "0,0,3", "--target", "0,0,0", "--json").stdout)
+        speeds = [frame["eye_speed_deg_s"] for frame in plan["frames"]]
+        self.assertLess(speeds[50], 1)
+        self.assertGreater(max(speeds), 200)
+        self.assertTrue(any(frame["eye_in_saccade"] for frame in plan["frames"]))
+        self.assertFalse(plan["frames"][50]["eye_in_saccade"])
+        moving = json.loads(self.run_ok("plan", "--counts", "--gaze", "gaze.csv", *harness.SCREEN, "--size", "320x180", "--fps",
+                                        "250", "--retinal-velocity", "--falloff", "acuity", "--json").stdout)
+        samples = [frame["traced_samples"] for frame in moving]
+        self.assertLess(min(samples), 0.05 * samples[50])
+
+    def test_contrast_renders(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        rows = []
+        for strength in ("0", "1"):
+            self.run_ok("render", "box.gltf", *GAZE, "--falloff", "linear", "--contrast-strength", strength, "-o",
+                        f"c{strength}/f.exr", "--quiet")
+            with open(self.folder / f"c{strength}" / "timing.csv", newline="") as file:
+                rows.append(next(csv.DictReader(file)))
+        self.assertLess(int(rows[1]["samples"]), int(rows[0]["samples"]))
+
+    def test_what_is_refused(self):
+        self.write("bad.csv", "ecc_deg,density\n0,1\n10,0.5\n5,0.2\n")
+        self.write("over.csv", "ecc_deg,density\n0,1.5\n")
+        self.write("empty.csv", "ecc_deg,density\n")
+        self.write("head.csv", "0,1\n")
+        for words, *arguments in [
+            ("bad.csv:4: eccentricity 5 does not come after 10", "--falloff", "table", "--falloff-table", "bad.csv"),
+            ("over.csv:2", "--falloff", "table", "--falloff-table", "over.csv"),
+            ("no points", "--falloff", "table", "--falloff-table", "empty.csv"),
+            ("ecc_deg,density", "--falloff", "table", "--falloff-table", "head.csv"),
+            ("--falloff-table", "--falloff", "table"),
+            ("two budgets", "--budget-spp", "1", "--budget-samples", "5"),
+            ("--budget-spp", "--budget-spp", "0"),
+            ("--max-block", "--max-block", "12"),
+            ("--density-floor", "--density-floor", "0"),
+            ("--retinal-velocity", "--retinal-velocity"),
+            ("--falloff-contrast", "--falloff", "geisler-perry", "--falloff-contrast", "0.01"),
+            ("--falloff-ramp", "--falloff-ramp", "9,5,0.1"),
+            ("did you mean 'geisler-perry'", "--falloff", "geisler-pery"),
+            ("normalise to the display", "--falloff", "mar", "--falloff-mar-foveal", "0", "--falloff-normalisation",
+             "relative"),
+            ("did you mean 'paper'", "--preset", "papr"),
+            ("--contrast-strength", "--falloff", "mar", "--contrast-strength", "0.5"),
+        ]:
+            with self.subTest(arguments=arguments):
+                result = self.run_program("plan", "--counts", *GAZE, *arguments)
+                self.assertEqual(result.returncode, 2)
+                self.assertIn(words, result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1)
+
+    def test_presets_are_what_the_list_says(self):
+        presets = {member["name"]: member["description"] for member in self.names("presets")}
+        self.assertEqual(list(presets), ["paper", "paper-radius", "default", "reference"])
+        for name, description in presets.items():
+            values = config(self.print_config("--preset", name))
+            for setting in description.split(": ")[-1].split(" "):
+                option, _, value = setting.partition("=")
+                shown = values[option].strip("[]").replace(", ", ",")
+                self.assertEqual(shown, value, f"{name}: {option}")
+        plain = config(self.print_config())
+        default = config(self.print_config("--preset", "default"))
+        self.assertEqual({k: v for k, v in plain.items() if k != "preset"}, {k: v for k, v in default.items() if k != "preset"})
+        # The paper to the sample, in either reading.
+        paper = ["--screen", "paper", "--size", "3840x2160", "--gaze-at", "0.5,0.5", "--json"]
+        for name, pixels in (("paper", [68488, 673600, 7552312]), ("paper-radius", [273988, 2694376, 5326036])):
+            frame = json.loads(self.run_ok("plan", "--counts", "--preset", name, *paper).stdout)[0]
+            self.assertEqual([region["pixels"] for region in frame["regions"]], pixels)
+
+    def test_presets_lie_below_other_options(self):
+        self.assertEqual(config(self.print_config("--preset", "paper", "--bounces", "7"))["bounces"], "7")
+        self.assertEqual(config(self.print_config("--bounces", "7", "--preset", "paper"))["bounces"], "7")
+        self.write("job.toml", "bounces = 5\nangle-reading = \"eccentricity\"\n")
+        both = config(self.print_config("--config", "job.toml", "--preset", "paper"))
+        self.assertEqual((both["bounces"], both["angle-reading"], both["region-shape"]), ("5", "eccentricity", "disc"))
+        self.write("job.toml", "bounces = 5\npreset = \"paper\"\nview = \"raw\"\n")
+        within = config(self.print_config("--config", "job.toml"))
+        self.assertEqual((within["bounces"], within["view"], within["region-shape"]), ("5", "raw", "disc"))
+        text = self.print_config("--preset", "paper", "--spp", "3")
+        self.write("again.toml", text)
+        self.assertEqual(self.print_config("--config", "again.toml"), text)
+
+
+if __name__ == "__main__":
+    harness.main()

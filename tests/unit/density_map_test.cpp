@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0
+// From densities to sampling maps: blocks, budgets, whole counts, the rim between regions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "foveation/sites.hpp"
+#include "foveation/whole_counts.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/foveation.hpp"
+
+namespace gazetrace {
+namespace {
+
+FoveationSettings model(const std::string& name) {
+  FoveationSettings settings;
+  settings.falloff = name;
+  settings.parameters.table = {"", {{0, 1}, {5, 0.5}, {20, 0.1}, {60, 0.02}}};
+  return settings;
+}
+
+PlanarView small_view() {
+  return view_of_display(display_by_name("paper"), {}, 480, 270);
+}
+
+void expect_consistent(const SamplingMap& map) {
+  std::vector<int> owners(map.region.pixels.size(), 0);
+  std::vector<MapRegion> totals(map.regions.size());
+  std::vector<PixelIndex> pixels;
+  for (const Site& site : map.sites) {
+    pixels_of_site(map, site, pixels);
+    ASSERT_EQ(pixels.size(), site.pixels);
+    ASSERT_GT(site.pixels, 0);
+    for (const PixelIndex& p : pixels) {
+      ASSERT_EQ(map.region(p.x, p.y), site.region);
+      ++owners[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(map.width_px) + p.x];
+    }
+    totals[site.region].pixels += site.pixels;
+    totals[site.region].samples += site.samples;
+    totals[site.region].sites += 1;
+  }
+  EXPECT_TRUE(std::all_of(owners.begin(), owners.end(), [](int n) { return n == 1; }));
+  for (std::size_t r = 0; r < totals.size(); ++r) {
+    EXPECT_EQ(totals[r].pixels, map.regions[r].pixels);
+    EXPECT_EQ(totals[r].samples, map.regions[r].samples);
+    EXPECT_EQ(totals[r].sites, map.regions[r].sites);
+  }
+  std::uint32_t next = 0;
+  for (const MapTile& tile : map.tiles) {
+    EXPECT_EQ(tile.first_site, next);
+    next += tile.site_count;
+    std::uint64_t samples = 0;
+    for (std::uint32_t i = tile.first_site; i < next; ++i) {
+      samples += map.sites[i].samples;
+    }
+    EXPECT_EQ(samples, tile.samples);
+  }
+  EXPECT_EQ(next, map.sites.size());
+}
+
+double expected_sum(const SamplingMap& map) {
+  double sum = 0;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    sum += map.expected(i);
+  }
+  return sum;
+}
+
+TEST(DensityMap, EveryModelGivesAConsistentMap) {
+  const PlanarView view = small_view();
+  for (const FalloffInfo& info : falloffs()) {
+    SCOPED_TRACE(info.name);
+    for (const Vec2d at : {Vec2d{240, 135}, Vec2d{3.5, 200}, Vec2d{-4000, 100}}) {
+      const SamplingMap map = make_sampling_map(model(info.name), view, view.direction(at.x, at.y));
+      expect_consistent(map);
+      // In all, the whole counts are what was expected to within one sample.
+      EXPECT_NEAR(static_cast<double>(map.samples()), expected_sum(map), 1.01);
+    }
+  }
+}
+
+TEST(DensityMap, BlocksAreTheSmallestThatExpectEnough) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(200.3, 100.8);
+  for (const std::string name : {"mar", "geisler-perry", "acuity", "linear", "retina", "log-polar", "table"}) {
+    SCOPED_TRACE(name);
+    for (const std::uint32_t spp : {32U, 3U}) {
+      FoveationSettings settings = model(name);
+      settings.uniform_spp = spp;
+      const SamplingMap map = make_sampling_map(settings, view, gaze);
+      const ImageGray density = *falloff_density(settings, view, gaze);
+      const double wanted = std::min(settings.block_samples, static_cast<double>(spp));
+      std::vector<PixelIndex> pixels;
+      for (std::size_t i = 0; i < map.sites.size(); ++i) {
+        const Site& site = map.sites[i];
+        const double side = map.regions[site.region].block_px;
+        pixels_of_site(map, site, pixels);
+        double least = 1;
+        double most = 0;
+        double sum = 0;
+        for (const PixelIndex& p : pixels) {
+          const auto here = static_cast<double>(density(p.x, p.y));
+          least = std::min(least, here);
+          most = std::max(most, here);
+          sum += here;
+        }
+        if (side > 1) {
+          EXPECT_LT(most * spp * side * side / 4, wanted);  // half the side would not do anywhere in it
+          // The middle of a block stands for all of it.
+          EXPECT_LE(map.expected(i), most * spp * site.pixels * (1 + 1e-6));
+          EXPECT_GE(map.expected(i), least * spp * site.pixels * (1 - 1e-6));
+        } else {
+          EXPECT_NEAR(map.expected(i), sum * spp, 1e-5 * spp);
+        }
+        if (most == 1) {
+          EXPECT_EQ(side, 1);
+          EXPECT_EQ(site.samples, spp);  // exactly, wherever it stands in the order
+        }
+      }
+      // Most blocks expect enough: one that does not is next to a denser place, by the margin of the bound.
+      const auto poor = std::count_if(map.sites.begin(), map.sites.end(), [&](const Site& site) {
+        const double side = map.regions[site.region].block_px;
+        const auto index = static_cast<std::size_t>(&site - map.sites.data());
+        return side < settings.max_block_px && site.pixels == side * side && map.expected(index) < 0.7 * wanted;
+      });
+      EXPECT_LT(static_cast<double>(poor), 0.25 * static_cast<double>(map.sites.size()));
+    }
+  }
+}
+
+TEST(DensityMap, BudgetsAreMet) {
+  const PlanarView view = view_of_display(display_by_name("paper"), {}, 480, 270);
+  const double pixels = 480.0 * 270;
+  for (const FalloffInfo& info : falloffs()) {
+    for (const double spp : {0.13, 1.04, 7.5, 200.0}) {
+      for (const Vec2d at : {Vec2d{240, 135}, Vec2d{475, 5}}) {
+        FoveationSettings settings = model(info.name);
+        settings.budget_spp = spp;
+        const SamplingMap map = make_sampling_map(settings, view, view.direction(at.x, at.y));
+        expect_consistent(map);
+        EXPECT_NEAR(static_cast<double>(map.samples()) / (spp * pixels), 1, 1e-3) << info.name << " " << spp;
+        settings.budget_spp.reset();
+        settings.budget_samples = static_cast<std::uint64_t>(spp * pixels) + 17;
+        const SamplingMap exact = make_sampling_map(settings, view, view.direction(at.x, at.y));
+        EXPECT_NEAR(static_cast<double>(exact.samples()), static_cast<double>(*settings.budget_samples), 1.01);
+      }
+    }
+  }
+  // Frames without gaze, too.
+  FoveationSettings settings;
+  settings.budget_spp = 1.04;
+  const SamplingMap map = make_sampling_map(settings, view, std::nullopt);
+  EXPECT_NEAR(static_cast<double>(map.samples()), 1.04 * pixels, 1.01);
+  EXPECT_EQ(map.regions[0].block_px, 1);
+}
+
+TEST(DensityMap, ABudgetBeyondEveryLimitIsRefusedAndOneJustBelowIsMet) {
+  const PlanarView view = view_of_perspective(1.0, 20, 20);
+  FoveationSettings settings = model("mar");
+  settings.budget_samples = 400'000'001;
+  EXPECT_THROW(make_sampling_map(settings, view, view.direction(3, 3)), Error);
+  settings.budget_samples = 399'000'000;  // nearly all sites at their limit of 10^6 a pixel
+  const SamplingMap map = make_sampling_map(settings, view, view.direction(3, 3));
+  EXPECT_NEAR(static_cast<double>(map.samples()), 399e6, 1.01);
+  for (const Site& site : map.sites) {
+    EXPECT_LE(site.samples, 1'000'000U * site.pixels);
+  }
+}
+
+TEST(DensityMap, WholeRatesStayAsTheyAre) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(200, 100);
+  const SamplingMap before = make_sampling_map({}, view, gaze);
+  FoveationSettings settings;
+  settings.budget_samples = before.samples();
+  const SamplingMap same = make_sampling_map(settings, view, gaze);
+  ASSERT_EQ(same.sites.size(), before.sites.size());
+  for (std::size_t i = 0; i < before.sites.size(); ++i) {
+    EXPECT_EQ(same.sites[i].samples, before.sites[i].samples);
+  }
+  EXPECT_TRUE(before.expected_samples.empty());
+  EXPECT_EQ(before.expected(7), before.sites[7].samples);
+}
+
+// Any rates: the mean over seeds of every count is its expectation, each count within 1 of it, the total within 1. The
+// statistic of each site is a binomial share; with 400 sites a bound of 4.9 sigma leaves 4e-4 for a false alarm.
+TEST(WholeCounts, AreUnbiased) {
+  constexpr int kSeeds = 4000;
+  const PlanarView view = view_of_perspective(1.0, 20, 20);
+  FoveationSettings uniform;
+  SamplingMap map = make_sampling_map(uniform, view, std::nullopt);
+  std::vector<double> weights(map.sites.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    weights[i] = i % 5 == 0 ? 0.5 : 0.003 + 2.7 * std::pow(std::sin(0.37 * static_cast<double>(i)), 2);
+  }
+  double sum = 0;
+  for (const double w : weights) {
+    sum += w;
+  }
+  std::vector<double> ups(weights.size(), 0);
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    set_whole_counts(map, weights, 1, 1e6, static_cast<std::uint64_t>(seed), 3);
+    EXPECT_LE(std::abs(static_cast<double>(map.samples()) - sum), 1.0);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double up = map.sites[i].samples - std::floor(weights[i]);
+      ASSERT_TRUE(up == 0 || up == 1);
+      ups[i] += up;
+    }
+  }
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double p = weights[i] - std::floor(weights[i]);
+    const double sigma = std::sqrt(p * (1 - p) / kSeeds);
+    EXPECT_NEAR(ups[i] / kSeeds, p, 4.9 * sigma + 1e-9) << "site " << i;
+  }
+}
+
+TEST(WholeCounts, DependOnSeedAndFrameAlone) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(77, 99);
+  const FoveationSettings settings = model("geisler-perry");
+  const auto counts = [&](std::uint64_t seed, std::int32_t frame, int threads) {
+    MapContext context;
+    context.seed = seed;
+    context.frame = frame;
+    context.threads = threads;
+    std::vector<std::uint32_t> list;
+    for (const Site& site : make_sampling_map(settings, view, gaze, context).sites) {
+      list.push_back(site.samples);
+    }
+    return list;
+  };
+  EXPECT_EQ(counts(1, 5, 1), counts(1, 5, 3));
+  EXPECT_NE(counts(1, 5, 1), counts(1, 6, 1));
+  EXPECT_NE(counts(1, 5, 1), counts(2, 5, 1));
+}
+
+// A rate of 1/2 must not round up whole columns or rows of the picture.
+TEST(WholeCounts, HalfASampleMakesNoStripes) {
+  const PlanarView view = view_of_perspective(1.0, 128, 128);
+  FoveationSettings settings;
+  settings.budget_spp = 0.5;
+  MapContext context;
+  context.seed = 9;
+  const ImageGray counts = samples_per_pixel(make_sampling_map(settings, view, std::nullopt, context));
+  for (int i = 0; i < 128; ++i) {
+    double row = 0;
+    double column = 0;
+    for (int k = 0; k < 128; ++k) {
+      row += static_cast<double>(counts(k, i));
+      column += static_cast<double>(counts(i, k));
+    }
+    // Two of each 2 x 2 pixels: a row's count is a sum of 64 terms of 0, 1, 2 with mean 1 and variance 1/3.
+    EXPECT_NEAR(row, 64, 5 * std::sqrt(64 / 3.0)) << i;
+    EXPECT_NEAR(column, 64, 5 * std::sqrt(64 / 3.0)) << i;
+  }
+}
+
+TEST(DensityMap, MirrorSymmetricAboutTheGaze) {
+  // The gaze on the corner between four blocks of every size, in the middle of the frame.
+  const PlanarView view = view_of_perspective(1.1, 128, 64);
+  const Vec3d gaze = view.direction(64, 32);
+  for (const FalloffInfo& info : falloffs()) {
+    FoveationSettings settings = model(info.name);
+    const SamplingMap map = make_sampling_map(settings, view, gaze);
+    const auto density = falloff_density(settings, view, gaze);
+    const bool top_is_bottom = info.name != "retina";  // its upper meridian differs from the lower
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        ASSERT_EQ(map.region(x, y), map.region(127 - x, y)) << info.name << " " << x << "," << y;
+        if (top_is_bottom) {
+          ASSERT_EQ(map.region(x, y), map.region(x, 63 - y)) << info.name << " " << x << "," << y;
+        }
+        if (density) {
+          ASSERT_NEAR((*density)(x, y), (*density)(127 - x, y), 1e-6) << info.name;
+        }
+      }
+    }
+  }
+}
+
+TEST(DensityMap, UncertainGazeWidens) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(240, 135);
+  MapContext uncertain;
+  uncertain.uncertainty_deg = 3;
+  for (const std::string name : {"mar", "acuity", "linear", "log-polar"}) {
+    const ImageGray sure = *falloff_density(model(name), view, gaze);
+    const ImageGray wide = *falloff_density(model(name), view, gaze, uncertain);
+    // On the horizontal line through the gaze: what is seen at e + 3 degrees is what was at e.
+    for (int x = 300; x < 470; x += 17) {
+      const double here = eccentricity_deg(view, gaze, x + 0.5, 135);
+      const double target_px = 240 + std::tan((here - 3) * kRadPerDeg) / view.step_x;
+      if (target_px > 240 && name == "linear") {
+        const FoveationSettings settings = model(name);
+        const double e = here - 3;
+        const Vec3d ramp = settings.parameters.ramp;
+        const double p = e <= ramp.x ? 1 : e < ramp.y ? 1 + (ramp.z - 1) * (e - ramp.x) / (ramp.y - ramp.x) : ramp.z;
+        EXPECT_NEAR(wide(x, 135), p, 2e-4);
+      }
+      EXPECT_GE(wide(x, 135), sure(x, 135)) << name;
+    }
+  }
+  // Hard regions are widened as before.
+  FoveationSettings wider = widened({}, 3);
+  EXPECT_EQ(make_sampling_map({}, view, gaze, uncertain).region, make_sampling_map(wider, view, gaze).region);
+}
+
+TEST(DensityMap, TermsMultiply) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(240, 135);
+  FoveationSettings settings = model("linear");
+  settings.retinal_velocity = true;
+  settings.saccade_density = 0.25;
+  MapContext context;
+  const ImageGray still = *falloff_density(settings, view, gaze, context);
+  context.gaze_speed_deg_s = 10;
+  const ImageGray moving = *falloff_density(settings, view, gaze, context);
+  context.in_saccade = true;
+  const ImageGray flying = *falloff_density(settings, view, gaze, context);
+  const double factor = std::pow((57.69 - 27.78) / 60, 2);
+  for (const auto& [x, y] : {std::pair{240, 135}, {400, 200}, {20, 30}}) {
+    EXPECT_NEAR(moving(x, y) / still(x, y), factor, 1e-5);
+    EXPECT_NEAR(flying(x, y) / moving(x, y), 0.25, 1e-5);
+  }
+  ImageGray contrast(2, 1);
+  contrast(0, 0) = 1;
+  contrast(1, 0) = 0.5;
+  context = {};
+  context.contrast = &contrast;
+  const ImageGray dulled = *falloff_density(settings, view, gaze, context);
+  EXPECT_EQ(dulled(3, 100), still(3, 100));
+  EXPECT_NEAR(dulled(475, 100) / still(475, 100), 0.5, 1e-6);
+  EXPECT_NEAR(dulled(239, 50) / still(239, 50), 0.75, 2e-3);  // between the two texels' centres
+}
+
+// Away from the rims the blended regions are the paper's: the same blocks with the same counts.
+TEST(BorderBlend, EqualsHardRegionsAwayFromTheRims) {
+  const PlanarView view = view_of_display(display_by_name("paper"), {}, 1920, 1080);
+  const Vec3d gaze = view.direction(1000.2, 500.7);
+  for (const RegionShape shape : {RegionShape::cone, RegionShape::disc}) {
+    FoveationSettings settings;
+    settings.shape = shape;
+    const SamplingMap hard = make_sampling_map(settings, view, gaze);
+    settings.border_blend_deg = 1;
+    const SamplingMap soft = make_sampling_map(settings, view, gaze);
+    expect_consistent(soft);
+    const ImageGray hard_spp = samples_per_pixel(hard);
+    const ImageGray soft_spp = samples_per_pixel(soft);
+    const ImageGray density = *falloff_density(settings, view, gaze);
+    int compared = 0;
+    for (int y = 0; y < 1080; ++y) {
+      for (int x = 0; x < 1920; ++x) {
+        const double e = eccentricity_deg(view, gaze, x + 0.5, y + 0.5);
+        const double margin = shape == RegionShape::disc ? 2.2 : 1.3;  // a disc's rim is not at an equal angle
+        if (std::abs(e - 2.6) > margin && std::abs(e - 8.5) > margin) {
+          ASSERT_EQ(hard_spp(x, y), soft_spp(x, y)) << x << "," << y;
+          ++compared;
+        }
+      }
+    }
+    EXPECT_GT(compared, 1'000'000);
+    if (shape == RegionShape::cone) {
+      // In the middle of a rim the density is the geometric mean of both sides.
+      for (int x = 1000; x < 1900; ++x) {
+        const double e = eccentricity_deg(view, gaze, x + 0.5, 500.5);
+        const auto smooth = [](double t) { return std::clamp(t, 0.0, 1.0); };
+        const double t1 = smooth((e - 2.1) / 1.0);
+        const double t2 = smooth((e - 8.0) / 1.0);
+        const double s1 = t1 * t1 * (3 - 2 * t1);
+        const double s2 = t2 * t2 * (3 - 2 * t2);
+        const double spp = 32 * std::pow(4.0 / 32, s1) * std::pow(0.5 / 4, s2);
+        EXPECT_NEAR(32 * static_cast<double>(density(x, 500)) / spp, 1, 1e-5);
+      }
+    }
+  }
+}
+
+TEST(DensityMap, ExtremesGiveMaps) {
+  const PlanarView plain = view_of_perspective(1.0, 61, 37);
+  for (const FalloffInfo& info : falloffs()) {
+    SCOPED_TRACE(info.name);
+    for (const Vec3d& gaze : {Vec3d{0, 0, 1}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, plain.direction(600, -370)}) {
+      expect_consistent(make_sampling_map(model(info.name), plain, gaze));
+    }
+    const PlanarView dot = view_of_perspective(1.0, 1, 1);
+    expect_consistent(make_sampling_map(model(info.name), dot, dot.direction(0.5, 0.5)));
+    for (const double fov_deg : {0.1, 179.0}) {
+      const PlanarView view = view_of_perspective(fov_deg * kRadPerDeg, 50, 30);
+      expect_consistent(make_sampling_map(model(info.name), view, view.direction(20, 3)));
+    }
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(make_sampling_map(model(info.name), plain, Vec3d{kNan, 0, -1}), Error);
+    EXPECT_THROW(make_sampling_map(model(info.name), plain, Vec3d{0, 0, 0}), Error);
+  }
+  // Regions wider than the frame, and a floor of 1.
+  FoveationSettings settings;
+  settings.region_angles_deg = {300, 360};
+  settings.border_blend_deg = 10;
+  const SamplingMap all_fovea = make_sampling_map(settings, plain, Vec3d{0, 0, -1});
+  EXPECT_EQ(all_fovea.samples(), 32U * 61 * 37);
+  settings = model("mar");
+  settings.density_floor = 1;
+  EXPECT_EQ(make_sampling_map(settings, plain, Vec3d{0, 0, -1}).samples(), 32U * 61 * 37);
+}
+
+}  // namespace
+}  // namespace gazetrace
