@@ -28,7 +28,13 @@ struct PipelineSettings {
   OutputSettings output;  // without any pattern nothing is written, timing and run record included
   FrameRate fps;
   std::string settings_digest;
+  std::string history_digest;  // the same without what frames there are: of checkpoints
   int threads = 0;
+  // History (accumulation, smoothed exposure) that is kept and taken up again.
+  std::string checkpoint;             // a file for the history after the last frame; empty: none
+  std::int32_t checkpoint_every = 0;  // and after every so many frames; 0: only at the end
+  std::string resume_from;            // a checkpoint whose frame comes before the plan's first; empty: no history
+  std::int32_t preroll = 0;           // so many frames at the plan's beginning are rendered for their history alone
   // The plan is a part of a longer sequence: timing.csv and run.json carry the frame range in their names.
   bool is_part = false;
 };
@@ -61,6 +67,12 @@ MapContext map_context(const FrameRequest& request, std::uint64_t seed, int thre
 
 // A frame depends on those before it.
 bool uses_history(const PipelineSettings& settings);
+
+// The history after a frame, to the bit, with the digest of the settings it was made under. Appears under its name when
+// it is complete. Error(runtime) where it cannot be written.
+void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& history_digest);
+// Error(input) for what is no checkpoint, is damaged, or was made under other settings.
+TemporalHistory load_checkpoint(const std::string& path, const std::string& history_digest);
 
 // Every file that rendering these frames would write, in order; run record and timing come first.
 std::vector<std::string> output_files(const OutputSettings& output, const std::vector<std::int32_t>& frames,

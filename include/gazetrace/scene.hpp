@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gazetrace/camera.hpp"
+#include "gazetrace/deformation.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/image.hpp"
 #include "gazetrace/material.hpp"
@@ -27,6 +28,11 @@ struct Geometry {
   std::vector<Vec4f> colors;  // linear, multiplies base colour
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::int32_t material = 0;
+  // Only of meshes that an instance deforms.
+  std::vector<MorphTarget> morph_targets;
+  JointInfluences influences;
+  bool flat_normals = false;   // the file has no normals: every triangle has vertices of its own
+  bool made_tangents = false;  // the file has no tangents
 };
 
 struct Mesh {
@@ -38,8 +44,9 @@ struct Mesh {
 // warning.
 struct Instance {
   std::int32_t mesh = 0;
-  Affine to_world;           // of one that moves: at rest
-  std::int32_t motion = -1;  // index into Scene::motions; -1: stands still
+  Affine to_world;                // of one that moves: at rest
+  std::int32_t motion = -1;       // index into Scene::motions; -1: stands still
+  std::int32_t deformation = -1;  // index into Scene::deformations; -1: keeps its shape
 };
 
 // Where an instance is over time: a node's animation with those of its parents. May be called with any time; before the
@@ -110,7 +117,7 @@ struct SceneFeatures {
   bool punctual_lights = false;
   bool environment = false;
   bool instances = false;  // a mesh used more than once
-  bool motion = false;     // an instance that moves
+  bool motion = false;     // an instance that moves or deforms
   bool unlit = false;
   MaterialLayers layers;
   bool specular = true;  // any material that is not purely diffuse (all of glTF's are not)
@@ -121,6 +128,7 @@ struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<Motion> motions;
+  std::vector<Deformation> deformations;
   std::vector<Material> materials;  // never empty: index 0 may be glTF's default material
   std::vector<Texture> textures;
   std::vector<PunctualLight> lights;
@@ -141,6 +149,8 @@ std::vector<MaterialExtensionInfo> material_extensions();
 
 struct SceneReadOptions {
   int threads = 0;  // of decoding textures and reading meshes, which overlap; 0: all
+  // The one that plays, by name or number ("2", from 0). Empty: for each node, camera and skin the first that moves it.
+  std::string animation;
   // Told how many of a scene's textures and meshes are ready; from several threads, one at a time.
   std::function<void(std::size_t done, std::size_t total)> progress;
 };

@@ -13,6 +13,7 @@
 #include "gazetrace/guides.hpp"
 #include "gazetrace/image.hpp"
 #include "gazetrace/material.hpp"
+#include "gazetrace/motion.hpp"
 #include "gazetrace/scene.hpp"
 
 namespace gazetrace {
@@ -50,9 +51,15 @@ struct TraceSettings {
 // shaded point. automatic: the tree from a measured number of lights on.
 enum class LightChoice : std::uint8_t { automatic, power, tree };
 
+// How the tree over a mesh that changes its shape follows it. refit: the boxes of the tree that was built at rest are
+// fitted to the new vertices, unless the mesh moves while the shutter is open; rebuild: a new one every frame, at the
+// ray library's three qualities.
+enum class MeshUpdate : std::uint8_t { refit, rebuild_low, rebuild_medium, rebuild_high };
+
 struct TracerOptions {
   int threads = 0;  // 0: all
   BvhQuality bvh_quality = BvhQuality::high;
+  MeshUpdate mesh_update = MeshUpdate::refit;
   LightChoice light_choice = LightChoice::automatic;
   // For measurements: use the kernel variant with everything compiled in.
   bool all_features = false;
@@ -147,9 +154,10 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // Puts everything that moves where it is at that time: with an open shutter, over its whole way, taken as even within
-  // each sixteenth of it. Until it is called, all is at rest. Costs nothing in a scene without motions. Emitters that
-  // move are found by rays only: LightSampling::light_only does not see them.
+  // Puts everything that moves where it is at that time, and whatever deforms into its shape: with an open shutter,
+  // over the whole way, taken as even within each sixteenth of it (or less of it, where that keeps vertices on their
+  // way to a thousandth of the mesh). Until it is called, all is at rest. Costs nothing in a scene without motions.
+  // Emitters that move are found by rays only: LightSampling::light_only does not see them.
   void move_to(const ShutterTimes& times);
 
   // A pure function of its arguments and the last move_to: same bits for any thread count. `frame` seeds the samples.
@@ -158,6 +166,10 @@ class PathTracer {
 
   // First hits of every pixel, for filters and reprojection. A pure function of its arguments and the last move_to.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
+
+  // What the pixels' centres see as things are now, and where that was in an earlier view.
+  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
+                                             const EarlierView& earlier) const;
 
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.

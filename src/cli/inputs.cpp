@@ -54,6 +54,9 @@ std::int64_t last_motion_ns(const Scene* scene) {
     for (const Motion& motion : scene->motions) {
       last = std::max(last, motion.end_ns);
     }
+    for (const Deformation& deformation : scene->deformations) {
+      last = std::max(last, deformation.end_ns);
+    }
   }
   return last;
 }
@@ -86,6 +89,19 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   }
   decision = fmt::format("{} ({}; --frames changes it)", format_frame_list(frames), reason);
   return frames;
+}
+
+// Up to `count` frames before the first, as far apart as the first two; none before frame 1.
+std::vector<std::int32_t> frames_before(const std::vector<std::int32_t>& frames, std::int32_t count) {
+  const std::int64_t step = frames.size() > 1 ? std::int64_t{frames[1]} - frames[0] : 1;
+  std::vector<std::int32_t> before;
+  for (std::int64_t k = count; k > 0; --k) {
+    const std::int64_t frame = frames.front() - k * step;
+    if (frame >= 1) {
+      before.push_back(static_cast<std::int32_t>(frame));
+    }
+  }
+  return before;
 }
 
 // With the size that the log's pixels per degree mean where it does not state one: only its ratio to the distance
@@ -299,6 +315,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     }
     const auto begin = std::chrono::steady_clock::now();
     SceneReadOptions options;
+    options.animation = job.animation;
     options.threads = job.threads;
     options.progress = progress;
     inputs.scene = std::make_unique<Scene>(load_scene(job.scene, options));
@@ -308,7 +325,8 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     inputs.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     append(inputs.warnings, inputs.scene->warnings);
     append(inputs.warnings, inputs.scene->environment.warnings);
-    if (job.accumulate == AccumulateMode::running && !inputs.scene->motions.empty()) {
+    if (job.accumulate.mode == AccumulateMode::running &&
+        !(inputs.scene->motions.empty() && inputs.scene->deformations.empty())) {
       inputs.warnings.emplace_back(
           "--accumulate running looks at the camera alone: what moves in the scene is smeared");
     }
@@ -326,7 +344,9 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
                                                   : fmt::format("{} samples", fov.uniform_spp);
     inputs.decisions.emplace_back("sampling", rate + " everywhere: there is no gaze");
   }
-  PlanSettings settings = plan_settings(job, inputs.frames, log, inputs.decisions);
+  std::vector<std::int32_t> planned = frames_before(inputs.frames, job.preroll);
+  planned.insert(planned.end(), inputs.frames.begin(), inputs.frames.end());
+  PlanSettings settings = plan_settings(job, planned, log, inputs.decisions);
   if (log != nullptr && !job.gaze_at) {
     settings.uncertainty = gaze_uncertainty(job, *log);
     settings.find_speed = job.foveation.retinal_velocity;

@@ -53,10 +53,11 @@ void prepare_outputs(const PipelineSettings& settings, const std::vector<std::in
 
 // Content hashes of all files that the job reads.
 std::map<std::string, std::string> digest_job_files(const JobSettings& job);
-// One digest of what reaches into pixels: options, file contents, version and, where frames depend on those before
-// them, the frame list. The same files under other names give the same digest.
-std::string digest_job(const OptionTable& table, const JobSettings& job, const PipelineSettings& settings,
-                       const std::vector<std::int32_t>& frames, const std::map<std::string, std::string>& files);
+// Sets the digests of `settings`: of what reaches into pixels (options, file contents, version), and of this with the
+// frame list and where the history comes from, where frames depend on those before them. The same files under other
+// names give the same digests.
+void digest_job(const OptionTable& table, const JobSettings& job, const std::vector<std::int32_t>& frames,
+                const std::map<std::string, std::string>& files, PipelineSettings& settings);
 
 // Parts of load_inputs that `gaze` and `scene` use as well.
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen);

@@ -132,6 +132,42 @@ void check_stops(const char* option, double stops) {
 
 }  // namespace
 
+namespace {
+
+void check_history_options(const JobSettings& job) {
+  const AccumulateSettings& accumulate = job.accumulate;
+  const auto within = [](const char* option, double value, double most) {
+    if (!(value >= 0 && value <= most)) {
+      throw Error(ErrorKind::usage, option, fmt::format("{} is outside 0..{}", value, most));
+    }
+  };
+  within("--accumulate-frames", accumulate.frames, 1e9);
+  within("--accumulate-blend", accumulate.blend, 1);
+  within("--accumulate-clip", accumulate.clip_sigmas, 1e6);
+  within("--preroll", job.preroll, 1e6);
+  within("--checkpoint-every", job.checkpoint_every, 1e9);
+  PipelineSettings history;
+  history.accumulate = accumulate;
+  history.exposure = job.exposure;
+  history.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  for (const auto& [option, given] :
+       {std::pair("--checkpoint", !job.checkpoint.empty()), std::pair("--resume-from", !job.resume_from.empty()),
+        std::pair("--preroll", job.preroll > 0)}) {
+    if (given && !uses_history(history)) {
+      throw Error(ErrorKind::usage, option, "frames do not depend on those before them",
+                  "leave it out, or give --accumulate or --exposure-smoothing");
+    }
+  }
+  if (job.preroll > 0 && !job.resume_from.empty()) {
+    throw Error(ErrorKind::usage, "--preroll", "the history comes from --resume-from", "give one of them");
+  }
+  if (job.checkpoint_every > 0 && job.checkpoint.empty()) {
+    throw Error(ErrorKind::usage, "--checkpoint-every", "there is no file for it", "give --checkpoint");
+  }
+}
+
+}  // namespace
+
 void check_settings(const JobSettings& job) {
   check_registry_name("--falloff", "falloff", job.foveation.falloff, falloffs());
   check_foveation(job.foveation);
@@ -154,6 +190,7 @@ void check_settings(const JobSettings& job) {
     throw Error(ErrorKind::usage, "--threads", fmt::format("{} is outside 0..{}", job.threads, kMaxThreads),
                 "0 takes all");
   }
+  check_history_options(job);
   check_stops("--env-ev", job.environment_ev);
   check_stops("--exposure", job.exposure.ev);
   if (job.exr.zip_level < 1 || job.exr.zip_level > 9) {
@@ -199,7 +236,10 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
   settings.filter = job.filter;
-  settings.accumulate.mode = job.accumulate;
+  settings.accumulate = job.accumulate;
+  settings.checkpoint = job.checkpoint;
+  settings.checkpoint_every = job.checkpoint_every;
+  settings.resume_from = job.resume_from;
   settings.exposure = job.exposure;
   settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
   settings.output = output_settings(job);
@@ -293,7 +333,7 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
   std::vector<std::string> files =
       existing({job.environment, job.camera_path, lenses.string(), job.gaze.path, job.gaze.columns_file,
-                job.screen.name, job.recording_screen, ocio_file(job), job.foveation.parameters.table.path});
+                job.screen.name, job.recording_screen, ocio_file(job), job.foveation.parameters.table.path, job.resume_from});
   if (!job.scene.empty()) {
     const std::vector<std::string> scene = scene_files(job.scene);
     files.insert(files.end(), scene.begin(), scene.end());
@@ -301,8 +341,8 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   return digest_files(files, job.threads);
 }
 
-std::string digest_job(const OptionTable& table, const JobSettings& job, const PipelineSettings& settings,
-                       const std::vector<std::int32_t>& frames, const std::map<std::string, std::string>& files) {
+void digest_job(const OptionTable& table, const JobSettings& job, const std::vector<std::int32_t>& frames,
+                const std::map<std::string, std::string>& files, PipelineSettings& settings) {
   std::vector<std::pair<std::string, std::string>> parts{{"version", kVersion}};
   const auto digest_of = [&](const std::string& path) {
     const auto found = files.find(path);
@@ -321,10 +361,13 @@ std::string digest_job(const OptionTable& table, const JobSettings& job, const P
     parts.emplace_back("scene file", digest_of(path));
   }
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
+  settings.history_digest = digest_settings(parts);
   if (uses_history(settings)) {
     parts.emplace_back("frames", format_frame_list(frames));
+    parts.emplace_back("preroll", std::to_string(job.preroll));
+    parts.emplace_back("history", job.resume_from.empty() ? "" : digest_of(job.resume_from));
   }
-  return digest_settings(parts);
+  settings.settings_digest = digest_settings(parts);
 }
 
 }  // namespace gazetrace

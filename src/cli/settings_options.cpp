@@ -15,6 +15,10 @@ constexpr Influence kFile = Influence::file;
 void add_scene_options(OptionTable& table, JobSettings& job) {
   table.group("Scene and light");
   table.value("scene", job.scene, "FILE", "glTF 2.0 scene, .gltf or .glb", kFile);
+  table.value("--animation", job.animation, "NAME|N",
+              "The animation that plays, by name or number from 0; default: for each body and camera the first that "
+              "moves it ('gazetrace scene' lists them)",
+              kPixels);
   table.value("--env", job.environment, "FILE|sky|constant:R,G,B|none|auto",
               "Light from all around: a lat-long .hdr or .exr, the built-in sky, a constant radiance, or none; auto is "
               "the sky for a scene without light of its own, otherwise none",
@@ -139,8 +143,35 @@ void add_frame_options(OptionTable& table, JobSettings& job) {
 void add_reconstruction_options(OptionTable& table, JobSettings& job) {
   table.group("Between the samples");
   table.value("--filter", job.filter, "NAME", "Fills pixels between samples ('gazetrace list filters')", kPixels);
-  table.value("--accumulate", job.accumulate, choices<AccumulateMode>(),
-              "running: mean over frames while the camera stands still", kPixels);
+}
+
+void add_accumulate_options(OptionTable& table, JobSettings& job) {
+  AccumulateSettings& accumulate = job.accumulate;
+  table.group("Over time");
+  table.value("--accumulate", accumulate.mode, choices<AccumulateMode>(),
+              "running: mean over frames while the camera stands still; reproject: what was seen before is looked up "
+              "where camera, bodies and shapes have it now, and checked",
+              kPixels);
+  table.value("--accumulate-order", accumulate.order, choices<AccumulateOrder>(),
+              "reproject: before or after the filter fills pixels between samples", kPixels);
+  table.value("--accumulate-frames", accumulate.frames, "N",
+              "reproject: memory in frames; a pixel gathers N times a frame's samples; 0 forgets nothing", kPixels);
+  table.value("--accumulate-blend", accumulate.blend, "SHARE",
+              "reproject: a fixed share of the current frame where there is history; 0: by samples", kPixels);
+  table.value("--accumulate-clip", accumulate.clip_sigmas, "SIGMAS",
+              "reproject: history stays within so many standard deviations of the current neighborhood; 0: anywhere",
+              kPixels);
+  table.flag("--accumulate-reset-saccades", accumulate.reset_at_saccades,
+             "reproject: nothing of the past in frames during which the eye jumps", kPixels);
+  table.flag("--accumulate-reset-blinks", accumulate.reset_at_blinks,
+             "reproject: nothing of the past in frames during which the eye is closed", kPixels);
+  table.value("--checkpoint", job.checkpoint, "FILE",
+              "What is accumulated and the smoothed exposure, to the bit, after the last frame");
+  table.value("--checkpoint-every", job.checkpoint_every, "N", "Also after every N frames; 0: only at the end");
+  table.value("--resume-from", job.resume_from, "FILE",
+              "Begins with a checkpoint, which must be of the same settings: as if in one run with the frames before");
+  table.value("--preroll", job.preroll, "N",
+              "Renders up to N frames before the first for what they leave behind, and writes them not");
 }
 
 void add_trace_options(OptionTable& table, JobSettings& job) {
@@ -315,6 +346,7 @@ void add_job_options(OptionTable& table, JobSettings& job) {
   add_frame_options(table, job);
   add_foveation_options(table, job.foveation);
   add_reconstruction_options(table, job);
+  add_accumulate_options(table, job);
   add_trace_options(table, job);
   add_color_options(table, job);
   add_output_options(table, job);

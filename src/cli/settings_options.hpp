@@ -36,6 +36,7 @@ struct JobSettings {
 
   // Scene and light
   std::string scene;
+  std::string animation;
   std::string environment = "auto";
   double environment_rotation_deg = 0;
   double environment_ev = 0;
@@ -93,7 +94,9 @@ struct JobSettings {
   TraceSettings trace;
   BvhQuality bvh = BvhQuality::high;
   std::string filter = "linear";
-  AccumulateMode accumulate = AccumulateMode::off;
+  AccumulateSettings accumulate;
+  std::string checkpoint, resume_from;
+  std::int32_t checkpoint_every = 0, preroll = 0;
   std::optional<PixelIndex> only_pixel;
   int threads = 0;
 

@@ -70,6 +70,32 @@ void count_first_look(const TraceStats& stats, TimingRow& row) {
   }
 }
 
+Frame plain_frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides, const FrameRequest& request,
+                  const PipelineSettings& settings, TemporalHistory& history, TimingRow& row) {
+  Frame dense =
+      timed(row.reconstruct_ms, [&] { return reconstruct(sparse, map, settings.filter, settings.threads, guides); });
+  return timed(row.temporal_ms,
+               [&] { return accumulate(std::move(dense), request, settings.accumulate, history, settings.threads); });
+}
+
+Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, const SamplingMap& map,
+                        const Guides* guides, const FrameRequest& request, const PipelineSettings& settings, TemporalHistory& history,
+                        TimingRow& row) {
+  // A filter that works on surfaces takes the samples apart by them, which a frame cannot give back.
+  const bool before = settings.accumulate.order == AccumulateOrder::before && guides == nullptr;
+  const auto filtered = [&](const SparseFrame& sites, const std::string& filter) {
+    return timed(row.reconstruct_ms, [&] { return reconstruct(sites, map, filter, settings.threads, guides); });
+  };
+  Frame dense = filtered(sparse, before ? "none" : settings.filter);
+  Frame merged = timed(row.temporal_ms, [&] {
+    const EarlierView earlier{history.camera.value_or(request.camera),
+                              history.camera ? history.t_video_ns : request.t_video_ns};
+    const SurfaceMotion motion = tracer.surface_motion(request.camera, map.width_px, map.height_px, earlier);
+    return reproject(std::move(dense), map, motion, request, settings.accumulate, history, settings.threads);
+  });
+  return before ? filtered(sites_of_frame(merged, sparse, map), settings.filter) : merged;
+}
+
 RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
                            TemporalHistory& history, TimingRow& row, SequenceResult& result) {
   RenderedFrame rendered;
@@ -98,12 +124,11 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
                            {.diffuse = trace.diffuse, .edge_rays = kEdgeRays});
     });
   }
-  Frame dense = timed(row.reconstruct_ms, [&] {
-    return reconstruct(sparse, rendered.map, settings.filter, settings.threads, guides ? &*guides : nullptr);
-  });
-  rendered.frame = timed(row.temporal_ms, [&] {
-    return accumulate(std::move(dense), request, settings.accumulate, history, settings.threads);
-  });
+  const Guides* of_filter = guides ? &*guides : nullptr;
+  rendered.frame = settings.accumulate.mode == AccumulateMode::reproject
+                       ? reprojected_frame(tracer, sparse, rendered.map, of_filter, request, settings, history, row)
+                       : plain_frame(sparse, rendered.map, of_filter, request, settings, history, row);
+  history.last_frame = request.frame;
   rendered.exposure_ev = timed(row.exposure_ms, [&] {
     return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
   });
@@ -192,10 +217,40 @@ std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settin
     return {};
   }
   std::vector<std::int32_t> frames;
-  for (const FrameRequest& request : plan.frames) {
-    frames.push_back(request.frame);
+  for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
+    frames.push_back(plan.frames[i].frame);
   }
   return timing_file_name(settings.output.run_directory, format_frame_list(frames), settings.is_part);
+}
+
+// What the frames before the plan's first left behind.
+TemporalHistory first_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings) {
+  if (settings.resume_from.empty() || plan.frames.empty()) {
+    return {};
+  }
+  TemporalHistory history = load_checkpoint(settings.resume_from, settings.history_digest);
+  const std::int32_t first = plan.frames.front().frame;
+  if (history.last_frame >= first) {
+    throw Error(ErrorKind::usage, "--resume-from",
+                fmt::format("{} holds the history after frame {}, the run begins with frame {}", settings.resume_from,
+                            history.last_frame, first),
+                fmt::format("begin with frame {}", history.last_frame + 1));
+  }
+  if (history.last_frame + 1 != first) {
+    warnings.push_back(
+        fmt::format("{} holds the history after frame {}, the run begins with frame {}: those between "
+                    "are missing in it",
+                    settings.resume_from, history.last_frame, first));
+  }
+  return history;
+}
+
+bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
+  if (settings.checkpoint.empty()) {
+    return false;
+  }
+  return done == total ||
+         (settings.checkpoint_every > 0 && done % static_cast<std::size_t>(settings.checkpoint_every) == 0);
 }
 
 }  // namespace
@@ -203,10 +258,10 @@ std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settin
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer) {
   SequenceResult result;
-  TemporalHistory history;
+  TemporalHistory history = first_history(plan, settings, result.warnings);
   const std::string timing_path = timing_path_of(plan, settings);
   const ResumePlan resume = plan_resume(plan, settings, timing_path);
-  result.warnings = resume.warnings;
+  result.warnings.insert(result.warnings.end(), resume.warnings.begin(), resume.warnings.end());
   TimingLog timing(timing_path, resume.kept_rows);
   if (!settings.output.display.pattern.empty() && !plan.frames.empty()) {
     const FrameRequest& first = plan.frames.front();
@@ -236,8 +291,11 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         result.rows.push_back(row);
       }
     }
+    if (resume.work[i] != FrameWork::skip && checkpoint_is_due(settings, i + 1, plan.frames.size())) {
+      save_checkpoint(settings.checkpoint, history, settings.history_digest);
+    }
     const bool skipped = resume.work[i] != FrameWork::render;
-    if (skipped) {
+    if (skipped && i >= static_cast<std::size_t>(settings.preroll)) {
       result.skipped.push_back(request.frame);
     }
     if (observer.frame_done) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/resume.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -34,6 +36,8 @@ bool uses_history(const PipelineSettings& settings) {
 ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path) {
   ResumePlan resume;
   resume.work.assign(plan.frames.size(), FrameWork::render);
+  const auto first_wanted = std::min(static_cast<std::size_t>(settings.preroll), plan.frames.size());
+  std::fill(resume.work.begin(), resume.work.begin() + static_cast<std::ptrdiff_t>(first_wanted), FrameWork::replay);
   const OutputSettings& output = settings.output;
   if (!output.resume || (output.exr.pattern.empty() && output.display.pattern.empty())) {
     return resume;
@@ -42,7 +46,7 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
   resume.kept_rows = read_earlier_rows(timing_path);
   std::size_t last_to_render = plan.frames.size();
   std::size_t without_row = 0;
-  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+  for (std::size_t i = first_wanted; i < plan.frames.size(); ++i) {
     const std::int32_t frame = plan.frames[i].frame;
     const bool has_row = resume.kept_rows.contains(frame);
     // Killed between the last file and the row of timing.csv: once more, so that the row is not missing for good.
@@ -53,6 +57,9 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
       resume.kept_rows.erase(frame);
       last_to_render = i;
     }
+  }
+  if (last_to_render == plan.frames.size()) {
+    std::fill(resume.work.begin(), resume.work.begin() + static_cast<std::ptrdiff_t>(first_wanted), FrameWork::skip);
   }
   if (uses_history(settings) && last_to_render != plan.frames.size()) {
     for (std::size_t i = 0; i < last_to_render; ++i) {

@@ -143,6 +143,7 @@ GltfNode node(const tinygltf::Node& from) {
   to.translation = {t[0], t[1], t[2]};
   to.rotation = normalize(Quatd{r[0], r[1], r[2], r[3]});
   to.scale = {s[0], s[1], s[2]};
+  to.weights = from.weights;
   if (const Value* light = extension(from.extensions, "KHR_lights_punctual")) {
     to.light = static_cast<int>(number(*light, "light", -1));
   }
@@ -176,9 +177,10 @@ GltfAccessor accessor(const tinygltf::Accessor& from) {
 GltfMesh mesh(const tinygltf::Mesh& from) {
   GltfMesh to;
   to.name = from.name;
+  to.weights = from.weights;
   for (const tinygltf::Primitive& primitive : from.primitives) {
     to.primitives.push_back(
-        {primitive.attributes, primitive.indices, primitive.material, primitive.mode, !primitive.targets.empty()});
+        {primitive.attributes, primitive.indices, primitive.material, primitive.mode, primitive.targets});
   }
   return to;
 }
@@ -292,9 +294,11 @@ GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked) {
   convert_all(model.cameras, document.cameras, camera);
   convert_all(model.lights, document.lights, light);
   convert_all(model.animations, document.animations, animation);
+  convert_all(model.skins, document.skins, [](const tinygltf::Skin& skin) {
+    return GltfSkin{skin.name, skin.joints, skin.inverseBindMatrices};
+  });
   document.roots = scene_roots(model);
   document.scene_count = model.scenes.size();
-  document.skin_count = model.skins.size();
   return document;
 }
 

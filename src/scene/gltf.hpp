@@ -39,11 +39,12 @@ struct GltfAccessor {
 struct GltfPrimitive {
   std::map<std::string, int> attributes;
   int indices = -1, material = -1, mode = 4;
-  bool has_morph_targets = false;
+  std::vector<std::map<std::string, int>> targets;  // of morphing: attribute to accessor
 };
 
 struct GltfMesh {
   std::string name;
+  std::vector<double> weights;  // of morph targets; empty: 0
   std::vector<GltfPrimitive> primitives;
 };
 
@@ -80,6 +81,7 @@ struct GltfNode {
   Affine matrix;  // where has_matrix; else the three below
   Vec3d translation{0, 0, 0}, scale{1, 1, 1};
   Quatd rotation;
+  std::vector<double> weights;            // of its mesh's morph targets; empty: the mesh's own
   std::map<std::string, int> instancing;  // EXT_mesh_gpu_instancing: attribute to accessor
 };
 
@@ -117,6 +119,12 @@ struct GltfAnimation {
   std::vector<Channel> channels;
 };
 
+struct GltfSkin {
+  std::string name;
+  std::vector<int> joints;         // nodes
+  int inverse_bind_matrices = -1;  // accessor; -1: identity
+};
+
 struct GltfDocument {
   std::string path;
   std::vector<std::span<const std::uint8_t>> buffers;  // empty where the file has no data for one
@@ -133,8 +141,9 @@ struct GltfDocument {
   std::vector<GltfCamera> cameras;
   std::vector<GltfLight> lights;
   std::vector<GltfAnimation> animations;
+  std::vector<GltfSkin> skins;
   std::vector<int> roots;  // of the default scene, or of everything when there is no scene
-  std::size_t scene_count = 0, skin_count = 0;
+  std::size_t scene_count = 0;
 };
 
 // Runs the parser on checked JSON. Buffers are left empty: the caller knows where the bytes are.

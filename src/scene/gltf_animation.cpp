@@ -34,30 +34,53 @@ std::vector<std::int64_t> read_times(const GltfDocument& document, int accessor,
   return times_ns;
 }
 
-KeyTrack read_track(const GltfDocument& document, std::size_t animation, int sampler_index, int components) {
-  const auto& sampler = document.animations[animation].samplers[static_cast<std::size_t>(sampler_index)];
-  const std::string place = animation_place(document, animation, sampler_index);
-  KeyTrack track;
+KeyInterpolation read_interpolation(const GltfAnimation::Sampler& sampler, const std::string& place) {
   if (sampler.interpolation == "STEP") {
-    track.interpolation = KeyInterpolation::step;
-  } else if (sampler.interpolation == "CUBICSPLINE") {
-    track.interpolation = KeyInterpolation::cubic_spline;
-  } else if (sampler.interpolation != "LINEAR") {
+    return KeyInterpolation::step;
+  }
+  if (sampler.interpolation == "CUBICSPLINE") {
+    return KeyInterpolation::cubic_spline;
+  }
+  if (sampler.interpolation != "LINEAR") {
     throw Error(ErrorKind::input, place, "interpolation '" + sampler.interpolation + "' does not exist",
                 "use STEP, LINEAR or CUBICSPLINE");
   }
+  return KeyInterpolation::linear;
+}
+
+// Times, and the numbers of every key: `width` values of `components` each, three times as many for splines.
+struct RawTrack {
+  KeyInterpolation interpolation = KeyInterpolation::linear;
+  std::vector<std::int64_t> times_ns;
+  std::vector<float> values;
+};
+
+RawTrack read_raw_track(const GltfDocument& document, std::size_t animation, int sampler_index, int components,
+                        std::size_t width) {
+  const auto& sampler = document.animations[animation].samplers[static_cast<std::size_t>(sampler_index)];
+  const std::string place = animation_place(document, animation, sampler_index);
+  RawTrack track;
+  track.interpolation = read_interpolation(sampler, place);
   track.times_ns = read_times(document, sampler.input, place + ".input");
-  const std::vector<float> values = read_floats(document, sampler.output, components, place + ".output");
-  const auto width = static_cast<std::size_t>(components);
-  const std::size_t a_key = track.interpolation == KeyInterpolation::cubic_spline ? 3 : 1;
-  if (values.size() != track.times_ns.size() * a_key * width) {
+  track.values = read_floats(document, sampler.output, components, place + ".output");
+  const std::size_t a_key = (track.interpolation == KeyInterpolation::cubic_spline ? 3 : 1) * width;
+  const std::size_t given = track.values.size() / static_cast<std::size_t>(components);
+  if (given != track.times_ns.size() * a_key) {
     throw Error(ErrorKind::input, place + ".output",
-                std::to_string(values.size() / width) + " values for " + std::to_string(track.times_ns.size()) +
-                    " keys, " + std::to_string(track.times_ns.size() * a_key) + " are needed",
+                std::to_string(given) + " values for " + std::to_string(track.times_ns.size()) + " keys, " +
+                    std::to_string(track.times_ns.size() * a_key) + " are needed",
                 "export the file again");
   }
-  for (std::size_t i = 0; i < values.size(); i += width) {
-    track.values.push_back({values[i], values[i + 1], values[i + 2], components == 4 ? values[i + 3] : 0.0});
+  return track;
+}
+
+KeyTrack read_track(const GltfDocument& document, std::size_t animation, int sampler, int components) {
+  RawTrack raw = read_raw_track(document, animation, sampler, components, 1);
+  KeyTrack track{raw.interpolation, std::move(raw.times_ns), {}};
+  const auto width = static_cast<std::size_t>(components);
+  for (std::size_t i = 0; i < raw.values.size(); i += width) {
+    const float* v = &raw.values[i];
+    track.values.push_back({v[0], v[1], v[2], components == 4 ? v[3] : 0.0});
   }
   return track;
 }
@@ -76,15 +99,18 @@ AnimatedNode rest_of(const GltfNode& node) {
   return result;
 }
 
-// The first animation with a channel on the chain; a second one is another take, not more of the same.
-std::optional<std::size_t> animation_of(const GltfDocument& document, const std::vector<int>& chain,
-                                        const std::string& what, Warnings& warnings) {
+bool moves_any(const GltfAnimation::Channel& channel, const std::vector<int>& chain) {
+  return moves_nodes(channel.path) && std::find(chain.begin(), chain.end(), channel.node) != chain.end();
+}
+
+// The first animation with such a channel; a second one is another take, not more of the same.
+template <class Wanted>
+std::optional<std::size_t> first_animation(const GltfDocument& document, const Wanted& wanted, const std::string& what,
+                                           Warnings& warnings) {
   std::optional<std::size_t> chosen;
   for (std::size_t a = 0; a < document.animations.size(); ++a) {
     const auto& channels = document.animations[a].channels;
-    const bool moves = std::any_of(channels.begin(), channels.end(), [&](const GltfAnimation::Channel& channel) {
-      return moves_nodes(channel.path) && std::find(chain.begin(), chain.end(), channel.node) != chain.end();
-    });
+    const bool moves = std::any_of(channels.begin(), channels.end(), wanted);
     if (moves && chosen) {
       warnings.push_back(what + " is moved by several animations; '" + animation_name(document, *chosen) +
                          "' is used, '" + animation_name(document, a) + "' is not");
@@ -149,10 +175,52 @@ std::vector<AnimatedNode> animated_chain(const GltfDocument& document, const std
   for (const int index : chain) {
     nodes.push_back(rest_of(document.nodes[static_cast<std::size_t>(index)]));
   }
-  if (const auto animation = animation_of(document, chain, what, warnings)) {
+  const auto moves = [&](const GltfAnimation::Channel& channel) { return moves_any(channel, chain); };
+  if (const auto animation = first_animation(document, moves, what, warnings)) {
     add_tracks(document, *animation, chain, nodes, warnings);
   }
   return nodes;
+}
+
+std::optional<WeightTrack> animated_weights(const GltfDocument& document, int node, std::size_t targets,
+                                            const std::string& what, Warnings& warnings) {
+  const auto weighs = [&](const GltfAnimation::Channel& channel) {
+    return channel.node == node && channel.path == "weights";
+  };
+  const auto animation = first_animation(document, weighs, "the shape of " + what, warnings);
+  if (!animation) {
+    return std::nullopt;
+  }
+  const auto& channels = document.animations[*animation].channels;
+  const int sampler = std::find_if(channels.begin(), channels.end(), weighs)->sampler;
+  RawTrack raw = read_raw_track(document, *animation, sampler, 1, targets);
+  return WeightTrack{raw.interpolation, targets, std::move(raw.times_ns), {raw.values.begin(), raw.values.end()}};
+}
+
+void keep_animation(GltfDocument& document, const std::string& name) {
+  std::vector<std::string> names;
+  std::optional<std::size_t> chosen;
+  for (std::size_t a = 0; a < document.animations.size(); ++a) {
+    names.push_back(animation_name(document, a));
+    if (!chosen && document.animations[a].name == name) {
+      chosen = a;
+    }
+  }
+  for (std::size_t a = 0; a < names.size() && !chosen; ++a) {
+    if (std::to_string(a) == name || "#" + std::to_string(a) == name) {
+      chosen = a;
+    }
+  }
+  if (!chosen) {
+    throw Error(
+        ErrorKind::usage, "--animation",
+        names.empty() ? "'" + name + "': the scene has no animations" : unknown_name_message("animation", name, names));
+  }
+  for (std::size_t a = 0; a < document.animations.size(); ++a) {
+    if (a != *chosen) {
+      document.animations[a].channels.clear();
+    }
+  }
 }
 
 std::vector<char> moved_nodes(const GltfDocument& document, const std::vector<WorldNode>& nodes,
@@ -176,15 +244,6 @@ std::vector<char> moved_nodes(const GltfDocument& document, const std::vector<Wo
 
 void list_unshown_motion(const GltfDocument& document, const std::vector<WorldNode>& nodes,
                          const std::vector<int>& parents, std::vector<std::string>& ignored, Warnings& warnings) {
-  for (std::size_t a = 0; a < document.animations.size(); ++a) {
-    const auto& channels = document.animations[a].channels;
-    const auto morphed =
-        std::count_if(channels.begin(), channels.end(), [](const auto& c) { return c.path == "weights"; });
-    if (morphed > 0) {
-      ignored.push_back("animation '" + animation_name(document, a) + "': " + std::to_string(morphed) +
-                        " channels change morph weights");
-    }
-  }
   const std::vector<char> moved = moved_nodes(document, nodes, parents);
   const auto lights = std::count_if(nodes.begin(), nodes.end(), [&](const WorldNode& world) {
     const auto node = static_cast<std::size_t>(world.node);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -119,13 +120,29 @@ void check_accessors(Walker& walker, const Json& root) {
 void check_meshes(Walker& walker, const Json& root) {
   walker.each_object(root, "meshes", [&](const Json& mesh) {
     walker.text(mesh, "name");
+    std::optional<std::size_t> targets;  // the same for all primitives (glTF 2.0 section 3.7.2.2)
     walker.each_object(mesh, "primitives", [&](const Json& primitive) {
       walker.reference_map(primitive, "attributes", "accessors", true);
       walker.reference(primitive, "indices", "accessors");
       walker.reference(primitive, "material", "materials");
       walker.whole(primitive, "mode", false, 6);
-      walker.each_object(primitive, "targets", [](const Json&) {});
+      std::size_t count = 0;
+      walker.each_object(primitive, "targets", [&](const Json& target) {
+        ++count;
+        for (const auto& [name, value] : target.items()) {
+          const Step attribute(walker, name);
+          walker.reference_value(value, "accessors");
+        }
+      });
+      if (targets && *targets != count) {
+        walker.fail("has " + std::to_string(count) + " morph targets, the primitives before it have " +
+                    std::to_string(*targets));
+      }
+      targets = count;
     });
+    if (targets.value_or(0) > 0) {
+      walker.numbers(mesh, "weights", *targets);
+    }
   });
 }
 
@@ -265,7 +282,15 @@ void check_nodes(Walker& walker, const Json& root) {
   });
   walker.each_object(root, "scenes", [&](const Json& scene) { walker.references(scene, "nodes", "nodes"); });
   walker.reference(root, "scene", "scenes");
-  walker.each_object(root, "skins", [&](const Json& skin) { walker.references(skin, "joints", "nodes"); });
+  walker.each_object(root, "skins", [&](const Json& skin) {
+    walker.text(skin, "name");
+    walker.references(skin, "joints", "nodes");
+    const Json* joints = walker.find(skin, "joints");
+    if (joints == nullptr || joints->empty()) {
+      walker.fail("has no joints");
+    }
+    walker.reference(skin, "inverseBindMatrices", "accessors");
+  });
 }
 
 void check_cameras_and_animations(Walker& walker, const Json& root) {

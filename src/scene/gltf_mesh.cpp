@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf_mesh.hpp"
 
+#include <cmath>
 #include <cstring>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -15,6 +18,7 @@ namespace gazetrace {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
+constexpr double kWeightTolerance = 0.02;  // four weights in 8 bits are off by as much
 constexpr int kTriangles = 4, kStrip = 5;  // else 6, a fan
 
 std::string primitive_place(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
@@ -46,7 +50,7 @@ class PrimitiveReader {
   PrimitiveReader(const GltfDocument& document, const GltfPrimitive& primitive, std::string place)
       : document_(document), primitive_(primitive), place_(std::move(place)) {}
 
-  Geometry read(const Material& material, std::int32_t material_index, Warnings& warnings) {
+  Geometry read(const Material& material, std::int32_t material_index, bool with_skin, Warnings& warnings) {
     Geometry geometry;
     geometry.material = material_index;
     geometry.positions = vectors<Vec3f>("POSITION", 3);
@@ -60,6 +64,10 @@ class PrimitiveReader {
       geometry.uv1 = vectors<Vec2f>("TEXCOORD_1", 2);
     }
     read_colors(geometry);
+    read_morph_targets(geometry);
+    if (with_skin) {
+      read_influences(geometry, warnings);
+    }
     geometry.normals = vectors<Vec3f>("NORMAL", 3);
     if (geometry.normals.empty()) {
       make_flat_normals(geometry);
@@ -80,20 +88,22 @@ class PrimitiveReader {
   }
 
  private:
-  std::optional<int> accessor(const char* attribute) const {
+  using Attributes = std::map<std::string, int>;
+
+  std::optional<int> accessor(const std::string& attribute) const {
     const auto it = primitive_.attributes.find(attribute);
     return it == primitive_.attributes.end() ? std::nullopt : std::optional<int>(it->second);
   }
-  std::string attribute_place(const char* attribute) const { return place_ + ".attributes." + attribute; }
 
-  // Empty when the primitive has no such attribute.
-  std::vector<float> floats(const char* attribute, int components) const {
-    const auto index = accessor(attribute);
-    if (!index) {
+  // Empty when there is no such attribute. `owner` is the place of the attributes in the file.
+  std::vector<float> floats(const Attributes& attributes, const std::string& owner, const std::string& attribute,
+                            int components) const {
+    const auto it = attributes.find(attribute);
+    if (it == attributes.end()) {
       return {};
     }
-    const std::string place = attribute_place(attribute);
-    std::vector<float> values = read_floats(document_, *index, components, place);
+    const std::string place = owner + "." + attribute;
+    std::vector<float> values = read_floats(document_, it->second, components, place);
     const std::size_t count = values.size() / static_cast<std::size_t>(components);
     if (vertex_count_ && count != *vertex_count_) {
       throw Error(ErrorKind::input, place,
@@ -103,15 +113,86 @@ class PrimitiveReader {
     return values;
   }
 
+  std::vector<float> floats(const std::string& attribute, int components) const {
+    return floats(primitive_.attributes, place_ + ".attributes", attribute, components);
+  }
+
   template <class Vec>
   std::vector<Vec> vectors(const char* attribute, int components) const {
-    const std::vector<float> values = floats(attribute, components);
+    return as_vectors<Vec>(floats(attribute, components), components);
+  }
+  template <class Vec>
+  static std::vector<Vec> as_vectors(const std::vector<float>& values, int components) {
     std::vector<Vec> result(values.size() / static_cast<std::size_t>(components));
     static_assert(std::is_trivially_copyable_v<Vec>);
     if (!result.empty()) {
       std::memcpy(static_cast<void*>(result.data()), values.data(), values.size() * sizeof(float));
     }
     return result;
+  }
+
+  void read_morph_targets(Geometry& geometry) const {
+    for (std::size_t t = 0; t < primitive_.targets.size(); ++t) {
+      const std::string owner = place_ + ".targets[" + std::to_string(t) + "]";
+      const auto displacements = [&](const char* attribute) {
+        return as_vectors<Vec3f>(floats(primitive_.targets[t], owner, attribute, 3), 3);
+      };
+      geometry.morph_targets.push_back({displacements("POSITION"), displacements("NORMAL"), displacements("TANGENT")});
+    }
+  }
+
+  // JOINTS_n and WEIGHTS_n as far as they go. Sums are brought to 1: what storing and quantising costs silently, more
+  // with a warning.
+  void read_influences(Geometry& geometry, Warnings& warnings) const {
+    std::vector<std::vector<float>> joints;
+    std::vector<std::vector<float>> weights;
+    for (std::size_t set = 0;; ++set) {
+      const std::string number = std::to_string(set);
+      joints.push_back(floats("JOINTS_" + number, 4));
+      weights.push_back(floats("WEIGHTS_" + number, 4));
+      if (joints.back().empty() != weights.back().empty()) {
+        throw Error(ErrorKind::input, place_ + ".attributes",
+                    joints.back().empty() ? "WEIGHTS_" + number + " comes without JOINTS_" + number
+                                          : "JOINTS_" + number + " comes without WEIGHTS_" + number,
+                    "export the file again");
+      }
+      if (joints.back().empty()) {
+        break;
+      }
+    }
+    const std::size_t sets = joints.size() - 1;
+    JointInfluences& influences = geometry.influences;
+    influences.per_vertex = static_cast<std::uint32_t>(4 * sets);
+    std::size_t far_off = 0;
+    for (std::size_t vertex = 0; vertex < *vertex_count_ && sets > 0; ++vertex) {
+      double sum = 0;
+      for (std::size_t k = 0; k < 4 * sets; ++k) {
+        const float weight = weights[k / 4][4 * vertex + k % 4];
+        if (weight < 0) {
+          throw Error(ErrorKind::input, place_ + ".attributes.WEIGHTS_" + std::to_string(k / 4),
+                      "vertex " + std::to_string(vertex) + " has a negative weight",
+                      "repair the skin and export again");
+        }
+        sum += static_cast<double>(weight);
+        influences.weights.push_back(weight);
+        // A joint without weight may be any number.
+        influences.joints.push_back(weight > 0 ? static_cast<std::uint32_t>(joints[k / 4][4 * vertex + k % 4]) : 0);
+      }
+      if (!(sum > 0)) {
+        throw Error(ErrorKind::input, place_ + ".attributes.WEIGHTS_0",
+                    "all weights of vertex " + std::to_string(vertex) + " are zero: it follows no joint",
+                    "bind it to one and export again");
+      }
+      far_off += std::abs(sum - 1) > kWeightTolerance ? 1 : 0;
+      for (auto weight = influences.weights.end() - static_cast<std::ptrdiff_t>(4 * sets);
+           weight != influences.weights.end(); ++weight) {
+        *weight = static_cast<float>(static_cast<double>(*weight) / sum);
+      }
+    }
+    if (far_off > 0) {
+      warnings.push_back(place_ + ": the joint weights of " + std::to_string(far_off) +
+                         " vertices do not sum to 1; they were brought there");
+    }
   }
 
   void read_colors(Geometry& geometry) const {
@@ -167,7 +248,7 @@ struct OneMesh {
 };
 
 OneMesh make_mesh(const GltfDocument& document, std::size_t index, const std::vector<Material>& materials,
-                  std::int32_t default_material) {
+                  std::int32_t default_material, bool with_skin) {
   OneMesh result;
   const GltfMesh& from = document.meshes[index];
   result.mesh.name = from.name;
@@ -186,7 +267,7 @@ OneMesh make_mesh(const GltfDocument& document, std::size_t index, const std::ve
     }
     const std::int32_t material = primitive.material >= 0 ? primitive.material : default_material;
     Geometry geometry = PrimitiveReader(document, primitive, place)
-                            .read(materials[static_cast<std::size_t>(material)], material, result.warnings);
+                            .read(materials[static_cast<std::size_t>(material)], material, with_skin, result.warnings);
     if (!geometry.triangles.empty()) {
       result.mesh.geometries.push_back(std::move(geometry));
     }
@@ -198,9 +279,15 @@ OneMesh make_mesh(const GltfDocument& document, std::size_t index, const std::ve
 
 MeshResult make_meshes(const GltfDocument& document, const std::vector<Material>& materials,
                        std::int32_t default_material, int threads, const std::function<void()>& mesh_done) {
+  std::vector<char> has_skin(document.meshes.size(), 0);
+  for (const GltfNode& node : document.nodes) {
+    if (node.mesh >= 0 && node.skin >= 0) {
+      has_skin[static_cast<std::size_t>(node.mesh)] = 1;
+    }
+  }
   std::vector<OneMesh> parts(document.meshes.size());
   parallel_for_first_error(parts.size(), threads, [&](std::size_t i) {
-    parts[i] = make_mesh(document, i, materials, default_material);
+    parts[i] = make_mesh(document, i, materials, default_material, has_skin[i] != 0);
     mesh_done();
   });
   MeshResult result;

@@ -10,6 +10,7 @@
 #include "gazetrace/error.hpp"
 #include "scene/gltf_accessor.hpp"
 #include "scene/gltf_animation.hpp"
+#include "scene/gltf_skin.hpp"
 
 namespace gazetrace {
 namespace {
@@ -75,6 +76,57 @@ std::vector<Affine> instancing_transforms(const GltfDocument& document, int node
   return transforms;
 }
 
+// The mesh in a pose it will keep, without what could change it.
+Mesh in_pose(const Mesh& mesh, const MeshPose& pose, const std::vector<Material>& materials) {
+  Mesh posed = mesh;
+  for (Geometry& geometry : posed.geometries) {
+    const Material& material = materials[static_cast<std::size_t>(geometry.material)];
+    DeformedVertices vertices = deform(geometry, pose, material.normal_texture);
+    geometry.positions = std::move(vertices.positions);
+    geometry.normals = std::move(vertices.normals);
+    geometry.tangents = std::move(vertices.tangents);
+    if (is_mirrored(pose)) {
+      for (auto& triangle : geometry.triangles) {
+        std::swap(triangle[1], triangle[2]);
+      }
+    }
+  }
+  return posed;
+}
+
+// Of glTF nodes, whether they are in the scene or not: joints need not be.
+std::vector<int> all_parents(const GltfDocument& document) {
+  std::vector<int> parents(document.nodes.size(), -1);
+  for (std::size_t i = 0; i < document.nodes.size(); ++i) {
+    for (const int child : document.nodes[i].children) {
+      parents[static_cast<std::size_t>(child)] = static_cast<int>(i);
+    }
+  }
+  return parents;
+}
+
+// Meshes that nothing deforms keep nothing for it; of those that are only shown in another pose nothing stays.
+void drop_unused_shapes(const PlacedMeshes& placed, const std::vector<char>& was_posed, std::vector<Mesh>& meshes) {
+  std::vector<char> deforms(meshes.size(), 0);
+  std::vector<char> used(meshes.size(), 0);
+  for (const Instance& instance : placed.instances) {
+    char& mark = deforms[static_cast<std::size_t>(instance.mesh)];
+    mark = static_cast<char>(mark | (instance.deformation >= 0 ? 1 : 0));
+    used[static_cast<std::size_t>(instance.mesh)] = 1;
+  }
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (m < was_posed.size() && was_posed[m] != 0 && used[m] == 0) {
+      meshes[m].geometries.clear();
+    }
+    for (Geometry& geometry : meshes[m].geometries) {
+      if (deforms[m] == 0) {
+        geometry.morph_targets = {};
+        geometry.influences = {};
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Affine local_transform(const GltfNode& node) {
@@ -112,8 +164,11 @@ std::vector<WorldNode> world_nodes(const GltfDocument& document, std::vector<int
 }
 
 PlacedMeshes make_instances(const GltfDocument& document, const std::vector<WorldNode>& nodes,
-                            const std::vector<int>& parents, const std::vector<Mesh>& meshes, Warnings& warnings) {
+                            const std::vector<int>& parents, const std::vector<Material>& materials,
+                            std::vector<Mesh>& meshes, Warnings& warnings) {
   PlacedMeshes placed;
+  const std::vector<int> skeleton_parents = all_parents(document);
+  std::vector<char> was_posed(meshes.size(), 0);
   const std::vector<char> moved = moved_nodes(document, nodes, parents);
   Warnings of_motions;
   std::size_t left_out = 0;
@@ -123,25 +178,40 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
     if (node.mesh < 0 || meshes[static_cast<std::size_t>(node.mesh)].geometries.empty()) {
       continue;
     }
+    const bool has_skin = node.skin >= 0;
     std::vector<Affine> places{Affine{}};  // in the node's own space
-    if (!node.instancing.empty()) {
+    if (!node.instancing.empty() && !has_skin) {
       places = instancing_transforms(document, world.node);
     }
     std::shared_ptr<const std::vector<AnimatedNode>> chain;
-    if (moved[static_cast<std::size_t>(world.node)] != 0 && node.skin < 0) {
+    if (moved[static_cast<std::size_t>(world.node)] != 0 && !has_skin) {
       chain = std::make_shared<const std::vector<AnimatedNode>>(
           animated_chain(document, chain_to(world.node, parents), node_label(document, world.node), of_motions));
     }
+    NodeDeformation shape =
+        deformation_of_node(document, world.node, skeleton_parents, meshes[static_cast<std::size_t>(node.mesh)],
+                            node_label(document, world.node), of_motions);
+    std::int32_t mesh = node.mesh;
+    if (shape.fixed) {
+      was_posed[static_cast<std::size_t>(mesh)] = 1;
+      meshes.push_back(in_pose(meshes[static_cast<std::size_t>(mesh)], *shape.fixed, materials));
+      mesh = static_cast<std::int32_t>(meshes.size()) - 1;
+    }
+    std::int32_t deformation = -1;
+    if (shape.animated) {
+      deformation = static_cast<std::int32_t>(placed.deformations.size());
+      placed.deformations.push_back(std::move(*shape.animated));
+    }
     for (const Affine& place : places) {
-      const Affine to_world = world.to_world * place;
+      const Affine to_world = has_skin ? Affine{} : world.to_world * place;
       if (chain) {
         // Whatever it is at rest: the tracer looks at where it is when.
-        placed.instances.push_back({node.mesh, to_world, static_cast<std::int32_t>(placed.motions.size())});
+        placed.instances.push_back({mesh, to_world, static_cast<std::int32_t>(placed.motions.size()), deformation});
         placed.motions.push_back(
             {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; },
              last_key_ns(*chain)});
       } else if (has_usable_inverse(to_world)) {
-        placed.instances.push_back({node.mesh, to_world});
+        placed.instances.push_back({mesh, to_world, -1, deformation});
       } else if (left_out++ == 0) {
         first_left_out = world.node;
       }
@@ -157,6 +227,7 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
         of_motions.front() +
         (of_motions.size() == 1 ? "" : "; and " + std::to_string(of_motions.size() - 1) + " more like this"));
   }
+  drop_unused_shapes(placed, was_posed, meshes);
   return placed;
 }
 

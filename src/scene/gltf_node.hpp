@@ -23,13 +23,16 @@ Affine local_transform(const GltfNode& node);
 Quatd rotation_or(const Affine& map, const Quatd& fallback);
 
 // Instances of meshes that hold triangles; those that cannot be inverted are left out with one warning. Animated ones
-// get a motion each. Meshes with a skin do not follow their node (glTF 2.0 section 3.7.3.3) and stay at rest.
+// get a motion each, those that change their shape a deformation. Meshes with a skin follow its joints, not their node
+// (glTF 2.0 section 3.7.3.3). A skin or morph weights that never change are applied to `meshes` here and now.
 struct PlacedMeshes {
   std::vector<Instance> instances;
   std::vector<Motion> motions;
+  std::vector<Deformation> deformations;
 };
 PlacedMeshes make_instances(const GltfDocument& document, const std::vector<WorldNode>& nodes,
-                            const std::vector<int>& parents, const std::vector<Mesh>& meshes, Warnings& warnings);
+                            const std::vector<int>& parents, const std::vector<Material>& materials,
+                            std::vector<Mesh>& meshes, Warnings& warnings);
 
 std::vector<PunctualLight> make_lights(const GltfDocument& document, const std::vector<WorldNode>& nodes,
                                        Warnings& warnings);

@@ -15,8 +15,7 @@ struct Span {
   double length_s = 0;
 };
 
-Span span_at(const KeyTrack& track, std::int64_t t_ns) {
-  const auto& times = track.times_ns;
+Span span_at(const std::vector<std::int64_t>& times, std::int64_t t_ns) {
   if (t_ns <= times.front()) {
     return {0, 0, 0, 0};
   }
@@ -39,17 +38,23 @@ const Vec4d& key_value(const KeyTrack& track, std::size_t key) {
 }
 
 // Hermite basis; tangents are scaled by the length of the span (glTF 2.0 appendix C.4).
-Vec4d cubic(const KeyTrack& track, const Span& span) {
+struct Hermite {
+  double p0, out0, in1, p1;
+};
+Hermite hermite(const Span& span) {
   const double u = span.fraction;
   const double u2 = u * u;
   const double u3 = u2 * u;
+  return {2 * u3 - 3 * u2 + 1, span.length_s * (u3 - 2 * u2 + u), span.length_s * (u3 - u2), -2 * u3 + 3 * u2};
+}
+
+Vec4d cubic(const KeyTrack& track, const Span& span) {
+  const Hermite basis = hermite(span);
   const Vec4d& p0 = track.values[3 * span.first + 1];
   const Vec4d& out0 = track.values[3 * span.first + 2];
   const Vec4d& in1 = track.values[3 * span.second];
   const Vec4d& p1 = track.values[3 * span.second + 1];
-  const Vec4d points = combine(2 * u3 - 3 * u2 + 1, p0, -2 * u3 + 3 * u2, p1);
-  const Vec4d tangents = combine(span.length_s * (u3 - 2 * u2 + u), out0, span.length_s * (u3 - u2), in1);
-  return combine(1, points, 1, tangents);
+  return combine(1, combine(basis.p0, p0, basis.p1, p1), 1, combine(basis.out0, out0, basis.in1, in1));
 }
 
 Quatd as_quaternion(const Vec4d& v) {
@@ -59,7 +64,7 @@ Quatd as_quaternion(const Vec4d& v) {
 }  // namespace
 
 Vec3d vector_at(const KeyTrack& track, std::int64_t t_ns) {
-  const Span span = span_at(track, t_ns);
+  const Span span = span_at(track.times_ns, t_ns);
   Vec4d value = key_value(track, span.first);
   if (span.first != span.second && track.interpolation == KeyInterpolation::linear) {
     value = combine(1 - span.fraction, value, span.fraction, key_value(track, span.second));
@@ -70,7 +75,7 @@ Vec3d vector_at(const KeyTrack& track, std::int64_t t_ns) {
 }
 
 Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns) {
-  const Span span = span_at(track, t_ns);
+  const Span span = span_at(track.times_ns, t_ns);
   const Quatd first = as_quaternion(key_value(track, span.first));
   if (span.first == span.second || track.interpolation == KeyInterpolation::step) {
     return first;
@@ -81,13 +86,37 @@ Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns) {
   return as_quaternion(cubic(track, span));
 }
 
+std::vector<double> weights_at(const WeightTrack& track, std::int64_t t_ns) {
+  const Span span = span_at(track.times_ns, t_ns);
+  const bool is_cubic = track.interpolation == KeyInterpolation::cubic_spline;
+  // Part 0, 1, 2 of a key: in-tangents, values, out-tangents.
+  const auto value = [&](std::size_t key, std::size_t part, std::size_t i) {
+    return track.values[(is_cubic ? 3 * key + part : key) * track.width + i];
+  };
+  std::vector<double> weights(track.width);
+  const Hermite basis = hermite(span);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double first = value(span.first, 1, i);
+    weights[i] = first;
+    if (span.first != span.second && track.interpolation == KeyInterpolation::linear) {
+      weights[i] = (1 - span.fraction) * first + span.fraction * value(span.second, 1, i);
+    } else if (span.first != span.second && is_cubic) {
+      weights[i] = basis.p0 * first + basis.out0 * value(span.first, 2, i) + basis.in1 * value(span.second, 0, i) +
+                   basis.p1 * value(span.second, 1, i);
+    }
+  }
+  return weights;
+}
+
 namespace {
 
 Quatd own_rotation_at(const AnimatedNode& node, std::int64_t t_ns) {
   return node.rotation_track ? rotation_at(*node.rotation_track, t_ns) : node.rotation;
 }
 
-Affine local_at(const AnimatedNode& node, std::int64_t t_ns) {
+}  // namespace
+
+Affine transform_of_node(const AnimatedNode& node, std::int64_t t_ns) {
   if (node.has_matrix) {
     return node.matrix;
   }
@@ -96,12 +125,10 @@ Affine local_at(const AnimatedNode& node, std::int64_t t_ns) {
   return make_affine(translation, own_rotation_at(node, t_ns), scale);
 }
 
-}  // namespace
-
 Affine transform_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns) {
   Affine world;
   for (const AnimatedNode& node : chain) {
-    world = world * local_at(node, t_ns);
+    world = world * transform_of_node(node, t_ns);
   }
   return world;
 }
@@ -110,7 +137,7 @@ CameraPose pose_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_
   Affine world;
   Quatd turned;
   for (const AnimatedNode& node : chain) {
-    world = world * local_at(node, t_ns);
+    world = world * transform_of_node(node, t_ns);
     turned = turned * (node.has_matrix ? rotation_or(node.matrix, Quatd{}) : own_rotation_at(node, t_ns));
   }
   return {world.t, rotation_or(world, normalize(turned))};

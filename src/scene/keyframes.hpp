@@ -24,6 +24,16 @@ struct KeyTrack {
 Vec3d vector_at(const KeyTrack& track, std::int64_t t_ns);
 Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns);  // linear: slerp; always of unit length
 
+// Several numbers a key, as morph targets have: `width` of them, with cubic_spline three times as many (all
+// in-tangents, then all values, then all out-tangents).
+struct WeightTrack {
+  KeyInterpolation interpolation = KeyInterpolation::linear;
+  std::size_t width = 0;
+  std::vector<std::int64_t> times_ns;
+  std::vector<double> values;
+};
+std::vector<double> weights_at(const WeightTrack& track, std::int64_t t_ns);
+
 // A node on the way from the root to something that moves.
 struct AnimatedNode {
   bool has_matrix = false;
@@ -33,6 +43,7 @@ struct AnimatedNode {
   std::optional<KeyTrack> translation_track, rotation_track, scale_track;
 };
 
+Affine transform_of_node(const AnimatedNode& node, std::int64_t t_ns);  // into its parent's space
 Affine transform_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);
 // The last node of the chain, looking along its -z.
 CameraPose pose_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);

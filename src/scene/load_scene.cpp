@@ -64,18 +64,6 @@ void list_extensions(const GltfDocument& document, Scene& scene) {
 }
 
 void list_unshown(const GltfDocument& document, Scene& scene) {
-  if (document.skin_count > 0) {
-    scene.ignored.push_back(std::to_string(document.skin_count) + " skins");
-    scene.warnings.push_back("the scene has skins; their meshes are shown at rest");
-  }
-  const bool morphs = std::any_of(document.meshes.begin(), document.meshes.end(), [](const GltfMesh& mesh) {
-    return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
-                       [](const GltfPrimitive& primitive) { return primitive.has_morph_targets; });
-  });
-  if (morphs) {
-    scene.ignored.emplace_back("morph targets");
-    scene.warnings.emplace_back("the scene has morph targets; their meshes are shown at rest");
-  }
   if (document.scene_count > 1) {
     scene.ignored.push_back(std::to_string(document.scene_count - 1) + " scenes besides the default one");
     scene.warnings.emplace_back("the file holds several scenes; the default one is shown");
@@ -126,6 +114,9 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   const GltfFile file = read_gltf_file(path);
   const CheckedGltf checked = check_gltf_json(path, file.json);
   GltfDocument document = parse_gltf(path, checked);
+  if (!options.animation.empty()) {
+    keep_animation(document, options.animation);
+  }
   check_gltf_ranges(document, checked.buffers);
   std::vector<std::vector<std::uint8_t>> storage;
   document.buffers = load_buffers(file, checked.buffers, storage);
@@ -164,9 +155,10 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
 
   std::vector<int> parents;
   const std::vector<WorldNode> nodes = world_nodes(document, parents);
-  PlacedMeshes placed = make_instances(document, nodes, parents, scene.meshes, scene.warnings);
+  PlacedMeshes placed = make_instances(document, nodes, parents, scene.materials, scene.meshes, scene.warnings);
   scene.instances = std::move(placed.instances);
   scene.motions = std::move(placed.motions);
+  scene.deformations = std::move(placed.deformations);
   scene.lights = make_lights(document, nodes, scene.warnings);
   scene.cameras = make_cameras(document, nodes, parents, scene.warnings);
   list_unshown_motion(document, nodes, parents, scene.ignored, scene.warnings);

@@ -43,7 +43,7 @@ SceneFeatures features_of(const Scene& scene) {
   std::vector<std::size_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) {
     ++uses[static_cast<std::size_t>(instance.mesh)];
-    features.motion = features.motion || instance.motion >= 0;
+    features.motion = features.motion || instance.motion >= 0 || instance.deformation >= 0;
   }
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (uses[m] == 0) {
@@ -99,7 +99,17 @@ SceneSummary summarize(const Scene& scene) {
     const auto mesh = static_cast<std::size_t>(instance.mesh);
     summary.triangles_instanced += triangles[mesh];
     summary.emissive_triangles += emissive[mesh];
-    add_corners(world, boxes[mesh], instance.to_world);
+    Box own = boxes[mesh];
+    if (instance.deformation >= 0) {
+      own = Box{};
+      for (const Geometry& geometry : scene.meshes[mesh].geometries) {
+        const MeshPose& rest = scene.deformations[static_cast<std::size_t>(instance.deformation)].rest;
+        for (const Vec3f& position : deform(geometry, rest, TextureRef{}).positions) {
+          own.add(to_double(position));
+        }
+      }
+    }
+    add_corners(world, own, instance.to_world);
   }
   summary.bounds_min = world.low;
   summary.bounds_max = world.high;

@@ -24,6 +24,20 @@ std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::arr
   return result;
 }
 
+JointInfluences gathered(const JointInfluences& from, const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  JointInfluences result;
+  result.per_vertex = from.per_vertex;
+  for (const auto& triangle : triangles) {
+    for (const std::uint32_t vertex : triangle) {
+      for (std::uint32_t k = 0; k < from.per_vertex; ++k) {
+        result.joints.push_back(from.joints[std::size_t{vertex} * from.per_vertex + k]);
+        result.weights.push_back(from.weights[std::size_t{vertex} * from.per_vertex + k]);
+      }
+    }
+  }
+  return result;
+}
+
 // Twice the area times the normal, in double: needle and tiny triangles keep a direction.
 Vec3d area_normal(const Geometry& geometry, const std::array<std::uint32_t, 3>& triangle) {
   const Vec3d a = to_double(geometry.positions[triangle[0]]);
@@ -54,6 +68,14 @@ Vec2d transformed_uv(const Geometry& geometry, const TextureRef& texture, std::u
   return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
 }
 
+void append_copy(JointInfluences& influences, std::uint32_t vertex) {
+  for (std::uint32_t k = 0; k < influences.per_vertex; ++k) {
+    const std::size_t from = std::size_t{vertex} * influences.per_vertex + k;
+    influences.joints.push_back(influences.joints[from]);
+    influences.weights.push_back(influences.weights[from]);
+  }
+}
+
 // Appends a copy of a vertex with all its attributes.
 std::uint32_t double_vertex(Geometry& geometry, std::uint32_t vertex) {
   const auto copy = [vertex](auto& values) {
@@ -66,6 +88,12 @@ std::uint32_t double_vertex(Geometry& geometry, std::uint32_t vertex) {
   copy(geometry.uv0);
   copy(geometry.uv1);
   copy(geometry.colors);
+  append_copy(geometry.influences, vertex);
+  for (MorphTarget& target : geometry.morph_targets) {
+    copy(target.positions);
+    copy(target.normals);
+    copy(target.tangents);
+  }
   return static_cast<std::uint32_t>(geometry.positions.size() - 1);
 }
 
@@ -125,6 +153,13 @@ void make_flat_normals(Geometry& geometry) {
   geometry.uv0 = gathered(geometry.uv0, geometry.triangles);
   geometry.uv1 = gathered(geometry.uv1, geometry.triangles);
   geometry.colors = gathered(geometry.colors, geometry.triangles);
+  geometry.influences = gathered(geometry.influences, geometry.triangles);
+  for (MorphTarget& target : geometry.morph_targets) {
+    target.positions = gathered(target.positions, geometry.triangles);
+    target.normals.clear();
+    target.tangents.clear();
+  }
+  geometry.flat_normals = true;
   geometry.normals.resize(geometry.positions.size());
   geometry.tangents.clear();
   for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
@@ -169,6 +204,7 @@ void make_tangents(Geometry& geometry, const TextureRef& normal_texture) {
   for (const auto& triangle : geometry.triangles) {
     frames.push_back(uv_frame(geometry, normal_texture, triangle));
   }
+  geometry.made_tangents = true;
   const std::vector<std::int8_t> handedness = split_by_handedness(geometry, frames);
   std::vector<Vec3d> sums(geometry.positions.size());
   for (std::size_t t = 0; t < frames.size(); ++t) {

@@ -25,6 +25,7 @@ void reset(TemporalHistory& history, const Frame& frame, const Camera& camera) {
   history.radiance_sum = Image<Vec3d>(w, h);
   history.count_sum = Image<double>(w, h);
   history.variance_weight_sum = Image<double>(w, h);
+  history.surfaces = {};
   history.camera = camera;
   history.frames = 0;
 }
@@ -59,6 +60,7 @@ Frame accumulate(Frame frame, const FrameRequest& request, const AccumulateSetti
     }
   });
   ++history.frames;
+  history.t_video_ns = request.t_video_ns;
   return frame;
 }
 

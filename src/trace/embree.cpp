@@ -61,7 +61,8 @@ RTCScene RayScene::Impl::new_scene() const {
   return scene;
 }
 
-void RayScene::Impl::attach(RTCScene scene, const RayGeometry& source, std::uint32_t id) const {
+void RayScene::Impl::attach(RTCScene scene, const RayGeometry& source, std::uint32_t id,
+                            RTCBuildQuality quality) const {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree reads 16 bytes from the last vertex on; its own buffers are padded for that.
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
@@ -76,6 +77,7 @@ void RayScene::Impl::attach(RTCScene scene, const RayGeometry& source, std::uint
       rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter);
       rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter);
     }
+    rtcSetGeometryBuildQuality(geometry, quality);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, id);
   }
@@ -114,12 +116,63 @@ RayScene::~RayScene() = default;
 std::uint32_t RayScene::add_mesh(const std::vector<RayGeometry>& geometries) {
   RTCScene scene = impl_->new_scene();
   impl_->meshes.push_back(scene);
+  impl_->steps.push_back(1);
   for (std::size_t i = 0; i < geometries.size(); ++i) {
     impl_->attach(scene, geometries[i], static_cast<std::uint32_t>(i));
   }
   rtcCommitScene(scene);
   impl_->check("building a mesh's BVH");
   return static_cast<std::uint32_t>(impl_->meshes.size() - 1);
+}
+
+std::uint32_t RayScene::add_deforming_mesh(const std::vector<RayGeometry>& geometries, MeshUpdate update) {
+  RTCScene scene = impl_->new_scene();
+  impl_->meshes.push_back(scene);
+  impl_->steps.push_back(1);
+  const bool refit = update == MeshUpdate::refit;
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_DYNAMIC);  // a tree a geometry, and one above them
+  rtcSetSceneBuildQuality(scene, update == MeshUpdate::rebuild_high  ? RTC_BUILD_QUALITY_HIGH
+                                 : update == MeshUpdate::rebuild_low ? RTC_BUILD_QUALITY_LOW
+                                                                     : RTC_BUILD_QUALITY_MEDIUM);
+  if (!refit) {
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_NONE);
+  }
+  for (std::size_t i = 0; i < geometries.size(); ++i) {
+    impl_->attach(scene, geometries[i], static_cast<std::uint32_t>(i),
+                  refit ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
+  }
+  rtcCommitScene(scene);
+  impl_->check("building a mesh's BVH");
+  return static_cast<std::uint32_t>(impl_->meshes.size() - 1);
+}
+
+void RayScene::deform_mesh(std::uint32_t mesh, std::span<const std::vector<std::vector<Vec3f>>> keys) {
+  RTCScene scene = impl_->meshes[mesh];
+  const bool as_before = impl_->steps[mesh] == keys.size();
+  impl_->steps[mesh] = keys.size();
+  for (std::size_t g = 0; g < keys.front().size(); ++g) {
+    RTCGeometry geometry = rtcGetGeometry(scene, static_cast<unsigned>(g));
+    if (!as_before) {
+      rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(keys.size()));
+    }
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const std::vector<Vec3f>& positions = keys[k][g];
+      const auto slot = static_cast<unsigned>(k);
+      void* vertices = as_before ? rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, slot)
+                                 : rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, slot, RTC_FORMAT_FLOAT3,
+                                                           sizeof(Vec3f), positions.size());
+      impl_->check("deforming a mesh");
+      std::memcpy(vertices, positions.data(), positions.size() * sizeof(Vec3f));
+      rtcUpdateGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, slot);
+    }
+    rtcCommitGeometry(geometry);
+  }
+  rtcCommitScene(scene);
+  impl_->check("deforming a mesh");
+}
+
+void RayScene::refresh_instance(std::uint32_t id) {
+  rtcCommitGeometry(rtcGetGeometry(impl_->top, id));
 }
 
 std::uint32_t RayScene::add_geometry(const RayGeometry& geometry) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gazetrace/math.hpp"
+#include "gazetrace/trace.hpp"
 #include "trace/ray_batch.hpp"
 
 namespace gazetrace {
@@ -53,11 +54,17 @@ class RayScene {
   // Geometry ids of the top scene count up from 0 in the order of add_geometry, then add_instance; geometries come
   // first. Geometry ids inside a mesh are the index into `geometries`.
   std::uint32_t add_mesh(const std::vector<RayGeometry>& geometries);
+  // A mesh whose vertices will change.
+  std::uint32_t add_deforming_mesh(const std::vector<RayGeometry>& geometries, MeshUpdate update);
   std::uint32_t add_geometry(const RayGeometry& geometry);
   std::uint32_t add_instance(std::uint32_t mesh, const RayTransform& to_world);
   // Moves an instance, for the next commit. Several transforms are at equal steps of the rays' time from 0 to 1, linear
   // between; none: the instance is not there.
   void place_instance(std::uint32_t id, std::span<const RayTransform> to_world);
+  // New vertices of a deforming mesh, as many as before: keys[k][g] are those of geometry g at step k of the rays' time
+  // from 0 to 1, linear between. Its instances must be placed again, or `refresh_instance` be called.
+  void deform_mesh(std::uint32_t mesh, std::span<const std::vector<std::vector<Vec3f>>> keys);
+  void refresh_instance(std::uint32_t id);
   // timed: rays carry a time.
   void commit(bool timed = false);
 

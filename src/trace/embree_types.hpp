@@ -149,6 +149,7 @@ struct RayScene::Impl {
   RTCDevice device = nullptr;
   RTCScene top = nullptr;
   std::vector<RTCScene> meshes;
+  std::vector<std::size_t> steps;  // of time that a mesh's vertices have
   const AlphaSource* alpha = nullptr;
   bool high_quality = true;
   bool timed = false;
@@ -161,7 +162,8 @@ struct RayScene::Impl {
 
   void check(const char* what) const;  // throws what the library reports
   [[nodiscard]] RTCScene new_scene() const;
-  void attach(RTCScene scene, const RayGeometry& source, std::uint32_t id) const;
+  void attach(RTCScene scene, const RayGeometry& source, std::uint32_t id,
+              RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM) const;
   ~Impl();
 };
 

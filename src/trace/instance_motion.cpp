@@ -31,9 +31,10 @@ std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
 }  // namespace
 
 void RenderScene::move_to(const Scene& scene, const ShutterTimes& times) {
-  if (moving_.empty()) {
+  if (moving_.empty() && deforming_.empty()) {
     return;
   }
+  deform_meshes(scene, times);
   ways.clear();
   for (const MovingInstance& moving : moving_) {
     const Instance& source = scene.instances[moving.scene_instance];
@@ -48,13 +49,16 @@ void RenderScene::move_to(const Scene& scene, const ShutterTimes& times) {
     ShadingInstance middle = shading_instance(places[places.size() / 2]);
     middle.first_geometry = instance.first_geometry;
     middle.scene_instance = instance.scene_instance;
+    middle.shape_way = instance.shape_way;
     if (way.size() > 1) {
       middle.way = static_cast<std::uint32_t>(ways.size());
       ways.push_back(std::move(way));
     }
     instance = middle;
   }
-  blurs = !ways.empty();
+  const bool any_shape = std::any_of(instances.begin(), instances.end(),
+                                     [](const ShadingInstance& instance) { return instance.shape_way != kNoId; });
+  blurs = !ways.empty() || any_shape;
   rays->commit(blurs);
 }
 

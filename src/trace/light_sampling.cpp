@@ -237,8 +237,9 @@ LightSampler::Collected LightSampler::collect_triangles(const Scene& scene) {
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
       const Geometry& geometry = mesh.geometries[g];
       const Material& material = scene.materials[static_cast<std::size_t>(geometry.material)];
-      // What moves has no place that could be aimed at.
-      if (material.unlit || instance.motion >= 0 || !usable(luminance(to_double(material.emission)))) {
+      // What moves or deforms has no place that could be aimed at.
+      if (material.unlit || instance.motion >= 0 || instance.deformation >= 0 ||
+          !usable(luminance(to_double(material.emission)))) {
         first_emitter_.push_back(kNoEmitter);
         continue;
       }

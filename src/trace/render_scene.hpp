@@ -11,22 +11,10 @@
 #include "gazetrace/trace.hpp"
 #include "trace/embree.hpp"
 #include "trace/layered_material.hpp"
+#include "trace/shading_triangle.hpp"
 #include "trace/texture.hpp"
 
 namespace gazetrace {
-
-// All a hit needs in one and a half cache lines. Triangles of meshes used once are in world space, others in the
-// mesh's own. Positions are those the BVH was built from, so that points on the triangle are exact to rounding.
-struct alignas(32) ShadingTriangle {
-  std::array<Vec3f, 3> position;
-  std::array<Vec2f, 3> uv;              // of the base colour's texture (first present one), its transform applied
-  std::array<std::uint32_t, 3> normal;  // octahedral
-  std::array<std::uint32_t, 3> tangent;
-  float lod = 0;  // log2 of sqrt(uv area / area): Akenine-Moller et al. 2021, eq. 2, without the texture's size
-  std::uint32_t material_and_sign = 0;  // material << 1 | bitangent is negated
-  std::uint32_t extra = kNoId;          // index into TriangleExtra
-};
-static_assert(sizeof(ShadingTriangle) == 96);
 
 // Rarely needed: vertex colours, and texture coordinates where a material's textures do not share them.
 struct TriangleExtra {
@@ -43,10 +31,22 @@ struct ShadingInstance {
   std::uint32_t first_geometry = 0;  // into RenderScene::geometries
   std::uint32_t scene_instance = 0;  // index into Scene::instances; kNoId: the geometry's record knows
   std::uint32_t way = kNoId;         // moves while the shutter is open: index into RenderScene::ways
+  std::uint32_t shape_way = kNoId;   // changes its shape meanwhile: index into RenderScene::shape_ways
 };
 
 // Where an instance is at equal steps from opening to closing of the shutter, linear between, as rays meet it.
 using InstanceWay = std::vector<RayTransform>;
+
+// The triangles of an instance that changes its shape while the shutter is open, at equal steps, linear between.
+struct ShapeWay {
+  std::uint32_t first_triangle = 0;  // into RenderScene::triangles
+  std::vector<std::vector<TriangleShape>> keys;
+  // Corners as gather_triangles wants them; normals and tangents are not normalised.
+  struct Corners {
+    std::array<Vec3f, 3> position, normal, tangent;
+  };
+  [[nodiscard]] Corners at(std::uint32_t triangle, float time) const;
+};
 
 // One per geometry of a shared mesh, and one per (instance, geometry) of baked ones.
 struct GeometryRecord {
@@ -63,6 +63,8 @@ class RenderScene : private AlphaSource {
 
   // Puts what moves to where it is then; see PathTracer::move_to.
   void move_to(const Scene& scene, const ShutterTimes& times);
+  // Whether a deforming instance (of Scene::instances) stands in that pose now.
+  [[nodiscard]] bool is_in_pose(std::uint32_t scene_instance, const MeshPose& pose) const;
   // `time`: 0..1 while the shutter is open.
   [[nodiscard]] ShadingInstance instance_at(std::uint32_t instance, float time) const;
 
@@ -72,6 +74,7 @@ class RenderScene : private AlphaSource {
   std::vector<GeometryRecord> geometries;
   std::vector<ShadingInstance> instances;
   std::vector<InstanceWay> ways;
+  std::vector<ShapeWay> shape_ways;
   bool blurs = false;  // something moves while the shutter is open: rays need their time
   std::uint32_t first_instance_id = 0;
   TexelStore texels;
@@ -83,12 +86,25 @@ class RenderScene : private AlphaSource {
 
  private:
   bool transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v, std::uint32_t key) const override;
-  void add_triangles(const Scene& scene, const Geometry& geometry, const Affine* to_world, RayGeometry& out);
+  // `shape`: the geometry's vertices as they are now, where they are not those of the geometry.
+  void add_triangles(const Scene& scene, const Geometry& geometry, const DeformedVertices* shape,
+                     const Affine* to_world, RayGeometry& out);
+  // The mesh of an instance that deforms, at rest; returns the ray library's mesh.
+  std::uint32_t add_deforming(const Scene& scene, std::size_t scene_instance, std::uint32_t instance,
+                              const TracerOptions& options);
+  void deform_meshes(const Scene& scene, const ShutterTimes& times);
 
   struct MovingInstance {
     std::uint32_t instance = 0, scene_instance = 0;
   };
   std::vector<MovingInstance> moving_;
+  struct DeformingInstance {
+    std::uint32_t instance = 0, scene_instance = 0, ray_mesh = 0;
+    std::uint32_t first_geometry = 0, geometry_count = 0;
+    std::vector<MeshPose> poses;  // that the mesh was last put into, over the open shutter
+  };
+  std::vector<DeformingInstance> deforming_;
+  int threads_ = 0;
 };
 
 }  // namespace gazetrace

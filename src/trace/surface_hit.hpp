@@ -135,7 +135,17 @@ void gather_triangles(const RenderScene& scene, const BatchArray<float>& times, 
     }
     for (std::size_t i = 0; i < count && scene.blurs; ++i) {
       if (chunk.instance[i] != kNoId) {
-        bring_to_world(i, scene.instance_at(chunk.instance[i], times[chunk.path[i]]));
+        const float time = times[chunk.path[i]];
+        const ShadingInstance instance = scene.instance_at(chunk.instance[i], time);
+        if (instance.shape_way != kNoId) {
+          const ShapeWay::Corners corners = scene.shape_ways[instance.shape_way].at(chunk.triangle[i], time);
+          for (std::size_t c = 0; c < 3; ++c) {
+            chunk.corner[c].set(i, corners.position[c]);
+            chunk.corner_normal[c].set(i, corners.normal[c]);
+            chunk.corner_tangent[c].set(i, corners.tangent[c]);
+          }
+        }
+        bring_to_world(i, instance);
       }
     }
   }

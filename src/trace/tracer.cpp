@@ -13,6 +13,7 @@
 #include "trace/guides.hpp"
 #include "trace/kernel.hpp"
 #include "trace/sample_list.hpp"
+#include "trace/surface_motion.hpp"
 #include "trace/surface_sums.hpp"
 
 namespace gazetrace {
@@ -309,6 +310,12 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
 Guides PathTracer::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {
   return trace_guides(impl_->render_scene, impl_->lights, CameraRays(camera, height_px), width_px, height_px, settings,
                       impl_->options.threads);
+}
+
+SurfaceMotion PathTracer::surface_motion(const Camera& camera, int width_px, int height_px,
+                                         const EarlierView& earlier) const {
+  return trace_surface_motion(*impl_->scene, impl_->render_scene, camera, width_px, height_px, earlier,
+                              impl_->options.threads);
 }
 
 TracerMemory PathTracer::memory() const {

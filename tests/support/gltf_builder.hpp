@@ -100,7 +100,7 @@ class GltfBuilder {
     json["accessors"].push_back({{"bufferView", view},
                                  {"componentType", component_type_of<T>()},
                                  {"count", values.size() / width},
-                                 {"type", types[components]}});
+                                 {"type", components == 16 ? "MAT4" : types[components]}});
     if (normalized) {
       json["accessors"].back()["normalized"] = true;
     }

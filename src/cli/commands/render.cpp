@@ -104,7 +104,8 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
                               [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); });
   PipelineSettings settings = pipeline_settings(job, inputs.frames);
   const std::map<std::string, std::string> digests = digest_job_files(job);
-  settings.settings_digest = digest_job(arguments.table, job, settings, inputs.frames, digests);
+  settings.preroll = static_cast<std::int32_t>(inputs.plan.frames.size() - inputs.frames.size());
+  digest_job(arguments.table, job, inputs.frames, digests, settings);
   prepare_outputs(settings, inputs.frames, digests);
 
   TracerOptions options;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include "gazetrace/motion.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+PixelProjection::PixelProjection(const Camera& camera, int width_px, int height_px)
+    : perspective_(camera.projection.kind == ProjectionKind::perspective),
+      origin_(camera.pose.position_m),
+      right_(rotate(camera.pose.orientation, {1, 0, 0})),
+      up_(rotate(camera.pose.orientation, {0, 1, 0})),
+      forward_(rotate(camera.pose.orientation, {0, 0, -1})),
+      center_px_{width_px / 2.0, height_px / 2.0} {
+  const double half_height = perspective_ ? std::tan(camera.projection.yfov_rad / 2) : camera.projection.ymag_m;
+  step_ = 2 * half_height / height_px;
+}
+
+PixelProjection::Place PixelProjection::point(const Vec3d& p) const {
+  const Vec3d way = p - origin_;
+  const double depth = dot(way, forward_);
+  const double scale = perspective_ ? step_ * depth : step_;
+  if (perspective_ && !(depth > 0)) {
+    return {{kNowhere, kNowhere}, depth};
+  }
+  return {{center_px_.x + dot(way, right_) / scale, center_px_.y - dot(way, up_) / scale}, depth};
+}
+
+Vec2d PixelProjection::direction(const Vec3d& d) const {
+  const double along = dot(d, forward_);
+  if (!perspective_ || !(along > 0)) {
+    return {kNowhere, kNowhere};
+  }
+  return {center_px_.x + dot(d, right_) / (step_ * along), center_px_.y - dot(d, up_) / (step_ * along)};
+}
+
+double PixelProjection::depth_on_plane(const Vec2d& px, double depth_m, const Vec3d& normal,
+                                       const Vec2d& other_px) const {
+  // In camera axes: a point at depth z and pixel offset (x, y) is z (s x, s y, 1), or (s x, s y, z) without
+  // perspective.
+  const double nx = dot(normal, right_) * step_;
+  const double ny = -dot(normal, up_) * step_;
+  const double nz = dot(normal, forward_);
+  const Vec2d a{px.x - center_px_.x, px.y - center_px_.y};
+  const Vec2d b{other_px.x - center_px_.x, other_px.y - center_px_.y};
+  if (perspective_) {
+    return depth_m * (nx * a.x + ny * a.y + nz) / (nx * b.x + ny * b.y + nz);
+  }
+  return depth_m + (nx * (a.x - b.x) + ny * (a.y - b.y)) / nz;
+}
+
+Vec3d PixelProjection::toward(const Vec3d& p) const {
+  return perspective_ ? normalize(origin_ - p) : -forward_;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the history knows of a surface point, gathered from the pixels around where it was seen.
+#pragma once
+
+#include <cstddef>
+
+#include "gazetrace/motion.hpp"
+#include "gazetrace/temporal.hpp"
+
+namespace gazetrace {
+
+struct PastSums {
+  Vec3d radiance;       // weighted by counts
+  double count = 0;     // 0: nothing is known
+  double variance = 0;  // count^2 * variance
+  double footprint_px = 0;
+};
+
+// `pixel` of the current frame.
+PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_view, const SurfaceMotion& motion,
+                 std::size_t pixel);
+
+}  // namespace gazetrace

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes that change their shape, as the tracer shows them: from frame to frame, and while the shutter is open.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "render/tracer_scenes.hpp"
+#include "support/chi2.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+constexpr int kWidth = 64, kHeight = 8, kSeeds = 16;
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// Pictures x from -4 to 4 and y from -0.5 to 0.5 at any depth.
+Camera flat_camera(double ymag_m = 0.5) {
+  Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
+  camera.projection.kind = ProjectionKind::orthographic;
+  camera.projection.ymag_m = ymag_m;
+  return camera;
+}
+
+TraceSettings emission_only() {
+  TraceSettings settings;
+  settings.max_bounces = 0;
+  return settings;
+}
+
+template <class Pose>
+void deform_instance(Scene& scene, std::size_t instance, const Pose& pose_at) {
+  Deformation deformation;
+  deformation.pose_at = pose_at;
+  deformation.rest = pose_at(0);
+  scene.instances[instance].deformation = static_cast<std::int32_t>(scene.deformations.size());
+  scene.deformations.push_back(deformation);
+}
+
+double seconds(std::int64_t t_ns) {
+  return static_cast<double>(t_ns) * 1e-9;
+}
+
+// A glowing square of half width 1 whose right edge moves out by the first weight of its one target.
+Scene widening_square(double weight_per_s) {
+  Scene scene;
+  scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
+  Geometry square = quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}, 0);
+  MorphTarget wider;
+  wider.positions = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 0, 0}};
+  square.morph_targets.push_back(wider);
+  add_mesh(scene, {square});
+  deform_instance(scene, 0, [=](std::int64_t t) { return MeshPose{{weight_per_s * seconds(t)}, {}}; });
+  return scene;
+}
+
+std::vector<double> column_means(const SparseFrame& frame, const SamplingMap& map) {
+  std::vector<double> sums(static_cast<std::size_t>(map.width_px), 0);
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    sums[static_cast<std::size_t>(map.sites[i].block_x)] += static_cast<double>(frame.sum[i].y) / frame.count[i];
+  }
+  for (double& sum : sums) {
+    sum /= map.height_px;
+  }
+  return sums;
+}
+
+TEST(Deformation, AnInstantIsSharpAndWhereItShouldBe) {
+  const Scene scene = widening_square(1);
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = uniform_map(kWidth, kHeight, 4);
+  for (const double t_s : {2.0, 0.0, 0.5, 2.5, 0.5}) {
+    const auto t = static_cast<std::int64_t>(t_s * 1e9);
+    tracer.move_to({t, t});
+    const auto lit = column_means(tracer.trace(flat_camera(), 1, map, emission_only()), map);
+    for (int c = 0; c < kWidth; ++c) {
+      const double x = (c + 0.5 - kWidth / 2.0) / 8.0;
+      EXPECT_EQ(lit[static_cast<std::size_t>(c)], x > -1 && x < 1 + t_s ? 1.0 : 0.0) << t_s << ' ' << x;
+    }
+  }
+}
+
+TEST(Deformation, AnEdgeThatMovesWhileTheShutterIsOpenBecomesARamp) {
+  const Scene scene = widening_square(2);
+  PathTracer tracer(scene, threads(2));
+  tracer.move_to({kSecond / 4, kSecond});  // the edge goes from x = 1.5 to x = 3
+  const SamplingMap map = uniform_map(kWidth, kHeight, 64);
+  std::vector<std::vector<double>> columns(kWidth);
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    TraceSettings settings = emission_only();
+    settings.seed = seed;
+    const auto means = column_means(tracer.trace(flat_camera(), 1, map, settings), map);
+    for (std::size_t c = 0; c < kWidth; ++c) {
+      columns[c].push_back(means[c]);
+    }
+  }
+  for (std::size_t c = 0; c < kWidth; ++c) {
+    const double x = (static_cast<double>(c) + 0.5 - kWidth / 2.0) / 8.0;
+    const double expected = x < -1 || x > 3 ? 0 : x < 1.5 ? 1 : (3 - x) / 1.5;
+    const MeanTest result = t_test(columns[c], expected, 1e-4);
+    EXPECT_GT(result.p_value, sidak(kWidth)) << x << ": " << result.mean << " for " << expected;
+  }
+}
+
+// A small glowing square at 3 m from a joint that turns by 120 degrees: a way that is not straight.
+TEST(Deformation, AJointTurnsItsVerticesOnACircle) {
+  Scene scene;
+  scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
+  Geometry spot = quad({{{-0.05F, 2.95F, 0}, {0.05F, 2.95F, 0}, {0.05F, 3.05F, 0}, {-0.05F, 3.05F, 0}}}, 0);
+  spot.influences = {1, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  add_mesh(scene, {spot});
+  deform_instance(scene, 0, [](std::int64_t t) {
+    const double angle = 120 * kRadPerDeg * (0.5 - seconds(t));
+    return MeshPose{{}, {make_affine({}, {0, 0, std::sin(angle / 2), std::cos(angle / 2)}, {1, 1, 1})}};
+  });
+  PathTracer tracer(scene, threads(2));
+  tracer.move_to({0, kSecond});
+  const SamplingMap map = uniform_map(128, 128, 256);
+  const SparseFrame frame = tracer.trace(flat_camera(4), 1, map, emission_only());
+  double sum = 0, radius = 0, least = 9, most = -9, left = 0;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const double value = static_cast<double>(frame.sum[i].y);
+    const double x = (map.sites[i].block_x + 0.5) / 16 - 4;
+    const double y = 4 - (map.sites[i].block_y + 0.5) / 16;
+    sum += value;
+    radius += value * std::hypot(x, y);
+    left += x < 0 ? value : 0;
+    if (value > 0) {
+      least = std::min(least, std::atan2(x, y));
+      most = std::max(most, std::atan2(x, y));
+    }
+  }
+  EXPECT_NEAR(radius / sum, 3.0, 0.01);
+  EXPECT_NEAR(left / sum, 0.5, 0.01);
+  EXPECT_NEAR(most, 60 * kRadPerDeg, 0.03);
+  EXPECT_NEAR(least, -60 * kRadPerDeg, 0.03);
+}
+
+// A white Lambert square that a joint turns about y under a sun along -z: its radiance is cos(angle) / pi, whatever
+// stands in the file as its normal at rest.
+TEST(Deformation, NormalsTurnWithTheJoints) {
+  Scene scene;
+  scene.materials = {diffuse_material({1, 1, 1})};
+  Geometry square = quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}, 0);
+  square.influences = {1, {0, 0, 0, 0}, {1, 1, 1, 1}};
+  add_mesh(scene, {square});
+  PunctualLight sun;
+  sun.kind = LightKind::directional;
+  scene.lights = {sun};
+  deform_instance(scene, 0, [](std::int64_t t) {
+    const double angle = seconds(t);
+    return MeshPose{{}, {make_affine({}, {0, std::sin(angle / 2), 0, std::cos(angle / 2)}, {1, 1, 1})}};
+  });
+  PathTracer tracer(scene, threads(2));
+  TraceSettings settings;
+  settings.max_bounces = 1;
+  settings.diffuse = DiffuseModel::matte;
+  const SamplingMap map = uniform_map(8, 8, 16);
+  const auto radiance = [&](double open_rad, double close_rad) {
+    tracer.move_to({static_cast<std::int64_t>(open_rad * 1e9), static_cast<std::int64_t>(close_rad * 1e9)});
+    return mean_radiance(tracer.trace(flat_camera(0.25), 1, map, settings)).y;
+  };
+  for (const double angle : {0.0, 0.5, 1.0}) {
+    EXPECT_NEAR(radiance(angle, angle), std::cos(angle) / kPi, 1e-4) << angle;
+  }
+  // While the shutter is open: the mean of the cosine.
+  EXPECT_NEAR(radiance(0.2, 1.0), (std::sin(1.0) - std::sin(0.2)) / 0.8 / kPi, 2e-3);
+}
+
+// The picture of a wavy sheet in some other shape than at rest.
+Scene wavy_sheet() {
+  constexpr int kSide = 24;
+  Scene scene;
+  scene.materials = {diffuse_material({0.7F, 0.5F, 0.3F}), diffuse_material({0.2F, 0.6F, 0.8F})};
+  scene.environment = constant_environment({1, 1, 1});
+  Geometry sheet;
+  MorphTarget wave;
+  for (int y = 0; y <= kSide; ++y) {
+    for (int x = 0; x <= kSide; ++x) {
+      sheet.positions.push_back(
+          {4.0F * static_cast<float>(x) / kSide - 2, 4.0F * static_cast<float>(y) / kSide - 2, 0});
+      sheet.normals.push_back({0, 0, 1});
+      wave.positions.push_back({0, 0, std::sin(static_cast<float>(x)) * std::cos(0.7F * static_cast<float>(y))});
+    }
+  }
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 0; x < kSide; ++x) {
+      const std::uint32_t a = y * (kSide + 1) + x;
+      sheet.triangles.push_back({a, a + 1, a + kSide + 2});
+      sheet.triangles.push_back({a, a + kSide + 2, a + kSide + 1});
+    }
+  }
+  sheet.morph_targets = {wave};
+  add_mesh(scene, {sheet});
+  add_mesh(scene, box(0.4F, false, 1), make_affine({0, 0, 1.5}, {}, {1, 1, 1}));
+  deform_instance(scene, 0, [](std::int64_t t) { return MeshPose{{seconds(t)}, {}}; });
+  return scene;
+}
+
+SparseFrame picture(PathTracer& tracer, const ShutterTimes& times) {
+  tracer.move_to(times);
+  return tracer.trace(camera_at({2, 3, 6}, {0, 0, 0}, 40), 1, uniform_map(96, 96, 4), TraceSettings{});
+}
+
+TEST(Deformation, EveryWayToUpdateTheTreeShowsTheSamePicture) {
+  const Scene scene = wavy_sheet();
+  TracerOptions options = threads(2);
+  for (const ShutterTimes& times : {ShutterTimes{kSecond, kSecond}, ShutterTimes{kSecond / 2, kSecond}}) {
+    options.mesh_update = MeshUpdate::rebuild_high;
+    PathTracer reference(scene, options);
+    const SparseFrame expected = picture(reference, times);
+    for (const MeshUpdate update : {MeshUpdate::refit, MeshUpdate::rebuild_low, MeshUpdate::rebuild_medium}) {
+      options.mesh_update = update;
+      PathTracer tracer(scene, options);
+      EXPECT_EQ(picture(tracer, times).sum, expected.sum) << static_cast<int>(update);
+    }
+  }
+}
+
+TEST(Deformation, APictureDependsOnItsTimeAlone) {
+  const Scene scene = wavy_sheet();
+  PathTracer tracer(scene, threads(2));
+  const SparseFrame first = picture(tracer, {kSecond, kSecond});
+  const SparseFrame other = picture(tracer, {kSecond / 3, kSecond / 2});
+  EXPECT_NE(first.sum, other.sum);
+  EXPECT_EQ(picture(tracer, {kSecond, kSecond}).sum, first.sum);
+  EXPECT_EQ(picture(tracer, {kSecond / 3, kSecond / 2}).sum, other.sum);
+  PathTracer single(scene, threads(1));
+  EXPECT_EQ(picture(single, {kSecond / 3, kSecond / 2}).sum, other.sum);
+}
+
+// A mesh in a shape equals another mesh that was made in it.
+TEST(Deformation, AShapeLooksLikeAMeshMadeSo) {
+  const Scene scene = wavy_sheet();
+  PathTracer tracer(scene, threads(2));
+  const SparseFrame deformed = picture(tracer, {kSecond, kSecond});
+  Scene still = wavy_sheet();
+  Geometry& sheet = still.meshes[0].geometries[0];
+  sheet.positions = deform(sheet, MeshPose{{1.0}, {}}, {}).positions;
+  still.instances[0].deformation = -1;
+  still.deformations.clear();
+  PathTracer static_tracer(still, threads(2));
+  const SparseFrame expected = picture(static_tracer, {0, 0});
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < expected.sum.size(); ++i) {
+    difference += std::fabs(static_cast<double>(expected.sum[i].y - deformed.sum[i].y));
+    sum += static_cast<double>(expected.sum[i].y);
+  }
+  EXPECT_LT(difference, 1e-3 * sum);
+}
+
+TEST(Deformation, AShapeBeyondNumbersIsAnErrorWithItsPlace) {
+  Scene scene = widening_square(1e30);
+  PathTracer tracer(scene, threads(1));
+  try {
+    tracer.move_to({kSecond, kSecond});
+    FAIL() << "was accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("vertex 1 is not finite, or beyond 1e18 m"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace

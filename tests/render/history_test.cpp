@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sequence with history: in one run, in two joined by a checkpoint, and with frames rendered before the first.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gazetrace/pipeline.hpp"
+#include "render/tracer_scenes.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// A room with a body that moves through it.
+Scene room() {
+  Scene scene;
+  scene.materials = {diffuse_material({0.8F, 0.7F, 0.6F}), diffuse_material({0.2F, 0.5F, 0.8F})};
+  scene.environment = builtin_sky();
+  add_mesh(scene, {quad({{{-4, -1, -4}, {-4, -1, 4}, {4, -1, 4}, {4, -1, -4}}}, 0),
+                   quad({{{-4, -1, -4}, {4, -1, -4}, {4, 4, -4}, {-4, 4, -4}}}, 0)});
+  add_mesh(scene, box(0.6F, false, 1));
+  scene.motions.push_back({[](std::int64_t t) {
+    return make_affine({-1 + 2 * static_cast<double>(t) / kSecond, 0, 0}, {}, {1, 1, 1});
+  }});
+  scene.instances[1].motion = 0;
+  return scene;
+}
+
+FramePlan plan_of(int first, int last) {
+  FramePlan plan;
+  for (int frame = first; frame <= last; ++frame) {
+    FrameRequest request;
+    request.frame = frame;
+    request.t_video_ns = kSecond * (2 * frame - 1) / 48;
+    request.shutter_open_ns = request.shutter_close_ns = request.t_video_ns;
+    request.width_px = 48;
+    request.height_px = 32;
+    request.camera = camera_at({0.05 * frame, 0.5, 5}, {0, 0, 0});
+    request.view = view_of_perspective(50 * kRadPerDeg, 48, 32);
+    request.gaze_direction_render = request.view.direction(8.0 + 3 * frame, 16);
+    request.gaze_direction_true = request.gaze_direction_render;
+    plan.frames.push_back(request);
+  }
+  return plan;
+}
+
+PipelineSettings settings_of(AccumulateOrder order = AccumulateOrder::after) {
+  PipelineSettings settings;
+  settings.accumulate.mode = AccumulateMode::reproject;
+  settings.accumulate.order = order;
+  settings.exposure.mode = ExposureMode::log_average;
+  settings.exposure.smoothing_s = 0.2;
+  settings.foveation.region_samples = {8, 4, 4};
+  settings.history_digest = "0123456789abcdef0123456789abcdef";
+  settings.threads = 2;
+  return settings;
+}
+
+struct Rendered {
+  ImageRgb radiance;
+  ImageGray sample_count, variance;
+  double ev = 0;
+  friend bool operator==(const Rendered&, const Rendered&) = default;
+};
+
+std::map<std::int32_t, Rendered> render(const Scene& scene, const FramePlan& plan, const PipelineSettings& settings) {
+  PathTracer tracer(scene, threads(2));
+  const ColorPipeline color(ColorSettings{});
+  std::map<std::int32_t, Rendered> frames;
+  PipelineObserver observer;
+  observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double ev) {
+    frames[request.frame] = {frame.radiance, frame.sample_count, frame.variance, ev};
+  };
+  (void)render_sequence(tracer, plan, color, settings, observer);
+  return frames;
+}
+
+TEST(History, TwoRunsJoinedByACheckpointAreOneRunToTheBit) {
+  const Scene scene = room();
+  for (const AccumulateOrder order : {AccumulateOrder::after, AccumulateOrder::before}) {
+    const TemporaryFolder folder;
+    const std::string file = folder / "history.bin";
+    const auto whole = render(scene, plan_of(1, 8), settings_of(order));
+    PipelineSettings first = settings_of(order);
+    first.checkpoint = file;
+    (void)render(scene, plan_of(1, 5), first);
+    PipelineSettings second = settings_of(order);
+    second.resume_from = file;
+    const auto rest = render(scene, plan_of(6, 8), second);
+    ASSERT_EQ(rest.size(), 3U);
+    for (const auto& [frame, rendered] : rest) {
+      EXPECT_EQ(rendered, whole.at(frame)) << frame;
+    }
+    // Without it they are others.
+    EXPECT_NE(render(scene, plan_of(6, 8), settings_of(order)).at(6), whole.at(6));
+  }
+}
+
+TEST(History, CheckpointsComeAsOftenAsAskedAndTheLastOneStays) {
+  const Scene scene = room();
+  const TemporaryFolder folder;
+  PipelineSettings settings = settings_of();
+  settings.checkpoint = folder / "history.bin";
+  settings.checkpoint_every = 2;
+  PathTracer tracer(scene, threads(2));
+  const ColorPipeline color(ColorSettings{});
+  std::vector<std::int32_t> held;
+  PipelineObserver observer;
+  observer.frame_done = [&](const TimingRow&, bool) {
+    held.push_back(std::filesystem::exists(settings.checkpoint)
+                       ? load_checkpoint(settings.checkpoint, settings.history_digest).last_frame
+                       : 0);
+  };
+  (void)render_sequence(tracer, plan_of(1, 5), color, settings, observer);
+  EXPECT_EQ(held, (std::vector<std::int32_t>{0, 2, 2, 4, 5}));
+}
+
+TEST(History, PrerollComesNearer) {
+  const Scene scene = room();
+  const auto whole = render(scene, plan_of(1, 12), settings_of());
+  double previous = 1e9;
+  for (const int preroll : {0, 3, 9}) {
+    PipelineSettings settings = settings_of();
+    settings.preroll = preroll;
+    const auto some = render(scene, plan_of(12 - preroll, 12), settings);
+    double error = 0;
+    for (std::size_t i = 0; i < whole.at(12).radiance.pixels.size(); ++i) {
+      const double difference =
+          static_cast<double>(some.at(12).radiance.pixels[i].y - whole.at(12).radiance.pixels[i].y);
+      error += difference * difference;
+    }
+    EXPECT_LT(error, 0.7 * previous) << preroll;
+    previous = error;
+  }
+}
+
+TEST(History, WithAccumulationOffNothingChanges) {
+  const Scene scene = room();
+  PipelineSettings off = settings_of();
+  off.accumulate = {};
+  off.exposure = {};
+  const auto alone = render(scene, plan_of(3, 3), off);
+  EXPECT_EQ(render(scene, plan_of(1, 3), off).at(3), alone.at(3));
+}
+
+TemporalHistory some_history() {
+  TemporalHistory history;
+  history.radiance_sum = Image<Vec3d>(3, 2, {0.1, -1e300, std::nan("")});
+  history.count_sum = Image<double>(3, 2, 1.0 / 3);
+  history.variance_weight_sum = Image<double>(3, 2, 5e-324);
+  history.surfaces.depth_m = ImageGray(3, 2, INFINITY);
+  history.surfaces.normal = ImageRgb(3, 2, {0, 0, 1});
+  history.surfaces.object = Image<std::uint32_t>(3, 2, 7);
+  history.surfaces.footprint_px = ImageGray(3, 2, 4);
+  history.camera = camera_at({1, 2, 3}, {0, 0, 0});
+  history.camera->shutter_poses = {history.camera->pose, history.camera->pose};
+  history.camera->lens.radius_m = 0.01;
+  history.t_video_ns = 9'007'199'254'740'993;
+  history.frames = 12;
+  history.last_frame = 30;
+  history.smoothed_ev = -1.5;
+  history.smoothed_ev_t_ns = 77;
+  return history;
+}
+
+TEST(Checkpoint, EveryBitComesBack) {
+  const TemporaryFolder folder;
+  const std::string a = folder / "a";
+  const std::string b = folder / "b";
+  save_checkpoint(a, some_history(), "d");
+  const TemporalHistory back = load_checkpoint(a, "d");
+  EXPECT_EQ(back.camera->shutter_poses.size(), 2U);
+  EXPECT_EQ(back.t_video_ns, 9'007'199'254'740'993);
+  EXPECT_TRUE(std::isnan(back.radiance_sum(2, 1).z));
+  EXPECT_EQ(back.surfaces.footprint_px(1, 1), 4.0F);
+  EXPECT_EQ(back.smoothed_ev, -1.5);
+  save_checkpoint(b, back, "d");
+  EXPECT_EQ(file_bytes(a), file_bytes(b));
+  save_checkpoint(a, TemporalHistory{}, "d");
+  EXPECT_FALSE(load_checkpoint(a, "d").camera);
+}
+
+TEST(Checkpoint, DamageAndOtherSettingsAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "history.bin";
+  save_checkpoint(path, some_history(), "these settings");
+  const auto message = [&] {
+    try {
+      (void)load_checkpoint(path, "these settings");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input);
+      return std::string(error.what());
+    }
+    return std::string("was accepted");
+  };
+  EXPECT_EQ(message(), "was accepted");
+  EXPECT_THROW((void)load_checkpoint(path, "others"), Error);
+  const std::string good = file_bytes(path);
+  const auto write = [&](const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; };
+  for (std::size_t at = good.find('\n') + 1; at < good.size(); at += 41) {
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ 16);
+    write(bad);
+    EXPECT_THAT(message(), ::testing::HasSubstr("the checkpoint is damaged")) << at;
+  }
+  ASSERT_GT(good.size(), 500U);
+  for (const std::size_t length : {good.size() - 1, good.size() / 2, good.find('\n') + 3}) {
+    write(good.substr(0, length));
+    EXPECT_THAT(message(), ::testing::HasSubstr("the checkpoint is damaged")) << length;
+  }
+  write("something else\n");
+  EXPECT_THAT(message(), ::testing::HasSubstr("is no checkpoint"));
+  std::filesystem::remove(path);
+  EXPECT_THAT(message(), ::testing::HasSubstr("cannot be opened"));
+}
+
+TEST(Checkpoint, ARunMustBeginAfterIt) {
+  const Scene scene = room();
+  const TemporaryFolder folder;
+  PipelineSettings settings = settings_of();
+  settings.resume_from = folder / "history.bin";
+  TemporalHistory history;
+  history.last_frame = 5;
+  save_checkpoint(settings.resume_from, history, settings.history_digest);
+  EXPECT_THROW((void)render(scene, plan_of(5, 6), settings), Error);
+  PathTracer tracer(scene, threads(1));
+  const ColorPipeline color(ColorSettings{});
+  EXPECT_TRUE(render_sequence(tracer, plan_of(6, 6), color, settings, {}).warnings.empty());
+  EXPECT_EQ(render_sequence(tracer, plan_of(7, 7), color, settings, {}).warnings.size(), 1U);
+}
+
+}  // namespace
+}  // namespace gazetrace

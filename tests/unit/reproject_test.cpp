@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reprojected accumulation by hand: what is carried, what is refused, and what it weighs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+
+#include "gazetrace/temporal.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kWidth = 16, kHeight = 12;
+
+// A wall at 2 m that fills the view, seen where it was `shift` pixels to the right before.
+SurfaceMotion wall(const Vec2d& shift = {0, 0}) {
+  SurfaceMotion motion;
+  motion.depth_m = ImageGray(kWidth, kHeight, 2.0F);
+  motion.normal = ImageRgb(kWidth, kHeight, {0, 0, 1});
+  motion.object = Image<std::uint32_t>(kWidth, kHeight, 1);
+  motion.earlier_px = Image<Vec2d>(kWidth, kHeight);
+  motion.earlier_depth_m = motion.depth_m;
+  motion.earlier_normal = motion.normal;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      motion.earlier_px(x, y) = {x + 0.5 + shift.x, y + 0.5 + shift.y};
+    }
+  }
+  return motion;
+}
+
+Frame frame_of(const std::function<double(int x, int y)>& radiance, float count, float variance = 0) {
+  Frame frame;
+  frame.radiance = ImageRgb(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const auto value = static_cast<float>(radiance(x, y));
+      frame.radiance(x, y) = {value, value / 2, value / 4};
+    }
+  }
+  frame.sample_count = ImageGray(kWidth, kHeight, count);
+  frame.variance = ImageGray(kWidth, kHeight, variance);
+  return frame;
+}
+Frame even_frame(double radiance, float count, float variance = 0) {
+  return frame_of([=](int, int) { return radiance; }, count, variance);
+}
+
+// One site a pixel, or a block.
+SamplingMap map_of(int block_px = 1) {
+  FoveationSettings settings;
+  settings.falloff = "regions";
+  settings.region_blocks_px = {block_px, block_px};
+  settings.region_angles_deg = {1e-3, 2e-3};
+  const PlanarView view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
+  // A gaze far aside: all is periphery.
+  return block_px == 1 ? make_sampling_map(FoveationSettings{}, view, {})
+                       : make_sampling_map(settings, view, view.direction(-1e4, -1e4));
+}
+
+AccumulateSettings all_kept() {
+  AccumulateSettings settings;
+  settings.mode = AccumulateMode::reproject;
+  settings.frames = 0;
+  settings.clip_sigmas = 0;
+  return settings;
+}
+
+FrameRequest request_of(std::int32_t frame) {
+  FrameRequest request;
+  request.frame = frame;
+  request.t_video_ns = frame * 41'666'666;
+  request.width_px = kWidth;
+  request.height_px = kHeight;
+  return request;
+}
+
+Frame pass(Frame frame, const SurfaceMotion& motion, const AccumulateSettings& settings, TemporalHistory& history,
+           std::int32_t number = 1, int block_px = 1) {
+  return reproject(std::move(frame), map_of(block_px), motion, request_of(number), settings, history, 2);
+}
+
+double value(const Frame& frame, int x, int y) {
+  return static_cast<double>(frame.radiance(x, y).x);
+}
+
+TEST(Reproject, TheFirstFramePassesThroughToTheBit) {
+  TemporalHistory history;
+  Frame frame = frame_of([](int x, int y) { return 0.1 * x + 0.7 * y; }, 3, 2);
+  const Frame out = pass(frame, wall(), all_kept(), history);
+  EXPECT_EQ(out.radiance, frame.radiance);
+  EXPECT_EQ(out.sample_count, frame.sample_count);
+  EXPECT_EQ(out.variance, frame.variance);
+}
+
+TEST(Reproject, WhatStandsStillIsTheRunningMean) {
+  TemporalHistory history;
+  TemporalHistory running;
+  for (int k = 1; k <= 50; ++k) {
+    const auto radiance = [k](int x, int y) { return std::fabs(std::sin(12.9898 * x + 78.233 * y + 37.719 * k)); };
+    const auto count = static_cast<float>(1 + k % 5);
+    const Frame out = pass(frame_of(radiance, count, 0.5F), wall(), all_kept(), history, k);
+    const Frame expected =
+        accumulate(frame_of(radiance, count, 0.5F), request_of(k), {AccumulateMode::running}, running, 1);
+    for (std::size_t i = 0; i < out.radiance.pixels.size(); ++i) {
+      ASSERT_NEAR(out.radiance.pixels[i].y, expected.radiance.pixels[i].y, 1e-6);
+      ASSERT_FLOAT_EQ(out.sample_count.pixels[i], expected.sample_count.pixels[i]);
+      ASSERT_NEAR(out.variance.pixels[i], expected.variance.pixels[i], 1e-6);
+    }
+  }
+}
+
+TEST(Reproject, HistoryLandsWhereItsSurfaceIs) {
+  TemporalHistory history;
+  (void)pass(frame_of([](int x, int y) { return 10 + x + 0.25 * y; }, 3), wall(), all_kept(), history);
+  // It was three pixels to the right and one and a half below.
+  const Frame out = pass(even_frame(0, 1), wall({3, 1.5}), all_kept(), history, 2);
+  for (int y = 0; y < kHeight - 2; ++y) {
+    for (int x = 0; x < kWidth - 3; ++x) {
+      EXPECT_NEAR(value(out, x, y), 0.75 * (10 + (x + 3) + 0.25 * (y + 1.5)), 1e-5);
+      EXPECT_FLOAT_EQ(out.sample_count(x, y), 4);
+    }
+  }
+  EXPECT_EQ(value(out, kWidth - 1, 3), 0.0) << "came in at the side";
+  EXPECT_EQ(out.sample_count(kWidth - 1, 3), 1.0F);
+}
+
+TEST(Reproject, WhatWasHiddenOrIsAnotherThingBeginsAnew) {
+  struct Refusal {
+    const char* name;
+    std::function<void(SurfaceMotion&)> change;
+  };
+  const Refusal refusals[] = {
+      {"another object", [](SurfaceMotion& m) { m.object(4, 4) = 2; }},
+      {"a miss", [](SurfaceMotion& m) { m.object(4, 4) = 0; }},
+      {"nearer", [](SurfaceMotion& m) { m.earlier_depth_m(4, 4) = 1.9F; }},
+      {"farther", [](SurfaceMotion& m) { m.earlier_depth_m(4, 4) = 2.1F; }},
+      {"turned",
+       [](SurfaceMotion& m) {
+         m.earlier_normal(4, 4) = {std::sqrt(0.5F), 0, std::sqrt(0.5F)};
+       }},
+      {"behind the camera", [](SurfaceMotion& m) { m.earlier_px(4, 4).x = std::numeric_limits<double>::quiet_NaN(); }},
+      {"beside the frame", [](SurfaceMotion& m) { m.earlier_px(4, 4).y = -3; }},
+  };
+  for (const Refusal& refusal : refusals) {
+    TemporalHistory history;
+    (void)pass(even_frame(5, 8), wall(), all_kept(), history);
+    SurfaceMotion motion = wall();
+    refusal.change(motion);
+    const Frame out = pass(even_frame(1, 1), motion, all_kept(), history, 2);
+    EXPECT_EQ(value(out, 4, 4), 1.0) << refusal.name;
+    EXPECT_EQ(out.sample_count(4, 4), 1.0F) << refusal.name;
+    EXPECT_EQ(out.sample_count(5, 4), 9.0F) << refusal.name;
+  }
+}
+
+TEST(Reproject, APlaneSeenAtASlantIsStillThatPlane) {
+  // Depths of neighbors differ by more than the tolerance; what counts is the distance to the plane.
+  SurfaceMotion motion = wall({0.5, 0});
+  const PixelProjection view(Camera{}, kWidth, kHeight);
+  const Vec3d normal = normalize(Vec3d{-0.97, 0, 0.24});
+  const Vec2d center{kWidth / 2.0, kHeight / 2.0};
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      motion.depth_m(x, y) = static_cast<float>(view.depth_on_plane(center, 2, normal, {x + 0.5, y + 0.5}));
+      motion.earlier_depth_m(x, y) =
+          static_cast<float>(view.depth_on_plane(center, 2, normal, motion.earlier_px(x, y)));
+      motion.normal(x, y) = motion.earlier_normal(x, y) = to_float(normal);
+    }
+  }
+  ASSERT_GT(std::fabs(motion.depth_m(9, 4) / motion.depth_m(8, 4) - 1), 0.05F);
+  TemporalHistory history;
+  (void)pass(even_frame(5, 8), motion, all_kept(), history);
+  EXPECT_FLOAT_EQ(pass(even_frame(1, 1), motion, all_kept(), history, 2).sample_count(8, 4), 9.0F);
+}
+
+TEST(Reproject, WhatWasFovealKeepsItsWorth) {
+  AccumulateSettings settings = all_kept();
+  settings.frames = 16;
+  TemporalHistory history;
+  (void)pass(even_frame(4, 32, 1), wall(), settings, history);
+  const Frame out = pass(even_frame(1, 0.5F, 9), wall(), settings, history, 2, 4);
+  EXPECT_FLOAT_EQ(out.sample_count(7, 7), 30.5F);
+  EXPECT_NEAR(value(out, 7, 7), (30 * 4 + 0.5 * 1) / 30.5, 1e-6);
+  EXPECT_NEAR(out.variance(7, 7), (30 * 30 * 1 + 0.25 * 9) / (30.5 * 30.5), 1e-6);
+}
+
+TEST(Reproject, CoarseHistoryHardlyCountsForAFinePixel) {
+  TemporalHistory history;
+  (void)pass(even_frame(4, 8), wall(), all_kept(), history, 1, 4);
+  const Frame out = pass(even_frame(1, 8), wall(), all_kept(), history, 2, 1);
+  EXPECT_FLOAT_EQ(out.sample_count(7, 7), 8.5F);  // 8 / 4^2 of the past
+  // What is left of it in the sums is remembered as coarse.
+  EXPECT_NEAR(history.surfaces.footprint_px(7, 7), (8 * 1 + 0.5 * 4) / 8.5, 1e-6);
+}
+
+TEST(Reproject, NoPixelIsWorthLessThanItsOwnFrame) {
+  AccumulateSettings settings;
+  settings.mode = AccumulateMode::reproject;
+  TemporalHistory history;
+  for (int k = 1; k <= 8; ++k) {
+    const auto count = static_cast<float>(k % 3);
+    const Frame out = pass(frame_of([k](int x, int y) { return (x * y * k) % 7; }, count, 1), wall({0.3 * k, -0.2}),
+                           settings, history, k, k % 2 == 0 ? 4 : 1);
+    for (const float worth : out.sample_count.pixels) {
+      EXPECT_GE(worth, count);
+    }
+  }
+}
+
+TEST(Reproject, ThePastFadesAsStated) {
+  AccumulateSettings settings = all_kept();
+  settings.frames = 10;
+  TemporalHistory history;
+  int k = 0;
+  for (; k < 200; ++k) {
+    (void)pass(even_frame(1, 2), wall(), settings, history, k + 1);
+  }
+  EXPECT_NEAR(history.count_sum(3, 3), 20, 1e-6);  // memory times a frame's samples
+  // The light goes out: of the old picture 0.9^n is left after n frames.
+  for (int n = 1; n <= 30; ++n) {
+    EXPECT_NEAR(value(pass(even_frame(0, 2), wall(), settings, history, k + n), 5, 5), std::pow(0.9, n), 1e-6);
+  }
+}
+
+TEST(Reproject, ALightThatGoesOutIsForgottenWithinThreeFrames) {
+  AccumulateSettings settings;
+  settings.mode = AccumulateMode::reproject;
+  TemporalHistory history;
+  const auto noisy = [](int k, double level) {
+    return frame_of(
+        [=](int x, int y) {
+          const double noise = std::sin(12.9898 * x + 78.233 * y + 37.719 * k) * 43758.5453;
+          return level * (0.5 + noise - std::floor(noise));
+        },
+        4, static_cast<float>(level * level / 48));
+  };
+  for (int k = 1; k <= 60; ++k) {
+    (void)pass(noisy(k, 10), wall(), settings, history, k);
+  }
+  double mean = 0;
+  for (int k = 61; k <= 63; ++k) {
+    const Frame out = pass(noisy(k, 1), wall(), settings, history, k);
+    mean = 0;
+    for (const Vec3f& pixel : out.radiance.pixels) {
+      mean += static_cast<double>(pixel.x) / (kWidth * kHeight);
+    }
+  }
+  EXPECT_NEAR(mean, 1, 0.05);
+  settings.clip_sigmas = 0;
+  TemporalHistory unclipped;
+  for (int k = 1; k <= 63; ++k) {
+    mean = value(pass(even_frame(k <= 60 ? 10 : 1, 4), wall(), settings, unclipped, k), 5, 5);
+  }
+  EXPECT_GT(mean, 7) << "clipping had nothing to do";
+}
+
+TEST(Reproject, AFixedBlendIsTheExponentialAverage) {
+  AccumulateSettings settings = all_kept();
+  settings.blend = 0.1;
+  TemporalHistory history;
+  double expected = 3;
+  (void)pass(even_frame(3, 2), wall(), settings, history);
+  for (int k = 2; k < 40; ++k) {
+    expected += 0.1 * (k % 4 - expected);
+    EXPECT_NEAR(value(pass(even_frame(k % 4, 7), wall(), settings, history, k), 2, 2), expected, 1e-5);
+  }
+}
+
+TEST(Reproject, AThousandFramesDoNotDrift) {
+  AccumulateSettings settings = all_kept();
+  settings.frames = 16;
+  settings.clip_sigmas = 3;
+  TemporalHistory history;
+  for (int k = 1; k <= 1000; ++k) {
+    const Frame out = pass(even_frame(0.1, 2, 0.25F), wall({0.37, -0.21}), settings, history, k);
+    ASSERT_NEAR(value(out, 5, 5), 0.1F, 2e-8) << k;
+  }
+  // In the middle the sums are those of the geometric series.
+  EXPECT_LE(history.count_sum(2, 9), 32 + 1e-9);
+  EXPECT_GT(history.count_sum(2, 9), 20);
+}
+
+TEST(Reproject, ACutForgetsEverything) {
+  const auto after = [](const std::function<void(FrameRequest&)>& change) {
+    TemporalHistory history;
+    (void)pass(even_frame(5, 8), wall(), all_kept(), history);
+    FrameRequest request = request_of(2);
+    change(request);
+    const Frame out = reproject(even_frame(1, 1), map_of(), wall(), request, all_kept(), history, 1);
+    EXPECT_EQ(history.frames, out.sample_count(3, 3) == 1.0F ? 1 : 2);
+    return out.sample_count(3, 3);
+  };
+  const auto turn = [](double degrees) {
+    return [degrees](FrameRequest& r) {
+      const double half = degrees * kRadPerDeg / 2;
+      r.camera.pose.orientation = {0, std::sin(half), 0, std::cos(half)};
+    };
+  };
+  EXPECT_EQ(after([](FrameRequest&) {}), 9.0F);
+  EXPECT_EQ(after(turn(19)), 9.0F);
+  EXPECT_EQ(after(turn(21)), 1.0F);
+  EXPECT_EQ(after([](FrameRequest& r) { r.camera.pose.position_m = {0.9, 0, 0}; }), 9.0F);
+  EXPECT_EQ(after([](FrameRequest& r) { r.camera.pose.position_m = {1.1, 0, 0}; }), 1.0F);
+  EXPECT_EQ(after([](FrameRequest& r) { r.camera.projection.yfov_rad *= 1.01; }), 1.0F);
+}
+
+TEST(Reproject, SaccadesAndBlinksForgetWhereAsked) {
+  for (const EyeMovement movement : {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::blink}) {
+    for (const bool asked : {false, true}) {
+      AccumulateSettings settings = all_kept();
+      settings.reset_at_saccades = settings.reset_at_blinks = asked;
+      TemporalHistory history;
+      (void)pass(even_frame(5, 8), wall(), settings, history);
+      FrameRequest request = request_of(2);
+      request.gaze_render.movement = movement;
+      const Frame out = reproject(even_frame(1, 1), map_of(), wall(), request, settings, history, 1);
+      EXPECT_EQ(out.sample_count(3, 3), asked && movement != EyeMovement::fixation ? 1.0F : 9.0F);
+    }
+  }
+}
+
+TEST(Reproject, SitesOfAFrameAreTheSitesItWasMadeOf) {
+  const SamplingMap map = map_of(4);
+  SparseFrame sparse;
+  sparse.width_px = kWidth;
+  sparse.height_px = kHeight;
+  for (std::size_t s = 0; s < map.sites.size(); ++s) {
+    const auto n = static_cast<float>(map.sites[s].samples);
+    const auto mean = static_cast<float>(1 + s % 7);
+    sparse.sum.push_back(Vec3f{mean, mean / 2, mean / 4} * n);
+    const float luminance = 0.2126F * mean + 0.7152F * mean / 2 + 0.0722F * mean / 4;
+    sparse.sum_square_luminance.push_back(n * (luminance * luminance + 0.5F));
+    sparse.count.push_back(map.sites[s].samples);
+  }
+  const SparseFrame again = sites_of_frame(reconstruct(sparse, map, "none", 1), sparse, map);
+  EXPECT_EQ(again.count, sparse.count);
+  const Frame expected = reconstruct(sparse, map, "linear", 1);
+  const Frame out = reconstruct(again, map, "linear", 1);
+  for (std::size_t i = 0; i < out.radiance.pixels.size(); ++i) {
+    EXPECT_NEAR(out.radiance.pixels[i].x, expected.radiance.pixels[i].x, 1e-5);
+    EXPECT_NEAR(out.variance.pixels[i], expected.variance.pixels[i], 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
