@@ -55,12 +55,17 @@ struct SequenceResult {
   Warnings warnings;
 };
 
+// What PipelineSettings::resume_from holds, or nothing. Error(usage) unless it comes before the plan's first frame; a
+// warning where frames are missing between.
+TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings);
+
 // Renders the frames of a plan in order. With OutputSettings::resume, frames whose files carry this settings digest are
 // skipped; where history (accumulation, exposure smoothing) needs them they are rendered again, but not written.
 // The tracer is moved from frame to frame. timing.csv grows by a row with each finished frame, so that a killed run
-// keeps what it measured.
+// keeps what it measured. `history`: of the frames before, see starting_history().
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
-                               const PipelineSettings& settings, const PipelineObserver& observer);
+                               const PipelineSettings& settings, const PipelineObserver& observer,
+                               TemporalHistory history = {});
 
 // What the sampling map of a frame depends on beside settings, view and gaze.
 MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);

@@ -223,8 +223,17 @@ std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settin
   return timing_file_name(settings.output.run_directory, format_frame_list(frames), settings.is_part);
 }
 
-// What the frames before the plan's first left behind.
-TemporalHistory first_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings) {
+bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
+  if (settings.checkpoint.empty()) {
+    return false;
+  }
+  return done == total ||
+         (settings.checkpoint_every > 0 && done % static_cast<std::size_t>(settings.checkpoint_every) == 0);
+}
+
+}  // namespace
+
+TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings) {
   if (settings.resume_from.empty() || plan.frames.empty()) {
     return {};
   }
@@ -245,23 +254,13 @@ TemporalHistory first_history(const FramePlan& plan, const PipelineSettings& set
   return history;
 }
 
-bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
-  if (settings.checkpoint.empty()) {
-    return false;
-  }
-  return done == total ||
-         (settings.checkpoint_every > 0 && done % static_cast<std::size_t>(settings.checkpoint_every) == 0);
-}
-
-}  // namespace
-
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
-                               const PipelineSettings& settings, const PipelineObserver& observer) {
+                               const PipelineSettings& settings, const PipelineObserver& observer,
+                               TemporalHistory history) {
   SequenceResult result;
-  TemporalHistory history = first_history(plan, settings, result.warnings);
   const std::string timing_path = timing_path_of(plan, settings);
   const ResumePlan resume = plan_resume(plan, settings, timing_path);
-  result.warnings.insert(result.warnings.end(), resume.warnings.begin(), resume.warnings.end());
+  result.warnings = resume.warnings;
   TimingLog timing(timing_path, resume.kept_rows);
   if (!settings.output.display.pattern.empty() && !plan.frames.empty()) {
     const FrameRequest& first = plan.frames.front();

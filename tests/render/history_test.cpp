@@ -81,7 +81,8 @@ std::map<std::int32_t, Rendered> render(const Scene& scene, const FramePlan& pla
   observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double ev) {
     frames[request.frame] = {frame.radiance, frame.sample_count, frame.variance, ev};
   };
-  (void)render_sequence(tracer, plan, color, settings, observer);
+  Warnings warnings;
+  (void)render_sequence(tracer, plan, color, settings, observer, starting_history(plan, settings, warnings));
   return frames;
 }
 
@@ -233,10 +234,11 @@ TEST(Checkpoint, ARunMustBeginAfterIt) {
   history.last_frame = 5;
   save_checkpoint(settings.resume_from, history, settings.history_digest);
   EXPECT_THROW((void)render(scene, plan_of(5, 6), settings), Error);
-  PathTracer tracer(scene, threads(1));
-  const ColorPipeline color(ColorSettings{});
-  EXPECT_TRUE(render_sequence(tracer, plan_of(6, 6), color, settings, {}).warnings.empty());
-  EXPECT_EQ(render_sequence(tracer, plan_of(7, 7), color, settings, {}).warnings.size(), 1U);
+  Warnings warnings;
+  (void)starting_history(plan_of(6, 6), settings, warnings);
+  EXPECT_TRUE(warnings.empty());
+  (void)starting_history(plan_of(7, 7), settings, warnings);
+  EXPECT_EQ(warnings.size(), 1U);
 }
 
 }  // namespace

@@ -106,6 +106,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   const std::map<std::string, std::string> digests = digest_job_files(job);
   settings.preroll = static_cast<std::int32_t>(inputs.plan.frames.size() - inputs.frames.size());
   digest_job(arguments.table, job, inputs.frames, digests, settings);
+  TemporalHistory history = starting_history(inputs.plan, settings, inputs.warnings);
   prepare_outputs(settings, inputs.frames, digests);
 
   TracerOptions options;
@@ -142,7 +143,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
       pixels += pixel_report(request, frame, *job.only_pixel);
     };
   }
-  const SequenceResult result = render_sequence(tracer, inputs.plan, color, settings, observer);
+  const SequenceResult result = render_sequence(tracer, inputs.plan, color, settings, observer, std::move(history));
   progress.finish();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
