@@ -51,8 +51,8 @@ struct AccumulateSettings {
   // Share of the current frame where there is history (the classic exponential average), whatever the counts say.
   // 0: weights follow the counts.
   double blend = 0;
-  // History is brought to within this many standard deviations of the current frame's neighborhood, and loses the
-  // square of what it was off by from its count. 0: never.
+  // History is brought to within this many standard deviations of the current frame's neighborhood, and keeps
+  // the inverse fourth power of what it was off by, in limits, of its count. 0: never.
   double clip_sigmas = 3;
   // Nothing of the past is used in frames during which the eye makes a saccade or is closed.
   bool reset_at_saccades = false, reset_at_blinks = false;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The history in a file: a line of text that says what it is, then every number as it stands in memory, then a digest.
-#include <array>
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>

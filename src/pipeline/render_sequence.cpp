@@ -79,8 +79,8 @@ Frame plain_frame(const SparseFrame& sparse, const SamplingMap& map, const Guide
 }
 
 Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, const SamplingMap& map,
-                        const Guides* guides, const FrameRequest& request, const PipelineSettings& settings, TemporalHistory& history,
-                        TimingRow& row) {
+                        const Guides* guides, const FrameRequest& request, const PipelineSettings& settings,
+                        TemporalHistory& history, TimingRow& row) {
   // A filter that works on surfaces takes the samples apart by them, which a frame cannot give back.
   const bool before = settings.accumulate.order == AccumulateOrder::before && guides == nullptr;
   const auto filtered = [&](const SparseFrame& sites, const std::string& filter) {
@@ -93,7 +93,10 @@ Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, con
     const SurfaceMotion motion = tracer.surface_motion(request.camera, map.width_px, map.height_px, earlier);
     return reproject(std::move(dense), map, motion, request, settings.accumulate, history, settings.threads);
   });
-  return before ? filtered(sites_of_frame(merged, sparse, map), settings.filter) : merged;
+  if (before) {
+    merged = filtered(sites_of_frame(merged, sparse, map), settings.filter);
+  }
+  return merged;
 }
 
 RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,

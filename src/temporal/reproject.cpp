@@ -79,7 +79,8 @@ Spread spread_around(const Frame& frame, const SurfaceMotion& motion, int x, int
   return spread;
 }
 
-// Brings the past to within the limits; a past that was r times as far off keeps 1 / r^2 of its count.
+// Brings the past to within the limits; a past that was r times as far off keeps 1 / r^4 of its count: it is
+// contradicted, and the limit is no place to rest.
 void clip(const Spread& spread, double sigmas, PastSums& past) {
   const Vec3d mean = past.radiance / past.count;
   // The past has noise of its own: a variance of its luminance, shared out in proportion.
@@ -100,7 +101,7 @@ void clip(const Spread& spread, double sigmas, PastSums& past) {
   const Vec3d within{clipped(mean.x, spread.mean.x, spread.variance.x),
                      clipped(mean.y, spread.mean.y, spread.variance.y),
                      clipped(mean.z, spread.mean.z, spread.variance.z)};
-  const double kept = 1 / (farthest * farthest);
+  const double kept = 1 / (farthest * farthest * farthest * farthest);
   past.count *= kept;
   past.variance *= kept * kept;
   past.radiance = within * past.count;

@@ -77,7 +77,9 @@ void RayScene::Impl::attach(RTCScene scene, const RayGeometry& source, std::uint
       rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter);
       rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter);
     }
-    rtcSetGeometryBuildQuality(geometry, quality);
+    if (quality != RTC_BUILD_QUALITY_MEDIUM) {  // the library's default
+      rtcSetGeometryBuildQuality(geometry, quality);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, id);
   }

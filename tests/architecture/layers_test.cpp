@@ -44,7 +44,8 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"temporal", "temporal"}, {"color", "color"},       {"output", "output"},
     {"pipeline", "pipeline"}, {"metrics", "metrics"},   {"fovvideovdp", "metrics"},
     {"compare", "compare"},   {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},
-    {"gaze_process", "gaze"}, {"gaze_synth", "gaze"},
+    {"gaze_process", "gaze"}, {"gaze_synth", "gaze"},   {"motion", "camera"},
+    {"deformation", "scene"},
 };
 
 // Which files may meet which dependency.
