@@ -331,9 +331,9 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   const fs::path camera_path(job.camera_path);
   // COLMAP's lenses stand beside its pictures.
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
-  std::vector<std::string> files =
-      existing({job.environment, job.camera_path, lenses.string(), job.gaze.path, job.gaze.columns_file,
-                job.screen.name, job.recording_screen, ocio_file(job), job.foveation.parameters.table.path, job.resume_from});
+  std::vector<std::string> files = existing({job.environment, job.camera_path, lenses.string(), job.gaze.path,
+                                             job.gaze.columns_file, job.screen.name, job.recording_screen,
+                                             ocio_file(job), job.foveation.parameters.table.path, job.resume_from});
   if (!job.scene.empty()) {
     const std::vector<std::string> scene = scene_files(job.scene);
     files.insert(files.end(), scene.begin(), scene.end());

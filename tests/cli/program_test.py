@@ -44,12 +44,14 @@ class Talk(harness.CliTest):
 
     def test_every_listed_name_is_accepted(self):
         families = json.loads(self.run_ok("list", "--json").stdout)
+        self.write("table.csv", "ecc_deg,density\n0,1\n30,0.1\n")
         base = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "--quiet", "--overwrite", "-o", "f.exr", "-o", "f.png",
                 "--gaze-at", "0.5,0.5", *harness.SCREEN]
         for family, option in (("falloffs", "--falloff"), ("filters", "--filter"), ("views", "--view"), ("aovs", "--aov")):
             for member in families[family]:
                 with self.subTest(option=option, name=member["name"]):
-                    self.run_ok(*base, option, member["name"])
+                    more = ["--falloff-table", "table.csv"] if member["name"] == "table" else []
+                    self.run_ok(*base, option, member["name"], *more)
 
     def test_results_on_stdout_and_the_rest_on_stderr(self):
         arguments = ["render", "box.gltf", "-o", "f.####.exr", "--size", "32x18", "--spp", "2", "--frames", "1-3"]

@@ -73,8 +73,10 @@ std::vector<Family> families() {
          std::vector<Member> members;
          for (const GazeFormatInfo& format : gaze_formats()) {
            const bool real = format.proof == FormatProof::recording;
-           members.push_back({format.name, format.description + (real ? " (tried on a real recording)"
-                                                                      : " (unconfirmed: synthetic files only, made after its documentation)")});
+           members.push_back(
+               {format.name,
+                format.description + (real ? " (tried on a real recording)"
+                                           : " (unconfirmed: synthetic files only, made after its documentation)")});
          }
          return members;
        }},
