@@ -71,7 +71,7 @@ AccumulateSettings all_kept() {
 FrameRequest request_of(std::int32_t frame) {
   FrameRequest request;
   request.frame = frame;
-  request.t_video_ns = frame * 41'666'666;
+  request.t_video_ns = std::int64_t{frame} * 41'666'666;
   request.width_px = kWidth;
   request.height_px = kHeight;
   return request;
