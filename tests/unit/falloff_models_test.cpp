@@ -164,22 +164,21 @@ TEST(FalloffDensity, LogPolarIsTheJacobianOfItsMapping) {
   }
 }
 
-// Steps of u, the sum of M over a short way; of the turn, steps whose number falls with sin e inside the plateau:
-// samples per solid angle are the grid cells in a small ring of the sphere.
+// The radial axis is the integral of M, the turn in steps whose number falls with sin e inside the plateau: samples per
+// solid angle are the grid cells in a small patch of the sphere.
 TEST(FalloffDensity, VisualPolarIsTheJacobianOfItsMapping) {
   const FoveationSettings settings = model("visual-polar");
-  const auto u_between = [](double from_deg, double to_deg) {
-    constexpr int kSteps = 1000;
-    const double step = (to_deg - from_deg) / kSteps;
+  const auto integral_of_acuity = [](double from_deg, double to_deg) {
+    constexpr int kSteps = 100;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
-      sum += relative_acuity(from_deg + (i + 0.5) * step) * step;
+      sum += relative_acuity(from_deg + (i + 0.5) * (to_deg - from_deg) / kSteps);
     }
-    return sum;
+    return sum * (to_deg - from_deg) / kSteps;
   };
   const auto cells_per_area = [&](double e_deg) {
     const double h = 0.01;
-    const double du = u_between(e_deg - h, e_deg + h);
+    const double du = integral_of_acuity(e_deg - h, e_deg + h);
     const double turn_steps = std::min(1.0, std::sin(e_deg * kRadPerDeg) / std::sin(kAcuityPlateauDeg * kRadPerDeg));
     const double ring_area = std::cos((e_deg - h) * kRadPerDeg) - std::cos((e_deg + h) * kRadPerDeg);
     return du * turn_steps / ring_area;
@@ -353,18 +352,17 @@ TEST(FalloffExtremes, ConstantsAtTheirLimits) {
   EXPECT_EQ((*falloff_density(settings, view, gaze))(60, 30), static_cast<float>(settings.density_floor));
 }
 
-// Angles to a hundredth of a pixel at 16384 pixels: acos would have lost them.
+// A tenth of a degree across 16384 pixels: the angle to the next pixel is 1e-7 radians, of which acos would keep seven
+// digits.
 TEST(FalloffExtremes, SmallAnglesKeepTheirDigits) {
-  const PlanarView view = view_of_perspective(0.5 * kRadPerDeg * 4 / 16384, 16384, 4);
+  const PlanarView view = view_of_perspective(0.1 * 4 / 16384 * kRadPerDeg, 16384, 4);
   FoveationSettings settings = model("table");
-  settings.parameters.table = {"", {{0, 1}, {0.02, 0.5}, {1, 0.25}}};
-  const Vec3d gaze = view.direction(8000, 2);
+  settings.parameters.table = {"", {{0, 1}, {0.05, 0.5}}};  // a straight line
+  const Vec3d gaze = view.direction(8192, 2);
   const DensityField field(settings, view, gaze, {}, std::get<DensityModel>(make_falloff(settings, view, gaze)));
-  double last = 2;
-  for (int x = 8000; x < 8400; ++x) {
-    const double p = field.at(x, 2);
-    EXPECT_LT(p, last) << x;
-    last = p;
+  for (const int steps : {1, 2, 10, 100, 1000}) {
+    const double e = std::atan(steps * view.step_x) * kDegPerRad;
+    EXPECT_NEAR((1 - field.at(8192 + steps, 2)) / (10 * e), 1, 1e-8) << steps;
   }
 }
 
