@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "core/luminance.hpp"
 #include "gazetrace/color.hpp"
 
 namespace gazetrace {
@@ -39,10 +40,9 @@ std::optional<double> log_average_luminance(const ImageRgb& radiance) {
       for (int y = row * kBlockPx; y < y_end; ++y) {
         const Vec3f* pixel = &radiance.pixels[radiance.index(column * kBlockPx, y)];
         for (int x = column * kBlockPx; x < x_end; ++x, ++pixel) {
-          const double luminance = 0.2126 * static_cast<double>(pixel->x) + 0.7152 * static_cast<double>(pixel->y) +
-                                   0.0722 * static_cast<double>(pixel->z);
-          if (std::isfinite(luminance)) {
-            sum += luminance;
+          const double shone = luminance(to_double(*pixel));
+          if (std::isfinite(shone)) {
+            sum += shone;
             ++count;
           }
         }

@@ -13,6 +13,7 @@
 // shading normal.
 #pragma once
 
+#include "core/luminance.hpp"
 #include "gazetrace/material.hpp"
 #include "material/albedo_tables.hpp"
 #include "material/microfacet.hpp"
@@ -138,7 +139,6 @@ class Bsdf {
 
  private:
   static constexpr float kInvPi = static_cast<float>(1 / kPi);
-  static constexpr float luminance(const Vec3f& c) noexcept { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
 
   [[nodiscard]] BsdfEval evaluate_half(const Vec3f& wi, const Vec3f& half, const AlbedoTerms& terms) const noexcept {
     if constexpr (kDiffuse == DiffuseModel::matte) {

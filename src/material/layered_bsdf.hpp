@@ -303,28 +303,28 @@ class LayeredBsdf {
     const float sheen = has_sheen_ ? under_sheen_.o : 0.0F;
     const float base = std::max((1.0F - coat) * (1.0F - sheen), 1e-3F);
     const Vec3f ones{1, 1, 1};
-    const float f_metal = luminance_of(s_.base.base_color * (at_o_.e - at_o_.b) + ones * at_o_.b);
-    const float f_opaque = luminance_of(s_.f0) * (at_o_.e - at_o_.b) + s_.f90 * at_o_.b;
+    const float f_metal = luminance(s_.base.base_color * (at_o_.e - at_o_.b) + ones * at_o_.b);
+    const float f_opaque = luminance(s_.f0) * (at_o_.e - at_o_.b) + s_.f90 * at_o_.b;
     float facets = facets_.metal() * f_metal + facets_.opaque() * f_opaque;
     if (s_.film > 0) {
-      facets = (facets_.metal() * luminance_of(facets_.metal_fresnel(wo_.z)) +
-                facets_.opaque() * luminance_of(facets_.opaque_fresnel(wo_.z))) *
+      facets = (facets_.metal() * luminance(facets_.metal_fresnel(wo_.z)) +
+                facets_.opaque() * luminance(facets_.opaque_fresnel(wo_.z))) *
                at_o_.e;
     }
     facets += facets_.clear() * (is_bent() ? 1.0F - lost_o_ : at_o_.e);
     const float left = facets_.opaque() * (1.0F - std::min(opaque_albedo(wo_.z, at_o_), 1.0F));
     const float lost = 1.0F - at_o_.e;
-    float diffuse = left * luminance_of(diffuse_color(false)) + lost * luminance_of(repeated_color());
-    float through = left * luminance_of(s_.diffuse_transmission_color) * s_.diffuse_transmission;
+    float diffuse = left * luminance(diffuse_color(false)) + lost * luminance(repeated_color());
+    float through = left * luminance(s_.diffuse_transmission_color) * s_.diffuse_transmission;
     if (facets_.clear() > 0 && !s_.solid) {
-      through += facets_.clear() * luminance_of(s_.base.base_color) * lost * sheet_passed();
+      through += facets_.clear() * luminance(s_.base.base_color) * lost * sheet_passed();
     }
     if (is_bent()) {
       diffuse += facets_.clear() * lost_o_ * (1.0F - passed_);
-      through += facets_.clear() * lost_o_ * passed_ * luminance_of(s_.base.base_color);
+      through += facets_.clear() * lost_o_ * passed_ * luminance(s_.base.base_color);
     }
     coat_probability_ = s_.inside ? 0.0F : coat;
-    sheen_probability_ = s_.inside ? 0.0F : (1.0F - coat) * luminance_of(s_.sheen_color) * sheen_o_.kept;
+    sheen_probability_ = s_.inside ? 0.0F : (1.0F - coat) * luminance(s_.sheen_color) * sheen_o_.kept;
     facet_probability_ = base * facets;
     // A coat's repeated scattering is found by the diffuse lobe.
     diffuse_probability_ = base * diffuse + 0.05F * coat_probability_ * s_.clearcoat_roughness;

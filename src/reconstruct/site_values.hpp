@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/luminance.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/trace.hpp"
 
@@ -58,12 +59,11 @@ inline SiteValue SiteValues::value_from_sums(std::size_t site) const {
   SiteValue value{{sum.x / n, sum.y / n, sum.z / n}, 0.0F};
   if (count > 1) {
     // The unbiased estimate of the samples' variance, divided by their number. In double, since two nearly equal
-    // numbers are subtracted. Luminance by Rec.709's weights, as the tracer sums it.
-    const double luminance =
-        0.2126 * static_cast<double>(sum.x) + 0.7152 * static_cast<double>(sum.y) + 0.0722 * static_cast<double>(sum.z);
+    // numbers are subtracted. Luminance as the tracer sums it.
+    const double shone = luminance(to_double(sum));
     const double samples = count;
     const double spread =
-        (static_cast<double>(sparse_->sum_square_luminance[site]) - luminance * luminance / samples) / (samples - 1.0);
+        (static_cast<double>(sparse_->sum_square_luminance[site]) - shone * shone / samples) / (samples - 1.0);
     value.variance = spread > 0 ? static_cast<float>(spread / samples) : 0.0F;
   }
   return value;

@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "foveation/sites.hpp"
 
 namespace gazetrace {
 namespace {
-
-float luminance(const Vec3f& c) {
-  return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
-}
 
 SurfaceCell cell_of(const SurfaceSums& sums, float block_px, float pixel_m, bool perspective) {
   const auto n = static_cast<float>(sums.count);

@@ -6,16 +6,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/luminance.hpp"
 #include "core/parallel.hpp"
 
 namespace gazetrace {
 namespace {
 
 constexpr std::array<float, 2> kBinomial{0.5F, 0.25F};  // 1 2 1 in x and y, half
-
-float luminance(const Vec3f& c) {
-  return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
-}
 
 class Smoother {
  public:

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/temporal.hpp"
@@ -17,10 +18,6 @@ namespace {
 
 constexpr int kReach = 2;           // the neighborhood is 5x5 sites
 constexpr double kRounding = 1e-3;  // of a flat surface without noise: floats, and what bilinear weights blur
-
-double luminance(const Vec3d& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
 
 ImageGray footprints_of(const SamplingMap& map) {
   ImageGray footprint(map.width_px, map.height_px, 1.0F);

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "core/fast_math.hpp"
+#include "core/luminance.hpp"
 
 namespace gazetrace {
 namespace {
@@ -20,16 +21,13 @@ constexpr double kCompensation = 0.5;
 // A sky of which less than this share stands out is sampled as it is.
 constexpr double kLeastExcess = 0.02;
 
-double luminance(const Vec3f& c) {
-  return 0.2126 * static_cast<double>(c.x) + 0.7152 * static_cast<double>(c.y) + 0.0722 * static_cast<double>(c.z);
-}
-
 // Mean over each pixel of the bilinear interpolation: the weights 1, 6, 1 (eighths) along each axis.
 std::vector<double> interpolated_luminance(const ImageRgb& picture) {
   const int w = picture.width_px;
   const int h = picture.height_px;
   std::vector<double> plain(picture.pixels.size());
-  std::transform(picture.pixels.begin(), picture.pixels.end(), plain.begin(), luminance);
+  std::transform(picture.pixels.begin(), picture.pixels.end(), plain.begin(),
+                 [](const Vec3f& c) { return luminance(to_double(c)); });
   std::vector<double> result(plain.size());
   const auto blurred_row = [&](int x, int y) {
     const int left = x == 0 ? w - 1 : x - 1;

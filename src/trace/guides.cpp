@@ -14,6 +14,7 @@
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
 #include "trace/first_hit.hpp"
+#include "trace/primary_rays.hpp"
 #include "trace/sampler.hpp"
 
 namespace gazetrace {
@@ -53,17 +54,6 @@ struct GuideFrame {
   int width_px, height_px;
 };
 
-// Along a Z-curve, so that a packet of sixteen is a square.
-PixelIndex place_on_curve(std::uint32_t i) {
-  const auto even_bits = [](std::uint32_t v) {
-    v &= 0x55555555U;
-    v = (v | (v >> 1U)) & 0x33333333U;
-    v = (v | (v >> 2U)) & 0x0f0f0f0fU;
-    return static_cast<std::uint16_t>((v | (v >> 4U)) & 0xffU);
-  };
-  return {even_bits(i), even_bits(i >> 1U)};
-}
-
 Vec2f from_center(const GuideFrame& frame, int x, int y, const Vec2f& inside) {
   return {(static_cast<float>(x) - 0.5F * static_cast<float>(frame.width_px)) + inside.x,
           (static_cast<float>(y) - 0.5F * static_cast<float>(frame.height_px)) + inside.y};
@@ -94,17 +84,7 @@ void add_ray(const GuideFrame& frame, const Vec2f& through, int x, int y, std::u
   const CameraRays::Ray ray = frame.camera.ray(through.x, through.y);
   const std::uint64_t key = hash64(kPlaceKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x)));
   const std::size_t k = work.count++;
-  RayBatch& rays = work.rays;
-  rays.ox[k] = ray.origin.x;
-  rays.oy[k] = ray.origin.y;
-  rays.oz[k] = ray.origin.z;
-  rays.dx[k] = ray.direction.x;
-  rays.dy[k] = ray.direction.y;
-  rays.dz[k] = ray.direction.z;
-  rays.tnear[k] = ray.tnear;
-  rays.tfar[k] = ray.tfar;
-  rays.time[k] = 0.5F;
-  rays.alpha_key[k] = hash32(static_cast<std::uint32_t>(key >> 32U) ^ hash32(sample));
+  put_camera_ray(ray, hash32(static_cast<std::uint32_t>(key >> 32U) ^ hash32(sample)), k, work.rays);
   work.cone_spread[k] = ray.cone_spread * static_cast<float>(frame.settings.pixel_cone);
   work.place[k] = static_cast<std::uint32_t>(place);
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
+#include "core/luminance.hpp"
 #include "trace/duplicate_emitters.hpp"
 #include "trace/emission_average.hpp"
 
@@ -28,10 +29,6 @@ constexpr std::size_t kTreeFromLights = 4;
 // A triangle smaller than this cannot be told from a line in float.
 constexpr double kSmallestArea = 1e-30;
 constexpr float kGrazing = 1e-6F;
-
-double luminance(const Vec3d& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
 
 bool usable(double weight) {
   return weight > 0 && std::isfinite(weight);

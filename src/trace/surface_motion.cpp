@@ -12,6 +12,7 @@
 #include "core/hash.hpp"
 #include "core/parallel.hpp"
 #include "trace/instance_transform.hpp"
+#include "trace/primary_rays.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,17 +20,6 @@ namespace {
 constexpr int kTilePx = 32;
 static_assert(kTilePx * kTilePx == kBatchSize);
 constexpr std::uint64_t kPlaceKey = 0x6d6f74696f6e21ULL;  // keeps alpha hashes apart from those of traced samples
-
-// Along a Z-curve, so that a packet of sixteen is a square.
-std::array<int, 2> place_on_curve(std::uint32_t i) {
-  const auto even_bits = [](std::uint32_t v) {
-    v &= 0x55555555U;
-    v = (v | (v >> 1U)) & 0x33333333U;
-    v = (v | (v >> 2U)) & 0x0f0f0f0fU;
-    return static_cast<int>((v | (v >> 4U)) & 0xffU);
-  };
-  return {even_bits(i), even_bits(i >> 1U)};
-}
 
 // An instance as it was at the earlier time, and as it is.
 struct InstancePast {
@@ -104,19 +94,10 @@ class MotionTracer {
       }
       const CameraRays::Ray ray = rays_.ray(static_cast<float>(x) + 0.5F - 0.5F * static_cast<float>(width_px_),
                                             static_cast<float>(y) + 0.5F - 0.5F * static_cast<float>(height_px_));
-      RayBatch& rays = work.rays;
-      rays.ox[count] = ray.origin.x;
-      rays.oy[count] = ray.origin.y;
-      rays.oz[count] = ray.origin.z;
-      rays.dx[count] = ray.direction.x;
-      rays.dy[count] = ray.direction.y;
-      rays.dz[count] = ray.direction.z;
-      rays.tnear[count] = ray.tnear;
-      rays.tfar[count] = ray.tfar;
-      rays.time[count] = 0.5F;
       // The same in every frame: a blended surface does not come and go.
-      rays.alpha_key[count] = static_cast<std::uint32_t>(
+      const auto alpha_key = static_cast<std::uint32_t>(
           hash64(kPlaceKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x))));
+      put_camera_ray(ray, alpha_key, count, work.rays);
       work.pixel[count] = out.depth_m.index(x, y);
       ++count;
     }

@@ -5,14 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/luminance.hpp"
+
 namespace gazetrace {
-namespace {
-
-double luminance(const Vec3d& c) {
-  return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 SurfaceSorter::Surface& SurfaceSorter::surface_of(SurfaceKind kind, const Vec3f& normal, const Vec3f& place) {
   Surface* nearest = nullptr;

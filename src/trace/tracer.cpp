@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/trace.hpp"
@@ -212,9 +213,8 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
       sum.r += static_cast<double>(r);
       sum.g += static_cast<double>(g);
       sum.b += static_cast<double>(b);
-      const double luminance =
-          0.2126 * static_cast<double>(r) + 0.7152 * static_cast<double>(g) + 0.0722 * static_cast<double>(b);
-      sum.luminance2 += luminance * luminance;
+      const double shone = luminance(to_double(Vec3f{r, g, b}));
+      sum.luminance2 += shone * shone;
       if (surfaces && needs_filtering(map, map.sites[current])) {
         sorter.add(work.surfaces, i, {r, g, b});
       }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/luminance.hpp"
 #include "material/layered_surface.hpp"
 #include "material/lobes/dielectric.hpp"
 #include "material/lobes/ggx.hpp"
@@ -16,9 +17,6 @@ namespace gazetrace {
 
 inline float largest_channel(const Vec3f& c) noexcept {
   return std::max(c.x, std::max(c.y, c.z));
-}
-inline float luminance_of(const Vec3f& c) noexcept {
-  return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
 }
 
 class Facets {
@@ -87,8 +85,8 @@ class Facets {
       const Vec3f f = clear_fresnel(cosine);
       result.reflected += f * clear_;
       result.through = s_.base.base_color * (clear_ * std::max(1.0F - largest_channel(f), 0.0F));
-      const float up = luminance_of(result.reflected);
-      const float down = luminance_of(result.through);
+      const float up = luminance(result.reflected);
+      const float down = luminance(result.through);
       result.reflect_probability = up + down > 0 ? up / (up + down) : 1.0F;
     }
     return result;

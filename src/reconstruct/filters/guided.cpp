@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "foveation/sites.hpp"
 #include "reconstruct/filter.hpp"
@@ -130,10 +131,6 @@ class Gather {
   const SurfaceCells& lattice_;
   const SmoothingSettings& settings_;
 };
-
-float luminance(const Vec3f& c) {
-  return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z;
-}
 
 // Guides of a miss or an unlit surface say all there is to know.
 bool only_shines(SurfaceKind kind) {
