@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "benchmark_main.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
 #include "trace/kernel.hpp"
@@ -166,10 +167,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return gazetrace::benchmark::benchmark_main(run, argc, argv);
 }

@@ -10,13 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "benchmark_main.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "pixel_statistics.hpp"
@@ -181,10 +181,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return gazetrace::benchmark::benchmark_main(run, argc, argv);
 }

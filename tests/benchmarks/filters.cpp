@@ -23,6 +23,7 @@
 #include <string_view>
 #include <vector>
 
+#include "benchmark_main.hpp"
 #include "core/image_io.hpp"
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
@@ -361,10 +362,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return gazetrace::benchmark::benchmark_main(run, argc, argv);
 }

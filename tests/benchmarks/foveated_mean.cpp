@@ -28,6 +28,7 @@
 #include <string_view>
 #include <vector>
 
+#include "benchmark_main.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/plan.hpp"
@@ -441,10 +442,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const gazetrace::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return gazetrace::benchmark::benchmark_main(run, argc, argv);
 }

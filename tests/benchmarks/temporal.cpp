@@ -18,12 +18,12 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "benchmark_main.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/pipeline.hpp"
@@ -481,10 +481,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return gazetrace::benchmark::benchmark_main(run, argc, argv);
 }

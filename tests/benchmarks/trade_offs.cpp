@@ -19,11 +19,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
 #include <functional>
 #include <string>
 #include <string_view>
 
+#include "benchmark_main.hpp"
 #include "core/half.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
@@ -287,10 +287,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 2;
-  }
+  return gazetrace::benchmark::benchmark_main(run, argc, argv);
 }
