@@ -14,6 +14,9 @@
 #include <string_view>
 #include <vector>
 
+#include "gazetrace/error.hpp"
+#include "gazetrace/scene.hpp"
+
 namespace gazetrace::test {
 
 // A folder of the running test's own, removed at the end.
@@ -178,5 +181,16 @@ class GltfBuilder {
   }
   std::vector<std::uint8_t> bin_;
 };
+
+// What loading says against a file, which must be an error of the input.
+inline std::string error_of(const std::string& path) {
+  try {
+    static_cast<void>(load_scene(path));
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    return error.what();
+  }
+  return "no error";
+}
 
 }  // namespace gazetrace::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packed geometry and pictures: what meshoptimizer's and Draco's own encoders wrote comes back, and damaged streams are
+// Packed geometry: what meshoptimizer's and Draco's own encoders wrote comes back, and damaged streams are
 // refused.
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
@@ -11,7 +11,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/image_io.hpp"
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
 
@@ -19,6 +18,7 @@ namespace gazetrace {
 namespace {
 
 using nlohmann::json;
+using test::error_of;
 using test::GltfBuilder;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -78,15 +78,6 @@ void expect_scene_or_one_line(const std::string& path, int& refused) {
     EXPECT_THAT(error.what(), HasSubstr(path));
     EXPECT_THAT(error.what(), Not(HasSubstr("\n")));
   }
-}
-
-std::string error_of(const std::string& path) {
-  try {
-    static_cast<void>(load_scene(path));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 // --- EXT_meshopt_compression
@@ -452,69 +443,6 @@ TEST(Draco, RefusesWhatDoesNotFitTheAccessors) {
   EXPECT_THAT(message([](json&, json& packed) { packed["bufferView"] = 5; }), HasSubstr("not an index"));
   EXPECT_THAT(message([](json&, json& packed) { packed.erase("attributes"); }), HasSubstr("'attributes' is missing"));
   EXPECT_THAT(message([](json& all, json&) { all["meshes"][0]["primitives"][0]["mode"] = 6; }), HasSubstr("mode 6"));
-}
-
-// --- pictures
-
-void add_textured_triangle(GltfBuilder& builder) {
-  builder.add_triangle({{"material", 0}, {"attributes", {{"TEXCOORD_0", builder.add<float>({0, 0, 1, 0, 0, 1}, 2)}}}});
-  builder.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
-}
-
-Bytes flat_picture(const char* name, std::uint8_t r, std::uint8_t g, std::uint8_t b) {
-  Bytes rgb;
-  for (int i = 0; i < 8 * 8; ++i) {
-    rgb.insert(rgb.end(), {r, g, b});
-  }
-  return encode_image(name, 8, 8, 8, rgb, {});
-}
-
-void expect_texel(const Scene& scene, const std::array<int, 3>& rgb, int tolerance) {
-  ASSERT_EQ(scene.textures.size(), 1U);
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(scene.textures[0].levels[0].rgba[c], rgb[c], tolerance);
-  }
-}
-
-TEST(WebpTexture, IsPreferredToItsFallback) {
-  const test::TempFolder folder;
-  folder.write("a.webp", flat_picture("a.webp", 200, 100, 50));
-  for (const bool in_file : {false, true}) {
-    GltfBuilder builder;
-    add_textured_triangle(builder);
-    json webp = {{"uri", "a.webp"}};
-    if (in_file) {
-      webp = {{"bufferView", builder.add_view(flat_picture("a.webp", 200, 100, 50))}, {"mimeType", "image/webp"}};
-    }
-    builder.json["images"] = {{{"uri", "fallback.png"}}, webp};
-    builder.json["textures"] = {{{"source", 0}, {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}}};
-    builder.json["extensionsUsed"] = {"EXT_texture_webp"};
-    builder.json["extensionsRequired"] = {"EXT_texture_webp"};
-    const Scene scene = load_scene(folder.write("scene.gltf", builder.text()));
-    EXPECT_TRUE(scene.warnings.empty());
-    expect_texel(scene, {200, 100, 50}, 3);  // WebP keeps 4:2:0 YUV
-  }
-  GltfBuilder builder;
-  add_textured_triangle(builder);
-  builder.json["images"] = {{{"uri", "a.webp"}}};
-  builder.json["textures"] = {{{"extensions", {{"EXT_texture_webp", {{"source", 3}}}}}}};
-  EXPECT_THAT(error_of(folder.write("scene.gltf", builder.text())), HasSubstr("EXT_texture_webp.source: 3 is not"));
-}
-
-TEST(BasisTexture, IsRefusedWhereRequiredAndReplacedWhereNot) {
-  const test::TempFolder folder;
-  folder.write("a.png", flat_picture("a.png", 20, 40, 60));
-  GltfBuilder builder;
-  add_textured_triangle(builder);
-  builder.json["images"] = {{{"uri", "a.png"}}, {{"uri", "a.ktx2"}}};
-  builder.json["textures"] = {{{"source", 0}, {"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}}};
-  builder.json["extensionsUsed"] = {"KHR_texture_basisu"};
-  const Scene scene = load_scene(folder.write("scene.gltf", builder.text()));
-  EXPECT_THAT(scene.warnings, ::testing::ElementsAre(HasSubstr("KHR_texture_basisu, which cannot be read")));
-  expect_texel(scene, {20, 40, 60}, 0);
-  builder.json["extensionsRequired"] = {"KHR_texture_basisu"};
-  EXPECT_THAT(error_of(folder.write("scene.gltf", builder.json.dump())),
-              HasSubstr("requires the extension KHR_texture_basisu, which is not supported; convert its textures"));
 }
 
 }  // namespace

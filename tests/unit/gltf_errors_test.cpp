@@ -21,19 +21,10 @@ namespace gazetrace {
 namespace {
 
 using nlohmann::json;
+using test::error_of;
 using test::GltfBuilder;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::string error_of(const std::string& path) {
-  try {
-    static_cast<void>(load_scene(path));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    return error.what();
-  }
-  return "no error";
-}
 
 void expect_one_line(const std::string& message, const std::string& path, const std::vector<std::string>& parts) {
   EXPECT_THAT(message, HasSubstr(path));
