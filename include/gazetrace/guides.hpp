@@ -21,8 +21,10 @@ enum class SurfaceKind : std::uint8_t {
 };
 
 struct GuideSettings {
-  int spp = 1;            // rays a pixel, 1..64: one goes through the centre, more are spread over the pixel
-  double pixel_cone = 1;  // as TraceSettings::pixel_cone
+  int spp = 1;  // rays a pixel, 1..64: one goes through the centre, more are spread over the pixel
+  // As TraceSettings::pixel_cone; on here, since one ray stands for the whole pixel where a path's samples would
+  // average the texture themselves.
+  double pixel_cone = 1;
   DiffuseModel diffuse = DiffuseModel::burley;
   int edge_rays = 0;  // more rays through pixels that an edge may cross, 0..64: Guides::edge_rays
 };

@@ -37,7 +37,8 @@ struct TemporalHistory {
 // off: every frame for itself. running: the mean while the camera stands still. reproject: what was seen before is
 // looked up where it was then, and checked.
 enum class AccumulateMode : std::uint8_t { off, running, reproject };
-// Of accumulation, relative to the reconstruction filter.
+// Of accumulation, relative to the reconstruction filter. Filters that need guides take samples apart by surfaces,
+// which an accumulated site no longer holds: theirs is `after`.
 enum class AccumulateOrder : std::uint8_t { before, after };
 
 struct AccumulateSettings {

@@ -130,10 +130,6 @@ void check_stops(const char* option, double stops) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 void check_history_options(const JobSettings& job) {
   const AccumulateSettings& accumulate = job.accumulate;
   const auto within = [](const char* option, double value, double most) {
@@ -157,6 +153,12 @@ void check_history_options(const JobSettings& job) {
       throw Error(ErrorKind::usage, option, "frames do not depend on those before them",
                   "leave it out, or give --accumulate or --exposure-smoothing");
     }
+  }
+  if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
+      filter_needs_guides(job.filter)) {
+    throw Error(ErrorKind::usage, "--accumulate-order",
+                fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
+                "give after, or another --filter");
   }
   if (job.preroll > 0 && !job.resume_from.empty()) {
     throw Error(ErrorKind::usage, "--preroll", "the history comes from --resume-from", "give one of them");

@@ -153,7 +153,7 @@ void add_accumulate_options(OptionTable& table, JobSettings& job) {
               "where camera, bodies and shapes have it now, and checked",
               kPixels);
   table.value("--accumulate-order", accumulate.order, choices<AccumulateOrder>(),
-              "reproject: before or after the filter fills pixels between samples", kPixels);
+              "reproject: before or after the filter fills pixels between samples; guided: after", kPixels);
   table.value("--accumulate-frames", accumulate.frames, "N",
               "reproject: memory in frames; a pixel gathers N times a frame's samples; 0 forgets nothing", kPixels);
   table.value("--accumulate-blend", accumulate.blend, "SHARE",
