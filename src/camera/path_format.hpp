@@ -47,7 +47,8 @@ std::int64_t frame_time_at(std::int64_t number, std::int64_t first, const Camera
 // Frames in the order of their pictures' names, numbers in them by value: frame_9 before frame_10.
 bool natural_less(std::string_view a, std::string_view b);
 // One of the fields of view that a file states, in order, of which a path can have one: the first, with a warning where
-// they differ by more than a thousandth of a degree. Empty for none.
+// they differ by more than a thousandth of a degree. Empty for none. Throws Error(input) for one that is not
+// between 0 and 180 degrees.
 std::optional<double> one_field_of_view(const std::vector<double>& yfovs_rad, const std::string& path,
                                         Warnings& warnings);
 

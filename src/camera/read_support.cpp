@@ -109,6 +109,13 @@ std::optional<double> one_field_of_view(const std::vector<double>& yfovs_rad, co
     return std::nullopt;
   }
   const auto [least, most] = std::minmax_element(yfovs_rad.begin(), yfovs_rad.end());
+  // Sizes and focal lengths far apart give angles that round to these.
+  if (!(*least > 0 && *most < kPi)) {
+    throw Error(ErrorKind::input, path,
+                fmt::format("its picture sizes and focal lengths make a vertical field of view of {} degrees",
+                            (*least > 0 ? *most : *least) * kDegPerRad),
+                "correct them, or take them out and give --yfov");
+  }
   if ((*most - *least) * kDegPerRad > 1e-3) {
     warnings.push_back(
         fmt::format("{}: the vertical field of view changes from {:.4g} to {:.4g} degrees along the path; {:.4g}, the "

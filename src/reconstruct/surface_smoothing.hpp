@@ -18,6 +18,9 @@ struct SmoothingSettings {
   float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance
 };
 
+// Less than this is nothing: squares of weights, which variances need, stay far from float's smallest.
+constexpr float kLeastLikeness = 1e-6F;
+
 // 1 at 0, falls like exp(-x) and ends at x = 3: what is across an edge weighs nothing, not little.
 inline float falling(float x) {
   const float t = std::max(1.0F - x * (1.0F / 3.0F), 0.0F);
@@ -38,12 +41,13 @@ inline float cosine_power(float cosine, int power) {
 inline float surface_likeness(const Vec3f& normal_a, const Vec3f& place_a, const Vec3f& normal_b, const Vec3f& place_b,
                               float slack_m, const SmoothingSettings& settings) {
   const float facing = cosine_power(dot(normal_a, normal_b), settings.normal_power);
-  if (facing <= 0) {
+  if (facing < kLeastLikeness) {
     return 0;
   }
   const Vec3f way = place_b - place_a;
   const float off = std::max(std::fabs(dot(normal_a, way)), std::fabs(dot(normal_b, way)));
-  return facing * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack_m));
+  const float like = facing * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack_m));
+  return like < kLeastLikeness ? 0 : like;
 }
 
 void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads);

@@ -110,9 +110,6 @@ GltfMaterial material(const tinygltf::Material& from) {
   to.alpha_cutoff = from.alphaCutoff;
   to.double_sided = from.doubleSided;
   to.unlit = extension(from.extensions, "KHR_materials_unlit") != nullptr;
-  if (const Value* strength = extension(from.extensions, "KHR_materials_emissive_strength")) {
-    to.emissive_strength = number(*strength, "emissiveStrength", 1);
-  }
   to.base_color_texture = texture_info(from.pbrMetallicRoughness.baseColorTexture);
   to.metallic_roughness_texture = texture_info(from.pbrMetallicRoughness.metallicRoughnessTexture);
   to.normal_texture = texture_info(from.normalTexture);

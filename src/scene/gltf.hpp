@@ -67,7 +67,7 @@ struct GltfMaterial {
   std::string name, alpha_mode;
   std::array<double, 4> base_color{1, 1, 1, 1};
   std::array<double, 3> emissive{0, 0, 0};
-  double metallic = 1, roughness = 1, normal_scale = 1, alpha_cutoff = 0.5, emissive_strength = 1;
+  double metallic = 1, roughness = 1, normal_scale = 1, alpha_cutoff = 0.5;
   bool double_sided = false, unlit = false;
   GltfTextureInfo base_color_texture, metallic_roughness_texture, normal_texture, emissive_texture;
   std::map<std::string, GltfExtension> extensions;

@@ -183,10 +183,6 @@ void check_materials(Walker& walker, const Json& root) {
       check_texture_info(walker, *pbr, "metallicRoughnessTexture");
     }
     if (const Json* extensions = walker.object(material, "extensions")) {
-      if (const Json* strength = walker.object(*extensions, "KHR_materials_emissive_strength")) {
-        const Step step(walker, "extensions.KHR_materials_emissive_strength");
-        walker.number(*strength, "emissiveStrength");
-      }
       for (const MaterialExtension& known : material_extension_readers()) {
         if (const Json* extension = walker.object(*extensions, known.extension)) {
           const std::string place = "extensions." + std::string(known.extension);
@@ -445,7 +441,6 @@ const std::vector<std::string>& known_gltf_extensions() {
         // lights
         "KHR_lights_punctual",
         // materials, beside material_extensions.def
-        "KHR_materials_emissive_strength",
         "KHR_materials_unlit",
     };
     for (const MaterialExtension& extension : material_extension_readers()) {

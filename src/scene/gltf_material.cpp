@@ -33,9 +33,6 @@ class MaterialBuilder {
                      unit(from.base_color[2], "baseColorFactor"), unit(from.base_color[3], "baseColorFactor")};
     to.metallic = unit(from.metallic, "metallicFactor");
     to.roughness = unit(from.roughness, "roughnessFactor");
-    const double strength = from.unlit ? 0 : std::max(from.emissive_strength, 0.0);
-    to.emission = {emission(from.emissive[0] * strength), emission(from.emissive[1] * strength),
-                   emission(from.emissive[2] * strength)};
     to.normal_scale = static_cast<float>(from.normal_scale);
     to.alpha_mode = alpha_mode(from.alpha_mode);
     to.alpha_cutoff = static_cast<float>(from.alpha_cutoff);
@@ -45,13 +42,15 @@ class MaterialBuilder {
     if (!from.unlit) {  // nothing else of an unlit material shows
       to.metallic_roughness_texture = texture(from.metallic_roughness_texture, TextureUse::data);
       to.normal_texture = texture(from.normal_texture, TextureUse::normal);
+      to.emission = {emission(from.emissive[0]), emission(from.emissive[1]), emission(from.emissive[2])};
+      read_extensions(from, index, to);
+      to.emission = {emission(to.emission.x), emission(to.emission.y), emission(to.emission.z)};
       if (!(to.emission == Vec3f{})) {
         to.emissive_texture = texture(from.emissive_texture, TextureUse::color);
         if (from.emissive_texture.texture >= 0 && !to.emissive_texture.present()) {
           to.emission = {};  // where it shines is lost with the picture; all of it would be a lamp
         }
       }
-      read_extensions(from, index, to);
     }
     return to;
   }
@@ -75,7 +74,10 @@ class MaterialBuilder {
     }
     return static_cast<float>(std::clamp(value, 0.0, 1.0));
   }
-  static float emission(double value) { return static_cast<float>(std::clamp(value, 0.0, 1e30)); }
+  template <class Number>
+  static float emission(Number value) {
+    return static_cast<float>(std::clamp(value, Number{0}, Number{1e30F}));
+  }
 
   AlphaMode alpha_mode(const std::string& name) {
     if (name == "MASK") {

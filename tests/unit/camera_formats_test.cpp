@@ -154,6 +154,10 @@ TEST_F(CameraFormats, NerfErrors) {
   EXPECT_THAT(refusal("e.json", one("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]")), HasSubstr("the last row"));
   EXPECT_THAT(refusal("f.json", "{\"frames\": [], \"x\": \"transform_matrix\"}"), HasSubstr("f.json: holds no pose"));
   EXPECT_THAT(refusal("g.json", "{\"frames\": [{\"transform_matrix\": "), HasSubstr("is not the JSON"));
+  const std::string ahead = "\"frames\": [{\"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}";
+  EXPECT_THAT(refusal("wide.json", "{\"fl_y\": 691, \"h\": 9e22, " + ahead), HasSubstr("field of view of 180 degrees"));
+  EXPECT_THAT(refusal("thin.json", "{\"fl_y\": 1e300, \"h\": 1e-300, " + ahead),
+              HasSubstr("field of view of 0 degrees"));
   EXPECT_THAT(refusal("scene.gltf", "{\"asset\": {\"version\": \"2.0\"}}"), HasSubstr("chosen with --camera"));
 }
 

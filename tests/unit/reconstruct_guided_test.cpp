@@ -251,6 +251,25 @@ TEST(ReconstructGuided, FiniteForBlackAlbedoAndFarPlaces) {
   }
 }
 
+// A pixel that nothing near it faces: weights far under 1e-19 have squares that are 0, and their inverses no square.
+TEST(ReconstructGuided, FiniteVarianceOfSurfacesSeenEdgeOn) {
+  const SamplingMap map = block_map();
+  Guides guides = wall();
+  std::mt19937 random(29);
+  std::uniform_real_distribution<float> noise(0, 2);
+  const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
+  for (int k = 0; k < 16; ++k) {
+    const float cosine = std::pow(10.0F, -0.25F * static_cast<float>(k));
+    guides.normal(4 * k + 1, 30) = {std::sqrt(1 - cosine * cosine), 0, cosine};
+  }
+  const Frame frame = guided(sparse, map, guides);
+  for (int k = 0; k < 16; ++k) {
+    EXPECT_TRUE(is_finite(to_double(frame.radiance(4 * k + 1, 30)))) << k;
+    EXPECT_GT(frame.variance(4 * k + 1, 30), 0) << k;
+    EXPECT_LT(frame.variance(4 * k + 1, 30), 1) << k;
+  }
+}
+
 TEST(ReconstructGuided, SameBitsForAnyNumberOfThreads) {
   const SamplingMap map = block_map(true);
   const Guides guides = wall();

@@ -173,7 +173,10 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
     result.keys.push_back(picture.key);
     result.keys.back().t_ns = frame_time_at(number, 1, options, file.path);
   }
-  result.yfov_rad = yfovs_rad.empty() ? field_of_view(json) : one_field_of_view(yfovs_rad, file.path, result.warnings);
+  if (const auto common = field_of_view(json); common && yfovs_rad.empty()) {
+    yfovs_rad.push_back(*common);
+  }
+  result.yfov_rad = one_field_of_view(yfovs_rad, file.path, result.warnings);
   warn_about_lens(json, file.path, result);
   return result;
 }
