@@ -43,7 +43,7 @@ struct TraceSettings {
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
   bool guides = false;                   // collect albedo, normal and depth of the first hit
-  bool surfaces = false;                 // sums per surface, for sites that NeedsFiltering names
+  bool surfaces = false;                 // sums per surface of sites that needs_filtering names
   std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
 };
 
@@ -121,18 +121,9 @@ struct SparseFrame {
   TraceStats stats;
 };
 
-// Whether a guided filter changes a site. Sites of several pixels are, and single pixels with few samples: less than
-// 16, or less than any other single pixel has in a map that has coarser sites too. All others keep their own mean.
-class NeedsFiltering {
- public:
-  explicit NeedsFiltering(const SamplingMap& map);
-  [[nodiscard]] bool operator()(const SamplingMap& map, const Site& site) const {
-    return map.regions[site.region].block_px > 1 || site.samples < full_samples_;
-  }
-
- private:
-  std::uint32_t full_samples_ = 16;
-};
+// Whether a guided filter changes a site. Sites of several pixels are, and single pixels with fewer than 16 samples, as
+// a fall-off on a small budget has them even where one looks. All others keep their own mean, bit by bit.
+bool needs_filtering(const SamplingMap& map, const Site& site);
 
 // When the shutter opens and closes, video time; equal: an instant.
 struct ShutterTimes {

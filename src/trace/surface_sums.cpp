@@ -68,19 +68,9 @@ void SurfaceSorter::finish_site(std::vector<SurfaceSums>& out) {
   used_ = 0;
 }
 
-NeedsFiltering::NeedsFiltering(const SamplingMap& map) {
-  bool coarser = false;
-  std::uint32_t most = 0;
-  for (const Site& site : map.sites) {
-    if (map.regions[site.region].block_px > 1) {
-      coarser = true;
-    } else {
-      most = std::max(most, site.samples);
-    }
-  }
-  if (coarser) {
-    full_samples_ = std::min(full_samples_, most);
-  }
+bool needs_filtering(const SamplingMap& map, const Site& site) {
+  constexpr std::uint32_t kFewSamples = 16;
+  return map.regions[site.region].block_px > 1 || site.samples < kFewSamples;
 }
 
 }  // namespace gazetrace

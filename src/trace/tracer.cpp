@@ -149,13 +149,13 @@ struct PathTracer::Impl {
   std::unique_ptr<LightSampler> compensated_lights;
 
   void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
-                   const SamplingMap& map, const NeedsFiltering& needs_filtering, const SiteRange& range,
-                   Workspace& work, TileResult& tile, SparseFrame& out) const;
+                   const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
+                   SparseFrame& out) const;
 };
 
 void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter,
-                                   std::int32_t frame, const SamplingMap& map, const NeedsFiltering& needs_filtering,
-                                   const SiteRange& range, Workspace& work, TileResult& tile, SparseFrame& out) const {
+                                   std::int32_t frame, const SamplingMap& map, const SiteRange& range, Workspace& work,
+                                   TileResult& tile, SparseFrame& out) const {
   tile.regions.resize(map.regions.size());
   const bool surfaces = context.settings.surfaces;
   SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
@@ -274,14 +274,13 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   }
   std::vector<TileResult> results(ranges.size());
   WorkspacePool pool;
-  const NeedsFiltering needs_filtering(map);
   const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
   parallel_for(ranges.size(), impl_->options.threads, [&](std::size_t i) {
     const FlushDenormals flush;
     auto work = pool.take();
-    impl_->trace_sites(context, kernel, filter, frame, map, needs_filtering, ranges[i], *work, results[i], out);
+    impl_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
     pool.give(std::move(work));
   });
 

@@ -64,7 +64,7 @@ void expect_moved(const TextureRef& ref) {
 
 TEST(MaterialExtensions, EveryOneOfTheListMayBeRequiredAndChangesNothingWhenEmpty) {
   const std::vector<MaterialExtensionInfo> all = material_extensions();
-  EXPECT_EQ(all.size(), 11U);
+  EXPECT_EQ(all.size(), 12U);
   for (const MaterialExtensionInfo& info : all) {
     EXPECT_FALSE(info.description.empty());
     const Material material = read(info.name, json::object());

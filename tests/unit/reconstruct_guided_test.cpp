@@ -32,10 +32,10 @@ Guides wall() {
   return guides;
 }
 
-// Blocks of 4 with 8 samples; with `fovea`, single pixels with 32 in the middle.
-SamplingMap block_map(bool fovea = false) {
+// Blocks of 4 with 8 samples; with `fovea`, single pixels in the middle.
+SamplingMap block_map(bool fovea = false, std::uint32_t foveal_samples = 32) {
   Layout layout;
-  layout.regions = {{"fovea", 1, 32, SampleUnit::per_block}, {"periphery", 4, 8, SampleUnit::per_block}};
+  layout.regions = {{"fovea", 1, foveal_samples, SampleUnit::per_block}, {"periphery", 4, 8, SampleUnit::per_block}};
   layout.region = Image<std::uint8_t>(kSize, kSize, 1);
   for (int y = 22; fovea && y < 41; ++y) {
     for (int x = 21; x < 42; ++x) {
@@ -169,6 +169,24 @@ TEST(ReconstructGuided, FullRatePixelsPassBitByBit) {
     EXPECT_EQ(frame.sample_count.pixels[i], none.sample_count.pixels[i]);
   }
   EXPECT_EQ(compared, 19 * 21);
+}
+
+// Where a budget leaves few samples to look at, they are not kept as they are: noise is worst there of all places.
+TEST(ReconstructGuided, SinglePixelsWithFewSamplesAreSmoothedBesideCoarserBlocks) {
+  const SamplingMap map = block_map(true, 1);
+  const Guides guides = wall();
+  std::mt19937 random(7);
+  std::exponential_distribution<float> noise(1);
+  const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
+  const auto spread_in_fovea = [&](const Frame& frame) {
+    double squares = 0;
+    for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+      const double off = map.region.pixels[i] == 0 ? static_cast<double>(frame.radiance.pixels[i].x) - 0.5 : 0.0;
+      squares += off * off;
+    }
+    return squares;
+  };
+  EXPECT_LT(spread_in_fovea(guided(sparse, map, guides)), spread_in_fovea(reconstruct(sparse, map, "none", 1)) / 16);
 }
 
 // Noise shrinks by far, and the mean of the frame stays: here every sample has the same weight in it, borders apart.

@@ -4,7 +4,7 @@
 // that are like the one it sees, multiplies it by its own albedo and adds what it sees shining:
 //   radiance(p) = emission(p) + albedo(p) * sum_c w(p, c) reflected(c) / sum_c w(p, c) albedo(c)
 // Emission, misses and texture thus come from the first hits at full resolution, and no edge of theirs is smoothed.
-// Sites that NeedsFiltering leaves out keep their own mean, bit by bit.
+// Sites that needs_filtering leaves out keep their own mean, bit by bit.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -161,8 +161,8 @@ PixelValue shade(const Gather& gather, int x, int y, int block, const PixelSurfa
 }
 
 // Pixels that edges cross are the mean of all their rays.
-void blend_edges(const FilterInput& input, const Gather& gather, const NeedsFiltering& needs_filtering,
-                 const Image<std::uint32_t>& site_of_pixel, Frame& frame) {
+void blend_edges(const FilterInput& input, const Gather& gather, const Image<std::uint32_t>& site_of_pixel,
+                 Frame& frame) {
   const std::vector<EdgeRay>& rays = input.guides->edge_rays;
   constexpr std::size_t kRaysPerTask = 4096;
   parallel_for((rays.size() + kRaysPerTask - 1) / kRaysPerTask, input.threads, [&](std::size_t task) {
@@ -204,7 +204,6 @@ Frame filter_guided(const FilterInput& input) {
   const SamplingMap& map = input.map;
   const Guides& guides = *input.guides;
   const SmoothingSettings settings;
-  const NeedsFiltering needs_filtering(map);
   SurfaceCells lattice = make_surface_cells(input.sparse, map, guides.camera, input.threads);
   smooth_surfaces(lattice, map, settings, input.threads);
 
@@ -232,7 +231,7 @@ Frame filter_guided(const FilterInput& input) {
       });
     }
   });
-  blend_edges(input, gather, needs_filtering, lattice.site_of_pixel, frame);
+  blend_edges(input, gather, lattice.site_of_pixel, frame);
   return frame;
 }
 
