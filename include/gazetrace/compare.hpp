@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two sequences frame by frame: metrics per frame, per band of eccentricity and over the sequence. Nothing but numbers
-// is kept of a frame, so sequences may be of any length.
+// Two sequences frame by frame: metrics per frame, per retinal region and band of eccentricity, and over the sequence,
+// apart for what the eye did. Nothing but numbers is kept of a frame, so sequences may be of any length.
 #pragma once
 
 #include <array>
@@ -8,10 +8,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gazetrace/color.hpp"
 #include "gazetrace/display.hpp"
+#include "gazetrace/foveation.hpp"
 #include "gazetrace/fovvideovdp.hpp"
 #include "gazetrace/metrics.hpp"
 #include "gazetrace/output.hpp"
@@ -22,16 +24,34 @@ namespace gazetrace {
 inline constexpr std::array<double, 7> kEccentricityBandsDeg{0, 2.6, 5.2, 8.5, 17, 30, 60};
 std::string eccentricity_band_name(std::size_t band);  // "0-2.6", ..., "60+"
 
-// The metrics of metrics.hpp and "fovvideovdp".
+// Fovea, intermediate region and periphery: where the first two end, in degrees of eccentricity.
+inline constexpr std::array<const char*, 3> kRetinalRegionNames{"fovea", "intermediate", "periphery"};
+struct RetinalRegions {
+  std::array<double, 2> end_deg{2.6, 8.5};
+};
+// Those of `falloff` "regions", as cones whatever their shape. Error(usage) unless 0 < first < second.
+RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleReading reading);
+
+// What the eye did while a frame was seen, as far as scores are concerned; each class is scored apart. In flight: in a
+// saccade or within kAfterSaccadeNs of its end, when little is seen. unclassified: seen, but nobody knows what it did.
+enum class GazeClass : std::uint8_t { fixation, in_flight, blink, no_gaze, unclassified };
+inline constexpr std::array<GazeClass, 5> kGazeClasses{GazeClass::fixation, GazeClass::in_flight, GazeClass::blink,
+                                                       GazeClass::no_gaze, GazeClass::unclassified};
+inline constexpr std::int64_t kAfterSaccadeNs = 100'000'000;
+std::string_view to_string(GazeClass gaze_class);  // "fixation", "in-flight", "blink", "no-gaze", "unclassified"
+GazeClass gaze_class_of(const GazeAtTime& gaze);
+
+// The metrics of metrics.hpp and those that see time (compare/sequence_metrics.def).
 std::vector<MetricInfo> comparison_metrics();
 
 struct ComparisonSettings {
   std::vector<std::string> metrics;
   MetricSettings metric;
+  RetinalRegions regions;
   DisplayPhotometry photometry;  // FovVideoVDP
   bool original_border = true;   // FovVideoVDP
   double frames_per_second = 0;  // FovVideoVDP; 0: every frame is a still
-  // Without it there are no bands, no weighted scores and no FovVideoVDP.
+  // Without it there are no regions, no bands, no weighted scores and no metrics that need gaze.
   std::optional<PlanarView> view;
   bool want_maps = false;
 };
@@ -39,44 +59,52 @@ struct ComparisonSettings {
 struct FramePair {
   std::int32_t frame = 1;
   MetricPicture reference, test;
-  std::optional<Vec2d> gaze_px;  // gaze_true, continuous frame pixels; empty: no gaze
-  std::string gaze_class;        // "measured", "held", ...: scored apart as well
+  // gaze_true, continuous frame pixels; empty: no gaze, as in blinks and where the class is no_gaze. Metrics that need
+  // gaze are then not scored, but see the frame pass.
+  std::optional<Vec2d> gaze_px;
+  GazeClass gaze_class = GazeClass::unclassified;
 };
 
 // A metric over a frame or, with sums carried on, over frames. Values are printed numbers, see metric_value().
 struct Scores {
   std::string metric;
-  double value = 0;
+  std::optional<double> value;  // empty: not scored, for want of gaze or of enough frames before
   // Weighted by areal cortical magnification, 1 / (e + 0.75 deg)^2 (Horton and Hoyt, "The representation of the visual
   // field in human striate cortex", 1991). Empty without gaze and for metrics without a map.
   std::optional<double> weighted;
   // Of the band's pixels; empty where there are none. FovVideoVDP: 10 minus the mean of its local difference map.
   std::array<std::optional<double>, kEccentricityBandsDeg.size()> bands;
+  std::array<std::optional<double>, kRetinalRegionNames.size()> regions;  // the same of regions
 };
 struct FrameScores {
   std::int32_t frame = 0;
-  std::string gaze_class;
+  GazeClass gaze_class = GazeClass::unclassified;
   std::vector<Scores> scores;
   std::vector<MapStatistics> statistics;  // of the maps, in the order of the scores; pixels 0: no map
   std::vector<ImageGray> maps;            // only with want_maps
 };
 struct SequenceScores {
-  std::string gaze_class;  // "all" or one class
+  std::string gaze_class;  // "all", or to_string() of one class
   std::size_t frames = 0;
-  std::vector<Scores> scores;                    // means over frames before roots, decibels and JOD are taken
+  // One of each for a metric. A metric may have scored fewer frames than there are; where none, its score is empty, the
+  // quantiles are NaN and there is no worst frame.
+  std::vector<Scores> scores;  // means over frames before roots, decibels and JOD are taken
+  std::vector<std::size_t> scored_frames;
   std::vector<std::array<double, 3>> quantiles;  // at 5, 50, 95 % of the frames' values
-  std::vector<std::int32_t> worst_frame;
+  std::vector<std::optional<std::int32_t>> worst_frame;
 };
+// What a claim rests on: fixations where there are any, else all frames.
+const SequenceScores& headline(const std::vector<SequenceScores>& summary);
 
 class Comparison {
  public:
-  // Error(usage) for unknown metrics, and for FovVideoVDP without a view.
+  // Error(usage) for unknown metrics, and without a view for those that need gaze.
   Comparison(const ComparisonSettings& settings, int width_px, int height_px);
   ~Comparison();
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
-  FrameScores add(const FramePair& pair);  // in the order of time
-  [[nodiscard]] std::vector<SequenceScores> summary() const;
+  FrameScores add(const FramePair& pair);                     // in the order of time
+  [[nodiscard]] std::vector<SequenceScores> summary() const;  // "all" first, then the classes that have frames
 
  private:
   struct Impl;
@@ -96,13 +124,10 @@ struct FrameFacts {
   std::optional<double> frames_per_second;
   std::optional<std::int64_t> t_video_ns;
   std::string settings_digest;
-  std::string gaze_state;          // of gaze_true: "measured", "held", "center", "none"
-  std::string gaze_event;          // "fixation", "saccade", "blink", ...; "none": not known
-  bool is_without_gaze = false;    // the log has none at this time, a policy decided
-  std::optional<Vec2d> gaze_uv;    // gaze_true in fractions of the screen; empty for directions and without gaze
-  bool gaze_is_direction = false;  // from the head: no place on a screen
+  std::optional<GazeAtTime> gaze_true;  // state, place, movement, time since the last saccade
+  bool gaze_is_direction = false;       // from the head: no place on a screen
 };
-// Of .exr all; of display images what their note holds: exposure, time, digest.
+// Display images say all but their frame rate; DPX files leave out the gaze.
 FrameFacts read_frame_facts(const std::string& path);
 
 // A picture with what it says of itself. .exr: linear light; others: code values.

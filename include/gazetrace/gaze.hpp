@@ -176,6 +176,8 @@ enum class GazeState : std::uint8_t {
 };
 std::string_view to_string(GazeState state);
 
+inline constexpr std::int64_t kSaccadeMemoryNs = 1'000'000'000;
+
 struct GazeAtTime {
   GazeKind kind = GazeKind::screen;  // u, v or direction
   GazeState state = GazeState::none;
@@ -188,7 +190,10 @@ struct GazeAtTime {
   bool no_gaze = false;                        // the log has none at this time; NoGazePolicy decided
   GazeValidity validity = GazeValidity::lost;  // of the row used; lost where none was
   std::optional<EyeMovement> movement;         // of the eye at the time asked for; empty: not known
-  std::string reason;                          // for the plan: "hold: row 118", "gap of 312 ms: held row 104"
+  // On the log's clock since the eye was last seen in a saccade, 0 in one; empty: not within kSaccadeMemoryNs, or not
+  // known. Saccades are shorter than most frames last: the movements of the frames alone would miss them.
+  std::optional<std::int64_t> since_saccade_ns;
+  std::string reason;  // for the plan: "hold: row 118", "gap of 312 ms: held row 104"
 };
 
 // Time on the log's clock of a video time, t_event + (t_video - offset) / scale, to the nearest nanosecond in 128-bit

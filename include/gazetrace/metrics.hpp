@@ -22,6 +22,7 @@ struct MetricInfo {
   MetricInput input = MetricInput::light;
   MetricDirection better = MetricDirection::lower;
   std::string description;
+  bool needs_gaze = false;
 };
 const std::vector<MetricInfo>& metrics();
 const MetricInfo& metric_by_name(const std::string& name);  // Error(usage) with the known names

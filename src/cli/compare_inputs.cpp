@@ -70,6 +70,36 @@ std::string path_of(const std::string& pattern, std::int32_t frame) {
   return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
 }
 
+// Where the test was foveated by regions, those; else the reference's; else the source paper's.
+RetinalRegions regions_of(const CompareJob& job, const CompareInputs& inputs) {
+  if (job.region_angles_deg) {
+    return retinal_regions(*job.region_angles_deg, job.reading);
+  }
+  for (const auto& run : {inputs.test_run, inputs.reference_run}) {
+    if (run && run->foveation.falloff == "regions") {
+      return retinal_regions(run->foveation.region_angles_deg, run->foveation.reading);
+    }
+  }
+  return {};
+}
+
+void read_gaze_log(const CompareJob& job, CompareInputs& inputs) {
+  GazeLog log = read_gaze_file(job.shared.gaze, job.shared.screen);
+  if (log.kind != GazeKind::screen) {
+    throw Error(ErrorKind::input, job.shared.gaze.path, "holds directions from the head, not places on a screen",
+                "compare such runs without bands, or give --gaze-at");
+  }
+  if (!inputs.screen) {
+    inputs.screen = log.recording_geometry;
+  }
+  const bool says_screen = screen_geometry(job.shared.screen).has_value() || !inputs.reference_run;
+  complete_recording_geometry(log, says_screen ? job.shared.screen : inputs.reference_run->screen);
+  if (log.samples.size() > 1 && knows_angles(log)) {
+    inputs.movements = detect_events(log, default_event_preset(log)).labels;
+  }
+  inputs.gaze_log = std::move(log);
+}
+
 [[noreturn]] void differ(const std::string& path, const std::string& problem, const std::string& remedy) {
   throw Error(ErrorKind::input, path, problem, remedy);
 }
@@ -90,20 +120,17 @@ CompareInputs load_compare_inputs(const CompareJob& job) {
   if (!inputs.screen && inputs.reference_run && fs::is_regular_file(inputs.reference_run->gaze.path)) {
     inputs.screen = read_gaze_file(inputs.reference_run->gaze, inputs.reference_run->screen).recording_geometry;
   }
+  if (!job.shared.gaze.path.empty()) {
+    read_gaze_log(job, inputs);
+  }
   if (inputs.screen) {
     check_display(*inputs.screen);
   }
+  inputs.regions = regions_of(job, inputs);
   if (job.shared.frame_rect) {
     inputs.frame_rect = *job.shared.frame_rect;
   } else if (inputs.reference_run && inputs.reference_run->frame_rect) {
     inputs.frame_rect = *inputs.reference_run->frame_rect;
-  }
-  if (!job.shared.gaze.path.empty()) {
-    inputs.gaze_log = read_gaze_file(job.shared.gaze, job.shared.screen);
-    if (inputs.gaze_log->kind != GazeKind::screen) {
-      throw Error(ErrorKind::input, job.shared.gaze.path, "holds directions from the head, not places on a screen",
-                  "compare such runs without bands, or give --gaze-at");
-    }
   }
   if (inputs.frames.size() > 1) {
     if (job.fps) {
@@ -162,35 +189,47 @@ std::optional<PlanarView> compare_view(const CompareInputs& inputs, int width_px
   return view_of_display(*inputs.screen, inputs.frame_rect, width_px, height_px);
 }
 
+bool knows_gaze(const CompareJob& job, const CompareInputs& inputs) {
+  return job.shared.gaze_at || inputs.gaze_log ||
+         std::any_of(inputs.frames.begin(), inputs.frames.end(), [&](std::int32_t frame) {
+           const FrameFacts facts = read_frame_facts(path_of(job.reference, frame));
+           return facts.gaze_true && !facts.gaze_is_direction && gaze_class_of(*facts.gaze_true) != GazeClass::no_gaze;
+         });
+}
+
 ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& facts,
                            std::int32_t frame, int width_px, int height_px) {
-  std::optional<Vec2d> uv = facts.gaze_uv;
-  // What the eye did says more than where the value came from.
-  const bool has_event = !facts.gaze_event.empty() && facts.gaze_event != "none";
-  std::string state = facts.is_without_gaze ? "no-gaze" : has_event ? facts.gaze_event : facts.gaze_state;
+  std::optional<GazeAtTime> gaze = facts.gaze_true;
   if (job.shared.gaze_at) {
-    uv = job.shared.gaze_at;
-    state = "fixed";
+    // An eye that rests there.
+    gaze.emplace();
+    gaze->state = GazeState::measured;
+    gaze->u = job.shared.gaze_at->x;
+    gaze->v = job.shared.gaze_at->y;
+    gaze->movement = EyeMovement::fixation;
   } else if (inputs.gaze_log) {
     const double middle_s = (frame - 0.5) / (inputs.frames_per_second > 0 ? inputs.frames_per_second : 24);
     const std::int64_t t_ns =
         facts.t_video_ns ? *facts.t_video_ns : static_cast<std::int64_t>(std::floor(middle_s * 1e9));
-    const GazeAtTime gaze = gaze_at(*inputs.gaze_log, gaze_mapping(job.shared, &*inputs.gaze_log), t_ns);
-    state = std::string(to_string(gaze.state));
-    uv = gaze.state == GazeState::none ? std::nullopt : std::optional(Vec2d{gaze.u, gaze.v});
+    gaze = gaze_at(*inputs.gaze_log, gaze_mapping(job.shared, &*inputs.gaze_log), t_ns,
+                   inputs.movements.empty() ? nullptr : &inputs.movements);
   }
-  if (!uv) {
-    return {std::nullopt, "none"};
+  if (!gaze) {
+    return {};
+  }
+  const GazeClass gaze_class = gaze_class_of(*gaze);
+  if (gaze_class == GazeClass::no_gaze || gaze->kind == GazeKind::direction) {
+    return {std::nullopt, gaze_class};
   }
   // Of the screen to those of the frame, which may fill a part of it.
   const FrameRect& rect = inputs.frame_rect;
   const bool whole = !inputs.screen || rect.width_px == 0;
-  const double screen_x = whole ? 0 : uv->x * inputs.screen->width_px;
-  const double screen_y = whole ? 0 : uv->y * inputs.screen->height_px;
-  const Vec2d px = whole ? Vec2d{uv->x * width_px, uv->y * height_px}
+  const double screen_x = whole ? 0 : gaze->u * inputs.screen->width_px;
+  const double screen_y = whole ? 0 : gaze->v * inputs.screen->height_px;
+  const Vec2d px = whole ? Vec2d{gaze->u * width_px, gaze->v * height_px}
                          : Vec2d{(screen_x - rect.x_px) / rect.width_px * width_px,
                                  (screen_y - rect.y_px) / rect.height_px * height_px};
-  return {px, state};
+  return {px, gaze_class};
 }
 
 }  // namespace gazetrace

@@ -2,6 +2,7 @@
 // What `compare` is asked, and the frames, geometry and gaze that follow from it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -19,6 +20,8 @@ struct CompareJob {
   std::optional<FrameList> frames;
   std::optional<FrameRate> fps;
   std::optional<double> exposure_ev;
+  std::optional<std::array<double, 2>> region_angles_deg;
+  AngleReading reading = AngleReading::full_angle;  // of region_angles_deg
   JobSettings shared;  // screen, gaze, colour: the options that `render` has, under the same names
   bool correct_border = false;
   ComparisonSettings settings;
@@ -33,7 +36,9 @@ struct CompareInputs {
   std::string reference_view, test_view;               // as those name them
   std::optional<DisplayGeometry> screen;
   FrameRect frame_rect;
+  RetinalRegions regions;
   std::optional<GazeLog> gaze_log;
+  std::vector<EyeMovement> movements;  // of the log's samples, where it knows angles
   double frames_per_second = 0;
 };
 
@@ -45,10 +50,12 @@ CompareInputs load_compare_inputs(const CompareJob& job);
 void check_comparable(const CompareJob& job, const CompareInputs& inputs, const ComparedPicture& reference,
                       const ComparedPicture& test, const std::string& reference_path, const std::string& test_path);
 std::optional<PlanarView> compare_view(const CompareInputs& inputs, int width_px, int height_px);
+// Whether any frame has one.
+bool knows_gaze(const CompareJob& job, const CompareInputs& inputs);
 // gaze_true in frame pixels, and its class.
 struct ComparedGaze {
   std::optional<Vec2d> px;
-  std::string state = "none";
+  GazeClass gaze_class = GazeClass::no_gaze;
 };
 ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& facts,
                            std::int32_t frame, int width_px, int height_px);

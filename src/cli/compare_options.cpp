@@ -29,8 +29,8 @@ void add_metric_options(OptionTable& table, CompareJob& job) {
   table.group("Metrics");
   table.value(
       "--metrics", job.metrics, "NAME,NAME",
-      "Which ('gazetrace list metrics'); default: mse, relmse, psnr, ssim, flip and, where the screen is known, "
-      "fovvideovdp");
+      "Which ('gazetrace list metrics'); default: mse, relmse, psnr, ssim, flip and, where screen and gaze are known, "
+      "fovvideovdp and, from a second on, flicker");
   table.repeated("--fail-above", job.fail_above, "METRIC=VALUE",
                  "Exit code 1 where the sequence's value is larger; for metrics of which less is better");
   table.repeated("--fail-below", job.fail_below, "METRIC=VALUE",
@@ -65,6 +65,10 @@ void add_sequence_options(OptionTable& table, CompareJob& job) {
   table.value("--gaze-offset", job.shared.gaze_offset, "DURATION", "t_video = scale (t_log - start) + offset");
   table.value("--gaze-start", job.shared.gaze_start, "DURATION",
               "Time on the log's clock that is video time --gaze-offset; default: its first sample");
+  table.value("--region-angles", job.region_angles_deg, "DEG,DEG",
+              "Where fovea and intermediate region end; default: those of the run, else 5.2,17");
+  table.value("--angle-reading", job.reading, choices<AngleReading>(),
+              "The angles are diameters (full-angle) or eccentricities");
   table.value("--frame-rect", job.shared.frame_rect, "X,Y,W,H",
               "Where the frame lies on the screen, in screen pixels; default: as rendered, else it fills the screen");
 }

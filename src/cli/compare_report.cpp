@@ -30,7 +30,22 @@ Json json_scores(const Scores& scores) {
   for (std::size_t b = 0; b < scores.bands.size(); ++b) {
     json["bands"][eccentricity_band_name(b)] = json_number(scores.bands[b]);
   }
+  for (std::size_t r = 0; r < scores.regions.size(); ++r) {
+    json["regions"][kRetinalRegionNames[r]] = json_number(scores.regions[r]);
+  }
   return json;
+}
+
+// "fixation 62.0 %, in-flight 25.0 %, blink 13.0 %".
+std::string shares_text(const std::vector<SequenceScores>& summary) {
+  std::string text;
+  for (const SequenceScores& part : summary) {
+    if (part.gaze_class != "all") {
+      const double share = static_cast<double>(part.frames) / static_cast<double>(summary.front().frames);
+      text += fmt::format("{}{} {:.1f} %", text.empty() ? "" : ", ", part.gaze_class, 100 * share);
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -40,6 +55,9 @@ std::string compare_csv_header() {
   for (std::size_t b = 0; b < kEccentricityBandsDeg.size(); ++b) {
     text += fmt::format(",band_{}_deg", eccentricity_band_name(b));
   }
+  for (const char* region : kRetinalRegionNames) {
+    text += fmt::format(",region_{}", region);
+  }
   return text + "\n";
 }
 
@@ -48,7 +66,7 @@ std::string compare_csv_rows(const FrameScores& frame) {
   for (std::size_t m = 0; m < frame.scores.size(); ++m) {
     const Scores& scores = frame.scores[m];
     const MapStatistics& map = frame.statistics[m];
-    text += fmt::format("{},{},{},{},{}", frame.frame, frame.gaze_class, scores.metric, number(scores.value),
+    text += fmt::format("{},{},{},{},{}", frame.frame, to_string(frame.gaze_class), scores.metric, number(scores.value),
                         number(scores.weighted));
     const auto map_number = [&](double value) { return map.pixels > 0 ? number(value) : std::string(); };
     text += "," + map_number(map.min);
@@ -58,6 +76,9 @@ std::string compare_csv_rows(const FrameScores& frame) {
     text += "," + map_number(map.max);
     for (const auto& band : scores.bands) {
       text += "," + number(band);
+    }
+    for (const auto& region : scores.regions) {
+      text += "," + number(region);
     }
     text += "\n";
   }
@@ -69,13 +90,22 @@ std::string compare_text(const CompareConditions& conditions, const std::vector<
   for (const auto& [name, value] : conditions) {
     text += fmt::format("{:<14}{}\n", name, value);
   }
+  const SequenceScores& claim = headline(summary);
+  text += fmt::format("{:<14}{}\n{:<14}{}\n", "frames", shares_text(summary), "headline",
+                      claim.gaze_class != "all"                     ? claim.gaze_class + " frames"
+                      : summary.back().gaze_class == "unclassified" ? "all frames: what the eye did is not known"
+                                                                    : "all frames: none in a fixation");
   for (const SequenceScores& part : summary) {
-    if (summary.size() == 2 && part.gaze_class != "all") {
+    if (summary.size() == 2 && part.gaze_class == "all") {
       continue;  // one class: the same numbers again
     }
-    text += fmt::format("\n{} ({} frames of {})\n{:<12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}",
-                        part.gaze_class == "all" ? "all frames" : "gaze " + part.gaze_class, part.frames,
-                        summary.front().frames, "metric", "value", "weighted", "p05", "p50", "p95", "worst");
+    text +=
+        fmt::format("\n{} ({} of {} frames){}\n{:<12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}",
+                    part.gaze_class == "all" ? "all frames" : part.gaze_class, part.frames, summary.front().frames,
+                    &part == &claim ? ": headline" : "", "metric", "value", "weighted", "p05", "p50", "p95", "worst");
+    for (const char* region : kRetinalRegionNames) {
+      text += fmt::format("{:>13}", region);
+    }
     for (std::size_t b = 0; b < kEccentricityBandsDeg.size(); ++b) {
       text += fmt::format("{:>10}", eccentricity_band_name(b));
     }
@@ -85,9 +115,15 @@ std::string compare_text(const CompareConditions& conditions, const std::vector<
       const auto shown = [](const std::optional<double>& value) {
         return value ? fmt::format("{:.5g}", *value) : std::string("-");
       };
-      text += fmt::format("{:<12}{:>12}{:>12}{:>12.5g}{:>12.5g}{:>12.5g}{:>8}", scores.metric, shown(scores.value),
-                          shown(scores.weighted), part.quantiles[m][0], part.quantiles[m][1], part.quantiles[m][2],
-                          part.worst_frame[m]);
+      const auto quantile = [&](std::size_t i) {
+        return shown(std::isnan(part.quantiles[m][i]) ? std::nullopt : std::optional(part.quantiles[m][i]));
+      };
+      text += fmt::format("{:<12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>8}", scores.metric, shown(scores.value),
+                          shown(scores.weighted), quantile(0), quantile(1), quantile(2),
+                          part.worst_frame[m] ? std::to_string(*part.worst_frame[m]) : "-");
+      for (const auto& region : scores.regions) {
+        text += fmt::format("{:>13}", shown(region));
+      }
       for (const auto& band : scores.bands) {
         text += fmt::format("{:>10}", shown(band));
       }
@@ -103,6 +139,7 @@ std::string compare_json(const CompareConditions& conditions, const std::vector<
   for (const auto& [name, value] : conditions) {
     json["conditions"][name] = value;
   }
+  json["headline"] = headline(summary).gaze_class;
   json["sequence"] = Json::array();
   for (const SequenceScores& part : summary) {
     Json scores = Json::array();
@@ -111,7 +148,8 @@ std::string compare_json(const CompareConditions& conditions, const std::vector<
       one["frame_quantiles"] = {{"p05", json_number(part.quantiles[m][0])},
                                 {"p50", json_number(part.quantiles[m][1])},
                                 {"p95", json_number(part.quantiles[m][2])}};
-      one["worst_frame"] = part.worst_frame[m];
+      one["worst_frame"] = part.worst_frame[m] ? Json(*part.worst_frame[m]) : Json();
+      one["scored_frames"] = part.scored_frames[m];
       scores.push_back(std::move(one));
     }
     json["sequence"].push_back({{"gaze", part.gaze_class}, {"frames", part.frames}, {"scores", std::move(scores)}});
@@ -122,7 +160,8 @@ std::string compare_json(const CompareConditions& conditions, const std::vector<
     for (const Scores& one : frame.scores) {
       scores.push_back(json_scores(one));
     }
-    json["frames"].push_back({{"frame", frame.frame}, {"gaze", frame.gaze_class}, {"scores", std::move(scores)}});
+    json["frames"].push_back(
+        {{"frame", frame.frame}, {"gaze", to_string(frame.gaze_class)}, {"scores", std::move(scores)}});
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -10,7 +10,7 @@
 
 namespace gazetrace {
 
-// frame,gaze,metric,value,weighted,p05,...,p95 and one column a band.
+// frame,gaze,metric,value,weighted,map_min,...,map_max and one column a band and a region.
 std::string compare_csv_header();
 std::string compare_csv_rows(const FrameScores& frame);
 

@@ -1,162 +1,126 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <map>
+#include <array>
 
 #include "compare/eccentricity_bands.hpp"
+#include "compare/score_series.hpp"
+#include "compare/sequence_metric.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr const char* kFovVideoVdp = "fovvideovdp";
+constexpr PrintedNumbers kPrinted{comparison_value, comparison_local_value};
 
-// What is averaged over frames, and the printed number of such a mean.
-double printed(const std::string& metric, double mean) {
-  return metric == kFovVideoVdp ? fovvideovdp_jod(mean) : metric_value(metric, mean);
-}
-double printed_local(const std::string& metric, double mean) {
-  constexpr double kNoDifference = 10;
-  return metric == kFovVideoVdp ? kNoDifference - mean : metric_value(metric, mean);
-}
-
-Scores scores_of(const std::string& metric, double mean, const BandSums& sums) {
-  Scores scores;
-  scores.metric = metric;
-  scores.value = printed(metric, mean);
-  if (sums.weight > 0) {
-    scores.weighted = printed_local(metric, sums.weighted_sum / sums.weight);
-  }
-  for (std::size_t b = 0; b < sums.bands.size(); ++b) {
-    if (sums.bands[b].pixels > 0) {
-      scores.bands[b] = printed_local(metric, sums.bands[b].sum / sums.bands[b].pixels);
-    }
-  }
-  return scores;
-}
-
-// Frames of one class of gaze, for one metric.
-struct Series {
-  double sum = 0;
-  BandSums bands;
-  std::vector<double> values;
-  std::vector<std::int32_t> frames;
+// Frames of one class, or all of them.
+struct FrameGroup {
+  std::size_t frames = 0;
+  std::vector<ScoreSeries> series;  // one a metric
 };
 
-bool is_worse(const MetricInfo& info, double a, double b) {
-  return info.better == MetricDirection::lower ? a > b : a < b;
+MetricInfo known_metric(const std::string& name) {
+  std::vector<std::string> names;
+  for (const MetricInfo& info : comparison_metrics()) {
+    if (info.name == name) {
+      return info;
+    }
+    names.push_back(info.name);
+  }
+  throw Error(ErrorKind::usage, "--metrics", unknown_name_message("metric", name, names));
 }
 
 }  // namespace
 
 std::vector<MetricInfo> comparison_metrics() {
   std::vector<MetricInfo> all = metrics();
-  all.push_back({kFovVideoVdp, MetricInput::code, MetricDirection::higher,
-                 "FovVideoVDP: visible differences at this gaze, over time, JOD; blind to uniform differences"});
+  for (MetricInfo& info : sequence_metrics()) {
+    all.push_back(std::move(info));
+  }
   return all;
 }
 
 struct Comparison::Impl {
   ComparisonSettings settings;
   std::vector<MetricInfo> infos;
-  std::optional<FovVideoVdp> fovvideovdp;
-  std::map<std::string, std::vector<Series>> classes;  // by name; "all" holds every frame
+  std::vector<std::unique_ptr<SequenceMetric>> over_time;  // one a metric; empty for those of single frames
+  bool sees_luminance = false;
+  FrameGroup all;
+  std::array<FrameGroup, kGazeClasses.size()> classes;
 
   Impl(const ComparisonSettings& given, int width_px, int height_px) : settings(given) {
-    const std::vector<MetricInfo> known = comparison_metrics();
     for (const std::string& name : settings.metrics) {
-      const auto info = std::find_if(known.begin(), known.end(), [&](const auto& i) { return i.name == name; });
-      if (info == known.end()) {
-        std::vector<std::string> names;
-        for (const MetricInfo& i : known) {
-          names.push_back(i.name);
-        }
-        throw Error(ErrorKind::usage, "--metrics", unknown_name_message("metric", name, names));
+      infos.push_back(known_metric(name));
+      if (infos.back().needs_gaze && !settings.view) {
+        throw Error(
+            ErrorKind::usage, name, "needs the screen's size and distance",
+            "give --screen NAME, or --screen-px, --screen-cm and --screen-distance-cm, or leave the metric out");
       }
-      infos.push_back(*info);
-      if (name == kFovVideoVdp) {
-        start_fovvideovdp(width_px, height_px);
-      }
+      over_time.push_back(is_sequence_metric(name) ? make_sequence_metric(name, settings, width_px, height_px)
+                                                   : nullptr);
+      sees_luminance = sees_luminance || over_time.back();
     }
-  }
-
-  void start_fovvideovdp(int width_px, int height_px) {
-    if (!settings.view) {
-      throw Error(ErrorKind::usage, kFovVideoVdp, "needs the screen's size and distance",
-                  "give --screen NAME, or --screen-px, --screen-cm and --screen-distance-cm, or leave the metric out");
+    all.series.resize(infos.size());
+    for (FrameGroup& group : classes) {
+      group.series.resize(infos.size());
     }
-    // The metric takes a picture to fill its display: a display of the picture's own pixels and size. Distance 1 m.
-    const PlanarView& view = *settings.view;
-    FovVideoVdpSettings metric;
-    metric.geometry = {width_px, height_px, view.step_x * width_px, view.step_y * height_px, 1};
-    metric.frames_per_second = settings.frames_per_second;
-    metric.original_border = settings.original_border;
-    metric.threads = settings.metric.threads;
-    fovvideovdp.emplace(metric, width_px, height_px);
-  }
-
-  MetricMap measure_one(const MetricInfo& info, const FramePair& pair) {
-    if (info.name != kFovVideoVdp) {
-      return measure(info.name, pair.reference, pair.test, settings.metric);
-    }
-    // Frames without gaze keep the window in time going; they are scored with the gaze in the middle.
-    const int threads = settings.metric.threads;
-    FovVideoVdpFrame frame =
-        fovvideovdp->add(display_luminance(pair.reference.code, settings.photometry, threads),
-                         display_luminance(pair.test.code, settings.photometry, threads), pair.gaze_px, true);
-    return {std::move(frame.map), 0, frame.q};
   }
 
   FrameScores add(const FramePair& pair) {
     const int threads = settings.metric.threads;
+    const bool is_blind = pair.gaze_class == GazeClass::blink || pair.gaze_class == GazeClass::no_gaze;
+    const std::optional<Vec2d> gaze_px = is_blind ? std::nullopt : pair.gaze_px;
     std::optional<EccentricityBands> bands;
-    if (settings.view && pair.gaze_px) {
-      bands = eccentricity_bands(*settings.view, *pair.gaze_px, threads);
+    if (settings.view && gaze_px) {
+      bands = eccentricity_bands(*settings.view, *gaze_px, settings.regions, threads);
     }
+    ImageGray reference_cd_m2;
+    ImageGray test_cd_m2;
+    if (sees_luminance) {
+      reference_cd_m2 = display_luminance(pair.reference.code, settings.photometry, threads);
+      test_cd_m2 = display_luminance(pair.test.code, settings.photometry, threads);
+    }
+    FrameGroup& group = classes[static_cast<std::size_t>(pair.gaze_class)];
+    ++all.frames;
+    ++group.frames;
     FrameScores frame{pair.frame, pair.gaze_class, {}, {}, {}};
     for (std::size_t m = 0; m < infos.size(); ++m) {
-      const MetricInfo& info = infos[m];
-      MetricMap map = measure_one(info, pair);
-      BandSums sums;
-      if (bands && !map.values.empty()) {
-        sums = sum_by_band(*bands, map.values, map.margin_px, threads);
+      const std::string& name = infos[m].name;
+      std::optional<MetricMap> map = over_time[m] ? over_time[m]->add({reference_cd_m2, test_cd_m2, gaze_px})
+                                                  : measure(name, pair.reference, pair.test, settings.metric);
+      if (!map) {
+        frame.scores.emplace_back().metric = name;
+        frame.statistics.emplace_back();
+        if (settings.want_maps) {
+          frame.maps.emplace_back();
+        }
+        continue;
       }
-      frame.scores.push_back(scores_of(info.name, map.mean, sums));
-      frame.statistics.push_back(map.values.empty() ? MapStatistics{} : map_statistics(map.values, map.margin_px));
-      for (const std::string& name : {std::string("all"), pair.gaze_class}) {
-        std::vector<Series>& series = classes[name];
-        series.resize(infos.size());
-        series[m].sum += map.mean;
-        series[m].bands.add(sums);
-        series[m].values.push_back(frame.scores.back().value);
-        series[m].frames.push_back(pair.frame);
+      BandSums sums;
+      if (bands && !map->values.empty()) {
+        sums = sum_by_band(*bands, map->values, map->margin_px, threads);
+      }
+      frame.scores.push_back(scores_of(name, kPrinted, map->mean, sums));
+      frame.statistics.push_back(map->values.empty() ? MapStatistics{} : map_statistics(map->values, map->margin_px));
+      for (ScoreSeries* series : {&all.series[m], &group.series[m]}) {
+        series->sum += map->mean;
+        series->bands.add(sums);
+        series->values.push_back(*frame.scores.back().value);
+        series->frames.push_back(pair.frame);
       }
       if (settings.want_maps) {
-        frame.maps.push_back(std::move(map.values));
+        frame.maps.push_back(std::move(map->values));
       }
     }
     return frame;
   }
 
-  [[nodiscard]] SequenceScores summary_of(const std::string& name, const std::vector<Series>& series) const {
+  [[nodiscard]] SequenceScores summary_of(std::string_view name, const FrameGroup& group) const {
     SequenceScores result;
     result.gaze_class = name;
-    result.frames = series.front().values.size();
+    result.frames = group.frames;
     for (std::size_t m = 0; m < infos.size(); ++m) {
-      const Series& s = series[m];
-      result.scores.push_back(scores_of(infos[m].name, s.sum / static_cast<double>(s.values.size()), s.bands));
-      std::vector<double> sorted = s.values;
-      std::sort(sorted.begin(), sorted.end());
-      const auto at = [&](double share) {
-        return sorted[std::min(sorted.size() - 1,
-                               static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
-      };
-      result.quantiles.push_back({at(0.05), at(0.5), at(0.95)});
-      std::size_t worst = 0;
-      for (std::size_t i = 1; i < s.values.size(); ++i) {
-        worst = is_worse(infos[m], s.values[i], s.values[worst]) ? i : worst;
-      }
-      result.worst_frame.push_back(s.frames[worst]);
+      summarise(infos[m], kPrinted, group.series[m], result);
     }
     return result;
   }
@@ -171,14 +135,13 @@ FrameScores Comparison::add(const FramePair& pair) {
 }
 
 std::vector<SequenceScores> Comparison::summary() const {
-  std::vector<SequenceScores> result;
-  for (const auto& [name, series] : impl_->classes) {
-    if (!series.empty()) {
-      result.push_back(impl_->summary_of(name, series));
+  std::vector<SequenceScores> result{impl_->summary_of("all", impl_->all)};
+  for (const GazeClass gaze_class : kGazeClasses) {
+    const FrameGroup& group = impl_->classes[static_cast<std::size_t>(gaze_class)];
+    if (group.frames > 0) {
+      result.push_back(impl_->summary_of(to_string(gaze_class), group));
     }
   }
-  // All frames first.
-  std::stable_partition(result.begin(), result.end(), [](const auto& s) { return s.gaze_class == "all"; });
   return result;
 }
 

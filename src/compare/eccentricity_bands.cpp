@@ -21,15 +21,21 @@ void BandSums::add(const BandSums& other) {
     bands[b].sum += other.bands[b].sum;
     bands[b].pixels += other.bands[b].pixels;
   }
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    regions[r].sum += other.regions[r].sum;
+    regions[r].pixels += other.regions[r].pixels;
+  }
   weighted_sum += other.weighted_sum;
   weight += other.weight;
 }
 
-EccentricityBands eccentricity_bands(const PlanarView& view, const Vec2d& gaze_px, int threads) {
+EccentricityBands eccentricity_bands(const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions,
+                                     int threads) {
   constexpr float kDegPerTurn = 360;
   constexpr float kHalfMagnificationDeg = 0.75F;
   const Vec3d gaze = normalize(view.direction(gaze_px.x, gaze_px.y));
   EccentricityBands result{Image<std::uint8_t>(view.width_px, view.height_px),
+                           Image<std::uint8_t>(view.width_px, view.height_px),
                            ImageGray(view.width_px, view.height_px)};
   parallel_for(static_cast<std::size_t>(view.height_px), threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);
@@ -42,6 +48,10 @@ EccentricityBands eccentricity_bands(const PlanarView& view, const Vec2d& gaze_p
         ++band;
       }
       result.band(x, y) = band;
+      const auto exact = static_cast<double>(deg);
+      result.region(x, y) = static_cast<std::uint8_t>(exact < regions.end_deg[0]   ? 0
+                                                      : exact < regions.end_deg[1] ? 1
+                                                                                   : 2);
       result.weight(x, y) = 1 / ((deg + kHalfMagnificationDeg) * (deg + kHalfMagnificationDeg));
     }
   });
@@ -56,8 +66,11 @@ BandSums sum_by_band(const EccentricityBands& bands, const ImageGray& map, int m
       const auto value = static_cast<double>(map(x, y));
       const auto weight = static_cast<double>(bands.weight(x, y));
       BandSum& band = rows[row].bands[bands.band(x, y)];
-      band.sum += value;
-      band.pixels += 1;
+      BandSum& region = rows[row].regions[bands.region(x, y)];
+      for (BandSum* part : {&band, &region}) {
+        part->sum += value;
+        part->pixels += 1;
+      }
       rows[row].weighted_sum += weight * value;
       rows[row].weight += weight;
     }

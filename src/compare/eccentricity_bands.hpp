@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which band of eccentricity a pixel lies in and how much of the visual cortex sees it, and sums over maps by both.
+// Which band of eccentricity and retinal region a pixel lies in, how much of the visual cortex sees it, and sums over
+// maps by all three.
 #pragma once
 
 #include <array>
@@ -16,16 +17,18 @@ struct BandSum {
 
 struct BandSums {
   std::array<BandSum, kEccentricityBandsDeg.size()> bands;
+  std::array<BandSum, kRetinalRegionNames.size()> regions;
   double weighted_sum = 0, weight = 0;
   void add(const BandSums& other);
 };
 
 struct EccentricityBands {
-  Image<std::uint8_t> band;
+  Image<std::uint8_t> band, region;
   ImageGray weight;
 };
 
-EccentricityBands eccentricity_bands(const PlanarView& view, const Vec2d& gaze_px, int threads);
+EccentricityBands eccentricity_bands(const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions,
+                                     int threads);
 BandSums sum_by_band(const EccentricityBands& bands, const ImageGray& map, int margin_px, int threads);
 
 }  // namespace gazetrace

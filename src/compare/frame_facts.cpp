@@ -28,18 +28,37 @@ std::optional<std::int64_t> integer_of(const std::string& text) {
   return problem == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
+template <class Named>
+std::optional<Named> named(const std::string& name, std::initializer_list<Named> values) {
+  for (const Named value : values) {
+    if (to_string(value) == name) {
+      return value;
+    }
+  }
+  return std::nullopt;
+}
+
 void take_gaze(const std::string& text, FrameFacts& facts) {
-  facts.gaze_state = value_of(text, "state");
-  facts.gaze_event = value_of(text, "event");
-  facts.is_without_gaze = value_of(text, "no_gaze") == "1";
+  const auto state =
+      named(value_of(text, "state"), {GazeState::measured, GazeState::held, GazeState::center, GazeState::none});
   const std::optional<double> u = number_from(value_of(text, "u"));
   const std::optional<double> v = number_from(value_of(text, "v"));
-  // Places on a screen leave the direction straight ahead, directions leave the place in the middle.
-  facts.gaze_is_direction = !text.empty() && value_of(text, "direction") != "0,0,-1";
-  const bool usable = facts.gaze_state != to_string(GazeState::none) && !facts.is_without_gaze;
-  if (u && v && usable && !facts.gaze_is_direction) {
-    facts.gaze_uv = Vec2d{*u, *v};
+  const std::string no_gaze = value_of(text, "no_gaze");
+  if (!state || !u || !v || no_gaze.empty()) {
+    return;
   }
+  GazeAtTime gaze;
+  gaze.state = *state;
+  gaze.u = *u;
+  gaze.v = *v;
+  gaze.no_gaze = no_gaze == "1";
+  gaze.movement = named(value_of(text, "event"), {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::pursuit,
+                                                  EyeMovement::blink, EyeMovement::lost, EyeMovement::unclassified});
+  gaze.since_saccade_ns = integer_of(value_of(text, "since_saccade_ns"));
+  // Places on a screen leave the direction straight ahead, directions leave the place in the middle.
+  facts.gaze_is_direction = value_of(text, "direction") != "0,0,-1";
+  gaze.kind = facts.gaze_is_direction ? GazeKind::direction : GazeKind::screen;
+  facts.gaze_true = gaze;
 }
 
 }  // namespace
@@ -56,6 +75,7 @@ FrameFacts read_frame_facts(const std::string& path) {
     const std::string note = read_image_note(path);
     facts.exposure_ev = number_from(value_of(note, "exposure_ev"));
     facts.t_video_ns = integer_of(value_of(note, "t_video_ns"));
+    take_gaze(note, facts);
   }
   return facts;
 }

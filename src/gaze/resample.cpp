@@ -79,6 +79,7 @@ class Resampler {
     result_.age_is_known = !log.sample_age_unknown;
     if (movements != nullptr && after_ > 0 && after_ <= movements->size()) {
       result_.movement = (*movements)[after_ - 1];
+      result_.since_saccade_ns = since_saccade_ns();
     }
   }
 
@@ -96,6 +97,19 @@ class Resampler {
   }
 
  private:
+  [[nodiscard]] std::optional<std::int64_t> since_saccade_ns() const {
+    for (std::size_t row = after_; row-- > 0;) {
+      const std::int64_t since = row + 1 == after_ ? 0 : age(samples_[row]);
+      if (since > kSaccadeMemoryNs) {
+        break;
+      }
+      if ((*movements_)[row] == EyeMovement::saccade) {
+        return since;
+      }
+    }
+    return std::nullopt;
+  }
+
   [[nodiscard]] std::int64_t age(const GazeSample& sample) const { return saturating_difference(t_ns_, sample.t_ns); }
   [[nodiscard]] bool is_gap(std::int64_t age_ns) const {
     // A log of one row is a gaze that never moves.

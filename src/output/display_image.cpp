@@ -7,6 +7,7 @@
 #include "core/image_io.hpp"
 #include "gazetrace/output.hpp"
 #include "output/atomic_file.hpp"
+#include "output/gaze_text.hpp"
 
 namespace gazetrace {
 namespace {
@@ -77,6 +78,9 @@ void write_display_image(const std::string& path, const DisplayImage& image, con
   options.software = header.software;
   options.note = fmt::format("gazetrace:settings_digest={} frame={} t_video_ns={} exposure_ev={}",
                              header.settings_digest, header.frame, header.t_video_ns, header.exposure_ev);
+  if (const GazeAtTime& gaze = header.gaze_true; gaze.state != GazeState::none || gaze.no_gaze || gaze.movement) {
+    options.note += " " + gaze_words(gaze);
+  }
   const std::vector<std::uint8_t> bytes =
       encode_image(path, image.width_px, image.height_px, image.bits, image.bytes, options);
   write_bytes_atomically(path, std::as_bytes(std::span(bytes)));

@@ -31,6 +31,7 @@
 #include "core/parallel.hpp"
 #include "gazetrace/output.hpp"
 #include "output/atomic_file.hpp"
+#include "output/gaze_text.hpp"
 
 namespace gazetrace {
 namespace {
@@ -238,14 +239,8 @@ std::string camera_text(const Camera& camera) {
                      p.z, q.x, q.y, q.z, q.w, view, projection.near_m, projection.far_m, lens);
 }
 
-std::string gaze_text(const GazeAtTime& gaze) {
-  const std::string age = gaze.age_is_known ? fmt::format("{}", gaze.age_ns) : "unknown";
-  return fmt::format(
-      "state={} u={} v={} direction={},{},{} t_log_ns={} rows={},{} age_ns={} validity={} event={} "
-      "no_gaze={} reason={}",
-      to_string(gaze.state), gaze.u, gaze.v, gaze.direction.x, gaze.direction.y, gaze.direction.z, gaze.t_log_ns,
-      gaze.row_before, gaze.row_after, age, to_string(gaze.validity),
-      gaze.movement ? to_string(*gaze.movement) : "none", gaze.no_gaze ? 1 : 0, gaze.reason);
+std::string gaze_header(const GazeAtTime& gaze) {
+  return gaze_words(gaze) + " reason=" + gaze.reason;
 }
 
 void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
@@ -269,8 +264,8 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   if (frame.shutter_close_ns > frame.shutter_open_ns) {
     add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));
   }
-  add_text(header, "gaze_render", gaze_text(frame.gaze_render));
-  add_text(header, "gaze_true", gaze_text(frame.gaze_true));
+  add_text(header, "gaze_render", gaze_header(frame.gaze_render));
+  add_text(header, "gaze_true", gaze_header(frame.gaze_true));
   if (!frame.gaze_processing.empty()) {
     add_text(header, "gaze_processing", fmt::format("{}", fmt::join(frame.gaze_processing, "; ")));
   }

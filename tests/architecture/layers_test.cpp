@@ -43,9 +43,9 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"trace", "trace"},       {"guides", "trace"},      {"reconstruct", "reconstruct"},
     {"temporal", "temporal"}, {"color", "color"},       {"output", "output"},
     {"pipeline", "pipeline"}, {"metrics", "metrics"},   {"fovvideovdp", "metrics"},
-    {"compare", "compare"},   {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},
-    {"gaze_process", "gaze"}, {"gaze_synth", "gaze"},   {"motion", "camera"},
-    {"deformation", "scene"},
+    {"flicker", "metrics"},   {"compare", "compare"},   {"gaze_inspect", "gaze"},
+    {"gaze_events", "gaze"},  {"gaze_process", "gaze"}, {"gaze_synth", "gaze"},
+    {"motion", "camera"},     {"deformation", "scene"},
 };
 
 // Which files may meet which dependency.

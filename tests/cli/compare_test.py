@@ -88,7 +88,10 @@ class Compare(harness.CliTest):
         with open(self.folder / "ref/timing.csv", newline="") as file:
             events = [row["gaze_event"] for row in csv.DictReader(file)]
         self.assertNotIn("none", events)
-        self.assertEqual([frame["gaze"] for frame in result["frames"]], events)
+        # This gaze glides too fast for a fixation.
+        self.assertEqual(events, ["saccade"] * 3)
+        self.assertEqual([frame["gaze"] for frame in result["frames"]], ["in-flight"] * 3)
+        self.assertEqual(result["headline"], "all")
         self.assertIsNotNone(scores["flip"]["bands"]["0-2.6"])
         with open(self.folder / "out.csv", newline="") as file:
             rows = list(csv.DictReader(file))
@@ -103,6 +106,67 @@ class Compare(harness.CliTest):
         from_exr, _ = self.compare("ref/p.####.exr", "fov/p.####.exr", "--metrics", "flip")
         from_png, _ = self.compare("ref/p.####.png", "fov/p.####.png", "--metrics", "flip")
         self.assertAlmostEqual(from_exr["flip"]["value"], from_png["flip"]["value"], 3)
+        self.assertAlmostEqual(from_exr["flip"]["regions"]["fovea"], from_png["flip"]["regions"]["fovea"], 2)
+
+    def test_frames_are_scored_apart_by_what_the_eye_did(self):
+        # At 24 frames a second: rest, a jump of 12 degrees at 0.51 s, rest, lids shut from 1 s to 1.2 s, rest.
+        def row(i):
+            t = 5 * i
+            gone = 1000 <= t < 1200
+            u = "" if gone else f"{0.4 if t < 510 else 0.6:.4f}"
+            return f"{t * 1_000_000},{u},{'' if gone else '0.5'},{'blink' if gone else 'ok'},cyclopean"
+
+        self.write("gaze.csv", harness.gaze_csv(row(i) for i in range(300)))
+        common = ["render", "box.gltf", "--gaze", "gaze.csv", "--size", "64x36", "--frames", "1-36", "--fps", "24", "--quiet",
+                  "--falloff", "uniform", *harness.SCREEN]
+        self.run_ok(*common, "--spp", "4", "--seed", "1", "-o", "a/p.####.exr", "-o", "a/p.####.png")
+        self.run_ok(*common, "--spp", "1", "--seed", "2", "-o", "b/p.####.exr", "-o", "b/p.####.png")
+        expected = []
+        for frame in range(1, 37):
+            t = (frame - 0.5) / 24 * 1000
+            expected.append("blink" if 1000 <= t < 1200 else "in-flight" if 510 <= t <= 610 else "fixation")
+        for suffix in ("exr", "png"):
+            scores, result = self.compare(f"a/p.####.{suffix}", f"b/p.####.{suffix}", "--csv", "out.csv")
+            self.assertEqual([frame["gaze"] for frame in result["frames"]], expected)
+            self.assertEqual(result["headline"], "fixation")
+            parts = {part["gaze"]: part for part in result["sequence"]}
+            self.assertEqual(parts["fixation"]["frames"], expected.count("fixation"))
+            self.assertEqual(list(scores), ["mse", "relmse", "psnr", "ssim", "flip", "fovvideovdp", "flicker", "temporal_bias"])
+            self.assertIn("12 Hz", result["conditions"]["flicker"])
+            blinks = {score["metric"]: score for score in parts["blink"]["scores"]}
+            self.assertIsNone(blinks["fovvideovdp"]["value"])
+            self.assertIsNone(blinks["flip"]["regions"]["fovea"])
+            self.assertGreater(blinks["flip"]["value"], 0)
+            # The first second is not scored for flicker, nor are blinks.
+            self.assertEqual(scores["flicker"]["scored_frames"], sum(name != "blink" for name in expected[23:]))
+            self.assertGreater(scores["flicker"]["value"], 0)
+        text = self.run_ok("compare", "a/p.####.png", "b/p.####.png", "--metrics", "flip").stdout
+        self.assertIn(f"fixation {100 * expected.count('fixation') / 36:.1f} %", text)
+        # The log again from outside gives the same classes; a limit is one on fixations.
+        again, result = self.compare("a/p.####.png", "b/p.####.png", "--metrics", "mse", "--gaze", "gaze.csv", "--fps", "24")
+        self.assertEqual([frame["gaze"] for frame in result["frames"]], expected)
+        mean = {part["gaze"]: part["scores"][0]["value"] for part in result["sequence"]}["fixation"]
+        for share, code in ((1.0001, 0), (0.9999, 1)):
+            limit = f"mse={mean * share!r}"
+            self.assertEqual(self.run_program("compare", "a/p.####.png", "b/p.####.png", "--metrics", "mse", "--fail-above",
+                                              limit).returncode, code)
+
+    def test_what_needs_gaze_is_refused_without(self):
+        for folder, value in (("a", 100), ("b", 110)):
+            for frame in range(1, 9):
+                self.write(f"{folder}/p.{frame}.png", png(32, 32, grey(value + frame)))
+        screen = ["--screen-px", "32,32", "--screen-cm", "36,36", "--screen-distance-cm", "60", "--fps", "8"]
+        pair = ["compare", "a/p.#.png", "b/p.#.png", *screen]
+        for name in ("flicker", "fovvideovdp"):
+            self.assert_refused([*pair, "--metrics", name], [name, "--gaze-at"])
+        scores, result = self.compare(*pair[1:])
+        self.assertEqual(list(scores), ["mse", "relmse", "psnr", "ssim", "flip"])
+        self.assertEqual(result["headline"], "all")
+        self.run_ok(*pair, "--metrics", "temporal_bias")
+        self.run_ok(*pair, "--metrics", "flicker", "--gaze-at", "0.5,0.5")
+        self.assert_refused([*pair, "--metrics", "flicker", "--gaze-at", "0.5,0.5", "--frames", "1-7"], ["7 frames at 8"])
+        self.assert_refused([*pair, "--metrics", "temporal_bias", "--frames", "1-3,5-8"], ["missing"])
+        self.assert_refused([*pair, "--region-angles", "9,3"], ["--region-angles"])
 
     def test_exit_code_over_a_limit(self):
         self.write("a.png", png(32, 32, grey(100)))

@@ -12,6 +12,7 @@
 #include "cli/compare_report.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/flicker.hpp"
 
 namespace gazetrace {
 namespace {
@@ -61,33 +62,69 @@ std::vector<Limit> limits_of(const CompareJob& job, const std::vector<std::strin
   return limits;
 }
 
-// What needs neither gaze nor much time, and what is there for the asking: FovVideoVDP wants a screen, HDR-FLIP linear
-// light.
-std::vector<std::string> chosen_metrics(const CompareJob& job, const CompareInputs& inputs, bool is_linear) {
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool holds_a_second(const CompareInputs& inputs) {
+  constexpr double kLeastRate = 4;
+  return inputs.frames_per_second >= kLeastRate &&
+         inputs.frames.size() >= static_cast<std::size_t>(frames_of_a_second(inputs.frames_per_second));
+}
+
+// What needs neither gaze nor much time, and what is there for the asking: FovVideoVDP wants a screen and gaze,
+// flicker a second of frames as well, HDR-FLIP linear light.
+std::vector<std::string> chosen_metrics(const CompareJob& job, const CompareInputs& inputs, bool is_linear,
+                                        bool has_gaze) {
   std::vector<std::string> metrics = job.metrics;
   if (metrics.empty()) {
     metrics = {"mse", "relmse", "psnr", "ssim", "flip"};
-    if (inputs.screen && (inputs.frames.size() == 1 || inputs.frames_per_second > 0)) {
+    const bool shows_time = inputs.frames_per_second > 0;
+    if (inputs.screen && has_gaze && (inputs.frames.size() == 1 || shows_time)) {
       metrics.emplace_back("fovvideovdp");
     }
+    if (inputs.screen && has_gaze && shows_time && holds_a_second(inputs)) {
+      metrics.emplace_back("flicker");
+    }
   }
-  if (!is_linear && std::find(metrics.begin(), metrics.end(), "hdr_flip") != metrics.end()) {
+  // What never changes does not flicker, however wrong it is.
+  if (contains(metrics, "flicker") && !contains(metrics, "temporal_bias")) {
+    metrics.insert(std::find(metrics.begin(), metrics.end(), "flicker") + 1, "temporal_bias");
+  }
+  if (!is_linear && contains(metrics, "hdr_flip")) {
     throw Error(ErrorKind::usage, "--metrics", "hdr_flip needs scene-linear pictures (.exr)", "leave it out");
+  }
+  for (const MetricInfo& info : comparison_metrics()) {
+    if (info.needs_gaze && !has_gaze && inputs.screen && contains(metrics, info.name)) {
+      throw Error(ErrorKind::usage, info.name, "needs gaze, and no frame has one",
+                  "give --gaze or --gaze-at, or leave the metric out");
+    }
   }
   return metrics;
 }
 
-// FovVideoVDP looks back in time: its frames must follow each other.
+// Metrics that look back in time: their frames must follow each other.
 void check_consecutive(const CompareInputs& inputs, const std::vector<std::string>& metrics) {
-  if (std::find(metrics.begin(), metrics.end(), "fovvideovdp") == metrics.end() || inputs.frames.size() < 2) {
-    return;
-  }
-  if (inputs.frames.back() - inputs.frames.front() + 1 != static_cast<std::int32_t>(inputs.frames.size())) {
-    throw Error(ErrorKind::usage, "fovvideovdp", "sees time, but frames are missing between the first and the last",
-                "name consecutive frames with --frames, or leave the metric out");
-  }
-  if (inputs.frames_per_second == 0) {
-    throw Error(ErrorKind::usage, "fovvideovdp", "the pictures do not say their frame rate", "give --fps");
+  const bool is_single = inputs.frames.size() < 2;
+  for (const char* name : {"flicker", "temporal_bias", "fovvideovdp"}) {
+    const bool is_of_a_second = std::string_view(name) != "fovvideovdp";
+    if (!contains(metrics, name) || (is_single && !is_of_a_second)) {
+      continue;
+    }
+    if (!is_single &&
+        inputs.frames.back() - inputs.frames.front() + 1 != static_cast<std::int32_t>(inputs.frames.size())) {
+      throw Error(ErrorKind::usage, name, "sees time, but frames are missing between the first and the last",
+                  "name consecutive frames with --frames, or leave the metric out");
+    }
+    if (!is_single && inputs.frames_per_second == 0) {
+      throw Error(ErrorKind::usage, name, "the pictures do not say their frame rate", "give --fps");
+    }
+    if (is_of_a_second && !holds_a_second(inputs)) {
+      throw Error(ErrorKind::usage, name,
+                  fmt::format("looks at whole seconds; {} frames at {:g} a second are less", inputs.frames.size(),
+                              inputs.frames_per_second),
+                  "compare a longer sequence, or leave the metric out");
+    }
   }
 }
 
@@ -118,7 +155,7 @@ class PairReader {
     const ComparedGaze gaze = compared_gaze(job_, inputs_, reference.facts, frame, reference.picture.code.width_px,
                                             reference.picture.code.height_px);
     pair.gaze_px = gaze.px;
-    pair.gaze_class = gaze.state;
+    pair.gaze_class = gaze.gaze_class;
     pair.reference = std::move(reference.picture);
     pair.test = std::move(test.picture);
     return pair;
@@ -154,11 +191,27 @@ CompareConditions conditions_of(const CompareJob& job, const CompareInputs& inpu
     conditions.emplace_back("screen", fmt::format("{}x{} px, {:g}x{:g} cm at {:g} cm", g.width_px, g.height_px,
                                                   g.width_cm, g.height_cm, g.distance_cm));
   }
+  if (inputs.screen) {
+    conditions.emplace_back("regions", fmt::format("fovea to {:g} deg, intermediate to {:g} deg of eccentricity",
+                                                   settings.regions.end_deg[0], settings.regions.end_deg[1]));
+  }
   if (inputs.frames_per_second > 0) {
     conditions.emplace_back("frame rate", fmt::format("{:g}", inputs.frames_per_second));
   }
-  if (const auto& metrics = settings.metrics;
-      std::find(metrics.begin(), metrics.end(), "fovvideovdp") != metrics.end()) {
+  if (contains(settings.metrics, "flicker")) {
+    const FlickerRange range = flicker_range(inputs.frames_per_second, settings.photometry.peak_cd_m2 / 2);
+    conditions.emplace_back(
+        "flicker",
+        fmt::format("from {:g} to {:g} Hz, of which a frame sees the second before it; {}; blind to bias "
+                    "(see temporal_bias)",
+                    range.lowest_hz, range.highest_hz,
+                    range.fusion_hz > range.highest_hz
+                        ? fmt::format("up to {:.0f} Hz would be seen, but what is faster than {:g} Hz cannot "
+                                      "be told at this frame rate and shows as something slower, or not",
+                                      range.fusion_hz, range.highest_hz)
+                        : "all that is seen can be told at this frame rate"));
+  }
+  if (contains(settings.metrics, "fovvideovdp")) {
     const DisplayPhotometry& p = settings.photometry;
     conditions.emplace_back("fovvideovdp",
                             fmt::format("{}; peak {:g} cd/m2, contrast {:g}, {:g} lux; blind to uniform "
@@ -181,14 +234,20 @@ void write_maps(const CompareJob& job, const FrameScores& frame) {
   }
 }
 
-bool fails(const std::vector<Limit>& limits, const SequenceScores& all) {
+// A limit on what could not be scored is not kept.
+bool fails(const std::vector<Limit>& limits, const SequenceScores& claim) {
   bool failed = false;
   for (const Limit& limit : limits) {
-    for (const Scores& scores : all.scores) {
-      const bool over = limit.above ? scores.value > limit.value : scores.value < limit.value;
-      if (scores.metric == limit.metric && over) {
-        print_warnings({fmt::format("{} is {:g}, {} {:g}", limit.metric, scores.value, limit.above ? "above" : "below",
-                                    limit.value)});
+    for (const Scores& scores : claim.scores) {
+      if (scores.metric != limit.metric) {
+        continue;
+      }
+      if (!scores.value) {
+        print_warnings({fmt::format("{} was not scored, so its limit is not kept", limit.metric)});
+        failed = true;
+      } else if (limit.above ? *scores.value > limit.value : *scores.value < limit.value) {
+        print_warnings({fmt::format("{} is {:g} ({} frames), {} {:g}", limit.metric, *scores.value, claim.gaze_class,
+                                    limit.above ? "above" : "below", limit.value)});
         failed = true;
       }
     }
@@ -224,7 +283,9 @@ int run_compare(const CompareJob& job) {
   const int height = pair.reference.code.height_px;
 
   ComparisonSettings settings = job.settings;
-  settings.metrics = chosen_metrics(job, inputs, reader.is_linear());
+  const bool has_gaze = knows_gaze(job, inputs);
+  settings.metrics = chosen_metrics(job, inputs, reader.is_linear(), has_gaze);
+  settings.regions = inputs.regions;
   settings.view = compare_view(inputs, width, height);
   settings.frames_per_second = inputs.frames_per_second;
   settings.metric.threads = job.shared.threads;
@@ -235,7 +296,7 @@ int run_compare(const CompareJob& job) {
   }
   const std::vector<Limit> limits = limits_of(job, settings.metrics);
   check_consecutive(inputs, settings.metrics);
-  if (std::find(settings.metrics.begin(), settings.metrics.end(), "hdr_flip") != settings.metrics.end()) {
+  if (contains(settings.metrics, "hdr_flip")) {
     // One set of exposures for the whole sequence, or its frames would not compare.
     const FlipExposures exposures = flip_exposures(pair.reference.light, settings.metric.hdr_flip);
     settings.metric.hdr_flip.start_ev = exposures.start_ev;
@@ -271,7 +332,7 @@ int run_compare(const CompareJob& job) {
     write_text_atomically(job.json, compare_json(conditions, summary, frames));
   }
   print_result(compare_text(conditions, summary));
-  return fails(limits, summary.front()) ? exit_over_threshold : exit_done;
+  return fails(limits, headline(summary)) ? exit_over_threshold : exit_done;
 }
 
 }  // namespace

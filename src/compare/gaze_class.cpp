@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gazetrace/compare.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+
+std::string_view to_string(GazeClass gaze_class) {
+  switch (gaze_class) {
+    case GazeClass::fixation:
+      return "fixation";
+    case GazeClass::in_flight:
+      return "in-flight";
+    case GazeClass::blink:
+      return "blink";
+    case GazeClass::no_gaze:
+      return "no-gaze";
+    case GazeClass::unclassified:
+      break;
+  }
+  return "unclassified";
+}
+
+GazeClass gaze_class_of(const GazeAtTime& gaze) {
+  if (gaze.movement == EyeMovement::blink) {
+    return GazeClass::blink;
+  }
+  if (gaze.no_gaze || gaze.state == GazeState::none || gaze.movement == EyeMovement::lost) {
+    return GazeClass::no_gaze;
+  }
+  if (gaze.movement == EyeMovement::saccade || (gaze.since_saccade_ns && *gaze.since_saccade_ns <= kAfterSaccadeNs)) {
+    return GazeClass::in_flight;
+  }
+  return gaze.movement == EyeMovement::fixation ? GazeClass::fixation : GazeClass::unclassified;
+}
+
+RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleReading reading) {
+  if (!(angles_deg[0] > 0 && angles_deg[1] > angles_deg[0])) {
+    throw Error(ErrorKind::usage, "--region-angles", fmt::format("{},{} do not ascend", angles_deg[0], angles_deg[1]),
+                "give two angles above 0, the smaller first");
+  }
+  const double share = reading == AngleReading::full_angle ? 0.5 : 1.0;
+  return {{share * angles_deg[0], share * angles_deg[1]}};
+}
+
+const SequenceScores& headline(const std::vector<SequenceScores>& summary) {
+  const auto fixations = std::find_if(summary.begin(), summary.end(), [](const SequenceScores& part) {
+    return part.gaze_class == to_string(GazeClass::fixation);
+  });
+  return fixations == summary.end() ? summary.front() : *fixations;
+}
+
+}  // namespace gazetrace

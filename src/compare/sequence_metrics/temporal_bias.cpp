@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// What flicker cannot see: |mean of the test - mean of the reference| / mean of the reference, of the luminance of
+// cells of 4 x 4 pixels over the last second. Frozen or smeared history and lost light show here. So does noise that a
+// second does not average out.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "compare/sequence_metric.hpp"
+#include "gazetrace/flicker.hpp"
+#include "metrics/luminance_cells.hpp"
+#include "metrics/metric.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kCellPx = 4;
+constexpr double kLeastLuminance = 0.1;  // of a background, cd/m2
+
+// Sums over the last frames.
+class RunningSum {
+ public:
+  void add(ImageGray cells, std::size_t frames) {
+    sums_.resize(cells.pixels.size());
+    ring_.resize(frames);
+    ImageGray& slot = ring_[next_++ % frames];
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      sums_[i] += static_cast<double>(cells.pixels[i]) - (slot.empty() ? 0.0 : static_cast<double>(slot.pixels[i]));
+    }
+    slot = std::move(cells);
+  }
+  [[nodiscard]] double at(std::size_t i) const { return sums_[i]; }
+
+ private:
+  std::vector<ImageGray> ring_;
+  std::vector<double> sums_;
+  std::size_t next_ = 0;
+};
+
+class BiasOfFrames : public SequenceMetric {
+ public:
+  BiasOfFrames(int frames, int threads) : frames_(static_cast<std::size_t>(frames)), threads_(threads) {}
+
+  std::optional<MetricMap> add(const LuminanceFrame& frame) override {
+    ImageGray bias = cell_means(frame.reference, kCellPx, threads_);
+    reference_.add(bias, frames_);
+    test_.add(cell_means(frame.test, kCellPx, threads_), frames_);
+    if (++added_ < frames_) {
+      return std::nullopt;
+    }
+    const double least = kLeastLuminance * static_cast<double>(frames_);
+    for (std::size_t i = 0; i < bias.pixels.size(); ++i) {
+      bias.pixels[i] =
+          static_cast<float>(std::fabs(test_.at(i) - reference_.at(i)) / std::max(reference_.at(i), least));
+    }
+    MetricMap map;
+    map.values = spread_cells(bias, kCellPx, frame.reference.width_px, frame.reference.height_px, threads_);
+    map.mean = mean_of_map(map.values, 0, threads_);
+    return map;
+  }
+
+ private:
+  std::size_t frames_, added_ = 0;
+  int threads_;
+  RunningSum reference_, test_;
+};
+
+}  // namespace
+
+std::unique_ptr<SequenceMetric> make_temporal_bias(const ComparisonSettings& settings, int /*width_px*/,
+                                                   int /*height_px*/) {
+  return std::make_unique<BiasOfFrames>(frames_of_a_second(settings.frames_per_second), settings.metric.threads);
+}
+
+double sequence_value_temporal_bias(double mean) {
+  return mean;
+}
+double sequence_local_value_temporal_bias(double mean) {
+  return mean;
+}
+
+}  // namespace gazetrace

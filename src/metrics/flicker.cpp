@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/flicker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "gazetrace/error.hpp"
+#include "metrics/contrast_sensitivity.hpp"
+#include "metrics/flicker_sensitivity.hpp"
+#include "metrics/luminance_cells.hpp"
+#include "metrics/sliding_spectrum.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::size_t kScales = 4;
+constexpr double kFinestCpd = 4;
+constexpr double kLeastLuminance = 0.1;  // of a background, cd/m2
+
+int finest_cell_px(double pixels_per_degree) {
+  return std::max(1, static_cast<int>(std::lround(pixels_per_degree / (2 * kFinestCpd))));
+}
+
+// Both sequences' spectra of the cells of one size.
+struct CellSpectra {
+  int cell_px = 0, columns = 0, rows = 0;
+  std::vector<std::complex<double>> reference, test;  // k = 0 .. N/2 of each cell
+  std::vector<double> luminance;                      // mean of the reference
+  std::vector<double> pixels;                         // of the cell that lie in the picture
+};
+
+// Cells of twice the side.
+CellSpectra paired(const CellSpectra& fine, std::size_t bins, int threads) {
+  CellSpectra coarse;
+  coarse.cell_px = 2 * fine.cell_px;
+  coarse.columns = (fine.columns + 1) / 2;
+  coarse.rows = (fine.rows + 1) / 2;
+  const auto cells = static_cast<std::size_t>(coarse.columns) * static_cast<std::size_t>(coarse.rows);
+  coarse.reference.resize(cells * bins);
+  coarse.test.resize(cells * bins);
+  coarse.luminance.resize(cells);
+  coarse.pixels.resize(cells);
+  parallel_for(static_cast<std::size_t>(coarse.rows), threads, [&](std::size_t r) {
+    const int row = static_cast<int>(r);
+    for (int column = 0; column < coarse.columns; ++column) {
+      const std::size_t to = r * static_cast<std::size_t>(coarse.columns) + static_cast<std::size_t>(column);
+      for (int y = 2 * row; y < std::min(2 * row + 2, fine.rows); ++y) {
+        for (int x = 2 * column; x < std::min(2 * column + 2, fine.columns); ++x) {
+          const auto from =
+              static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.columns) + static_cast<std::size_t>(x);
+          const double weight = fine.pixels[from];
+          coarse.pixels[to] += weight;
+          coarse.luminance[to] += weight * fine.luminance[from];
+          for (std::size_t k = 0; k < bins; ++k) {
+            coarse.reference[to * bins + k] += weight * fine.reference[from * bins + k];
+            coarse.test[to * bins + k] += weight * fine.test[from * bins + k];
+          }
+        }
+      }
+      coarse.luminance[to] /= coarse.pixels[to];
+      for (std::size_t k = 0; k < bins; ++k) {
+        coarse.reference[to * bins + k] /= coarse.pixels[to];
+        coarse.test[to * bins + k] /= coarse.pixels[to];
+      }
+    }
+  });
+  return coarse;
+}
+
+double pixels_per_degree_of(const PlanarView& view) {
+  return 1 / (view.step_x * kDegPerRad);
+}
+
+}  // namespace
+
+int frames_of_a_second(double frames_per_second) {
+  constexpr double kLeastRate = 4;
+  constexpr double kMostRate = 1000;
+  if (!(frames_per_second >= kLeastRate && frames_per_second <= kMostRate)) {
+    throw Error(ErrorKind::usage, "flicker", fmt::format("{:g} frames a second", frames_per_second),
+                fmt::format("it is told of {:g} to {:g} frames a second: give --fps, or leave the metric out",
+                            kLeastRate, kMostRate));
+  }
+  return static_cast<int>(std::lround(frames_per_second));
+}
+
+FlickerRange flicker_range(double frames_per_second, double luminance_cd_m2) {
+  constexpr double kMostHz = 200;
+  const int frames = frames_of_a_second(frames_per_second);
+  FlickerRange range;
+  range.lowest_hz = frames_per_second / frames;
+  range.highest_hz = range.lowest_hz * (frames / 2);
+  const auto sees = [&](double hz) {
+    double most = 0;
+    for (std::size_t s = 0; s < kScales; ++s) {
+      most = std::max(most, contrast_sensitivity(kFinestCpd / std::exp2(s), hz, luminance_cd_m2, 0));
+    }
+    return most >= 1;
+  };
+  double seen = 1;
+  double unseen = kMostHz;
+  while (unseen - seen > 0.01) {
+    const double middle = 0.5 * (seen + unseen);
+    (sees(middle) ? seen : unseen) = middle;
+  }
+  range.fusion_hz = seen;
+  return range;
+}
+
+struct FlickerMeter::Impl {
+  FlickerSettings settings;
+  int frames;
+  int cell_px;
+  SlidingSpectrum reference, test;
+  std::vector<FlickerSensitivity> sensitivity;  // one a scale
+
+  Impl(const FlickerSettings& given, int frame_count, int cell, int columns, int rows)
+      : settings(given),
+        frames(frame_count),
+        cell_px(cell),
+        reference(columns, rows, frame_count),
+        test(columns, rows, frame_count) {
+    std::vector<double> frequencies_hz;
+    for (int k = 1; k <= frames / 2; ++k) {
+      frequencies_hz.push_back(k * settings.frames_per_second / frames);
+    }
+    for (std::size_t s = 0; s < kScales; ++s) {
+      const double rho_cpd = pixels_per_degree_of(settings.view) / (2 * cell_px * std::exp2(s));
+      sensitivity.emplace_back(rho_cpd, frequencies_hz, settings.threads);
+    }
+  }
+
+  [[nodiscard]] CellSpectra finest() const {
+    CellSpectra cells;
+    cells.cell_px = cell_px;
+    cells.columns = (settings.view.width_px + cell_px - 1) / cell_px;
+    cells.rows = (settings.view.height_px + cell_px - 1) / cell_px;
+    const auto count = static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows);
+    cells.reference.assign(reference.at(0), reference.at(0) + count * reference.bins());
+    cells.test.assign(test.at(0), test.at(0) + count * test.bins());
+    for (int row = 0; row < cells.rows; ++row) {
+      for (int column = 0; column < cells.columns; ++column) {
+        const int width = std::min(cell_px, settings.view.width_px - column * cell_px);
+        const int height = std::min(cell_px, settings.view.height_px - row * cell_px);
+        cells.pixels.push_back(static_cast<double>(width) * height);
+        cells.luminance.push_back(reference.mean(cells.luminance.size()));
+      }
+    }
+    return cells;
+  }
+
+  // F of each cell of a scale, before the largest of all scales is taken.
+  [[nodiscard]] ImageGray excess(const CellSpectra& cells, std::size_t scale, const Vec3d& gaze) const {
+    ImageGray result(cells.columns, cells.rows);
+    const std::size_t bins = reference.bins();
+    parallel_for(static_cast<std::size_t>(cells.rows), settings.threads, [&](std::size_t r) {
+      const int row = static_cast<int>(r);
+      std::vector<double> s2(bins - 1);
+      std::vector<double> of_reference(bins - 1);
+      std::vector<double> of_test(bins - 1);
+      const double y_px = std::min((row + 0.5) * cells.cell_px, static_cast<double>(settings.view.height_px));
+      for (int column = 0; column < cells.columns; ++column) {
+        const auto cell = r * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(column);
+        const double x_px = std::min((column + 0.5) * cells.cell_px, static_cast<double>(settings.view.width_px));
+        const double luminance = std::max(cells.luminance[cell], kLeastLuminance);
+        sensitivity[scale].squared(luminance, eccentricity_deg(settings.view, gaze, x_px, y_px), s2);
+        hann_power(&cells.reference[cell * bins], frames, of_reference);
+        hann_power(&cells.test[cell * bins], frames, of_test);
+        double sum = 0;
+        for (std::size_t k = 0; k < s2.size(); ++k) {
+          sum += s2[k] * (of_test[k] - of_reference[k]);
+        }
+        result(column, row) = static_cast<float>(std::max(0.0, 2 * sum / (luminance * luminance)));
+      }
+    });
+    return result;
+  }
+
+  [[nodiscard]] ImageGray score(const Vec2d& gaze_px) const {
+    const Vec3d gaze = settings.view.direction(gaze_px.x, gaze_px.y);
+    CellSpectra cells = finest();
+    ImageGray most = excess(cells, 0, gaze);
+    for (std::size_t scale = 1; scale < kScales; ++scale) {
+      cells = paired(cells, reference.bins(), settings.threads);
+      const ImageGray coarse = excess(cells, scale, gaze);
+      for (int y = 0; y < most.height_px; ++y) {
+        for (int x = 0; x < most.width_px; ++x) {
+          most(x, y) = std::max(most(x, y), coarse(x >> scale, y >> scale));
+        }
+      }
+    }
+    return spread_cells(most, cell_px, settings.view.width_px, settings.view.height_px, settings.threads);
+  }
+};
+
+FlickerMeter::FlickerMeter(const FlickerSettings& settings) {
+  const int frames = frames_of_a_second(settings.frames_per_second);
+  const int cell_px = finest_cell_px(pixels_per_degree_of(settings.view));
+  impl_ = std::make_unique<Impl>(settings, frames, cell_px, (settings.view.width_px + cell_px - 1) / cell_px,
+                                 (settings.view.height_px + cell_px - 1) / cell_px);
+}
+FlickerMeter::~FlickerMeter() = default;
+
+std::optional<ImageGray> FlickerMeter::add(const ImageGray& reference_cd_m2, const ImageGray& test_cd_m2,
+                                           std::optional<Vec2d> gaze_px) {
+  Impl& state = *impl_;
+  for (const ImageGray* image : {&reference_cd_m2, &test_cd_m2}) {
+    if (image->width_px != state.settings.view.width_px || image->height_px != state.settings.view.height_px) {
+      throw Error(ErrorKind::usage, "flicker",
+                  fmt::format("a frame has {}x{} pixels, not {}x{}", image->width_px, image->height_px,
+                              state.settings.view.width_px, state.settings.view.height_px));
+    }
+  }
+  state.reference.add(cell_means(reference_cd_m2, state.cell_px, state.settings.threads), state.settings.threads);
+  state.test.add(cell_means(test_cd_m2, state.cell_px, state.settings.threads), state.settings.threads);
+  if (!gaze_px || !state.reference.is_full()) {
+    return std::nullopt;
+  }
+  return state.score(*gaze_px);
+}
+
+}  // namespace gazetrace
