@@ -8,9 +8,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/svg.hpp"
 #include "core/text.hpp"
 #include "gaze/inspect/inspect.hpp"
-#include "gaze/inspect/svg.hpp"
 
 namespace gazetrace {
 namespace {

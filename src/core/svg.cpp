@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gaze/inspect/svg.hpp"
+#include "core/svg.hpp"
 
 #include <algorithm>
 #include <cstddef>

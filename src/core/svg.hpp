@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of a log is drawn with: axes and their ticks, text and files inside SVG.
+// What diagrams are drawn with: axes and their ticks, text and files inside SVG.
 #pragma once
 
 #include <cmath>

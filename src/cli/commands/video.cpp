@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/video.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "cli/command.hpp"
+#include "cli/compare_inputs.hpp"
+#include "cli/exit_codes.hpp"
+
+namespace gazetrace {
+
+template <>
+struct EnumNames<VideoCodec> {
+  static constexpr const char* kWhat = "codec";
+  static NameList<VideoCodec> values() {
+    return {{VideoCodec::h264, "h264"}, {VideoCodec::hevc, "hevc"}, {VideoCodec::ffv1, "ffv1"}};
+  }
+};
+
+namespace {
+
+constexpr const char* kContingent =
+    "Gaze-contingent: sampled for where one viewer looked. Other viewers look elsewhere and see what that viewer did "
+    "not.";
+
+struct VideoArguments {
+  CompareJob job;  // its reference and test are the two sequences; the same one twice where there is one
+  std::string output, color;
+  VideoSettings video;
+  bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
+  OptionTable table;
+};
+
+std::string path_of(const std::string& pattern, std::int32_t frame) {
+  return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
+}
+
+DisplayImage display_image_of(const ImageRgb& code) {
+  DisplayImage image{code.width_px, code.height_px, 8, {}};
+  image.bytes.reserve(3 * code.pixels.size());
+  for (const Vec3f& pixel : code.pixels) {
+    for (const float channel : {pixel.x, pixel.y, pixel.z}) {
+      image.bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(channel, 0.0F, 1.0F))));
+    }
+  }
+  return image;
+}
+
+// Frames a second in exact numbers: of the run record, or the nearest of n and n/1.001.
+FrameRate frame_rate(const CompareJob& job, const CompareInputs& inputs) {
+  if (job.fps) {
+    return *job.fps;
+  }
+  if (inputs.reference_run) {
+    return inputs.reference_run->fps;
+  }
+  const double rate = inputs.frames_per_second;
+  if (!(rate > 0)) {
+    throw Error(ErrorKind::usage, job.reference, "the pictures do not say their frame rate", "give --fps");
+  }
+  const double whole = std::round(rate);
+  constexpr double kSame = 1e-6;
+  if (std::fabs(rate - whole) < kSame) {
+    return {static_cast<std::int64_t>(whole), 1};
+  }
+  return {std::llround(rate * 1001), 1001};
+}
+
+// A sequence of every third frame lasts as long as the whole one.
+FrameRate thinned(const FrameRate& rate, const std::vector<std::int32_t>& frames) {
+  std::set<std::int32_t> steps;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    steps.insert(frames[i] - frames[i - 1]);
+  }
+  if (steps.size() > 1) {
+    print_warnings({"frames are missing in between: the video does not keep time"});
+    return rate;
+  }
+  return steps.empty() ? rate : FrameRate{rate.numerator, rate.denominator * *steps.begin()};
+}
+
+const JobSettings* foveated_run(const CompareInputs& inputs) {
+  for (const auto* const run : {&inputs.test_run, &inputs.reference_run}) {
+    if (*run && (*run)->foveation.falloff != "uniform") {
+      return &**run;
+    }
+  }
+  return nullptr;
+}
+
+std::vector<double> ring_angles_deg(const JobSettings* run) {
+  std::vector<double> angles;
+  if (run != nullptr && run->foveation.falloff == "regions") {
+    for (const double angle : run->foveation.region_angles_deg) {
+      angles.push_back(run->foveation.reading == AngleReading::full_angle ? angle / 2 : angle);
+    }
+  }
+  return angles;
+}
+
+class FrameMaker {
+ public:
+  FrameMaker(const VideoArguments& arguments, const CompareInputs& inputs)
+      : arguments_(arguments),
+        inputs_(inputs),
+        rings_deg_(ring_angles_deg(foveated_run(inputs))),
+        color_(color_settings(arguments.job, inputs)) {
+    if (arguments.show_rings && (rings_deg_.empty() || !inputs.screen)) {
+      throw Error(ErrorKind::usage, "--show-rings",
+                  rings_deg_.empty() ? "no run record beside the pictures tells of regions" : "the screen is not known",
+                  rings_deg_.empty() ? "leave it out" : "give --screen");
+    }
+  }
+
+  DisplayImage make(std::int32_t frame) {
+    const CompareJob& job = arguments_.job;
+    const std::string left_path = path_of(job.reference, frame);
+    const ComparedPicture left = read_compared_picture(left_path);
+    is_linear_ = left.is_linear;
+    const double ev = left.facts.exposure_ev.value_or(0);
+    DisplayImage image = shown(left, ev);
+    const ComparedGaze gaze = compared_gaze(job, inputs_, left.facts, frame, image.width_px, image.height_px);
+    draw(image, gaze.px);
+    if (job.test != job.reference) {
+      const std::string right_path = path_of(job.test, frame);
+      const ComparedPicture right = read_compared_picture(right_path);
+      check_comparable(job, inputs_, left, right, left_path, right_path);
+      DisplayImage other = shown(right, ev);
+      draw(other, gaze.px);
+      image = side_by_side(image, other);
+    }
+    return image;
+  }
+  [[nodiscard]] std::string view() const { return is_linear_ ? color_.description() : inputs_.reference_view; }
+  [[nodiscard]] bool any_gaze() const { return any_gaze_; }
+
+ private:
+  static ColorSettings color_settings(const CompareJob& job, const CompareInputs& inputs) {
+    const ColorSettings& given = job.shared.color;
+    const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
+    return any || !inputs.reference_run ? given : inputs.reference_run->color;
+  }
+  [[nodiscard]] DisplayImage shown(const ComparedPicture& picture, double ev) const {
+    return picture.is_linear ? color_.apply(picture.picture.light, ev, 8, arguments_.job.shared.threads)
+                             : display_image_of(picture.picture.code);
+  }
+  void draw(DisplayImage& image, const std::optional<Vec2d>& gaze_px) {
+    if (!gaze_px) {
+      return;
+    }
+    any_gaze_ = true;
+    const double unit_px = std::max(1.0, image.width_px / 640.0);
+    const std::optional<PlanarView> view = compare_view(inputs_, image.width_px, image.height_px);
+    if (arguments_.show_rings && view) {
+      for (const double angle_deg : rings_deg_) {
+        draw_eccentricity_ring(image, *view, *gaze_px, angle_deg, unit_px);
+      }
+    }
+    if (arguments_.fixation_mark) {
+      constexpr double kDefaultPixelsPerDegree = 30;  // of a frame 1280 pixels wide
+      draw_fixation_mark(image, *gaze_px,
+                         view ? 1 / (view->step_x * kDegPerRad) : kDefaultPixelsPerDegree * image.width_px / 1280.0);
+    }
+    if (arguments_.show_gaze) {
+      draw_gaze_dot(image, *gaze_px, 4 * unit_px);
+    }
+  }
+
+  const VideoArguments& arguments_;
+  const CompareInputs& inputs_;
+  std::vector<double> rings_deg_;
+  ColorPipeline color_;
+  bool is_linear_ = false;
+  bool any_gaze_ = false;
+};
+
+int run_video(VideoArguments& arguments) {
+  CompareJob& job = arguments.job;
+  if (arguments.output.empty()) {
+    throw Error(ErrorKind::usage, "--output", "is not given", "name a .mp4, .mov or .mkv file");
+  }
+  if (job.test.empty()) {
+    job.test = job.reference;
+  }
+  if (!has_frame_number(job.reference) || !has_frame_number(job.test)) {
+    throw Error(ErrorKind::usage, has_frame_number(job.reference) ? job.test : job.reference, "is no sequence",
+                "name it as name.####.png");
+  }
+  const CompareInputs inputs = load_compare_inputs(job);
+  VideoSettings& video = arguments.video;
+  video.fps = thinned(frame_rate(job, inputs), inputs.frames);
+  video.threads = job.shared.threads;
+  check_video_settings(arguments.output, video);
+  check_output_file(arguments.output, arguments.overwrite);
+  FrameMaker maker(arguments, inputs);
+  DisplayImage image = maker.make(inputs.frames.front());
+  video.color = arguments.color.empty() ? video_color_of_view(maker.view()) : video_color_by_name(arguments.color);
+  const bool is_contingent = foveated_run(inputs) != nullptr;
+  video.comment = is_contingent ? kContingent : "";
+  VideoWriter writer(arguments.output, image.width_px, image.height_px, video);
+  writer.add(image);
+  for (std::size_t i = 1; i < inputs.frames.size(); ++i) {
+    writer.add(maker.make(inputs.frames[i]));
+  }
+  const bool wants_gaze = arguments.show_gaze || arguments.show_rings || arguments.fixation_mark;
+  if (wants_gaze && !maker.any_gaze()) {
+    throw Error(ErrorKind::input, job.reference, "the frames do not say where the gaze was",
+                "give --gaze or --gaze-at, or name the .exr files of the run");
+  }
+  writer.finish();
+  print_result(fmt::format("{}: {} frames of {}x{}, {} a second, colors {}\n{}", arguments.output, inputs.frames.size(),
+                           image.width_px, image.height_px, format_value(video.fps), video.color.name,
+                           is_contingent ? std::string(kContingent) + "\n" : ""));
+  return exit_done;
+}
+
+void add_video_options(VideoArguments& arguments) {
+  OptionTable& table = arguments.table;
+  CompareJob& job = arguments.job;
+  table.group("Video");
+  table.value("-o,--output", arguments.output, "FILE", "A .mp4, .mov or .mkv; appears when it is complete");
+  table.value("--codec", arguments.video.codec, "h264|hevc|ffv1",
+              "h264 and hevc: 8 bits, 4:2:0; ffv1: RGB without loss, .mkv only");
+  table.value("--crf", arguments.video.crf, "0..51", "Quality of h264 and hevc, less is better");
+  table.value("--color", arguments.color, "srgb|rec709|display-p3|linear",
+              "What the file says of its colors; default: what the run's view is for");
+  table.value("--ffmpeg", arguments.video.program, "PROGRAM", "The ffmpeg program");
+  table.flag("--overwrite", arguments.overwrite, "Replaces the file when it is there");
+  table.group("Marks");
+  table.flag("--show-gaze", arguments.show_gaze, "Draws a dot at the true gaze");
+  table.flag("--show-rings", arguments.show_rings, "Draws where the regions end");
+  table.flag("--fixation-mark", arguments.fixation_mark,
+             "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
+  table.group("Frames and gaze");
+  table.value("--frames", job.frames, "LIST", "Which frames; default: those that are there");
+  table.value("--fps", job.fps, "RATE", "Frames a second; default: what the run record or the pictures say");
+  table.flag("--anyway", job.anyway, "Shows sequences beside each other whose frames, views or exposures differ");
+  table.value("--gaze", job.shared.gaze.path, "FILE", "Where the viewer looked; default: what the pictures say",
+              Influence::file);
+  table.value("--gaze-at", job.shared.gaze_at, "U,V", "A fixed gaze in fractions of the screen from its top left");
+  table.value("--gaze-offset", job.shared.gaze_offset, "DURATION", "t_video = scale (t_log - start) + offset");
+  table.value("--frame-rect", job.shared.frame_rect, "X,Y,W,H",
+              "Where the frame lies on the screen, in screen pixels; default: as rendered, else it fills the screen");
+  add_gaze_file_options(table, job.shared.gaze);
+  add_screen_options(table, job.shared.screen);
+  table.group("Color of .exr pictures");
+  add_ocio_config_options(table, job.shared.color);
+  table.value("--display", job.shared.color.display, "NAME", "OpenColorIO display; default: the run's");
+  table.value("--view", job.shared.color.view, "NAME", "OpenColorIO view; default: the run's");
+  table.value("--threads", job.shared.threads, "N", "0: as many as the machine has");
+}
+
+}  // namespace
+
+Command add_video_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<VideoArguments>();
+  add_video_options(*arguments);
+  bind_options(app, arguments->table);
+  app.add_option("sequence", arguments->job.reference, "Pictures as name.####.png or name.####.exr")
+      ->required()
+      ->type_name("PATTERN");
+  app.add_option("beside", arguments->job.test, "A second sequence, shown to the right of it")->type_name("PATTERN");
+  app.footer(std::string(kConfigHelp) + kExitCodesHelp);
+  return {[arguments] { return run_video(*arguments); },
+          std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+}
+
+}  // namespace gazetrace

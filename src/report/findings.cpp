@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sentences made from the numbers: what was gained, where foveation loses, what cannot be said. Two values count as
+// different only where their intervals do not overlap, which is stricter than a test of their difference.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/words.hpp"
+
+namespace gazetrace {
+namespace {
+
+enum class Verdict { better, worse, undecided, unresolved, missing };
+
+Verdict verdict(const ReportScore* test, const ReportScore* baseline, bool is_lower_better) {
+  if (test == nullptr || baseline == nullptr || !test->value || !baseline->value) {
+    return Verdict::missing;
+  }
+  if (!test->is_resolved && !baseline->is_resolved) {
+    return Verdict::unresolved;
+  }
+  const Estimate& a = *test->value;
+  const Estimate& b = *baseline->value;
+  if (!a.low || !b.low) {
+    return Verdict::undecided;
+  }
+  if (*a.high < *b.low) {
+    return is_lower_better ? Verdict::better : Verdict::worse;
+  }
+  if (*b.high < *a.low) {
+    return is_lower_better ? Verdict::worse : Verdict::better;
+  }
+  return Verdict::undecided;
+}
+
+std::string speed_sentence(const ReportRow& test) {
+  if (!test.speed_up) {
+    return "No speed-up was measured.";
+  }
+  const Estimate& s = *test.speed_up;
+  if (s.low && *s.low <= 1 && *s.high >= 1) {
+    return fmt::format("Its speed-up of {} is not told apart from 1.", with_interval(s));
+  }
+  return s.mean >= 1 ? fmt::format("{} times as fast as uniform at the reference rate.", with_interval(s))
+                     : fmt::format("Slower than uniform at the reference rate: speed-up {}.", with_interval(s));
+}
+
+std::string compared_sentence(const ReportData& data, const ReportRow& test, const ReportRow& baseline) {
+  std::vector<std::string> better;
+  std::vector<std::string> worse;
+  std::vector<std::string> undecided;
+  std::vector<std::string> unresolved;
+  for (const ReportMetric& metric : data.metrics) {
+    switch (verdict(find_score(test, metric.name, "whole"), find_score(baseline, metric.name, "whole"),
+                    metric.is_lower_better)) {
+      case Verdict::better:
+        better.push_back(metric.name);
+        break;
+      case Verdict::worse:
+        worse.push_back(metric.name);
+        break;
+      case Verdict::undecided:
+        undecided.push_back(metric.name);
+        break;
+      case Verdict::unresolved:
+        unresolved.push_back(metric.name);
+        break;
+      case Verdict::missing:
+        break;
+    }
+  }
+  std::string text;
+  const auto add = [&](const char* words, const std::vector<std::string>& names) {
+    if (!names.empty()) {
+      text += (text.empty() ? "" : "; ") + std::string(words) + " " + list_text(names);
+    }
+  };
+  add("better in", better);
+  add("worse in", worse);
+  add("not told apart in", undecided);
+  add("under the reference's own noise in", unresolved);
+  return text.empty() ? std::string() : fmt::format(" Beside {}: {}.", report_role(baseline.role).words, text);
+}
+
+std::string place_of(const ReportRow& test) {
+  return fmt::format("{}, {}", scene_gaze_text({test.scene, test.gaze}), test.label);
+}
+
+void add_losses(const ReportData& data, const ReportRow& test, const ReportRow& baseline,
+                std::vector<std::string>& losses) {
+  std::vector<std::string> parts{"whole"};
+  parts.insert(parts.end(), data.bands.begin(), data.bands.end());
+  for (const ReportMetric& metric : data.metrics) {
+    std::vector<std::string> lost;
+    for (const std::string& part : parts) {
+      const ReportScore* const ours = find_score(test, metric.name, part);
+      const ReportScore* const theirs = find_score(baseline, metric.name, part);
+      if (verdict(ours, theirs, metric.is_lower_better) == Verdict::worse) {
+        lost.push_back(fmt::format("{} against {}{} in {}", with_interval(ours->value), with_interval(theirs->value),
+                                   theirs->is_resolved ? "" : " (unresolved)", part_text(part)));
+      }
+    }
+    if (!lost.empty()) {
+      losses.push_back(fmt::format("{}: {} has the {} {}: {}.", place_of(test), report_role(baseline.role).words,
+                                   metric.is_lower_better ? "lower" : "higher", metric.name, list_text(lost)));
+    }
+  }
+}
+
+bool is_honest_baseline(const ReportRow& row) {
+  return row.role == "equal-time" || row.role == "equal-samples" || row.role == "low-resolution";
+}
+
+}  // namespace
+
+ReportFindings report_findings(const ReportData& data) {
+  ReportFindings findings;
+  for (const ReportRow* const test : test_rows(data)) {
+    std::string sentence = place_of(*test) + ": " + speed_sentence(*test);
+    bool has_baseline = false;
+    for (const ReportRow* const row : family_of(data, *test)) {
+      if (row->role != "test" && row->role != "wrong-gaze") {
+        sentence += compared_sentence(data, *test, *row);
+      }
+      has_baseline = has_baseline || is_honest_baseline(*row);
+      if (is_honest_baseline(*row)) {
+        add_losses(data, *test, *row, findings.losses);
+      }
+    }
+    findings.summary.push_back(sentence);
+    if (test->speed_up && (test->speed_up->high ? *test->speed_up->high : test->speed_up->mean) < 1) {
+      findings.losses.push_back(
+          fmt::format("{}: it is slower than uniform sampling at the reference rate, speed-up {}.", place_of(*test),
+                      with_interval(test->speed_up)));
+    }
+    if (!has_baseline) {
+      findings.caveats.push_back(place_of(*test) +
+                                 ": no uniform run of equal time or equal samples stands beside it, so nothing is "
+                                 "claimed for foveation there.");
+    }
+  }
+  for (const ReportFixedQuality& fixed : data.fixed_quality) {
+    if (!fixed.speed_up || !fixed.bound.empty()) {
+      findings.caveats.push_back(fmt::format(
+          "{}: speed-up at {} {} is {}{}{}.", scene_gaze_text({fixed.scene, fixed.gaze}), fixed.metric,
+          value_text(fixed.at), fixed.speed_up ? fixed.bound + " " : "",
+          fixed.speed_up ? value_text(fixed.speed_up) : "not known", fixed.why.empty() ? "" : ", " + fixed.why));
+    }
+  }
+  for (const ReportControl& control : data.controls) {
+    if (!control.is_sensitive) {
+      findings.caveats.push_back(
+          fmt::format("{}: {} does not fall when the gaze is {} ({} against {}), so it is insensitive to gaze there "
+                      "and supports no "
+                      "claim about foveation.",
+                      scene_gaze_text({control.scene, control.gaze}), control.metric, control.wrong,
+                      value_text(control.wrong_score), value_text(control.right_score)));
+    }
+  }
+  return findings;
+}
+
+}  // namespace gazetrace

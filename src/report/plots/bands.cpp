@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error in each band of eccentricity: a test row and its baselines side by side.
+#include <fmt/format.h>
+
+#include "report/csv.hpp"
+#include "report/plot.hpp"
+
+namespace gazetrace {
+
+std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric) {
+  std::vector<const ReportRow*> rows;
+  std::vector<double> values;
+  for (const ReportRow* const row : family_of(data, test)) {
+    bool any = false;
+    for (const std::string& band : data.bands) {
+      const ReportScore* const score = find_score(*row, metric.name, band);
+      if (score != nullptr && score->value) {
+        any = true;
+        values.push_back(score->value->mean);
+        if (score->value->low) {
+          values.push_back(*score->value->low);
+          values.push_back(*score->value->high);
+        }
+      }
+    }
+    if (any) {
+      rows.push_back(row);
+    }
+  }
+  if (rows.empty()) {
+    return std::nullopt;
+  }
+  ReportPlot plot{"bands", test.scene, test.gaze, metric.name, test.id, "", "", "", ""};
+  plot.name = plot_file_name({"bands", test.id, metric.name});
+  plot.title =
+      fmt::format("{} by eccentricity, {}: {}", metric.name, scene_gaze_text({test.scene, test.gaze}), test.label);
+
+  // Bars begin at 0, which a logarithmic scale has not: a range of better-is-higher values close to each other is shown
+  // as points without bars instead.
+  const bool bars = metric.is_lower_better && !wants_log(values);
+  constexpr double kLeft = 84, kTop = 34, kBottom = 320;
+  const double right = kPlotWidth - 26;
+  const PlotScale x({0, static_cast<double>(data.bands.size())}, kLeft, right, false, true);
+  const PlotScale y(values, kBottom, kTop, wants_log(values), bars);
+  std::vector<std::pair<ReportRole, std::string>> entries;
+  for (const ReportRow* const row : rows) {
+    entries.emplace_back(report_role(row->role), row->label);
+  }
+  PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
+  svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
+  svg.axes(x, y, kLeft, kTop, right, kBottom, "eccentricity [deg]",
+           metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"), false);
+  const double band_width = (right - kLeft) / static_cast<double>(data.bands.size());
+  const double step = 0.8 * band_width / static_cast<double>(rows.size());
+  bool any_unresolved = false;
+  for (std::size_t b = 0; b < data.bands.size(); ++b) {
+    const double begin = kLeft + band_width * static_cast<double>(b);
+    svg.text(begin + band_width / 2, kBottom + 17, data.bands[b], "middle", " font-size=\"12\"");
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const ReportScore* const score = find_score(*rows[r], metric.name, data.bands[b]);
+      if (score == nullptr || !score->value) {
+        continue;
+      }
+      const ReportRole role = report_role(rows[r]->role);
+      const double left = begin + 0.1 * band_width + step * static_cast<double>(r);
+      const double top = y.at(score->value->mean);
+      if (bars) {
+        svg.add(fmt::format(
+            "<rect class=\"role-{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
+            "fill-opacity=\"{}\" stroke=\"{}\"/>",
+            escaped(role.name), left + 0.05 * step, top, 0.9 * step, kBottom - top, role.color,
+            score->is_resolved ? "0.85" : "0.15", role.color));
+      } else {
+        svg.mark(role, left + step / 2, top, 4);
+      }
+      if (score->value->low) {
+        svg.add(fmt::format("<path class=\"line\" stroke=\"#1c1c1c\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>",
+                            left + step / 2, y.at(*score->value->low), y.at(*score->value->high)));
+      }
+      if (!score->is_resolved) {
+        any_unresolved = true;
+        svg.text(left + step / 2, top - 4, "u", "middle", " font-size=\"10\"");
+      }
+    }
+  }
+  const double end = svg.legend(entries, 24, kBottom + 52);
+  svg.text(24, end + 16,
+           std::string("Lines: intervals at 95 %.") +
+               (any_unresolved ? " u: unresolved, under the reference's own noise." : ""),
+           "start", " font-size=\"11\"");
+  plot.svg = svg.str();
+
+  plot.csv = "id,role,label,band_deg," + csv_cell(metric.name) + ",low,high,resolved\n";
+  for (const ReportRow* const row : rows) {
+    for (const std::string& band : data.bands) {
+      if (const ReportScore* const score = find_score(*row, metric.name, band); score != nullptr) {
+        plot.csv += fmt::format("{},{},{},{},{},{}\n", csv_cell(row->id), csv_cell(row->role), csv_cell(row->label),
+                                band, csv_estimate(score->value), score->is_resolved ? 1 : 0);
+      }
+    }
+  }
+  return plot;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error against time: every run of a scene and gaze, with intervals, the Pareto front and the reference's own noise.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/csv.hpp"
+#include "report/plot.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct Point {
+  const ReportRow* row = nullptr;
+  Estimate time_s, score;
+  bool is_resolved = true;
+};
+
+std::vector<Point> points_of(const ReportData& data, const SceneGaze& both, const std::string& metric) {
+  std::vector<Point> points;
+  for (const ReportRow& row : data.rows) {
+    const ReportScore* const score = find_score(row, metric, "whole");
+    if (row.scene == both.scene && row.gaze == both.gaze && row.time_s && score != nullptr && score->value) {
+      points.push_back({&row, *row.time_s, *score->value, score->is_resolved});
+    }
+  }
+  return points;
+}
+
+void add_range(const Estimate& estimate, std::vector<double>& values) {
+  values.push_back(estimate.mean);
+  if (estimate.low) {
+    values.push_back(*estimate.low);
+    values.push_back(*estimate.high);
+  }
+}
+
+}  // namespace
+
+std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& both, const ReportMetric& metric) {
+  const std::vector<Point> points = points_of(data, both, metric.name);
+  if (points.empty()) {
+    return std::nullopt;
+  }
+  ReportPlot plot{"pareto", both.scene, both.gaze, metric.name, "", "", "", "", ""};
+  plot.name = plot_file_name({"pareto", both.scene, both.gaze, metric.name});
+  plot.title = fmt::format("{} against time, {}", metric.name, scene_gaze_text(both));
+
+  std::vector<double> times;
+  std::vector<double> scores;
+  for (const Point& point : points) {
+    add_range(point.time_s, times);
+    add_range(point.score, scores);
+  }
+  const std::optional<double> floor = find_floor(data, both, metric.name, "whole");
+  constexpr double kLeft = 84, kTop = 34, kBottom = 350;
+  const double right = kPlotWidth - 26;
+  const PlotScale x(times, kLeft, right, wants_log(times));
+  const PlotScale y(scores, kBottom, kTop, wants_log(scores));
+  std::vector<std::pair<ReportRole, std::string>> entries;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    entries.emplace_back(report_role(points[i].row->role), fmt::format("{}  {}", i + 1, points[i].row->label));
+  }
+  PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
+  svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
+  svg.axes(x, y, kLeft, kTop, right, kBottom, "time of a frame [s]",
+           metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
+  if (floor && y.at(*floor) > kTop && y.at(*floor) < kBottom) {
+    svg.add(fmt::format(
+        "<path class=\"line\" stroke=\"#1c1c1c\" stroke-dasharray=\"2 4\" fill=\"none\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>",
+        kLeft, y.at(*floor), right));
+    svg.text(right - 4, y.at(*floor) - 5, "reference from itself", "end", " font-size=\"11\"");
+  }
+  // The front that the sweep found, through its points in the order of time.
+  const auto metric_fronts = data.pareto.find(metric.name);
+  std::vector<const Point*> front;
+  if (metric_fronts != data.pareto.end()) {
+    const auto ids = metric_fronts->second.find(both.scene + "/" + both.gaze);
+    if (ids != metric_fronts->second.end()) {
+      for (const Point& point : points) {
+        if (std::find(ids->second.begin(), ids->second.end(), point.row->id) != ids->second.end()) {
+          front.push_back(&point);
+        }
+      }
+    }
+  }
+  std::sort(front.begin(), front.end(), [](const Point* a, const Point* b) { return a->time_s.mean < b->time_s.mean; });
+  std::string path;
+  for (const Point* const point : front) {
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x.at(point->time_s.mean), y.at(point->score.mean));
+  }
+  if (front.size() > 1) {
+    svg.add(fmt::format(
+        "<path class=\"front\" stroke=\"#0072b2\" stroke-opacity=\"0.45\" stroke-width=\"3\" fill=\"none\" d=\"{}\"/>",
+        path));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& point = points[i];
+    const ReportRole role = report_role(point.row->role);
+    const double px = x.at(point.time_s.mean);
+    const double py = y.at(point.score.mean);
+    const std::string open =
+        fmt::format("class=\"role-{}\" stroke=\"{}\" fill=\"none\"", escaped(role.name), role.color);
+    if (point.time_s.low) {
+      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}H{:.1f}\"/>", open, x.at(*point.time_s.low), py,
+                          x.at(*point.time_s.high)));
+    }
+    if (point.score.low) {
+      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}V{:.1f}\"/>", open, px, y.at(*point.score.low),
+                          y.at(*point.score.high)));
+    }
+    svg.mark(role, px, py);
+    svg.text(px + 8, py - 7, std::to_string(i + 1) + (point.is_resolved ? "" : " (unresolved)"), "start",
+             " font-size=\"11\"");
+  }
+  const double end = svg.legend(entries, 24, kBottom + 52);
+  svg.text(24, end + 16,
+           front.size() > 1 ? "Broad line: Pareto front. Bars: intervals at 95 %." : "Bars: intervals at 95 %.",
+           "start", " font-size=\"11\"");
+  plot.svg = svg.str();
+
+  plot.csv =
+      "number,id,role,label,time_s,time_s_low,time_s_high," + csv_cell(metric.name) + ",low,high,resolved,front\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& point = points[i];
+    const bool on_front = std::find(front.begin(), front.end(), &point) != front.end();
+    plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, csv_cell(point.row->id), csv_cell(point.row->role),
+                            csv_cell(point.row->label), csv_estimate(point.time_s), csv_estimate(point.score),
+                            point.is_resolved ? 1 : 0, on_front ? 1 : 0);
+  }
+  return plot;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/tables.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "core/svg.hpp"
+#include "report/words.hpp"
+
+namespace gazetrace {
+namespace {
+
+class Html {
+ public:
+  template <class... Values>
+  void add(fmt::format_string<Values...> pattern, Values&&... values) {
+    fmt::format_to(std::back_inserter(text_), pattern, std::forward<Values>(values)...);
+  }
+  void begin_table(const std::string& caption) {
+    add("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table><caption>{0}</caption>\n",
+        escaped(caption));
+  }
+  void head(const std::vector<std::string>& names) {
+    add("<thead><tr>");
+    for (const std::string& name : names) {
+      add("<th scope=\"col\">{}</th>", name);
+    }
+    add("</tr></thead>\n<tbody>\n");
+  }
+  void end_table() { add("</tbody></table></div>\n"); }
+  void cell(const std::string& text) { add("<td>{}</td>", text); }
+  void estimate(const std::optional<Estimate>& value) {
+    const std::string interval = interval_text(value);
+    add("<td>{}{}</td>", mean_text(value), interval.empty() ? "" : "<small>" + interval + "</small>");
+  }
+  void score(const ReportScore* score) {
+    if (score == nullptr || !score->value) {
+      add("<td>–</td>");
+    } else if (score->is_resolved) {
+      estimate(score->value);
+    } else {
+      add("<td class=\"unresolved\">{}<small>unresolved</small></td>", mean_text(score->value));
+    }
+  }
+  [[nodiscard]] const std::string& str() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string metric_head(const ReportMetric& metric) {
+  return fmt::format("{}<small>{} is better</small>", escaped(metric_text(metric)),
+                     metric.is_lower_better ? "lower" : "higher");
+}
+
+std::string row_head(const ReportRow& row) {
+  return fmt::format("<tr class=\"role-{}\"><th scope=\"row\">{}<small>{}</small></th>", escaped(row.role),
+                     escaped(row.label), escaped(report_role(row.role).words));
+}
+
+// What belongs to no single test, then every test with its own baselines.
+std::vector<const ReportRow*> rows_of(const ReportData& data, const SceneGaze& both) {
+  std::map<std::string, int> tests_of;  // baseline -> how many tests stand beside it
+  for (const ReportRow* const test : test_rows(data)) {
+    for (const ReportRow* const row : family_of(data, *test)) {
+      ++tests_of[row->id];
+    }
+  }
+  std::vector<const ReportRow*> rows;
+  for (const ReportRow& row : data.rows) {
+    if (SceneGaze{row.scene, row.gaze} == both && row.role != "test" && tests_of[row.id] != 1) {
+      rows.push_back(&row);
+    }
+  }
+  for (const ReportRow* const test : test_rows(data)) {
+    if (SceneGaze{test->scene, test->gaze} == both) {
+      for (const ReportRow* const row : family_of(data, *test)) {
+        if (tests_of[row->id] == 1) {
+          rows.push_back(row);
+        }
+      }
+    }
+  }
+  return rows;
+}
+
+void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const std::vector<const ReportRow*>& rows) {
+  html.begin_table(scene_gaze_text(both));
+  std::vector<std::string> names{
+      "run",  "time<small>s a frame</small>", "speed-up", "efficiency", "samples a pixel", "samples",
+      "rays", "peak<small>MiB</small>"};
+  for (const ReportMetric& metric : data.metrics) {
+    names.push_back(metric_head(metric));
+  }
+  html.head(names);
+  for (const ReportRow* const row : rows) {
+    html.add("{}", row_head(*row));
+    html.estimate(row->time_s);
+    html.estimate(row->speed_up);
+    html.cell(value_text(row->efficiency));
+    html.cell(value_text(row->spp_mean));
+    html.cell(count_text(row->samples));
+    html.cell(count_text(row->rays));
+    html.cell(value_text(row->peak_mib));
+    for (const ReportMetric& metric : data.metrics) {
+      html.score(find_score(*row, metric.name, "whole"));
+    }
+    html.add("</tr>\n");
+  }
+  html.add(
+      "<tr class=\"role-floor\"><th scope=\"row\">reference from itself<small>floor</small></th>"
+      "<td></td><td></td><td></td><td></td><td></td><td></td><td></td>");
+  for (const ReportMetric& metric : data.metrics) {
+    html.cell(value_text(find_floor(data, both, metric.name, "whole")));
+  }
+  html.add("</tr>\n");
+  html.end_table();
+}
+
+void add_bands(Html& html, const ReportData& data, const SceneGaze& both, const std::vector<const ReportRow*>& rows) {
+  if (data.bands.empty()) {
+    return;
+  }
+  html.add("<details><summary>By eccentricity, {}</summary>\n", escaped(scene_gaze_text(both)));
+  const auto shares = data.band_pixel_share.find(both.gaze);
+  for (const ReportMetric& metric : data.metrics) {
+    html.begin_table(metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
+    std::vector<std::string> names{"run"};
+    for (std::size_t b = 0; b < data.bands.size(); ++b) {
+      const bool known = shares != data.band_pixel_share.end() && b < shares->second.size();
+      names.push_back(
+          fmt::format("{} deg{}", escaped(data.bands[b]),
+                      known ? fmt::format("<small>{:.3g} % of pixels</small>", 100 * shares->second[b]) : ""));
+    }
+    html.head(names);
+    for (const ReportRow* const row : rows) {
+      html.add("{}", row_head(*row));
+      for (const std::string& band : data.bands) {
+        html.score(find_score(*row, metric.name, band));
+      }
+      html.add("</tr>\n");
+    }
+    html.end_table();
+  }
+  html.add("</details>\n");
+}
+
+void add_fixed_quality(Html& html, const ReportData& data) {
+  if (data.fixed_quality.empty()) {
+    return;
+  }
+  html.begin_table("Speed-up at fixed quality");
+  html.head({"scene and gaze", "metric", "at", "speed-up", "why not"});
+  for (const ReportFixedQuality& fixed : data.fixed_quality) {
+    html.add("<tr><th scope=\"row\">{}</th>",
+             escaped(scene_gaze_text({fixed.scene, fixed.gaze}) + (fixed.curve.empty() ? "" : ", " + fixed.curve)));
+    html.cell(escaped(fixed.metric));
+    html.cell(value_text(fixed.at));
+    html.cell(fixed.speed_up ? escaped(fixed.bound.empty() ? "" : fixed.bound + " ") + value_text(fixed.speed_up)
+                             : std::string("not known"));
+    html.add("<td class=\"words\">{}</td></tr>\n", escaped(fixed.why));
+  }
+  html.end_table();
+}
+
+void add_controls(Html& html, const ReportData& data) {
+  if (data.controls.empty()) {
+    return;
+  }
+  html.begin_table("Controls: the same runs scored with a wrong gaze");
+  html.head({"scene and gaze", "metric", "gaze", "right", "wrong", "does the metric notice", "why"});
+  for (const ReportControl& control : data.controls) {
+    html.add("<tr><th scope=\"row\">{}</th>", escaped(scene_gaze_text({control.scene, control.gaze})));
+    html.cell(escaped(control.metric));
+    html.cell(escaped(control.wrong));
+    html.cell(value_text(control.right_score));
+    html.cell(value_text(control.wrong_score));
+    html.cell(control.is_sensitive ? "yes" : "no: insensitive here");
+    html.add("<td class=\"words\">{}</td></tr>\n", escaped(control.why));
+  }
+  html.end_table();
+}
+
+}  // namespace
+
+std::string tables_html(const ReportData& data) {
+  Html html;
+  if (data.rows.empty()) {
+    html.add("<p>Nothing has been measured yet.</p>\n");
+  }
+  for (const SceneGaze& both : scene_gazes(data)) {
+    const std::vector<const ReportRow*> rows = rows_of(data, both);
+    add_runs(html, data, both, rows);
+    add_bands(html, data, both, rows);
+  }
+  add_fixed_quality(html, data);
+  add_controls(html, data);
+  return html.str();
+}
+
+std::string list_html(const std::vector<std::string>& items) {
+  std::string text = "<ul>\n";
+  for (const std::string& item : items) {
+    text += "<li>" + escaped(item) + "</li>\n";
+  }
+  return text + "</ul>\n";
+}
+
+std::string findings_html(const ReportFindings& findings) {
+  std::string text =
+      findings.summary.empty() ? "<p>No foveated run has been measured.</p>\n" : list_html(findings.summary);
+  if (!findings.summary.empty()) {
+    text += "<div class=\"losses\"><h3>Where foveation loses</h3>\n";
+    text += findings.losses.empty()
+                ? std::string(
+                      "<p>Nowhere that the intervals show, against uniform sampling of equal time, equal samples "
+                      "or low resolution as far as they were measured.</p>\n")
+                : list_html(findings.losses);
+    text += "</div>\n";
+  }
+  if (!findings.caveats.empty()) {
+    text += "<h3>What these measurements do not say</h3>\n" + list_html(findings.caveats);
+  }
+  return text;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace gazetrace {
+namespace {
+
+std::size_t role_rank(const std::string& name) {
+  const auto& roles = report_roles();
+  return static_cast<std::size_t>(
+      std::find_if(roles.begin(), roles.end(), [&](const ReportRole& role) { return role.name == name; }) -
+      roles.begin());
+}
+
+}  // namespace
+
+const std::vector<ReportRole>& report_roles() {
+  static const std::vector<ReportRole> kRoles{
+#define REPORT_ROLE(name, words, color, dash, mark) {name, words, color, dash, mark},
+#include "report/roles.def"
+#undef REPORT_ROLE
+  };
+  return kRoles;
+}
+
+ReportRole report_role(const std::string& name) {
+  const std::size_t rank = role_rank(name);
+  return rank < report_roles().size() ? report_roles()[rank] : ReportRole{name, name, "#8a8a8a", "", "square"};
+}
+
+std::string value_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4g}", *value) : std::string("–");
+}
+
+std::string mean_text(const std::optional<Estimate>& value) {
+  return value ? value_text(value->mean) : std::string("–");
+}
+
+std::string interval_text(const std::optional<Estimate>& value) {
+  return value && value->low ? value_text(value->low) + " to " + value_text(value->high) : std::string();
+}
+
+std::string with_interval(const std::optional<Estimate>& value) {
+  const std::string interval = interval_text(value);
+  return interval.empty() ? mean_text(value) : mean_text(value) + " (" + interval + ")";
+}
+
+std::string count_text(const std::optional<double>& value) {
+  if (!value) {
+    return "–";
+  }
+  constexpr std::array<const char*, 4> kUnits{"", " k", " M", " G"};
+  double scaled = *value;
+  std::size_t unit = 0;
+  while (std::fabs(scaled) >= 1000 && unit + 1 < kUnits.size()) {
+    scaled /= 1000;
+    ++unit;
+  }
+  return fmt::format("{:.4g}{}", scaled, kUnits[unit]);
+}
+
+std::string part_text(const std::string& part) {
+  return part == "whole" ? "the whole frame" : part + " degrees";
+}
+
+std::string metric_text(const ReportMetric& metric) {
+  return metric.unit.empty() || metric.unit == metric.name ? metric.name : metric.name + " [" + metric.unit + "]";
+}
+
+std::string list_text(const std::vector<std::string>& items) {
+  std::string text;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    text += i == 0 ? "" : i + 1 == items.size() ? " and " : ", ";
+    text += items[i];
+  }
+  return text;
+}
+
+const ReportScore* find_score(const ReportRow& row, const std::string& metric, const std::string& part) {
+  const auto found = row.scores.find(metric);
+  if (found == row.scores.end()) {
+    return nullptr;
+  }
+  const auto score = std::find_if(found->second.begin(), found->second.end(),
+                                  [&](const ReportScore& one) { return one.part == part; });
+  return score == found->second.end() ? nullptr : &*score;
+}
+
+const ReportRow* find_row(const ReportData& data, const std::string& id) {
+  const auto row = std::find_if(data.rows.begin(), data.rows.end(), [&](const ReportRow& one) { return one.id == id; });
+  return row == data.rows.end() ? nullptr : &*row;
+}
+
+std::vector<const ReportRow*> family_of(const ReportData& data, const ReportRow& test) {
+  std::vector<const ReportRow*> family{&test};
+  for (const ReportRow& row : data.rows) {
+    const bool is_named = std::any_of(test.baselines.begin(), test.baselines.end(),
+                                      [&](const auto& baseline) { return baseline.second == row.id; });
+    if (&row != &test && (is_named || row.of == test.id)) {
+      family.push_back(&row);
+    }
+  }
+  std::stable_sort(family.begin() + 1, family.end(),
+                   [](const ReportRow* a, const ReportRow* b) { return role_rank(a->role) < role_rank(b->role); });
+  return family;
+}
+
+std::vector<const ReportRow*> test_rows(const ReportData& data) {
+  std::vector<const ReportRow*> tests;
+  for (const ReportRow& row : data.rows) {
+    if (row.role == "test") {
+      tests.push_back(&row);
+    }
+  }
+  return tests;
+}
+
+std::vector<SceneGaze> scene_gazes(const ReportData& data) {
+  std::vector<SceneGaze> found;
+  for (const ReportRow& row : data.rows) {
+    const SceneGaze both{row.scene, row.gaze};
+    if (std::find(found.begin(), found.end(), both) == found.end()) {
+      found.push_back(both);
+    }
+  }
+  return found;
+}
+
+const ReportScene* find_scene(const ReportData& data, const SceneGaze& both) {
+  std::string key;
+  for (const ReportRow& row : data.rows) {
+    if (SceneGaze{row.scene, row.gaze} == both && !row.reference.empty()) {
+      key = row.reference;
+      break;
+    }
+  }
+  const ReportScene* found = nullptr;
+  for (const ReportScene& scene : data.scenes) {
+    if (scene.name == both.scene && (found == nullptr || (!key.empty() && scene.key == key))) {
+      found = &scene;
+    }
+  }
+  return found;
+}
+
+std::optional<double> find_floor(const ReportData& data, const SceneGaze& both, const std::string& metric,
+                                 const std::string& part) {
+  const ReportScene* const scene = find_scene(data, both);
+  if (scene == nullptr) {
+    return std::nullopt;
+  }
+  const auto by_gaze = scene->floor_by_gaze.find(both.gaze);
+  const ReportFloor& floor = by_gaze == scene->floor_by_gaze.end() ? scene->floor : by_gaze->second;
+  const auto parts = floor.find(metric);
+  if (parts == floor.end() || parts->second.count(part) == 0) {
+    return std::nullopt;
+  }
+  return parts->second.at(part);
+}
+
+std::string scene_gaze_text(const SceneGaze& both) {
+  return both.gaze.empty() ? both.scene : both.scene + ", gaze " + both.gaze;
+}
+
+}  // namespace gazetrace

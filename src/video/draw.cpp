@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "gazetrace/video.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr Rgb8Color kBlack{0, 0, 0};
+constexpr Rgb8Color kWhite{255, 255, 255};
+
+void blend(DisplayImage& image, int x, int y, const Rgb8Color& color, double coverage) {
+  std::uint8_t* const pixel = &image.bytes[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width_px) +
+                                                static_cast<std::size_t>(x))];
+  for (std::size_t c = 0; c < 3; ++c) {
+    pixel[c] = static_cast<std::uint8_t>(std::lround(pixel[c] + coverage * (color[c] - pixel[c])));
+  }
+}
+
+// Calls paint(x, y) for the pixels of a square about a point, as far as they are in the picture.
+template <class Paint>
+void around(const DisplayImage& image, const Vec2d& middle, double reach_px, const Paint& paint) {
+  if (!std::isfinite(middle.x) || !std::isfinite(middle.y)) {
+    return;
+  }
+  const auto bound = [](double value, int most) {
+    return static_cast<int>(std::clamp(std::floor(value), 0.0, static_cast<double>(most)));
+  };
+  for (int y = bound(middle.y - reach_px, image.height_px); y < bound(middle.y + reach_px + 1, image.height_px); ++y) {
+    for (int x = bound(middle.x - reach_px, image.width_px); x < bound(middle.x + reach_px + 1, image.width_px); ++x) {
+      paint(x, y);
+    }
+  }
+}
+
+// A disc with an edge a pixel wide.
+void draw_disc(DisplayImage& image, const Vec2d& middle, double radius_px, const Rgb8Color& color) {
+  around(image, middle, radius_px + 1, [&](int x, int y) {
+    const double distance = std::hypot(x + 0.5 - middle.x, y + 0.5 - middle.y);
+    const double coverage = std::clamp(radius_px + 0.5 - distance, 0.0, 1.0);
+    if (coverage > 0) {
+      blend(image, x, y, color, coverage);
+    }
+  });
+}
+
+// An orthonormal pair across a direction.
+struct Across {
+  Vec3d a, b;
+};
+Across across(const Vec3d& direction) {
+  const Vec3d axis = std::fabs(direction.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d a = normalize(cross(direction, axis));
+  return {a, cross(direction, a)};
+}
+
+}  // namespace
+
+DisplayImage side_by_side(const DisplayImage& left, const DisplayImage& right) {
+  if (left.height_px != right.height_px || left.bits != 8 || right.bits != 8) {
+    throw Error(ErrorKind::input, "side by side",
+                "one picture is " + std::to_string(left.height_px) + " pixels high, the other " +
+                    std::to_string(right.height_px),
+                "show sequences of one height");
+  }
+  DisplayImage both{left.width_px + right.width_px, left.height_px, 8, {}};
+  both.bytes.reserve(left.bytes.size() + right.bytes.size());
+  for (int y = 0; y < both.height_px; ++y) {
+    for (const DisplayImage* const image : {&left, &right}) {
+      const auto row = static_cast<std::ptrdiff_t>(3 * image->width_px);
+      both.bytes.insert(both.bytes.end(), image->bytes.begin() + y * row, image->bytes.begin() + (y + 1) * row);
+    }
+  }
+  return both;
+}
+
+void draw_gaze_dot(DisplayImage& image, const Vec2d& gaze_px, double radius_px) {
+  draw_disc(image, gaze_px, 1.5 * radius_px, kBlack);
+  draw_disc(image, gaze_px, 1.25 * radius_px, kWhite);
+  draw_disc(image, gaze_px, radius_px, kGazeColor);
+}
+
+void draw_eccentricity_ring(DisplayImage& image, const PlanarView& view, const Vec2d& gaze_px, double eccentricity_deg,
+                            double width_px) {
+  const Vec3d gaze = normalize(view.direction(gaze_px.x, gaze_px.y));
+  const Across plane = across(gaze);
+  const double cosine = std::cos(eccentricity_deg * kRadPerDeg);
+  const double sine = std::sin(eccentricity_deg * kRadPerDeg);
+  // Steps of at most half a pixel where the picture is seen at right angles, of at most one far from there.
+  const double circumference_px = 2 * kPi * sine / std::min(view.step_x, view.step_y);
+  const auto steps = static_cast<int>(std::clamp(4 * circumference_px, 64.0, 200'000.0));
+  for (const auto& [color, radius] : {std::pair{kBlack, width_px}, std::pair{kWhite, width_px / 2}}) {
+    for (int i = 0; i < steps; ++i) {
+      const double turn = 2 * kPi * i / steps;
+      const Vec3d direction = cosine * gaze + sine * (std::cos(turn) * plane.a + std::sin(turn) * plane.b);
+      draw_disc(image, view.pixel(direction), radius, color);
+    }
+  }
+}
+
+void draw_fixation_mark(DisplayImage& image, const Vec2d& gaze_px, double pixels_per_degree) {
+  const double outer_px = 0.3 * pixels_per_degree;
+  const double inner_px = 0.1 * pixels_per_degree;
+  draw_disc(image, gaze_px, outer_px, kBlack);
+  around(image, gaze_px, outer_px + 1, [&](int x, int y) {
+    const double dx = std::fabs(x + 0.5 - gaze_px.x);
+    const double dy = std::fabs(y + 0.5 - gaze_px.y);
+    const double in_cross = std::clamp(inner_px + 0.5 - std::min(dx, dy), 0.0, 1.0);
+    const double in_disc = std::clamp(outer_px + 0.5 - std::hypot(dx, dy), 0.0, 1.0);
+    blend(image, x, y, kWhite, in_cross * in_disc);
+  });
+  draw_disc(image, gaze_px, inner_px, kBlack);
+}
+
+}  // namespace gazetrace

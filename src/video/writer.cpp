@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ffmpeg program as a child that reads raw frames from a socket: unlike a pipe, a socket tells a writer that the
+// reader has gone without a signal.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <span>
+
+#include "core/text.hpp"
+#include "gazetrace/video.hpp"
+
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX asks programs to declare it
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string suffix_of(const std::string& path) {
+  return to_lower(fs::path(path).extension().string());
+}
+
+std::string temporary_name(const std::string& path) {
+  const fs::path name(path);
+  return (name.parent_path() / ("." + name.stem().string() + ".part" + name.extension().string())).string();
+}
+
+// FFV1 keeps RGB, H.264 and HEVC code luma and two color differences of half the size.
+std::vector<std::string> arguments_of(const std::string& output, int width_px, int height_px,
+                                      const VideoSettings& settings) {
+  std::vector<std::string> list{settings.program,
+                                "-hide_banner",
+                                "-loglevel",
+                                "error",
+                                "-y",
+                                "-f",
+                                "rawvideo",
+                                "-pixel_format",
+                                "rgb24",
+                                "-video_size",
+                                fmt::format("{}x{}", width_px, height_px),
+                                "-framerate",
+                                fmt::format("{}/{}", settings.fps.numerator, settings.fps.denominator),
+                                "-i",
+                                "pipe:0",
+                                "-an"};
+  const auto add = [&](std::initializer_list<std::string> more) { list.insert(list.end(), more); };
+  if (settings.codec == VideoCodec::ffv1) {
+    add({"-vf", "format=gbrp", "-c:v", "ffv1", "-level", "3", "-colorspace", "rgb", "-color_range", "pc"});
+  } else {
+    add({"-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+bicubic,format=yuv420p",
+         "-c:v", settings.codec == VideoCodec::h264 ? "libx264" : "libx265", "-crf", std::to_string(settings.crf),
+         "-colorspace", "bt709", "-color_range", "tv"});
+  }
+  if (settings.codec == VideoCodec::hevc) {
+    add({"-x265-params", "log-level=error", "-tag:v", "hvc1"});
+  }
+  add({"-color_primaries", settings.color.primaries, "-color_trc", settings.color.transfer});
+  if (settings.threads > 0) {
+    add({"-threads", std::to_string(settings.threads)});
+  }
+  if (const std::string suffix = suffix_of(output); suffix == ".mp4" || suffix == ".mov") {
+    add({"-movflags", "+faststart"});
+  }
+  if (!settings.comment.empty()) {
+    add({"-metadata", "comment=" + settings.comment});
+  }
+  add({output});
+  return list;
+}
+
+std::string system_message(int error) {
+  return std::generic_category().message(error);
+}
+
+}  // namespace
+
+void check_video_settings(const std::string& path, const VideoSettings& settings) {
+  const std::string suffix = suffix_of(path);
+  if (suffix != ".mp4" && suffix != ".mov" && suffix != ".mkv") {
+    throw Error(ErrorKind::usage, path, "a video ends in .mp4, .mov or .mkv", "give it such a name");
+  }
+  if (settings.codec == VideoCodec::ffv1 && suffix != ".mkv") {
+    throw Error(ErrorKind::usage, path, "FFV1 is written into .mkv files", "give it such a name, or take --codec h264");
+  }
+  if (settings.crf < 0 || settings.crf > 51) {
+    throw Error(ErrorKind::usage, "--crf", std::to_string(settings.crf) + " is not possible", "give 0 to 51");
+  }
+  if (settings.fps.numerator <= 0 || settings.fps.denominator <= 0) {
+    throw Error(ErrorKind::usage, "--fps", "the frame rate must be positive");
+  }
+}
+
+struct VideoWriter::Impl {
+  std::string path, temporary, program;
+  int width_px = 0, height_px = 0;              // of the frames given
+  int coded_width_px = 0, coded_height_px = 0;  // of the video
+  pid_t child = -1;
+  int socket = -1;
+  std::FILE* errors = nullptr;  // what the program says
+  bool is_finished = false;
+
+  ~Impl() {
+    close_socket();
+    if (child > 0) {
+      ::kill(child, SIGKILL);
+      wait_for_child();
+    }
+    if (errors != nullptr) {
+      std::fclose(errors);
+    }
+    if (!is_finished) {
+      ::unlink(temporary.c_str());
+    }
+  }
+
+  void close_socket() {
+    if (socket >= 0) {
+      ::close(socket);
+      socket = -1;
+    }
+  }
+
+  int wait_for_child() {
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    child = -1;
+    return status;
+  }
+
+  // The last line that the program wrote.
+  [[nodiscard]] std::string said() const {
+    std::string text;
+    std::rewind(errors);
+    for (int c = std::fgetc(errors); c != EOF; c = std::fgetc(errors)) {
+      text += static_cast<char>(c);
+    }
+    std::string last;
+    LineReader lines(text);
+    for (std::string_view line; lines.next(line);) {
+      if (!trim(line).empty()) {
+        last = trim(line);
+      }
+    }
+    return last;
+  }
+
+  [[noreturn]] void fail() {
+    close_socket();
+    if (child > 0) {
+      wait_for_child();
+    }
+    const std::string words = said();
+    throw Error(ErrorKind::runtime, path, program + " failed" + (words.empty() ? "" : ": " + words),
+                "check free space and the codecs of this ffmpeg (ffmpeg -encoders)");
+  }
+
+  void send_bytes(std::span<const std::uint8_t> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t sent = ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) {
+        continue;
+      }
+      if (sent <= 0) {
+        fail();
+      }
+      bytes = bytes.subspan(static_cast<std::size_t>(sent));
+    }
+  }
+
+  void start(const std::vector<std::string>& list) {
+    std::array<int, 2> ends{};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+      throw Error(ErrorKind::runtime, program, "cannot be started: " + system_message(errno));
+    }
+    socket = ends[0];
+    errors = std::tmpfile();
+    if (errors == nullptr) {
+      ::close(ends[1]);
+      throw Error(ErrorKind::runtime, program, "cannot make a temporary file: " + system_message(errno));
+    }
+    std::vector<char*> arguments;
+    for (const std::string& argument : list) {
+      arguments.push_back(const_cast<char*>(argument.c_str()));  // NOLINT: exec does not write to them
+    }
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, ::fileno(errors), STDERR_FILENO);
+    // A group of its own: an interrupt from the keyboard is ours to handle.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    const int error = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    ::close(ends[1]);
+    if (error != 0) {
+      child = -1;
+      throw Error(ErrorKind::input, program,
+                  error == ENOENT ? "the program is not found" : "cannot be started: " + system_message(error),
+                  "install it (apt-get install ffmpeg), or name it with --ffmpeg");
+    }
+  }
+};
+
+VideoWriter::VideoWriter(const std::string& path, int width_px, int height_px, const VideoSettings& settings)
+    : impl_(std::make_unique<Impl>()) {
+  check_video_settings(path, settings);
+  impl_->path = path;
+  impl_->temporary = temporary_name(path);
+  impl_->program = settings.program;
+  impl_->width_px = width_px;
+  impl_->height_px = height_px;
+  const bool halves = settings.codec != VideoCodec::ffv1;
+  impl_->coded_width_px = halves ? width_px + width_px % 2 : width_px;
+  impl_->coded_height_px = halves ? height_px + height_px % 2 : height_px;
+  impl_->start(arguments_of(impl_->temporary, impl_->coded_width_px, impl_->coded_height_px, settings));
+}
+
+VideoWriter::~VideoWriter() = default;
+
+void VideoWriter::add(const DisplayImage& frame) {
+  if (frame.width_px != impl_->width_px || frame.height_px != impl_->height_px || frame.bits != 8) {
+    throw Error(ErrorKind::input, impl_->path,
+                fmt::format("a frame has {}x{} pixels of {} bits, the video {}x{} of 8", frame.width_px,
+                            frame.height_px, frame.bits, impl_->width_px, impl_->height_px),
+                "give pictures of one size");
+  }
+  const bool grows = impl_->coded_width_px > impl_->width_px;
+  const std::size_t row = 3 * static_cast<std::size_t>(frame.width_px);
+  for (int y = 0; y < impl_->coded_height_px; ++y) {
+    const std::size_t begin = row * static_cast<std::size_t>(std::min(y, frame.height_px - 1));
+    if (!grows && y == 0) {
+      impl_->send_bytes(frame.bytes);
+      y = frame.height_px - 1;
+      continue;
+    }
+    impl_->send_bytes({&frame.bytes[begin], row});
+    if (grows) {
+      impl_->send_bytes({&frame.bytes[begin + row - 3], 3});
+    }
+  }
+}
+
+void VideoWriter::finish() {
+  impl_->close_socket();
+  const int status = impl_->wait_for_child();
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    impl_->fail();
+  }
+  if (::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0) {
+    throw Error(ErrorKind::runtime, impl_->path, "cannot put the finished video in place: " + system_message(errno));
+  }
+  impl_->is_finished = true;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results in, texts out: what is missing stays missing, what is markup is shown as text, sentences follow the numbers.
+#include "gazetrace/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gazetrace/output.hpp"
+#include "report/fill.hpp"
+#include "report/tables.hpp"
+#include "report/words.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gazetrace {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+ordered_json estimate(double mean, double low, double high) {
+  return {{"mean", mean}, {"low", low}, {"high", high}};
+}
+
+ordered_json score(double mean, double low, double high, bool resolved = true) {
+  ordered_json json = estimate(mean, low, high);
+  json["resolved"] = resolved;
+  return json;
+}
+
+ordered_json row(const std::string& id, const std::string& role, const ordered_json& flip) {
+  return {{"id", id},
+          {"scene", "box"},
+          {"gaze", "glide"},
+          {"role", role},
+          {"of", role == "test" ? ordered_json() : ordered_json("t")},
+          {"label", "run " + id},
+          {"settings", ordered_json::object()},
+          {"time_s", estimate(2, 1.9, 2.1)},
+          {"samples", 1e6},
+          {"spp_mean", nullptr},
+          {"rays", nullptr},
+          {"peak_mib", nullptr},
+          {"speed_up", estimate(4, 3.8, 4.2)},
+          {"efficiency", nullptr},
+          {"scores", {{"flip", {{"whole", flip}}}}},
+          {"frames", ordered_json::array()}};
+}
+
+ordered_json results(const std::vector<ordered_json>& rows) {
+  return {{"format", "gazetrace-sweep-1"},
+          {"title", "a sweep"},
+          {"bands_deg", {0, 2.6, 60}},
+          {"metrics", {{{"name", "flip"}, {"better", "lower"}}}},
+          {"scenes", {{{"name", "box"}, {"reference", {{"spp", 64}, {"floor", {{"flip", {{"whole", 0.01}}}}}}}}}},
+          {"rows", rows}};
+}
+
+ReportData read(const ordered_json& json) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "results.json";
+  write_text_atomically(path, json.dump());
+  return read_results(path);
+}
+
+std::string page_of(const ReportData& data) {
+  return report_page(data, {}).html;
+}
+
+TEST(ReportWords, BandsAndLists) {
+  EXPECT_THAT(read(results({})).bands, testing::ElementsAre("0-2.6", "2.6-60", "60+"));
+  EXPECT_EQ(list_text({}), "");
+  EXPECT_EQ(list_text({"a"}), "a");
+  EXPECT_EQ(list_text({"a", "b", "c"}), "a, b and c");
+  EXPECT_EQ(count_text(1234567.0), "1.235 M");
+  EXPECT_EQ(count_text(std::nullopt), "–");
+  EXPECT_EQ(with_interval(Estimate{0.5, 0.25, 0.75}), "0.5 (0.25 to 0.75)");
+  EXPECT_EQ(with_interval(Estimate{0.5, std::nullopt, std::nullopt}), "0.5");
+}
+
+TEST(ReportFill, OnlyTheTemplateIsLookedAt) {
+  EXPECT_EQ(fill_template("a {{x}} b {{y}}{{x}}", {{"x", "{{y}}"}, {"y", "2"}}), "a {{y}} b 2{{y}}");
+  EXPECT_EQ(fill_template("no place", {}), "no place");
+  EXPECT_THROW(fill_template("{{x}}", {}), std::out_of_range);
+}
+
+TEST(ReportFill, NoTagCanEndAScript) {
+  const std::string json = ordered_json{{"a", "</script><!--<script>"}}.dump();
+  const std::string safe = script_safe(json);
+  EXPECT_EQ(safe.find('<'), std::string::npos);
+  EXPECT_EQ(ordered_json::parse(safe), ordered_json::parse(json));
+}
+
+TEST(ReportPage, MarkupInResultsIsShownAsText) {
+  ordered_json evil = row("t", "test", score(0.1, 0.09, 0.11));
+  const std::string tag = "</script><img src=x onerror=alert(1)>\"'";
+  evil["label"] = tag;
+  evil["scene"] = tag;
+  ordered_json json = results({evil});
+  json["title"] = tag;
+  json["notes"] = {tag};
+  json["scenes"][0]["name"] = tag;
+  const std::string page = page_of(read(json));
+  EXPECT_THAT(page, Not(HasSubstr("<img")));
+  EXPECT_THAT(page, HasSubstr("&lt;img src=x"));
+}
+
+TEST(ReportPage, NoRows) {
+  const ReportData data = read(results({}));
+  EXPECT_THAT(report_plots(data), IsEmpty());
+  const std::string page = page_of(data);
+  EXPECT_THAT(page, HasSubstr("Nothing has been measured yet"));
+  EXPECT_THAT(page, HasSubstr("No foveated run has been measured"));
+}
+
+TEST(ReportPage, NullsAreMissingAndNeverNan) {
+  ordered_json blank = row("t", "test", {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}, {"resolved", true}});
+  blank["time_s"] = nullptr;
+  blank["speed_up"] = {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}};
+  blank["frames"] = {{{"index", 1},
+                      {"t_s", 0},
+                      {"time_s", nullptr},
+                      {"gaze_px", nullptr},
+                      {"png", nullptr},
+                      {"scores", {{"flip", nullptr}}}}};
+  ordered_json once = row("u", "equal-time", score(0.1, 0, 0));
+  once["scores"]["flip"]["whole"] = {{"mean", 0.1}, {"low", nullptr}, {"high", nullptr}, {"resolved", true}};
+  once["time_s"] = {{"mean", 2}, {"low", nullptr}, {"high", nullptr}};
+  const ReportData data = read(results({blank, once}));
+  EXPECT_FALSE(data.rows[0].time_s);
+  EXPECT_FALSE(data.rows[0].speed_up);
+  EXPECT_FALSE(find_score(data.rows[0], "flip", "whole")->value);
+  const std::string text = tables_html(data) + report_csv(data) + report_methods(data);
+  for (const ReportPlot& plot : report_plots(data)) {
+    EXPECT_THAT(plot.svg + plot.csv, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
+  }
+  EXPECT_THAT(text, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
+  EXPECT_THAT(tables_html(data), HasSubstr("<td>–</td>"));
+  EXPECT_THAT(report_findings(data).losses, IsEmpty());  // nothing is known of either
+}
+
+TEST(ReportPage, OneFrameOfOneValueHasDiagrams) {
+  ordered_json one = row("t", "test", score(0.1, 0.1, 0.1));
+  one["frames"] = {{{"index", 7}, {"t_s", 0.25}, {"time_s", 2}, {"event", "fixation"}, {"scores", {{"flip", 0.1}}}}};
+  const std::vector<ReportPlot> plots = report_plots(read(results({one})));
+  ASSERT_EQ(plots.size(), 2U);  // no bands were measured
+  for (const ReportPlot& plot : plots) {
+    EXPECT_THAT(plot.svg, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
+  }
+  EXPECT_EQ(plots[1].kind, "time");
+  EXPECT_THAT(plots[1].csv, HasSubstr("t,test,run t,7,0.25,fixation,2,0.1\n"));
+}
+
+TEST(ReportPlots, NamesAreDistinctFileNames) {
+  ordered_json a = row("a/b", "test", score(0.1, 0.09, 0.11));
+  ordered_json b = row("a b", "test", score(0.1, 0.09, 0.11));
+  a["frames"] = b["frames"] = {{{"index", 1}, {"t_s", 0}, {"time_s", 2}, {"scores", {{"flip", 0.1}}}}};
+  std::vector<std::string> names;
+  for (const ReportPlot& plot : report_plots(read(results({a, b})))) {
+    names.push_back(plot.name);
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("pareto_box_glide_flip", "time_a-b_flip", "time_a-b_flip-2"));
+}
+
+TEST(ReportTables, UnresolvedScoresSaySo) {
+  const std::string html = tables_html(read(results({row("t", "test", score(0.005, 0.004, 0.006, false))})));
+  EXPECT_THAT(html, HasSubstr("<td class=\"unresolved\">0.005<small>unresolved</small></td>"));
+  EXPECT_THAT(html, HasSubstr("<td>0.01</td>"));  // the floor
+}
+
+TEST(ReportFindings, LossesFollowFromIntervalsApart) {
+  const auto losses = [](const ordered_json& ours, const ordered_json& theirs) {
+    return report_findings(read(results({row("t", "test", ours), row("u", "equal-time", theirs)}))).losses;
+  };
+  EXPECT_THAT(losses(score(0.12, 0.11, 0.13), score(0.10, 0.09, 0.105)),
+              Contains(HasSubstr("uniform, equal time has the lower flip: 0.12 (0.11 to 0.13) against 0.1 (0.09 to "
+                                 "0.105) in the whole frame")));
+  EXPECT_THAT(losses(score(0.12, 0.11, 0.13), score(0.10, 0.09, 0.111)), IsEmpty());  // they overlap
+  EXPECT_THAT(losses(score(0.10, 0.09, 0.105), score(0.12, 0.11, 0.13)), IsEmpty());  // a gain
+  EXPECT_THAT(losses(score(0.002, 0.0019, 0.0021, false), score(0.001, 0.0009, 0.0011, false)), IsEmpty());
+}
+
+TEST(ReportFindings, HigherMayBeBetter) {
+  ordered_json json = results({row("t", "test", score(9.1, 9.0, 9.2)), row("u", "equal-time", score(9.5, 9.4, 9.6))});
+  json["metrics"][0]["better"] = "higher";
+  EXPECT_THAT(report_findings(read(json)).losses,
+              Contains(HasSubstr("has the higher flip: 9.1 (9 to 9.2) against 9.5")));
+  EXPECT_THAT(report_findings(read(json)).summary, Contains(HasSubstr("Beside uniform, equal time: worse in flip.")));
+}
+
+TEST(ReportFindings, SpeedAndWhatItIsWorth) {
+  ordered_json slow = row("t", "test", score(0.1, 0.09, 0.11));
+  slow["speed_up"] = estimate(0.8, 0.75, 0.85);
+  ReportFindings findings = report_findings(read(results({slow})));
+  EXPECT_THAT(findings.losses, Contains(HasSubstr("slower than uniform sampling")));
+  EXPECT_THAT(findings.caveats, Contains(HasSubstr("nothing is claimed for foveation")));
+  slow["speed_up"] = estimate(1.05, 0.95, 1.15);
+  findings = report_findings(read(results({slow})));
+  EXPECT_THAT(findings.summary, Contains(HasSubstr("not told apart from 1")));
+  EXPECT_THAT(findings.losses, IsEmpty());
+  ordered_json json = results({slow});
+  json["controls"] = {{{"scene", "box"},
+                       {"gaze", "glide"},
+                       {"metric", "flip"},
+                       {"wrong", "mirrored"},
+                       {"right_score", 0.1},
+                       {"wrong_score", 0.09},
+                       {"sensitive", false}}};
+  json["fixed_quality"] = {{{"metric", "flip"},
+                            {"at", 0.05},
+                            {"scene", "box"},
+                            {"gaze", "glide"},
+                            {"speed_up", 3},
+                            {"bound", ">"},
+                            {"why", "uniform never reaches it"}}};
+  findings = report_findings(read(json));
+  EXPECT_THAT(findings.caveats, Contains(HasSubstr("insensitive to gaze there")));
+  EXPECT_THAT(findings.caveats, Contains(HasSubstr("is > 3, uniform never reaches it")));
+}
+
+TEST(ReportFamilies, BaselinesThatSeveralTestsShare) {
+  ordered_json first = row("t", "test", score(0.1, 0.09, 0.11));
+  ordered_json second = row("t2", "test", score(0.1, 0.09, 0.11));
+  first["baselines"] = second["baselines"] = {{"uniform-reference-rate", "u"}};
+  const ReportData data = read(results({first, second, row("u", "uniform-reference-rate", score(0.1, 0.09, 0.11)),
+                                        row("w", "wrong-gaze", score(0.1, 0.09, 0.11))}));
+  const auto ids = [&](const ReportRow& test) {
+    std::vector<std::string> found;
+    for (const ReportRow* const one : family_of(data, test)) {
+      found.push_back(one->id);
+    }
+    return found;
+  };
+  EXPECT_THAT(ids(data.rows[0]), testing::ElementsAre("t", "u", "w"));
+  EXPECT_THAT(ids(data.rows[1]), testing::ElementsAre("t2", "u"));
+  // Each run stands in the table once.
+  const std::string html = tables_html(data);
+  std::size_t count = 0;
+  for (std::size_t at = html.find("run u"); at != std::string::npos; at = html.find("run u", at + 1)) {
+    ++count;
+  }
+  EXPECT_EQ(count, 2U);  // runs, and bands
+}
+
+TEST(ReportResults, ComplaintsNameThePlace) {
+  const auto complaint = [](const ordered_json& json) -> std::string {
+    try {
+      read(json);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  };
+  ordered_json json = results({row("t", "test", score(0.1, 0.2, 0.1))});
+  EXPECT_THAT(complaint(json), HasSubstr("rows[0].scores.flip.whole: has its low above its high"));
+  json = results({row("t", "test", score(0.1, 0.1, 0.1))});
+  json["rows"][0].erase("role");
+  EXPECT_THAT(complaint(json), HasSubstr("rows[0]: has no 'role'"));
+  json["rows"] = "none";
+  EXPECT_THAT(complaint(json), HasSubstr("rows: is no list"));
+  json["format"] = "gazetrace-sweep-2";
+  EXPECT_THAT(complaint(json), HasSubstr("is no gazetrace-sweep-1 file"));
+}
+
+}  // namespace
+}  // namespace gazetrace
