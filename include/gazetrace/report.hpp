@@ -50,6 +50,7 @@ struct ReportRow {
   std::optional<Estimate> time_s;
   std::optional<double> samples, spp_mean, rays, peak_mib, efficiency;
   std::optional<Estimate> speed_up;  // t_uniform / t_foveated
+  std::optional<Estimate> reached;   // of an equal-time row: its time over the test's
   std::map<std::string, std::vector<ReportScore>> scores;
   std::vector<ReportFrame> frames;
 };
@@ -88,9 +89,10 @@ struct ReportData {
   std::string directory;  // of the results file; what paths are relative to
   std::string title, plan_file, methods;
   ReportSettingsList build, machine, viewing, color, common_settings;
-  std::vector<std::string> varied;                              // names of options
-  std::vector<std::string> bands;                               // names, from the gaze outwards
-  std::map<std::string, std::vector<double>> band_pixel_share;  // gaze -> share of each band
+  std::vector<std::string> varied;                                    // names of options
+  std::vector<std::string> bands;                                     // names, from the gaze outwards
+  std::map<std::string, std::vector<double>> band_pixel_share;        // gaze -> share of each band
+  std::map<std::string, std::map<std::string, double>> event_shares;  // gaze -> what the eye did -> share of frames
   std::vector<ReportMetric> metrics;
   std::vector<ReportScene> scenes;
   std::vector<ReportRow> rows;

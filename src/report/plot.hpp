@@ -35,35 +35,29 @@ bool wants_log(const std::vector<double>& values);
 class PlotSvg {
  public:
   PlotSvg(double height, const std::string& title);
-  void add(const std::string& element) {
-    text_ += element +
-             "
-             "; }
-             // anchor: start, middle, end
-             void
-             text(double x, double y, const std::string& words, const char* anchor = "start", const char* more = "");
-    void mark(const ReportRole& role, double x, double y, double radius = 5);
-    // Frame, ticks and labels of a diagram whose scales end at its borders.
-    void axes(const PlotScale& x, const PlotScale& y, double left, double top, double right, double bottom,
-              const std::string& x_label, const std::string& y_label, bool with_x_numbers = true);
-    // Marks and words of runs below a diagram, in two columns; returns where it ends.
-    double legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top);
-    [[nodiscard]] std::string str() const {
-      return text_ + "</svg>\n";
-    }
+  void add(const std::string& element) { text_ += element + '\n'; }
+  // anchor: start, middle, end
+  void text(double x, double y, const std::string& words, const char* anchor = "start", const char* more = "");
+  void mark(const ReportRole& role, double x, double y, double radius = 5);
+  // Frame, ticks and labels of a diagram whose scales end at its borders.
+  void axes(const PlotScale& x, const PlotScale& y, double left, double top, double right, double bottom,
+            const std::string& x_label, const std::string& y_label, bool with_x_numbers = true);
+  // Marks and words of runs below a diagram, in two columns; returns where it ends.
+  double legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top);
+  [[nodiscard]] std::string str() const { return text_ + "</svg>\n"; }
 
-   private:
-    std::string text_;
-  };
+ private:
+  std::string text_;
+};
 
-  // Rows of a legend in two columns take so much height.
-  double legend_height(std::size_t entries);
+// Rows of a legend in two columns take so much height.
+double legend_height(std::size_t entries);
 
-  std::string plot_file_name(const std::vector<std::string>& parts);  // letters, digits, . _ -
+std::string plot_file_name(const std::vector<std::string>& parts);  // letters, digits, . _ -
 
-  // One for each scene, gaze and metric; for each test row and metric.
-  std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& both, const ReportMetric& metric);
-  std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
-  std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
+// One for each scene, gaze and metric; for each test row and metric.
+std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& both, const ReportMetric& metric);
+std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
+std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
 
 }  // namespace gazetrace

@@ -208,6 +208,7 @@ ReportRow row_of(const Node& node) {
   row.settings = settings_of(node, "settings");
   row.time_s = estimate_at(node, "time_s");
   row.speed_up = estimate_at(node, "speed_up");
+  row.reached = estimate_at(node, "reached");
   row.samples = number_or_none(node, "samples");
   row.spp_mean = number_or_none(node, "spp_mean");
   row.rays = number_or_none(node, "rays");
@@ -286,6 +287,13 @@ ReportData data_of(const Node& root) {
     for (const auto& [gaze, shares] : root.at("band_pixel_share").members()) {
       for (const Node& share : shares.items()) {
         data.band_pixel_share[gaze].push_back(share.number());
+      }
+    }
+  }
+  if (root.has("shares")) {
+    for (const auto& [gaze, shares] : root.at("shares").members()) {
+      for (const auto& [event, share] : shares.members()) {
+        data.event_shares[gaze][event] = share.number();
       }
     }
   }

@@ -55,8 +55,26 @@ std::string metric_head(const ReportMetric& metric) {
 }
 
 std::string row_head(const ReportRow& row) {
+  std::string role = report_role(row.role).words;
+  if (row.reached) {
+    role += fmt::format(": {} of its time", with_interval(row.reached));
+  }
   return fmt::format("<tr class=\"role-{}\"><th scope=\"row\">{}<small>{}</small></th>", escaped(row.role),
-                     escaped(row.label), escaped(report_role(row.role).words));
+                     escaped(row.label), escaped(role));
+}
+
+// "Frames: fixation 80 %, in-flight 20 %."
+std::string shares_text(const ReportData& data, const std::string& gaze) {
+  const auto found = data.event_shares.find(gaze);
+  std::vector<std::string> shares;
+  if (found != data.event_shares.end()) {
+    for (const auto& [event, share] : found->second) {
+      if (share > 0) {
+        shares.push_back(fmt::format("{} {:.3g} %", event, 100 * share));
+      }
+    }
+  }
+  return shares.empty() ? std::string() : "Frames: " + list_text(shares) + ".";
 }
 
 // What belongs to no single test, then every test with its own baselines.
@@ -86,12 +104,16 @@ std::vector<const ReportRow*> rows_of(const ReportData& data, const SceneGaze& b
 }
 
 void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const std::vector<const ReportRow*>& rows) {
+  if (const std::string shares = shares_text(data, both.gaze); !shares.empty()) {
+    html.add("<p class=\"small\">{}: {}</p>\n", escaped(scene_gaze_text(both)), escaped(shares));
+  }
   html.begin_table(scene_gaze_text(both));
-  std::vector<std::string> names{
-      "run",  "time<small>s a frame</small>", "speed-up", "efficiency", "samples a pixel", "samples",
-      "rays", "peak<small>MiB</small>"};
+  std::vector<std::string> names{"run", "time<small>s a frame</small>", "speed-up", "efficiency"};
   for (const ReportMetric& metric : data.metrics) {
     names.push_back(metric_head(metric));
+  }
+  for (const char* const cost : {"samples a pixel", "samples", "rays", "peak<small>MiB</small>"}) {
+    names.emplace_back(cost);
   }
   html.head(names);
   for (const ReportRow* const row : rows) {
@@ -99,22 +121,22 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
     html.estimate(row->time_s);
     html.estimate(row->speed_up);
     html.cell(value_text(row->efficiency));
+    for (const ReportMetric& metric : data.metrics) {
+      html.score(find_score(*row, metric.name, "whole"));
+    }
     html.cell(value_text(row->spp_mean));
     html.cell(count_text(row->samples));
     html.cell(count_text(row->rays));
     html.cell(value_text(row->peak_mib));
-    for (const ReportMetric& metric : data.metrics) {
-      html.score(find_score(*row, metric.name, "whole"));
-    }
     html.add("</tr>\n");
   }
   html.add(
       "<tr class=\"role-floor\"><th scope=\"row\">reference from itself<small>floor</small></th>"
-      "<td></td><td></td><td></td><td></td><td></td><td></td><td></td>");
+      "<td></td><td></td><td></td>");
   for (const ReportMetric& metric : data.metrics) {
     html.cell(value_text(find_floor(data, both, metric.name, "whole")));
   }
-  html.add("</tr>\n");
+  html.add("<td></td><td></td><td></td><td></td></tr>\n");
   html.end_table();
 }
 
@@ -200,11 +222,19 @@ std::string tables_html(const ReportData& data) {
 }
 
 std::string list_html(const std::vector<std::string>& items) {
-  std::string text = "<ul>\n";
-  for (const std::string& item : items) {
-    text += "<li>" + escaped(item) + "</li>\n";
+  constexpr std::size_t kShown = 10;  // the rest is folded away
+  const auto list = [&](std::size_t begin, std::size_t end) {
+    std::string text = "<ul>\n";
+    for (std::size_t i = begin; i < end; ++i) {
+      text += "<li>" + escaped(items[i]) + "</li>\n";
+    }
+    return text + "</ul>\n";
+  };
+  if (items.size() <= kShown + 1) {
+    return list(0, items.size());
   }
-  return text + "</ul>\n";
+  return list(0, kShown) + fmt::format("<details><summary>{} more</summary>\n", items.size() - kShown) +
+         list(kShown, items.size()) + "</details>\n";
 }
 
 std::string findings_html(const ReportFindings& findings) {

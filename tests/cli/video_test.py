@@ -114,6 +114,9 @@ class Video(harness.CliTest):
             differing = [i // 3 % 128 for i in range(0, len(without), 3) if with_dot[i:i + 3] != without[i:i + 3]]
             t = (n + 0.5) * 1001 / 30000
             self.assertAlmostEqual(sum(differing) / len(differing) + 0.5, 128 * (0.2 + 0.6 * t), delta=1.5)
+        # Display pictures know the gaze as well.
+        self.run_ok("video", "fov/p.####.png", "-o", "png_gaze.mkv", "--codec", "ffv1", "--show-gaze")
+        self.assertNotEqual(self.pixels("png_gaze.mkv", 128, 72), self.pixels("png.mkv", 128, 72))
         for mark in ("--show-rings", "--fixation-mark"):
             self.run_ok("video", "fov/p.####.exr", "-o", "mark.mkv", "--codec", "ffv1", mark, "--overwrite")
             self.assertNotEqual(self.pixels("mark.mkv", 128, 72), plain)

@@ -172,6 +172,23 @@ TEST(ReportTables, UnresolvedScoresSaySo) {
   EXPECT_THAT(html, HasSubstr("<td>0.01</td>"));  // the floor
 }
 
+TEST(ReportTables, EqualTimeSaysWhatWasReachedAndFramesWhatTheEyeDid) {
+  ordered_json late = row("u", "equal-time", score(0.1, 0.09, 0.11));
+  late["reached"] = estimate(1.04, 1.01, 1.07);
+  ordered_json json = results({row("t", "test", score(0.1, 0.09, 0.11)), late});
+  json["shares"] = {{"glide", {{"fixation", 0.75}, {"in-flight", 0.25}, {"blink", 0}}}};
+  const std::string html = tables_html(read(json));
+  EXPECT_THAT(html, HasSubstr("<small>uniform, equal time: 1.04 (1.01 to 1.07) of its time</small>"));
+  EXPECT_THAT(html, HasSubstr("box, gaze glide: Frames: fixation 75 % and in-flight 25 %."));
+}
+
+TEST(ReportTables, LongListsAreFolded) {
+  const std::string eleven = list_html(std::vector<std::string>(11, "<a>"));
+  EXPECT_THAT(eleven, Not(HasSubstr("<details>")));
+  EXPECT_THAT(eleven, HasSubstr("<li>&lt;a&gt;</li>"));
+  EXPECT_THAT(list_html(std::vector<std::string>(15, "a")), HasSubstr("<summary>5 more</summary>"));
+}
+
 TEST(ReportFindings, LossesFollowFromIntervalsApart) {
   const auto losses = [](const ordered_json& ours, const ordered_json& theirs) {
     return report_findings(read(results({row("t", "test", ours), row("u", "equal-time", theirs)}))).losses;
