@@ -111,9 +111,13 @@ class Comparison {
   std::unique_ptr<Impl> impl_;
 };
 
-// A map as a picture in magma: FLIP as it is, squared errors as roots, SSIM as 1 - v, SMAPE halved, FovVideoVDP's JOD
-// over 3.
-DisplayImage error_map_picture(const std::string& metric, const ImageGray& map);
+// A map as a picture in magma: FLIP as it is, squared errors as roots, SSIM as 1 - v, SMAPE halved. FovVideoVDP and
+// flicker as heat over the reference in grey: blue, green, yellow, red at 0.75, 1.5, 2.25 and 3 JOD, or at 2.5, 5, 7.5
+// and 10 times what is just seen. Without the reference's code values the grey is black.
+DisplayImage error_map_picture(const std::string& metric, const ImageGray& map, const ImageRgb& reference_code = {});
+// Draws the borders of the regions and a cross where the gaze is, white in black. What lies off the picture is left
+// out.
+void draw_gaze(DisplayImage& picture, const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions);
 
 // Frames of which a file of this pattern exists, ascending; {0} for the name of a single picture that exists.
 std::vector<std::int32_t> find_frames(const std::string& pattern);
@@ -137,8 +141,10 @@ struct ComparedPicture {
   FrameFacts facts;
 };
 ComparedPicture read_compared_picture(const std::string& path);
-// Code values of linear light as a view shows it, 8 bits; linear light of code values as a display emits it.
+// Code values of linear light as a view shows it, 8 bits; light of code values as a display emits it, its peak 1; PQ
+// code values of light in cd/m2, as far as the display goes.
 ImageRgb viewed(const ImageRgb& light, const ColorPipeline& color, double exposure_ev, int threads = 0);
-ImageRgb emitted(const ImageRgb& code, DisplayResponse response, int threads = 0);
+ImageRgb emitted(const ImageRgb& code, DisplayResponse response, double peak_cd_m2, int threads = 0);
+ImageRgb pq_codes(const ImageRgb& light_cd_m2, double peak_cd_m2, int threads = 0);
 
 }  // namespace gazetrace

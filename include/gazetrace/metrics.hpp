@@ -27,10 +27,17 @@ struct MetricInfo {
 const std::vector<MetricInfo>& metrics();
 const MetricInfo& metric_by_name(const std::string& name);  // Error(usage) with the known names
 
-// How a display turns code values into light: srgb is IEC 61966-2-1, the others are pure powers.
-enum class DisplayResponse : std::uint8_t { srgb, gamma22, gamma24, linear };
-// Relative light 0..1 of a code value, clamped to 0..1.
-double display_light(DisplayResponse response, double code);
+// How a display turns code values into light: srgb is IEC 61966-2-1, gamma22 to linear are pure powers; pq is SMPTE
+// ST 2084, whose light is absolute; of linear_hdr the values are cd/m2 themselves.
+enum class DisplayResponse : std::uint8_t { srgb, gamma22, gamma24, linear, pq, linear_hdr };
+inline constexpr bool is_absolute(DisplayResponse response) {
+  return response == DisplayResponse::pq || response == DisplayResponse::linear_hdr;
+}
+// Relative light 0..1 of a code value; codes are clamped to 0..1, absolute light to the display's peak.
+double display_light(DisplayResponse response, double code, double peak_cd_m2);
+// SMPTE ST 2084-2014, eq. 4.1 and 5.2: cd/m2 of a code value 0..1, and the other way; clamped to 0..10000 cd/m2.
+double pq_luminance(double code);
+double pq_code(double cd_m2);
 
 // FLIP's own default: 0.7 m from a screen of 3840 pixels and 0.7 m. FLIP, section 4.1 of Andersson et al. 2020.
 inline constexpr double kFlipDefaultPixelsPerDegree = 67.0206451;
@@ -53,6 +60,7 @@ struct FlipExposureSettings {
 struct MetricSettings {
   double pixels_per_degree = kFlipDefaultPixelsPerDegree;  // FLIP only
   DisplayResponse response = DisplayResponse::srgb;        // of code values
+  double peak_cd_m2 = 200;                                 // of the display; absolute responses only
   FlipExposureSettings hdr_flip;
   double relmse_epsilon = 0.01;
   int threads = 0;  // the same bits for any number

@@ -217,6 +217,9 @@ ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, c
   if (!gaze) {
     return {};
   }
+  if (!gaze->movement && inputs.reference_run && inputs.reference_run->gaze_at) {
+    gaze->movement = EyeMovement::fixation;
+  }
   const GazeClass gaze_class = gaze_class_of(*gaze);
   if (gaze_class == GazeClass::no_gaze || gaze->kind == GazeKind::direction) {
     return {std::nullopt, gaze_class};

@@ -27,6 +27,7 @@ struct CompareJob {
   ComparisonSettings settings;
   std::string csv, json, maps;
   std::vector<std::string> fail_above, fail_below;
+  bool map_overlay = false;
   bool anyway = false;
 };
 

@@ -11,7 +11,9 @@ struct EnumNames<DisplayResponse> {
     return {{DisplayResponse::srgb, "srgb"},
             {DisplayResponse::gamma22, "gamma2.2"},
             {DisplayResponse::gamma24, "gamma2.4"},
-            {DisplayResponse::linear, "linear"}};
+            {DisplayResponse::linear, "linear"},
+            {DisplayResponse::pq, "pq"},
+            {DisplayResponse::linear_hdr, "linear-hdr"}};
   }
 };
 template <>
@@ -35,8 +37,10 @@ void add_metric_options(OptionTable& table, CompareJob& job) {
                  "Exit code 1 where the sequence's value is larger; for metrics of which less is better");
   table.repeated("--fail-below", job.fail_below, "METRIC=VALUE",
                  "Exit code 1 where it is smaller; for metrics of which more is better");
-  table.value("--response", metric.response, "srgb|gamma2.2|gamma2.4|linear",
-              "How the display turns code values into light");
+  table.value(
+      "--response", metric.response, choices<DisplayResponse>(),
+      "How the display turns code values into light; pq: SMPTE ST 2084; linear-hdr: the pictures (.exr, .hdr) hold "
+      "cd/m2 and no view is applied, metrics of code values see PQ");
   table.value("--relmse-epsilon", metric.relmse_epsilon, "VALUE", "Added to the squared reference in relmse");
   table.value("--flip-tone-mapper", metric.hdr_flip.tone_mapper, "aces|hable|reinhard", "Curve of hdr_flip");
   table.value("--flip-start", metric.hdr_flip.start_ev, "STOPS",
@@ -44,7 +48,9 @@ void add_metric_options(OptionTable& table, CompareJob& job) {
   table.value("--flip-stop", metric.hdr_flip.stop_ev, "STOPS", "Last exposure of hdr_flip");
   table.value("--flip-count", metric.hdr_flip.count, "N", "Number of exposures of hdr_flip");
   DisplayPhotometry& photometry = job.settings.photometry;
-  table.value("--peak-cd-m2", photometry.peak_cd_m2, "CD_M2", "Luminance of the display's white, for fovvideovdp");
+  table.value(
+      "--peak-cd-m2", photometry.peak_cd_m2, "CD_M2",
+      "Luminance of the display's white, for fovvideovdp and flicker, and for all metrics with pq and linear-hdr");
   table.value("--contrast", photometry.contrast, "RATIO", "White over the display's own black, for fovvideovdp");
   table.value("--ambient-lux", photometry.ambient_lux, "LUX", "Light that falls on the display, for fovvideovdp");
   table.value("--reflectivity", photometry.reflectivity, "SHARE", "How much of it comes back, for fovvideovdp");
@@ -83,6 +89,7 @@ void add_result_options(OptionTable& table, CompareJob& job) {
   table.value("--csv", job.csv, "FILE", "One row a frame and metric, written as it goes");
   table.value("--json", job.json, "FILE", "Everything as JSON");
   table.value("--maps", job.maps, "FOLDER", "Error maps as pictures, METRIC.####.png");
+  table.flag("--map-overlay", job.map_overlay, "Draws gaze and borders of the retinal regions into them");
   table.value("--threads", job.shared.threads, "N", "0: as many as the machine has; numbers do not depend on it");
 }
 

@@ -107,7 +107,7 @@ std::string compare_text(const CompareConditions& conditions, const std::vector<
       text += fmt::format("{:>13}", region);
     }
     for (std::size_t b = 0; b < kEccentricityBandsDeg.size(); ++b) {
-      text += fmt::format("{:>10}", eccentricity_band_name(b));
+      text += fmt::format("{:>12}", eccentricity_band_name(b));
     }
     text += "\n";
     for (std::size_t m = 0; m < part.scores.size(); ++m) {
@@ -125,7 +125,7 @@ std::string compare_text(const CompareConditions& conditions, const std::vector<
         text += fmt::format("{:>13}", shown(region));
       }
       for (const auto& band : scores.bands) {
-        text += fmt::format("{:>10}", shown(band));
+        text += fmt::format("{:>12}", shown(band));
       }
       text += "\n";
     }

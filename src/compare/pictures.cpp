@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/image_io.hpp"
+#include "core/parallel.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
 #include "metrics/code_values.hpp"
@@ -88,8 +89,22 @@ ImageRgb viewed(const ImageRgb& light, const ColorPipeline& color, double exposu
   return code;
 }
 
-ImageRgb emitted(const ImageRgb& code, DisplayResponse response, int threads) {
-  return light_of_code(code, response, threads);
+ImageRgb emitted(const ImageRgb& code, DisplayResponse response, double peak_cd_m2, int threads) {
+  return light_of_code(code, response, peak_cd_m2, threads);
+}
+
+ImageRgb pq_codes(const ImageRgb& light_cd_m2, double peak_cd_m2, int threads) {
+  ImageRgb code(light_cd_m2.width_px, light_cd_m2.height_px);
+  const auto encode = [peak_cd_m2](float v) {
+    return static_cast<float>(pq_code(std::min(static_cast<double>(v), peak_cd_m2)));
+  };
+  parallel_for(static_cast<std::size_t>(code.height_px), threads, [&](std::size_t row) {
+    for (int x = 0; x < code.width_px; ++x) {
+      const Vec3f& v = light_cd_m2(x, static_cast<int>(row));
+      code(x, static_cast<int>(row)) = {encode(v.x), encode(v.y), encode(v.z)};
+    }
+  });
+  return code;
 }
 
 }  // namespace gazetrace

@@ -14,6 +14,6 @@ inline double luma_601(const Vec3f& code) {
 }
 
 // The light of a picture of code values, through a table where they are 8-bit ones.
-ImageRgb light_of_code(const ImageRgb& code, DisplayResponse response, int threads);
+ImageRgb light_of_code(const ImageRgb& code, DisplayResponse response, double peak_cd_m2, int threads);
 
 }  // namespace gazetrace

@@ -40,17 +40,26 @@ double black_level_cd_m2(const DisplayPhotometry& photometry) {
 
 ImageGray display_luminance(const ImageRgb& code, const DisplayPhotometry& photometry, int threads) {
   const double black = black_level_cd_m2(photometry);
-  const double range = photometry.peak_cd_m2 - black;
+  const double peak = photometry.peak_cd_m2;
+  if (photometry.response == DisplayResponse::linear_hdr) {
+    return linear_luminance(code, 1, peak, black, threads);
+  }
+  // Light of absolute codes is what it is, up to the peak, and what the room adds; others fill the range above black.
+  const double range = is_absolute(photometry.response) ? peak : peak - black;
+  const auto level = [&](double v) {
+    const double light = range * display_light(photometry.response, v, peak);
+    return (is_absolute(photometry.response) ? std::max(light, kLeastLuminance) : light) + black;
+  };
   // 8-bit code values, which most are, through a table.
   std::array<float, 256> codes{};
   std::array<double, 256> levels{};
   for (std::size_t i = 0; i < codes.size(); ++i) {
     codes[i] = static_cast<float>(i) / 255.0F;
-    levels[i] = range * display_light(photometry.response, static_cast<double>(i) / 255.0) + black;
+    levels[i] = level(static_cast<double>(i) / 255.0);
   }
   return luminance_of(code, threads, [&](float v) {
     const auto i = static_cast<std::size_t>(std::clamp(v, 0.0F, 1.0F) * 255.0F + 0.5F);
-    return codes[i] == v ? levels[i] : range * display_light(photometry.response, static_cast<double>(v)) + black;
+    return codes[i] == v ? levels[i] : level(static_cast<double>(v));
   });
 }
 

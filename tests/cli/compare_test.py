@@ -196,6 +196,36 @@ class Compare(harness.CliTest):
         self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--anyway")
         self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--frames", "1")
 
+    def test_views_must_agree(self):
+        self.render("a", "--spp", "1", "--falloff", "uniform")
+        self.render("b", "--spp", "1", "--falloff", "uniform", "--preset", "paper")
+        self.assert_refused(["compare", "a/p.####.png", "b/p.####.png"], ["was shown through", "--anyway"])
+        self.run_ok("compare", "a/p.####.png", "b/p.####.png", "--anyway", "--metrics", "flip")
+
+    def test_maps_with_gaze_and_regions(self):
+        self.render("a", "--spp", "4", "--falloff", "uniform", "--seed", "1")
+        self.render("b", "--spp", "1", "--falloff", "uniform", "--seed", "2")
+        pair = ["compare", "a/p.####.exr", "b/p.####.exr", "--metrics", "flip,fovvideovdp"]
+        self.run_ok(*pair, "--maps", "plain")
+        self.run_ok(*pair, "--maps", "drawn", "--map-overlay")
+        for name in ("flip.0001.png", "fovvideovdp.0003.png"):
+            self.assertNotEqual((self.folder / "plain" / name).read_bytes(), (self.folder / "drawn" / name).read_bytes())
+
+    def test_light_of_hdr_displays(self):
+        # 8-bit codes as PQ: FovVideoVDP and FLIP read them as light, which the peak bounds.
+        self.write("a.png", png(32, 32, lambda x, y: (130,) * 3 if x // 4 % 2 else (150,) * 3))
+        self.write("b.png", png(32, 32, lambda x, y: (140,) * 3 if x // 4 % 2 else (150,) * 3))
+        screen = ["--screen-px", "32,32", "--screen-cm", "10,10", "--screen-distance-cm", "60", "--gaze-at", "0.5,0.5"]
+        pair = ["a.png", "b.png", "--metrics", "flip,mse,fovvideovdp", *screen]
+        values = {}
+        for name, more in (("srgb", []), ("pq", ["--response", "pq", "--peak-cd-m2", "1000"]),
+                           ("dim", ["--response", "pq", "--peak-cd-m2", "20"])):
+            scores, _ = self.compare(*pair, *more)
+            values[name] = {metric: scores[metric]["value"] for metric in scores}
+        self.assertNotAlmostEqual(values["srgb"]["fovvideovdp"], values["pq"]["fovvideovdp"], 3)
+        # PQ 130 is 103 cd/m2 and more: all of it is a dim display's white.
+        self.assertEqual([values["dim"][name] for name in ("flip", "mse", "fovvideovdp")], [0, 0, 10])
+
     def test_exposures_must_agree(self):
         self.render("a", "--exposure", "0", "--spp", "1", "--falloff", "uniform")
         self.render("b", "--exposure", "1", "--spp", "1", "--falloff", "uniform")

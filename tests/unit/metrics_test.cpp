@@ -12,6 +12,7 @@
 
 #include "core/fast_math.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/fovvideovdp.hpp"
 
 namespace gazetrace {
 namespace {
@@ -253,6 +254,44 @@ TEST(FastMath, PowerAndItsParts) {
   }
   EXPECT_EQ(pow_fast(0.0F, 0.7F), 0.0F);
   EXPECT_EQ(pow_fast(1.0F, 0.3F), 1.0F);
+}
+
+// Values of SMPTE ST 2084 as ITU-R BT.2408 and BT.2100 print them: 58 % is 203 cd/m2, 75 % 1000, to their whole
+// percents.
+TEST(DisplayLight, PerceptualQuantizer) {
+  EXPECT_EQ(pq_luminance(0), 0);
+  EXPECT_DOUBLE_EQ(pq_luminance(1), 10000);
+  EXPECT_NEAR(pq_code(203), 0.58, 0.005);
+  EXPECT_NEAR(pq_code(1000), 0.75, 0.005);
+  EXPECT_NEAR(pq_code(100), 0.508078, 1e-6);
+  for (const double cd_m2 : {0.001, 0.1, 5.0, 99.0, 4321.0}) {
+    EXPECT_NEAR(pq_luminance(pq_code(cd_m2)), cd_m2, 1e-9 * cd_m2);
+  }
+  EXPECT_NEAR(display_light(DisplayResponse::pq, pq_code(100), 1000), 0.1, 1e-12);
+  EXPECT_DOUBLE_EQ(display_light(DisplayResponse::pq, 1, 1000), 1);
+  EXPECT_DOUBLE_EQ(display_light(DisplayResponse::linear_hdr, 250, 1000), 0.25);
+  EXPECT_DOUBLE_EQ(display_light(DisplayResponse::linear_hdr, 2500, 1000), 1);
+}
+
+// Absolute light is what the codes say, from 0.005 cd/m2 to the peak, and the room's light on top (section 1 of the
+// metric's photometry); relative codes fill the range above black.
+TEST(DisplayLight, LuminanceOfAbsoluteResponses) {
+  DisplayPhotometry photometry{DisplayResponse::pq, 1000, 1e6, 10, 0.005};
+  const double black = 10 / kPi * 0.005 + 1000 / 1e6;
+  const auto luminance = [&](double code) {
+    const auto v = static_cast<float>(code);
+    return static_cast<double>(display_luminance(ImageRgb(1, 1, {v, v, v}), photometry)(0, 0));
+  };
+  EXPECT_NEAR(luminance(pq_code(100)), 100 + black, 0.01);
+  EXPECT_NEAR(luminance(1), 1000 + black, 1e-3);
+  EXPECT_NEAR(luminance(0), 0.005 + black, 1e-7);
+  photometry.response = DisplayResponse::linear_hdr;
+  EXPECT_NEAR(luminance(321), 321 + black, 1e-3);
+  EXPECT_NEAR(luminance(-5), 0.005 + black, 1e-7);
+  EXPECT_NEAR(luminance(5000), 1000 + black, 1e-3);
+  photometry.response = DisplayResponse::linear;
+  EXPECT_NEAR(luminance(1), 1000, 1e-3);
+  EXPECT_NEAR(luminance(0), black, 1e-7);
 }
 
 TEST(ColorMaps, EndsOfTheTables) {

@@ -79,7 +79,8 @@ std::vector<std::string> chosen_metrics(const CompareJob& job, const CompareInpu
   std::vector<std::string> metrics = job.metrics;
   if (metrics.empty()) {
     metrics = {"mse", "relmse", "psnr", "ssim", "flip"};
-    const bool shows_time = inputs.frames_per_second > 0;
+    constexpr double kLeastRate = 4;  // above it, two frames are within the 250 ms that FovVideoVDP sees
+    const bool shows_time = inputs.frames_per_second > kLeastRate;
     if (inputs.screen && has_gaze && (inputs.frames.size() == 1 || shows_time)) {
       metrics.emplace_back("fovvideovdp");
     }
@@ -146,10 +147,13 @@ class PairReader {
     pair.frame = frame;
     for (ComparedPicture* one : {&reference, &test}) {
       MetricPicture& picture = one->picture;
-      if (one->is_linear) {
-        picture.code = viewed(picture.light, color_, ev, job_.settings.metric.threads);
+      if (shows_light()) {
+        picture.code = pq_codes(one->is_linear ? picture.light : picture.code, peak_cd_m2(), threads());
+        picture.light = emitted(picture.code, DisplayResponse::pq, peak_cd_m2(), threads());
+      } else if (one->is_linear) {
+        picture.code = viewed(picture.light, color_, ev, threads());
       } else {
-        picture.light = emitted(picture.code, job_.settings.metric.response, job_.settings.metric.threads);
+        picture.light = emitted(picture.code, job_.settings.metric.response, peak_cd_m2(), threads());
       }
     }
     const ComparedGaze gaze = compared_gaze(job_, inputs_, reference.facts, frame, reference.picture.code.width_px,
@@ -160,10 +164,17 @@ class PairReader {
     pair.test = std::move(test.picture);
     return pair;
   }
-  [[nodiscard]] bool is_linear() const { return is_linear_; }
-  [[nodiscard]] std::string view() const { return is_linear_ ? color_.description() : "display images as they are"; }
+  [[nodiscard]] bool is_linear() const { return is_linear_ && !shows_light(); }
+  [[nodiscard]] std::string view() const {
+    return shows_light() ? fmt::format("light in cd/m2 as it is, up to {:g}", peak_cd_m2())
+           : is_linear_  ? color_.description()
+                         : "display images as they are";
+  }
 
  private:
+  [[nodiscard]] bool shows_light() const { return job_.settings.metric.response == DisplayResponse::linear_hdr; }
+  [[nodiscard]] double peak_cd_m2() const { return job_.settings.photometry.peak_cd_m2; }
+  [[nodiscard]] int threads() const { return job_.shared.threads; }
   static ColorSettings color_settings(const CompareJob& job, const CompareInputs& inputs) {
     const ColorSettings& given = job.shared.color;
     const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
@@ -221,7 +232,8 @@ CompareConditions conditions_of(const CompareJob& job, const CompareInputs& inpu
   return conditions;
 }
 
-void write_maps(const CompareJob& job, const FrameScores& frame) {
+void write_maps(const CompareJob& job, const ComparisonSettings& settings, const FramePair& pair,
+                const FrameScores& frame) {
   for (std::size_t m = 0; m < frame.maps.size(); ++m) {
     if (frame.maps[m].empty()) {
       continue;
@@ -229,8 +241,11 @@ void write_maps(const CompareJob& job, const FrameScores& frame) {
     const std::string pattern = job.maps + "/" + frame.scores[m].metric + ".####.png";
     FrameHeader header;
     header.frame = frame.frame;
-    write_display_image(frame_file_name(pattern, frame.frame), error_map_picture(frame.scores[m].metric, frame.maps[m]),
-                        header, {});
+    DisplayImage picture = error_map_picture(frame.scores[m].metric, frame.maps[m], pair.reference.code);
+    if (job.map_overlay && settings.view && pair.gaze_px) {
+      draw_gaze(picture, *settings.view, *pair.gaze_px, settings.regions);
+    }
+    write_display_image(frame_file_name(pattern, frame.frame), picture, header, {});
   }
 }
 
@@ -289,6 +304,11 @@ int run_compare(const CompareJob& job) {
   settings.view = compare_view(inputs, width, height);
   settings.frames_per_second = inputs.frames_per_second;
   settings.metric.threads = job.shared.threads;
+  settings.metric.peak_cd_m2 = settings.photometry.peak_cd_m2;
+  if (settings.metric.response == DisplayResponse::linear_hdr) {
+    settings.metric.response = DisplayResponse::pq;
+  }
+  settings.photometry.response = settings.metric.response;
   settings.original_border = !job.correct_border;
   settings.want_maps = !job.maps.empty();
   if (inputs.screen) {
@@ -313,7 +333,7 @@ int run_compare(const CompareJob& job) {
     }
     FrameScores scores = comparison.add(pair);
     if (!job.maps.empty()) {
-      write_maps(job, scores);
+      write_maps(job, settings, pair, scores);
       scores.maps.clear();
     }
     if (csv.is_open()) {

@@ -7,9 +7,9 @@ namespace gazetrace {
 
 MetricMap metric_flip(const MetricPicture& reference, const MetricPicture& test, const MetricSettings& settings) {
   MetricMap map;
-  map.values = flip_map(light_of_code(reference.code, settings.response, settings.threads),
-                        light_of_code(test.code, settings.response, settings.threads), settings.pixels_per_degree,
-                        settings.threads);
+  map.values = flip_map(light_of_code(reference.code, settings.response, settings.peak_cd_m2, settings.threads),
+                        light_of_code(test.code, settings.response, settings.peak_cd_m2, settings.threads),
+                        settings.pixels_per_degree, settings.threads);
   map.mean = mean_of_map(map.values, 0, settings.threads);
   return map;
 }
