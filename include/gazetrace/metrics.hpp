@@ -34,7 +34,7 @@ inline constexpr bool is_absolute(DisplayResponse response) {
   return response == DisplayResponse::pq || response == DisplayResponse::linear_hdr;
 }
 // Relative light 0..1 of a code value; codes are clamped to 0..1, absolute light to the display's peak.
-double display_light(DisplayResponse response, double code, double peak_cd_m2);
+double display_light(DisplayResponse response, double code, double peak_cd_m2 = 200);
 // SMPTE ST 2084-2014, eq. 4.1 and 5.2: cd/m2 of a code value 0..1, and the other way; clamped to 0..10000 cd/m2.
 double pq_luminance(double code);
 double pq_code(double cd_m2);
