@@ -259,6 +259,11 @@ ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
     other_bytes += kBytesOfFrame * static_cast<double>(of_frame.size() + 1);
   }
   EmbeddedPictures embedded = embed_pictures(paths, settings.max_mib * kBytesOfMib - other_bytes, settings.threads);
+  if (other_bytes > settings.max_mib * kBytesOfMib) {
+    embedded.warnings.push_back(
+        fmt::format("tables and diagrams alone take {:.2f} MiB, more than the limit of {:g} MiB",
+                    other_bytes / kBytesOfMib, settings.max_mib));
+  }
   PictureList pictures(embedded, json["pictures"]);
   for (const ViewerSet& set : sets) {
     Json one = set_json(set, pictures);

@@ -137,7 +137,13 @@ class Video(harness.CliTest):
 
     def test_a_program_that_fails_is_quoted(self):
         self.sequence()
-        program = self.write("broken", "#!/bin/sh\necho first >&2; echo 'no such encoder' >&2; exit 3\n")
+        program = self.write("broken", """#!/bin/sh
+for last; do :; done
+echo half > "$last"
+cat > /dev/null
+echo first >&2; echo 'no such encoder' >&2
+exit 3
+""")
         program.chmod(0o755)
         result = self.run_program("video", "p.####.png", "-o", "out.mp4", "--fps", "24", "--ffmpeg", str(program))
         self.assertEqual(result.returncode, 3, result.stderr)

@@ -117,6 +117,12 @@ TEST(ReportPage, NoRows) {
   EXPECT_THAT(page, HasSubstr("No foveated run has been measured"));
 }
 
+TEST(ReportPage, TablesAboveTheLimitAreSaid) {
+  const ReportData data = read(results({row("t", "test", score(0.1, 0.09, 0.11))}));
+  EXPECT_THAT(report_page(data, {0.001, 0}).warnings, Contains(HasSubstr("more than the limit of 0.001 MiB")));
+  EXPECT_THAT(report_page(data, {1, 0}).warnings, IsEmpty());
+}
+
 TEST(ReportPage, NullsAreMissingAndNeverNan) {
   ordered_json blank = row("t", "test", {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}, {"resolved", true}});
   blank["time_s"] = nullptr;
