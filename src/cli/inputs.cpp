@@ -174,11 +174,11 @@ void hide_times_of_day(GazeLog& log, JobSettings& job) {
   }
 }
 
+}  // namespace
+
 bool camera_needs_scene(const JobSettings& job) {
   return job.camera_path.empty() && !job.camera_from_gaze && !job.eye;
 }
-
-}  // namespace
 
 namespace {
 
@@ -283,7 +283,7 @@ GazeLog read_job_gaze(const JobSettings& job) {
 }  // namespace
 
 Inputs load_inputs(const JobSettings& given, InputScope scope,
-                   const std::function<void(std::size_t, std::size_t)>& progress) {
+                   const std::function<void(std::size_t, std::size_t)>& progress, const Scene* loaded) {
   Inputs inputs;
   JobSettings job = given;
   std::string decision;
@@ -309,7 +309,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
   if (!camera_needs_scene(job)) {
     camera = choose_camera(job, nullptr, log, decision);
   }
-  if (scope == InputScope::render || (camera_needs_scene(job) && !job.scene.empty())) {
+  if (loaded == nullptr && (scope == InputScope::render || (camera_needs_scene(job) && !job.scene.empty()))) {
     if (job.scene.empty()) {
       usage("", "no scene was given", "name a .gltf or .glb file");
     }
@@ -331,11 +331,12 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
           "--accumulate running looks at the camera alone: what moves in the scene is smeared");
     }
   }
+  const Scene* scene = loaded != nullptr ? loaded : inputs.scene.get();
   if (camera_needs_scene(job)) {
-    camera = choose_camera(job, inputs.scene.get(), log, decision);
+    camera = choose_camera(job, scene, log, decision);
   }
   inputs.decisions.emplace_back("camera", decision);
-  inputs.frames = choose_frames(job, camera, log, inputs.scene.get(), decision);
+  inputs.frames = choose_frames(job, camera, log, scene, decision);
   inputs.decisions.emplace_back("frames", decision);
   if (log == nullptr) {
     const FoveationSettings& fov = job.foveation;

@@ -38,9 +38,13 @@ enum class InputScope {
 };
 
 // Error(usage or input). Every warning of a part (scene, camera, log, plan) is in Inputs::warnings.
-// `progress` is told of the scene's textures and meshes, see SceneReadOptions.
+// `progress` is told of the scene's textures and meshes, see SceneReadOptions. `loaded`: this scene, with its
+// environment, is taken in place of the job's file, and Inputs::scene stays empty.
 Inputs load_inputs(const JobSettings& job, InputScope scope,
-                   const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+                   const std::function<void(std::size_t done, std::size_t total)>& progress = {},
+                   const Scene* loaded = nullptr);
+// The camera stands in the scene's file.
+bool camera_needs_scene(const JobSettings& job);
 
 // Pipeline settings from options; checks names, patterns, folders. Without the settings digest.
 PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames);

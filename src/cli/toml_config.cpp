@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <charconv>
 #include <istream>
 #include <iterator>
@@ -96,39 +95,19 @@ std::string wrapped_comment(const std::string& text) {
   return result + line + "\n";
 }
 
-std::string place_of(const std::string& path, const toml::source_region& source) {
-  return fmt::format("{}:{}", path, source.begin.line);
-}
+}  // namespace
 
-// One TOML value as the text that the command line would carry.
-std::string scalar_of(const toml::node& node, const std::string& place) {
-  if (const auto* text = node.as_string()) {
-    return text->get();
-  }
-  if (const auto* number = node.as_integer()) {
-    return fmt::format("{}", number->get());
-  }
-  if (const auto* number = node.as_floating_point()) {
-    return fmt::format("{}", number->get());
-  }
-  if (const auto* truth = node.as_boolean()) {
-    return truth->get() ? "true" : "false";
-  }
-  throw Error(ErrorKind::input, place, "dates, times and nested tables are no values of options",
-              "write text, a number, true, false or an array of them");
-}
-
-std::vector<std::string> values_of(const toml::node& node, const OptionEntry& entry, const std::string& place) {
-  const auto* array = node.as_array();
-  if (array == nullptr) {
-    return {scalar_of(node, place)};
+std::vector<std::string> toml_values(const TomlNode& node, const OptionEntry& entry, const std::string& path) {
+  if (node.kind != TomlNode::Kind::array) {
+    return {toml_scalar(node, path)};
   }
   if (entry.shape == OptionShape::flag || entry.shape == OptionShape::value) {
-    throw Error(ErrorKind::input, place, fmt::format("'{}' takes one value, not an array", entry.name));
+    throw Error(ErrorKind::input, toml_place(path, node),
+                fmt::format("'{}' takes one value, not an array", entry.name));
   }
   std::vector<std::string> values;
-  for (const toml::node& item : *array) {
-    values.push_back(scalar_of(item, place));
+  for (const TomlNode& item : node.items) {
+    values.push_back(toml_scalar(item, path));
   }
   if (entry.shape == OptionShape::repeated) {
     return values;
@@ -136,8 +115,10 @@ std::vector<std::string> values_of(const toml::node& node, const OptionEntry& en
   return {fmt::format("{}", fmt::join(values, ","))};
 }
 
-CLI::ConfigItem item_of(const TomlConfig::Target& target, const std::string& key, const toml::node& node) {
-  const std::string place = place_of(target.path, node.source());
+namespace {
+
+CLI::ConfigItem item_of(const TomlConfig::Target& target, const std::string& key, const TomlNode& node) {
+  const std::string place = toml_place(target.path, node);
   const OptionEntry* entry = target.table->find(key);
   if (entry == nullptr) {
     // All known keys would be a hundred: the nearest one is enough.
@@ -149,7 +130,7 @@ CLI::ConfigItem item_of(const TomlConfig::Target& target, const std::string& key
   CLI::ConfigItem item;
   item.parents = {target.command};
   item.name = key;
-  item.inputs = values_of(node, *entry, place);
+  item.inputs = toml_values(node, *entry, target.path);
   if (!item.inputs.empty()) {
     try {
       entry->check(item.inputs, place + ": " + key);
@@ -168,16 +149,9 @@ std::vector<CLI::ConfigItem> TomlConfig::from_config(std::istream& input) const 
     throw Error(ErrorKind::usage, "--config", "only 'render' and 'plan' take a settings file");
   }
   const std::string text((std::istreambuf_iterator<char>(input)), std::istreambuf_iterator<char>());
-  toml::table table;
-  try {
-    table = toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    throw Error(ErrorKind::input, place_of(target.path, error.source()), std::string(error.description()),
-                "this is not TOML");
-  }
   std::vector<CLI::ConfigItem> found;
-  for (const auto& [key, node] : table) {
-    CLI::ConfigItem item = item_of(target, std::string(key.str()), node);
+  for (const auto& [key, node] : parse_toml(text, target.path).members) {
+    CLI::ConfigItem item = item_of(target, key, node);
     if (!item.inputs.empty()) {  // an empty array sets nothing
       found.push_back(std::move(item));
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/option_table.hpp"
+#include "cli/toml_tree.hpp"
 
 namespace gazetrace {
 
@@ -33,6 +34,9 @@ class TomlConfig : public CLI::Config {
  private:
   std::function<Target()> target_;
 };
+
+// The values that an option takes from a node, as the command line would carry them. Error(input) with path:line.
+std::vector<std::string> toml_values(const TomlNode& node, const OptionEntry& entry, const std::string& path);
 
 // The text of to_config, for a table alone.
 std::string settings_as_toml(const OptionTable& table, const std::string& title);

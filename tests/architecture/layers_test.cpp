@@ -47,7 +47,7 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"flicker", "metrics"},   {"compare", "compare"},   {"gaze_inspect", "gaze"},
     {"gaze_events", "gaze"},  {"gaze_process", "gaze"}, {"gaze_synth", "gaze"},
     {"motion", "camera"},     {"deformation", "scene"}, {"report", "report"},
-    {"video", "video"},
+    {"video", "video"},       {"sweep", "sweep"},
 };
 
 // Which files may meet which dependency.
@@ -61,7 +61,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"((OpenEXR/|Imf|Imath|Iex))", R"(src/output/exr\.cpp)"},
     {R"(tbb/|oneapi/)", R"(src/core/parallel\.cpp)"},
     {R"(CLI/)", R"(src/cli/.*)"},
-    {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_config\.cpp)"},
+    {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_tree\.cpp)"},
     {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf_walker\.hpp))"},
     {R"(pugixml)", R"(src/gaze/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/progress.hpp"
+#include "cli/sweep_jobs.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct SweepArguments {
+  std::string plan, output;
+  std::optional<FrameList> frames;
+  std::optional<int> threads;
+  bool dry_run = false, restart = false, quiet = false;
+  OptionTable table;
+};
+
+// A guess to tell minutes from days: a core traces about this many camera samples a second in a scene like Sponza.
+constexpr double kSamplesPerCoreSecond = 2.5e5;
+
+std::string estimate_text(const SweepPlan& plan, int threads) {
+  const SweepEstimate estimate = estimate_sweep(plan);
+  std::string text = fmt::format("{:<28}{:<24}{:>16}{:>9}  {}\n", "id", "role", "samples", "repeats", "setting");
+  for (const SweepEstimate::Row& row : estimate.rows) {
+    text += fmt::format("{:<28}{:<24}{:>16.0f}{:>9}  {}\n", row.id, row.role, row.samples, row.repeats, row.label);
+  }
+  const double seconds = estimate.samples / kSamplesPerCoreSecond / threads;
+  return text + fmt::format(
+                    "{} rows, {:.3g} samples; about {} at {:g} samples a second on each of {} threads, metrics "
+                    "apart\n",
+                    estimate.rows.size(), estimate.samples, duration_text(seconds), kSamplesPerCoreSecond, threads);
+}
+
+int run_sweep_command(const SweepArguments& arguments) {
+  if (arguments.plan.empty()) {
+    throw Error(ErrorKind::usage, "", "no plan was given", "gazetrace sweep PLAN.toml -o FOLDER");
+  }
+  SweepJobs jobs = make_sweep_jobs(read_sweep_file(arguments.plan), arguments.frames, arguments.threads);
+  SweepPlan& plan = jobs.plan;
+  plan.directory =
+      arguments.output.empty() ? std::filesystem::path(arguments.plan).stem().string() + ".sweep" : arguments.output;
+  plan.restart = arguments.restart;
+  if (!arguments.quiet) {
+    print_warnings(jobs.warnings);
+  }
+  if (arguments.dry_run) {
+    const int given = plan.tests.front().pipeline.threads;
+    print_result(
+        estimate_text(plan, given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))));
+    return exit_done;
+  }
+  prepare_sweep(plan);
+  SweepObserver observer;
+  if (!arguments.quiet) {
+    observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
+  }
+  const SweepResults results = run_sweep(plan, observer);
+  write_text_atomically(plan.directory + "/results.csv", sweep_csv(plan, results));
+  write_text_atomically(plan.directory + "/methods.txt", sweep_methods(plan, results));
+  write_text_atomically(plan.directory + "/results.json", sweep_json(plan, results));
+  print_result(sweep_table(plan, results));
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<SweepArguments>();
+  OptionTable& table = arguments->table;
+  table.value("plan", arguments->plan, "PLAN.toml", "Scenes, gazes, settings, reference and what to measure");
+  table.value(
+      "-o,--output", arguments->output, "FOLDER",
+      "Results, pictures and what is needed to go on after an interruption; default: the plan's name with .sweep");
+  table.value("--frames", arguments->frames, "LIST", "In place of the plan's");
+  table.value("--threads", arguments->threads, "N", "In place of the plan's; 0: as many as the machine has");
+  table.flag("--dry-run", arguments->dry_run, "Checks the plan, prints its rows and how much there is to do");
+  table.flag("--restart", arguments->restart, "Throws away what the folder holds of an earlier sweep");
+  table.flag("--quiet", arguments->quiet, "Tells nothing but the table");
+  bind_options(app, table);
+  app.footer(kExitCodesHelp);
+  return {[arguments] { return run_sweep_command(*arguments); }, nullptr};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A TOML file as plain values that know their lines. toml_tree.cpp is the only toml++ file.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace gazetrace {
+
+struct TomlNode {
+  enum class Kind { scalar, other, array, table };  // other: dates and times
+  Kind kind = Kind::other;
+  int line = 0;                                           // 1-based
+  std::string text;                                       // of a scalar, as the command line would carry it
+  std::vector<TomlNode> items;                            // of an array
+  std::vector<std::pair<std::string, TomlNode>> members;  // of a table, in the order of the file
+
+  [[nodiscard]] const TomlNode* find(std::string_view key) const;
+};
+
+// Error(input) with path:line for what is no TOML.
+TomlNode parse_toml(std::string_view text, const std::string& path);
+std::string toml_place(const std::string& path, const TomlNode& node);  // path:line
+// Error(input) unless it is a scalar.
+std::string toml_scalar(const TomlNode& node, const std::string& path);
+
+}  // namespace gazetrace

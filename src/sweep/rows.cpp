@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gazetrace {
+namespace {
+
+RasterSize size_of(const FramePlan& plan) {
+  return {plan.frames.front().width_px, plan.frames.front().height_px};
+}
+
+bool is_whole(double value) {
+  return value == std::floor(value) && value >= 1 && value < 4e9;
+}
+
+PlannedRow beside(const PlannedRow& test, SweepRole role, const std::string& suffix, const std::string& label) {
+  PlannedRow result = test;
+  result.row.id = test.row.id + "-" + suffix;
+  result.row.role = role;
+  result.row.of = test.row.id;
+  result.row.label = label;
+  result.row.baselines.clear();
+  result.row.published.clear();
+  return result;
+}
+
+std::string digest_of(const std::string& base, const std::string& what) {
+  return digest_settings({{"base", base}, {"what", what}});
+}
+
+void make_uniform(PlannedRow& row, double spp) {
+  FoveationSettings& foveation = row.pipeline.foveation;
+  foveation.falloff = "uniform";
+  foveation.retinal_velocity = false;
+  foveation.contrast_strength = 0;
+  foveation.budget_samples.reset();
+  foveation.budget_spp.reset();
+  if (is_whole(spp)) {
+    foveation.uniform_spp = static_cast<std::uint32_t>(spp);
+  } else {
+    foveation.budget_spp = spp;
+  }
+  for (SweepFrame& frame : row.row.frames) {
+    frame.rings_px.clear();
+  }
+  // A row of equal time stands for itself, even where its rate is that of another.
+  const char* purpose = row.row.role == SweepRole::equal_time ? "equal time, " : "";
+  const RasterSize size = size_of(row.plan);
+  row.digest =
+      digest_of(row.uniform, fmt::format("{}uniform {} on {}x{}", purpose, spp, size.width_px, size.height_px));
+}
+
+const char* suffix_of(SweepRole role) {
+  switch (role) {
+    case SweepRole::uniform_reference_rate:
+      return "uniform";
+    case SweepRole::equal_samples:
+      return "samples";
+    case SweepRole::equal_time:
+      return "time";
+    case SweepRole::low_resolution:
+      return "lowres";
+    default:
+      return "rate";
+  }
+}
+
+}  // namespace
+
+std::string to_string(SweepRole role) {
+  switch (role) {
+    case SweepRole::test:
+      return "test";
+    case SweepRole::uniform_reference_rate:
+      return "uniform-reference-rate";
+    case SweepRole::equal_samples:
+      return "equal-samples";
+    case SweepRole::equal_time:
+      return "equal-time";
+    case SweepRole::low_resolution:
+      return "low-resolution";
+    case SweepRole::uniform_rate:
+      return "uniform-rate";
+    case SweepRole::wrong_gaze:
+      return "wrong-gaze";
+  }
+  return {};
+}
+
+bool is_foveated(const SweepTest& test) {
+  return test.pipeline.foveation.falloff != "uniform" &&
+         std::any_of(test.plan.frames.begin(), test.plan.frames.end(),
+                     [](const FrameRequest& request) { return request.gaze_direction_render.has_value(); });
+}
+
+PlannedRow test_row(const SweepPlan& plan, std::size_t test) {
+  const SweepTest& from = plan.tests[test];
+  PlannedRow result;
+  SweepRow& row = result.row;
+  row.id = from.id;
+  row.scene = plan.scenes[from.scene].name;
+  row.gaze = from.gaze;
+  row.label = from.label;
+  row.settings = from.settings;
+  row.published = from.published;
+  row.reference = from.reference;
+  row.curve = digest_of(from.uniform_digest, "curve").substr(0, 8);
+  row.frames = sweep_frames(from.plan, from.pipeline.foveation, plan.measure.leave_out_s);
+  result.pipeline = from.pipeline;
+  result.pipeline.output = {};
+  result.plan = from.plan;
+  result.size = size_of(from.plan);
+  row.compared_pixels =
+      static_cast<double>(result.size.width_px) * result.size.height_px * static_cast<double>(from.plan.frames.size());
+  result.digest = from.digest;
+  result.uniform = from.uniform_digest;
+  result.test = test;
+  if (from.resolution_scale != 1) {
+    result.plan = resized(from.plan, scaled_size(result.size, from.resolution_scale));
+    result.digest = digest_of(from.digest, fmt::format("scale {}", from.resolution_scale));
+  }
+  return result;
+}
+
+PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, SweepRole role, double spp) {
+  const char* suffix = suffix_of(role);
+  const std::string label = role == SweepRole::equal_samples ? fmt::format("uniform, equal samples: {:.4g} spp", spp)
+                            : role == SweepRole::equal_time  ? fmt::format("uniform, equal time: {:.4g} spp", spp)
+                                                             : fmt::format("uniform, {:g} spp", spp);
+  const bool is_rate = role == SweepRole::uniform_rate;
+  PlannedRow result = beside(test, role, is_rate ? fmt::format("{}{:g}", suffix, spp) : suffix, label);
+  if (is_rate) {
+    result.row.of.clear();
+  }
+  result.plan = plan.tests[test.test].plan;
+  make_uniform(result, spp);
+  return result;
+}
+
+std::vector<PlannedRow> baselines_known_before(const SweepPlan& plan, const PlannedRow& test,
+                                               std::vector<std::string>& notes) {
+  std::vector<PlannedRow> rows;
+  const SweepBaselines& wanted = plan.measure.baselines;
+  const SweepTest& from = plan.tests[test.test];
+  if (!is_foveated(from)) {
+    return rows;
+  }
+  if (wanted.reference_rate) {
+    rows.push_back(uniform_row(plan, test, SweepRole::uniform_reference_rate, wanted.reference_spp));
+  }
+  for (const double spp : wanted.uniform_rates) {
+    if (!wanted.reference_rate || spp != wanted.reference_spp) {
+      rows.push_back(uniform_row(plan, test, SweepRole::uniform_rate, spp));
+    }
+  }
+  for (const std::string& wrong : wanted.wrong_gaze ? wrong_gazes() : std::vector<std::string>()) {
+    if (const auto other = with_wrong_gaze(test.plan, wrong)) {
+      PlannedRow row = beside(test, SweepRole::wrong_gaze, wrong, test.row.label + ", gaze " + wrong);
+      row.row.wrong = wrong;
+      row.plan = *other;
+      row.digest = digest_of(test.digest, "gaze " + wrong);
+      rows.push_back(std::move(row));
+    } else {
+      notes.push_back(fmt::format("{}/{}: no control with gaze {}: within 2 degrees of the right one", test.row.scene,
+                                  test.row.gaze, wrong));
+    }
+  }
+  return rows;
+}
+
+std::vector<PlannedRow> baselines_of_samples(const SweepPlan& plan, const PlannedRow& test, double spp) {
+  std::vector<PlannedRow> rows;
+  const SweepBaselines& wanted = plan.measure.baselines;
+  if (!is_foveated(plan.tests[test.test])) {
+    return rows;
+  }
+  if (wanted.equal_samples) {
+    rows.push_back(uniform_row(plan, test, SweepRole::equal_samples, spp));
+  }
+  const double full = wanted.reference_spp;
+  if (wanted.low_resolution && spp < full) {
+    const RasterSize small = scaled_size(test.size, std::sqrt(spp / full));
+    const double pixels = static_cast<double>(test.size.width_px) * test.size.height_px;
+    const double small_spp = spp * pixels / (static_cast<double>(small.width_px) * small.height_px);
+    PlannedRow row = uniform_row(plan, test, SweepRole::low_resolution, small_spp);
+    row.plan = resized(plan.tests[test.test].plan, small);
+    make_uniform(row, small_spp);
+    row.row.label =
+        fmt::format("uniform on {}x{} px, {:.4g} spp, upscaled", small.width_px, small.height_px, small_spp);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::optional<PlannedRow> cost_row(const SweepPlan& plan, const PlannedRow& test) {
+  const FoveationSettings& foveation = test.pipeline.foveation;
+  const std::uint32_t spp = plan.measure.efficiency_spp;
+  if (spp == 0 || !is_foveated(plan.tests[test.test]) || foveation.falloff != "regions" ||
+      foveation.border_blend_deg > 0) {
+    return std::nullopt;
+  }
+  PlannedRow row = test;
+  row.row.id += "-cost";
+  row.pipeline.foveation.region_samples = {spp, spp, spp};
+  row.pipeline.foveation.region_blocks_px = {1, 1};
+  row.pipeline.foveation.budget_spp.reset();
+  row.pipeline.foveation.budget_samples.reset();
+  row.digest = digest_of(test.digest, fmt::format("cost by region at {} spp", spp));
+  return row;
+}
+
+double planned_spp(const PlannedRow& row) {
+  double samples = 0;
+  double pixels = 0;
+  for (const FrameRequest& request : row.plan.frames) {
+    const SamplingMap map = make_sampling_map(row.pipeline.foveation, request.view, request.gaze_direction_render,
+                                              map_context(request, row.pipeline.trace.seed, row.pipeline.threads));
+    samples += static_cast<double>(map.samples());
+    pixels += static_cast<double>(request.width_px) * request.height_px;
+  }
+  return samples / pixels;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/state.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/text.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "gazetrace-sweep-state-1";
+
+// Numbers come back to the bit; what JSON cannot hold is null.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : std::isnan(value) ? Json() : Json(value > 0 ? "inf" : "-inf");
+}
+double number(const Json& json) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (json.is_number()) {
+    return json.get<double>();
+  }
+  return json == "inf" ? kInfinity : json == "-inf" ? -kInfinity : std::numeric_limits<double>::quiet_NaN();
+}
+
+Json json_of(const std::map<std::string, double>& values) {
+  Json json = Json::object();
+  for (const auto& [name, value] : values) {
+    json[name] = number(value);
+  }
+  return json;
+}
+std::map<std::string, double> values_of(const Json& json) {
+  std::map<std::string, double> values;
+  for (const auto& [name, value] : json.items()) {
+    values[name] = number(value);
+  }
+  return values;
+}
+
+Json json_of(const ScoreTable& scores) {
+  Json json = Json::object();
+  for (const auto& [metric, parts] : scores) {
+    json[metric] = json_of(parts);
+  }
+  return json;
+}
+ScoreTable table_of(const Json& json) {
+  ScoreTable scores;
+  for (const auto& [metric, parts] : json.items()) {
+    scores[metric] = values_of(parts);
+  }
+  return scores;
+}
+
+Json json_of(const SweepRun& run) {
+  Json frames = Json::array();
+  for (const SweepFrameRun& frame : run.frames) {
+    frames.push_back({{"time_s", frame.time_s}, {"scores", json_of(frame.scores)}});
+  }
+  return {{"time_s", run.time_s},
+          {"samples", run.samples},
+          {"rays", run.rays},
+          {"pixels", run.pixels},
+          {"lost_samples", run.lost_samples},
+          {"peak_mib", run.peak_mib},
+          {"trace_reconstruct_ms", run.trace_reconstruct_ms},
+          {"region_samples", json_of(run.region_samples)},
+          {"scores", json_of(run.scores)},
+          {"frames", std::move(frames)}};
+}
+SweepRun run_of(const Json& json) {
+  SweepRun run;
+  run.time_s = json.at("time_s");
+  run.samples = json.at("samples");
+  run.rays = json.at("rays");
+  run.pixels = json.at("pixels");
+  run.lost_samples = json.at("lost_samples");
+  run.peak_mib = json.at("peak_mib");
+  run.trace_reconstruct_ms = json.at("trace_reconstruct_ms");
+  run.region_samples = values_of(json.at("region_samples"));
+  run.scores = table_of(json.at("scores"));
+  for (const Json& frame : json.at("frames")) {
+    run.frames.push_back({frame.at("time_s"), table_of(frame.at("scores"))});
+  }
+  return run;
+}
+
+// Empty where there is no such file. What is there was written by save() of the same build, or it is damaged.
+template <class Read>
+auto load(const std::string& path, const Read& read) -> std::optional<decltype(read(Json()))> {
+  if (!fs::is_regular_file(path)) {
+    return std::nullopt;
+  }
+  try {
+    return read(Json::parse(read_text_file(path)));
+  } catch (const Json::exception&) {
+    throw Error(ErrorKind::input, path, "is damaged", "remove it, and what it held is measured again");
+  }
+}
+void save(const std::string& path, const Json& json) {
+  fs::create_directories(fs::path(path).parent_path());
+  write_text_atomically(path, json.dump(1) + "\n");
+}
+
+}  // namespace
+
+void claim_directory(const std::string& directory) {
+  const std::string path = directory + "/state.json";
+  const Json mine{{"format", kFormat}, {"build", build_digest()}, {"machine", machine_description()}};
+  const auto found = load(path, [](const Json& json) { return json; });
+  if (!found) {
+    save(path, mine);
+    return;
+  }
+  for (const char* what : {"format", "build", "machine"}) {
+    if (found->value(what, std::string()) != mine.at(what).get<std::string>()) {
+      throw Error(ErrorKind::input, directory,
+                  fmt::format("holds measurements of another {} ('{}', this is '{}'), and the two do not mix", what,
+                              found->value(what, std::string()), mine.at(what).get<std::string>()),
+                  "give another --output folder, or --restart to measure all again");
+    }
+  }
+}
+
+void clear_directory(const std::string& directory) {
+  const auto found = load(directory + "/state.json", [](const Json& json) { return json; });
+  if (!found) {
+    return;
+  }
+  for (const char* name :
+       {"runs", "references", "frames", "state.json", "results.json", "results.csv", "methods.txt"}) {
+    fs::remove_all(fs::path(directory) / name);
+  }
+}
+
+std::optional<StoredRun> load_run(const std::string& path) {
+  return load(path, [](const Json& json) {
+    StoredRun run;
+    run.png = json.at("png");
+    run.region_cpu_ms = values_of(json.at("region_cpu_ms"));
+    run.trace_ms = json.at("trace_ms");
+    run.trace_cpu_ms = json.at("trace_cpu_ms");
+    for (const auto& [gaze, one] : json.at("by_gaze").items()) {
+      run.by_gaze[gaze] = run_of(one);
+    }
+    return run;
+  });
+}
+
+void save_run(const std::string& path, const StoredRun& run) {
+  Json by_gaze = Json::object();
+  for (const auto& [gaze, one] : run.by_gaze) {
+    by_gaze[gaze] = json_of(one);
+  }
+  save(path, {{"png", run.png},
+              {"region_cpu_ms", json_of(run.region_cpu_ms)},
+              {"trace_ms", run.trace_ms},
+              {"trace_cpu_ms", run.trace_cpu_ms},
+              {"by_gaze", std::move(by_gaze)}});
+}
+
+std::optional<ScoreTable> load_scores(const std::string& path) {
+  return load(path, [](const Json& json) { return table_of(json); });
+}
+void save_scores(const std::string& path, const ScoreTable& scores) {
+  save(path, json_of(scores));
+}
+
+std::optional<std::map<std::int32_t, double>> load_exposures(const std::string& path, const std::string& digest) {
+  const auto found = load(path, [](const Json& json) { return json; });
+  if (!found || found->value("digest", std::string()) != digest) {
+    return std::nullopt;
+  }
+  std::map<std::int32_t, double> ev;
+  for (const Json& frame : found->at("exposures")) {
+    ev[frame.at("frame")] = frame.at("ev");
+  }
+  return ev;
+}
+void save_exposures(const std::string& path, const std::string& digest, const std::map<std::int32_t, double>& ev) {
+  Json exposures = Json::array();
+  for (const auto& [frame, stops] : ev) {
+    exposures.push_back({{"frame", frame}, {"ev", stops}});
+  }
+  save(path, {{"digest", digest}, {"exposures", std::move(exposures)}});
+}
+
+std::optional<RateSearch> load_rate(const std::string& path) {
+  return load(path, [](const Json& json) {
+    RateSearch search;
+    search.spp = json.at("spp");
+    for (const Json& one : json.at("tried")) {
+      search.tried.emplace_back(one.at("spp"), one.at("time_s"));
+    }
+    return search;
+  });
+}
+void save_rate(const std::string& path, const RateSearch& search) {
+  Json tried = Json::array();
+  for (const auto& [spp, time_s] : search.tried) {
+    tried.push_back({{"spp", spp}, {"time_s", time_s}});
+  }
+  save(path, {{"spp", search.spp}, {"tried", std::move(tried)}});
+}
+
+}  // namespace gazetrace
