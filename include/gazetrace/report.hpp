@@ -120,6 +120,7 @@ std::vector<ReportPlot> report_plots(const ReportData& data);
 // In words, from the numbers. Two values differ where their intervals do not overlap.
 struct ReportFindings {
   std::vector<std::string> summary;  // a sentence or two for each test row
+  std::string tally;                 // how many comparisons with baselines of the same cost came out how
   std::vector<std::string> losses;   // where a baseline is better or faster
   std::vector<std::string> caveats;  // what the measurements cannot say
 };

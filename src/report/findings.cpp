@@ -3,6 +3,7 @@
 // different only where their intervals do not overlap, which is stricter than a test of their difference.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "report/words.hpp"
@@ -107,6 +108,26 @@ void add_losses(const ReportData& data, const ReportRow& test, const ReportRow& 
   }
 }
 
+bool has_scores(const ReportData& data, const ReportRow& row) {
+  for (const ReportMetric& metric : data.metrics) {
+    const ReportScore* const score = find_score(row, metric.name, "whole");
+    if (score != nullptr && score->value) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Of whole frames, in the order of Verdict.
+using Tally = std::array<int, 5>;
+
+void count(const ReportData& data, const ReportRow& test, const ReportRow& baseline, Tally& tally) {
+  for (const ReportMetric& metric : data.metrics) {
+    ++tally[static_cast<std::size_t>(verdict(find_score(test, metric.name, "whole"),
+                                             find_score(baseline, metric.name, "whole"), metric.is_lower_better))];
+  }
+}
+
 bool is_honest_baseline(const ReportRow& row) {
   return row.role == "equal-time" || row.role == "equal-samples" || row.role == "low-resolution";
 }
@@ -115,6 +136,7 @@ bool is_honest_baseline(const ReportRow& row) {
 
 ReportFindings report_findings(const ReportData& data) {
   ReportFindings findings;
+  Tally tally{};
   for (const ReportRow* const test : test_rows(data)) {
     std::string sentence = place_of(*test) + ": " + speed_sentence(*test);
     bool has_baseline = false;
@@ -125,6 +147,7 @@ ReportFindings report_findings(const ReportData& data) {
       has_baseline = has_baseline || is_honest_baseline(*row);
       if (is_honest_baseline(*row)) {
         add_losses(data, *test, *row, findings.losses);
+        count(data, *test, *row, tally);
       }
     }
     findings.summary.push_back(sentence);
@@ -133,12 +156,21 @@ ReportFindings report_findings(const ReportData& data) {
           fmt::format("{}: it is slower than uniform sampling at the reference rate, speed-up {}.", place_of(*test),
                       with_interval(test->speed_up)));
     }
+    if (!has_scores(data, *test)) {
+      findings.caveats.push_back(
+          place_of(*test) + ": no metric has a score, so nothing is said of its quality. Scores are of fixations.");
+    }
     if (!has_baseline) {
       findings.caveats.push_back(place_of(*test) +
                                  ": no uniform run of equal time or equal samples stands beside it, so nothing is "
                                  "claimed for foveation there.");
     }
   }
+  findings.tally = fmt::format(
+      "Scores of whole frames beside uniform sampling of equal time, equal samples and low resolution: {} better, {} "
+      "worse, "
+      "{} not told apart, {} under the reference's own noise, {} not known.",
+      tally[0], tally[1], tally[2], tally[3], tally[4]);
   for (const ReportFixedQuality& fixed : data.fixed_quality) {
     if (!fixed.speed_up || !fixed.bound.empty()) {
       findings.caveats.push_back(fmt::format(

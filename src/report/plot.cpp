@@ -62,6 +62,34 @@ double PlotScale::at(double value) const {
   return axis_.at(log_ ? std::log10(value) : value);
 }
 
+double PlotScale::within(double value) const {
+  if (log_ && value <= 0) {
+    return axis_.begin;
+  }
+  return std::clamp(at(value), std::min(axis_.begin, axis_.end), std::max(axis_.begin, axis_.end));
+}
+
+std::vector<double> plotted_range(const std::vector<Estimate>& estimates) {
+  std::vector<double> values;
+  for (const Estimate& estimate : estimates) {
+    values.push_back(estimate.mean);
+  }
+  if (values.empty()) {
+    return values;
+  }
+  const double low = *std::min_element(values.begin(), values.end());
+  const double high = *std::max_element(values.begin(), values.end());
+  const double room = std::max(0.5 * (high - low), 0.1 * std::fabs(high));
+  const double least = low >= 0 ? std::max(low / 2, low - room) : low - room;
+  for (const Estimate& estimate : estimates) {
+    if (estimate.low) {
+      values.push_back(std::max(*estimate.low, least));
+      values.push_back(std::min(*estimate.high, high + room));
+    }
+  }
+  return values;
+}
+
 std::vector<double> PlotScale::ticks(double count) const {
   if (!log_) {
     return gazetrace::ticks(axis_, count);

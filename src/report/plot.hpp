@@ -21,6 +21,8 @@ class PlotScale {
   // Holds all `values` with some room; logarithmic where asked for and all are positive.
   PlotScale(const std::vector<double>& values, double begin, double end, bool log, bool from_zero = false);
   [[nodiscard]] double at(double value) const;
+  // The same, but not beyond the ends: of intervals that are wider than the picture.
+  [[nodiscard]] double within(double value) const;
   [[nodiscard]] std::vector<double> ticks(double count) const;
   [[nodiscard]] bool is_log() const { return log_; }
 
@@ -31,6 +33,9 @@ class PlotScale {
 
 // Whether so wide a range of positive values is better seen on a logarithmic scale.
 bool wants_log(const std::vector<double>& values);
+
+// What a scale should hold of measured values: all means, and intervals as far as they do not make the means small.
+std::vector<double> plotted_range(const std::vector<Estimate>& estimates);
 
 class PlotSvg {
  public:

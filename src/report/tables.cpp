@@ -242,11 +242,8 @@ std::string findings_html(const ReportFindings& findings) {
       findings.summary.empty() ? "<p>No foveated run has been measured.</p>\n" : list_html(findings.summary);
   if (!findings.summary.empty()) {
     text += "<div class=\"losses\"><h3>Where foveation loses</h3>\n";
-    text += findings.losses.empty()
-                ? std::string(
-                      "<p>Nowhere that the intervals show, against uniform sampling of equal time, equal samples "
-                      "or low resolution as far as they were measured.</p>\n")
-                : list_html(findings.losses);
+    text += "<p>" + escaped(findings.tally) + "</p>\n";
+    text += findings.losses.empty() ? std::string("<p>The intervals show no loss.</p>\n") : list_html(findings.losses);
     text += "</div>\n";
   }
   if (!findings.caveats.empty()) {

@@ -110,6 +110,14 @@ std::vector<const ReportRow*> family_of(const ReportData& data, const ReportRow&
   return family;
 }
 
+std::vector<const ReportRow*> plotted_family(const ReportData& data, const ReportRow& test) {
+  std::vector<const ReportRow*> family = family_of(data, test);
+  family.erase(
+      std::remove_if(family.begin(), family.end(), [](const ReportRow* row) { return row->role == "wrong-gaze"; }),
+      family.end());
+  return family;
+}
+
 std::vector<const ReportRow*> test_rows(const ReportData& data) {
   std::vector<const ReportRow*> tests;
   for (const ReportRow& row : data.rows) {

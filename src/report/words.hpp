@@ -31,6 +31,8 @@ const ReportScore* find_score(const ReportRow& row, const std::string& metric, c
 const ReportRow* find_row(const ReportData& data, const std::string& id);
 // A test row and its baselines, the test first, in the order of the roles: those that it names, and those that name it.
 std::vector<const ReportRow*> family_of(const ReportData& data, const ReportRow& test);
+// The same for diagrams: without controls about a wrong gaze, which are no settings to choose from.
+std::vector<const ReportRow*> plotted_family(const ReportData& data, const ReportRow& test);
 std::vector<const ReportRow*> test_rows(const ReportData& data);
 
 struct SceneGaze {

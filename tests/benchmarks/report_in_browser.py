@@ -161,9 +161,16 @@ def leave_controls(browser):
 
 
 def use_diagrams(browser, checks):
-    for kind in ("pareto", "time", "bands"):
-        drawn = browser.run("return document.querySelector(arguments[0] + ' svg') !== null", f"#plot-{kind}")
-        checks.that(drawn, f"the {kind} diagram is drawn")
+    drawn = set()
+    for place in range(browser.run("return document.getElementById('plot-set').options.length")):
+        choose(browser, "#plot-set", place)
+        here = {kind for kind in ("pareto", "time", "bands")
+                if browser.run("return document.querySelector(arguments[0] + ' svg') !== null", f"#plot-{kind}")}
+        said = browser.run("const e = document.getElementById('plot-none'); return e.hidden ? '' : e.textContent")
+        checks.that((len(here) == 3) == (said == ""), f"what is missing is said: {here} {said}")
+        drawn |= here
+    choose(browser, "#plot-set", 0)
+    checks.that(len(drawn) == 3, f"every kind of diagram is drawn somewhere: {drawn}")
     for select in ("#plot-set", "#plot-row", "#plot-metric"):
         count = browser.run("return document.querySelector(arguments[0]).options.length", select)
         checks.that(count > 0, f"{select} offers something")

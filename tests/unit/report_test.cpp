@@ -9,6 +9,7 @@
 
 #include "gazetrace/output.hpp"
 #include "report/fill.hpp"
+#include "report/plot.hpp"
 #include "report/tables.hpp"
 #include "report/words.hpp"
 #include "support/temporary_folder.hpp"
@@ -205,6 +206,33 @@ TEST(ReportFindings, LossesFollowFromIntervalsApart) {
   EXPECT_THAT(losses(score(0.12, 0.11, 0.13), score(0.10, 0.09, 0.111)), IsEmpty());  // they overlap
   EXPECT_THAT(losses(score(0.10, 0.09, 0.105), score(0.12, 0.11, 0.13)), IsEmpty());  // a gain
   EXPECT_THAT(losses(score(0.002, 0.0019, 0.0021, false), score(0.001, 0.0009, 0.0011, false)), IsEmpty());
+}
+
+TEST(ReportFindings, TallyCountsEveryComparison) {
+  ordered_json json =
+      results({row("t", "test", score(0.12, 0.11, 0.13)), row("a", "equal-time", score(0.10, 0.09, 0.105)),
+               row("b", "equal-samples", score(0.2, 0.19, 0.21)), row("c", "low-resolution", score(0.12, 0.11, 0.13)),
+               row("d", "uniform-reference-rate", score(0.01, 0.009, 0.011))});
+  EXPECT_THAT(report_findings(read(json)).tally,
+              HasSubstr("1 better, 1 worse, 1 not told apart, 0 under the reference's own noise, 0 not known"));
+  json["rows"][0]["scores"]["flip"]["whole"] = {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}};
+  EXPECT_THAT(report_findings(read(json)).tally, HasSubstr("3 not known"));
+  EXPECT_THAT(report_findings(read(json)).caveats, Contains(HasSubstr("no metric has a score")));
+}
+
+TEST(ReportPlots, IntervalsDoNotMakeTheMeansSmall) {
+  ordered_json wide = row("t", "test", score(0.1, -7, 8));
+  wide["time_s"] = estimate(0.02, -40, 40);
+  const std::vector<ReportPlot> plots =
+      report_plots(read(results({wide, row("u", "equal-time", score(0.2, 0.19, 0.21))})));
+  ASSERT_EQ(plots.size(), 1U);
+  EXPECT_THAT(plots[0].svg, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
+  EXPECT_THAT(plotted_range({{0.1, -7, 8}, {0.2, 0.19, 0.21}}),
+              testing::Each(testing::AllOf(testing::Ge(0.05), testing::Le(0.25))));
+  const PlotScale scale({1, 100}, 0, 10, true);
+  EXPECT_EQ(scale.within(-5), 0);
+  EXPECT_EQ(scale.within(1e9), 10);
+  EXPECT_NEAR(scale.within(10), 5, 1e-9);
 }
 
 TEST(ReportFindings, HigherMayBeBetter) {

@@ -19,14 +19,15 @@
   // Diagrams -----------------------------------------------------------------------------------------------------
   const plotSet = by("plot-set"), plotRow = by("plot-row"), plotMetric = by("plot-metric");
   const drawPlots = () => {
-    let any = false;
-    for (const kind of ["pareto", "time", "bands"]) {
+    const missing = [];
+    for (const [kind, words] of [["pareto", "error against time"], ["time", "error over time"], ["bands", "error by eccentricity"]]) {
       const plot = data.plots.find((one) => one.kind === kind && one.set === plotSet.value &&
         one.metric === plotMetric.value && (one.row === "" || one.row === plotRow.value));
       by("plot-" + kind).innerHTML = plot ? plot.svg : "";
-      any = any || Boolean(plot);
+      if (!plot) missing.push(words);
     }
-    by("plot-none").hidden = any;
+    by("plot-none").hidden = missing.length === 0;
+    by("plot-none").textContent = `Without scores for this choice: ${missing.join(", ")}.`;
   };
   const choosePlotSet = () => {
     fillSelect(plotRow, data.tests.filter((row) => row.set === plotSet.value).map((row) => [row.id, row.label]), plotRow.value);

@@ -9,18 +9,14 @@ namespace gazetrace {
 
 std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric) {
   std::vector<const ReportRow*> rows;
-  std::vector<double> values;
-  for (const ReportRow* const row : family_of(data, test)) {
+  std::vector<Estimate> estimates;
+  for (const ReportRow* const row : plotted_family(data, test)) {
     bool any = false;
     for (const std::string& band : data.bands) {
       const ReportScore* const score = find_score(*row, metric.name, band);
       if (score != nullptr && score->value) {
         any = true;
-        values.push_back(score->value->mean);
-        if (score->value->low) {
-          values.push_back(*score->value->low);
-          values.push_back(*score->value->high);
-        }
+        estimates.push_back(*score->value);
       }
     }
     if (any) {
@@ -30,6 +26,7 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   if (rows.empty()) {
     return std::nullopt;
   }
+  const std::vector<double> values = plotted_range(estimates);
   ReportPlot plot{"bands", test.scene, test.gaze, metric.name, test.id, "", "", "", ""};
   plot.name = plot_file_name({"bands", test.id, metric.name});
   plot.title =
@@ -75,7 +72,7 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
       }
       if (score->value->low) {
         svg.add(fmt::format("<path class=\"line\" stroke=\"#1c1c1c\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>",
-                            left + step / 2, y.at(*score->value->low), y.at(*score->value->high)));
+                            left + step / 2, y.within(*score->value->low), y.within(*score->value->high)));
       }
       if (!score->is_resolved) {
         any_unresolved = true;

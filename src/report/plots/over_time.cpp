@@ -69,7 +69,7 @@ std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& tes
   std::vector<Series> times;
   std::vector<Series> scores;
   std::vector<double> t_s;
-  for (const ReportRow* const row : family_of(data, test)) {
+  for (const ReportRow* const row : plotted_family(data, test)) {
     Series time{row, {}, {}};
     Series score{row, {}, {}};
     for (const ReportFrame& frame : row->frames) {

@@ -20,19 +20,12 @@ std::vector<Point> points_of(const ReportData& data, const SceneGaze& both, cons
   std::vector<Point> points;
   for (const ReportRow& row : data.rows) {
     const ReportScore* const score = find_score(row, metric, "whole");
-    if (row.scene == both.scene && row.gaze == both.gaze && row.time_s && score != nullptr && score->value) {
+    if (row.role != "wrong-gaze" && row.scene == both.scene && row.gaze == both.gaze && row.time_s &&
+        score != nullptr && score->value) {
       points.push_back({&row, *row.time_s, *score->value, score->is_resolved});
     }
   }
   return points;
-}
-
-void add_range(const Estimate& estimate, std::vector<double>& values) {
-  values.push_back(estimate.mean);
-  if (estimate.low) {
-    values.push_back(*estimate.low);
-    values.push_back(*estimate.high);
-  }
 }
 
 }  // namespace
@@ -46,12 +39,14 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
   plot.name = plot_file_name({"pareto", both.scene, both.gaze, metric.name});
   plot.title = fmt::format("{} against time, {}", metric.name, scene_gaze_text(both));
 
-  std::vector<double> times;
-  std::vector<double> scores;
+  std::vector<Estimate> all_times;
+  std::vector<Estimate> all_scores;
   for (const Point& point : points) {
-    add_range(point.time_s, times);
-    add_range(point.score, scores);
+    all_times.push_back(point.time_s);
+    all_scores.push_back(point.score);
   }
+  const std::vector<double> times = plotted_range(all_times);
+  const std::vector<double> scores = plotted_range(all_scores);
   const std::optional<double> floor = find_floor(data, both, metric.name, "whole");
   constexpr double kLeft = 84, kTop = 34, kBottom = 350;
   const double right = kPlotWidth - 26;
@@ -102,12 +97,12 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
     const std::string open =
         fmt::format("class=\"role-{}\" stroke=\"{}\" fill=\"none\"", escaped(role.name), role.color);
     if (point.time_s.low) {
-      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}H{:.1f}\"/>", open, x.at(*point.time_s.low), py,
-                          x.at(*point.time_s.high)));
+      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}H{:.1f}\"/>", open, x.within(*point.time_s.low), py,
+                          x.within(*point.time_s.high)));
     }
     if (point.score.low) {
-      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}V{:.1f}\"/>", open, px, y.at(*point.score.low),
-                          y.at(*point.score.high)));
+      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}V{:.1f}\"/>", open, px, y.within(*point.score.low),
+                          y.within(*point.score.high)));
     }
     svg.mark(role, px, py);
     svg.text(px + 8, py - 7, std::to_string(i + 1) + (point.is_resolved ? "" : " (unresolved)"), "start",
