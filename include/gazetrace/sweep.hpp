@@ -32,6 +32,7 @@ std::string to_string(SweepRole role);  // "test", "uniform-reference-rate", ...
 
 struct SweepScene {
   std::string name;
+  std::string description;                             // its settings, for the paragraph on methods
   std::function<std::shared_ptr<const Scene>()> load;  // called once, when the scene's turn comes
   TracerOptions tracer;
 };
@@ -92,9 +93,11 @@ struct SweepPlan {
   std::vector<SweepScene> scenes;
   std::vector<SweepReference> references;
   std::vector<SweepTest> tests;
+  NamedValues gazes;  // name and settings, for the paragraph on methods
   SweepMeasure measure;
   bool restart = false;         // throws away what the directory holds of an earlier sweep
-  NamedValues common_settings;  // what no row varies
+  NamedValues common_settings;  // what no row varies, all of it
+  NamedValues stated_settings;  // of these what was chosen, and what decides light and sampling anyway
   std::vector<std::string> varied;
 };
 

@@ -29,6 +29,12 @@ const std::vector<std::string> kTradeOffs{
 // Of these none is right by itself.
 const std::vector<std::string> kNeedTruth{"bounces", "pixel-cone", "bounce-cone"};
 
+// Told in the paragraph on methods though they may be the defaults.
+const std::vector<std::string> kAlwaysStated{
+    "size",   "fps",        "falloff", "region-samples", "region-blocks",  "region-angles", "angle-reading",
+    "filter", "accumulate", "bounces", "diffuse",        "light-sampling", "pixel-filter",  "sample-unit",
+    "seed",   "exposure",   "view",    "region-shape",   "clamp-indirect", "pixel-cone",    "bounce-cone"};
+
 bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -107,7 +113,10 @@ class JobMaker {
     }
     check_seeds();
     check_frames();
-    plan.common_settings = common_settings();
+    state_settings();
+    for (const SweepFileGaze& gaze : file_.gazes) {
+      plan.gazes.emplace_back(gaze.name, "(" + options_text(gaze.options) + ")");
+    }
     std::sort(jobs_.warnings.begin(), jobs_.warnings.end());
     jobs_.warnings.erase(std::unique(jobs_.warnings.begin(), jobs_.warnings.end()), jobs_.warnings.end());
     return std::move(jobs_);
@@ -216,7 +225,8 @@ class JobMaker {
     tracer.bvh_quality = job->settings.bvh;
     // One scene stays as it is; several take turns in memory.
     const std::shared_ptr<const Scene> kept = file_.scenes.size() == 1 ? loaded : nullptr;
-    jobs_.plan.scenes.push_back({scene.name, [job, kept] { return kept ? kept : load(*job); }, tracer});
+    jobs_.plan.scenes.push_back(
+        {scene.name, options_text(scene.options), [job, kept] { return kept ? kept : load(*job); }, tracer});
   }
 
   static std::shared_ptr<const Scene> load(const Job& job) {
@@ -426,23 +436,33 @@ class JobMaker {
   }
 
   // Every setting that reaches into pixels and has one value in all rows.
-  [[nodiscard]] NamedValues common_settings() const {
+  void state_settings() {
     std::vector<std::unique_ptr<Job>> jobs;
     for (const SweepFileScene& scene : file_.scenes) {
       for (std::size_t g = 0; g < std::max<std::size_t>(file_.gazes.size(), 1); ++g) {
         jobs.push_back(test_job(scene, file_.gazes.empty() ? nullptr : &file_.gazes[g], file_.settings.front()));
       }
     }
-    NamedValues settings;
     for (const OptionEntry& entry : jobs.front()->table.entries()) {
       const std::string value = jobs.front()->text_of(entry.name);
       const bool is_shared = std::all_of(
           jobs.begin(), jobs.end(), [&](const std::unique_ptr<Job>& job) { return job->text_of(entry.name) == value; });
       if (entry.influence != Influence::none && !is_among(file_.varied, entry.name) && is_shared && !value.empty()) {
-        settings.emplace_back(entry.name, value);
+        jobs_.plan.common_settings.emplace_back(entry.name, value);
+        if (entry.values() != entry.defaults || is_among(kAlwaysStated, entry.name)) {
+          jobs_.plan.stated_settings.emplace_back(entry.name, value);
+        }
       }
     }
-    return settings;
+  }
+
+  // As written, option by option.
+  static std::string options_text(const std::vector<Assignment>& options) {
+    std::string text;
+    for (const Assignment& option : options) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", option.option, fmt::join(option.values, ";"));
+    }
+    return text;
   }
 
   const SweepFile& file_;

@@ -20,6 +20,12 @@ std::string with_spread(const Interval& interval, const char* unit = "") {
   return text;
 }
 
+// "3.05 (2.91 to 3.2)": intervals of ratios are not symmetric.
+std::string ratio_text(const Interval& ratio) {
+  return fmt::format("{:.4g}", ratio.mean) +
+         (ratio.low && ratio.high ? fmt::format(" ({:.3g} to {:.3g})", *ratio.low, *ratio.high) : std::string());
+}
+
 std::string score_text(const SweepRow& row, const std::string& metric) {
   const auto parts = row.scores.find(metric);
   if (parts == row.scores.end() || !parts->second.contains("whole")) {
@@ -56,8 +62,8 @@ std::string published_text(const SweepResults& results) {
   std::string text;
   for (const SweepRow& row : results.rows) {
     for (const SweepPublished& other : row.published) {
-      text += fmt::format("  {}/{} {}: {} here, {:g} in {}\n", row.scene, row.gaze, row.label,
-                          with_spread(row.speed_up), other.speed_up, other.source);
+      text += fmt::format("  {}/{} {}: {} here, {:g} in {}\n", row.scene, row.gaze, row.label, ratio_text(row.speed_up),
+                          other.speed_up, other.source);
     }
   }
   return text.empty() ? text : "\nspeed-up beside what was published\n" + text;
@@ -93,6 +99,26 @@ std::string list_of(const NamedValues& values) {
   return text;
 }
 
+std::string scenes_of(const SweepPlan& plan) {
+  std::string text;
+  for (const SweepScene& scene : plan.scenes) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : "; ", scene.name, scene.description);
+  }
+  return text;
+}
+
+// Of the tests, each once.
+std::string settings_of(const SweepPlan& plan) {
+  std::vector<std::string> settings;
+  for (const SweepTest& test : plan.tests) {
+    const std::string one = fmt::format("{} ({})", test.label, list_of(test.settings));
+    if (std::find(settings.begin(), settings.end(), one) == settings.end()) {
+      settings.push_back(one);
+    }
+  }
+  return fmt::format("{}", fmt::join(settings, "; "));
+}
+
 }  // namespace
 
 std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
@@ -115,11 +141,11 @@ std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
       }
       std::string role = to_string(row.role);
       if (row.role == SweepRole::equal_time) {
-        role += fmt::format(" (reached {})", with_spread(row.reached));
+        role += fmt::format(", reached {}", ratio_text(row.reached));
       }
       lines.push_back({row.id, role, row.label, with_spread(row.time_s),
                        fmt::format("{:.4g}", row.runs.front().samples / row.compared_pixels),
-                       row.speed_up.mean > 0 ? with_spread(row.speed_up) : "-",
+                       row.speed_up.mean > 0 ? ratio_text(row.speed_up) : "-",
                        row.efficiency ? fmt::format("{:.0f} %", 100 * *row.efficiency) : "-"});
       for (const std::string& metric : metrics) {
         lines.back().push_back(score_text(row, metric));
@@ -141,10 +167,12 @@ std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
   const DisplayPhotometry& p = m.comparison.photometry;
   std::string text = fmt::format(
       "Images were rendered with gazetrace {} ({}, {}; build {}) on {}, using {} threads, at {}x{} pixels and {:.4g} "
-      "pixels per degree in the middle of the view. Settings that did not vary: {}. Varied: {}. ",
+      "pixels per degree in the middle of the view. Scenes: {}. Gaze: {}. Settings that did not vary: {}; options that "
+      "are "
+      "not named were at the defaults of this version (results.json lists them). Measured settings: {}. ",
       kVersion, build_description(), instruction_set(), results.build.substr(0, 12), results.machine, results.threads,
-      request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad), list_of(plan.common_settings),
-      fmt::join(plan.varied, ", "));
+      request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad), scenes_of(plan), list_of(plan.gazes),
+      list_of(plan.stated_settings), settings_of(plan));
   text += fmt::format(
       "The reference of each scene is the mean of {} renderings of {} samples per pixel with independent scramblings "
       "(seeds {}); no test shares a seed with it. Its own error was measured as the score of the mean of the first "

@@ -286,6 +286,13 @@ void complete_tables(const SweepPlan& plan, SweepResults& results) {
   add_fixed_quality(plan.measure, results);
   add_controls(plan.measure.comparison.metrics, results);
   add_notes(plan, results);
+  std::vector<std::string> notes;
+  for (const std::string& note : results.notes) {
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) {
+      notes.push_back(note);
+    }
+  }
+  results.notes = std::move(notes);
 }
 
 }  // namespace gazetrace

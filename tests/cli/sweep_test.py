@@ -106,7 +106,7 @@ class Sweep(harness.CliTest):
                          {"shuffled", "center", "mirrored"})
         self.assertTrue(results["fixed_quality"])
         self.assertIn("speed-up at fixed quality", table)
-        self.assertIn("equal-time (reached", table)
+        self.assertIn("equal-time, reached", table)
         self.assertIn("16 samples per pixel", (self.folder / "out/methods.txt").read_text())
         with open(self.folder / "out/results.csv", newline="") as file:
             lines = list(csv.DictReader(file))
