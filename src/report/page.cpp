@@ -203,7 +203,7 @@ std::string facts_line(const ReportData& data) {
   std::vector<std::string> facts;
   for (const ReportSettingsList* const list : {&data.build, &data.machine}) {
     for (const auto& [name, value] : *list) {
-      facts.push_back(name + " " + value);
+      facts.push_back(fmt::format("{} {}", name, value));
     }
   }
   if (!data.plan_file.empty()) {
@@ -239,8 +239,8 @@ ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
   }
   std::map<std::string, std::string> values{
       {"title", escaped(data.title)},
-      {"style", std::string(kReportPageStyle)},
-      {"script", std::string(kReportPageScript)},
+      {"style", std::string(report_page_style)},
+      {"script", std::string(report_page_script)},
       {"facts", facts_line(data)},
       {"summary", findings_html(report_findings(data))},
       {"tables", tables_html(data)},
@@ -248,7 +248,7 @@ ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
       {"notes", data.notes.empty() ? "<p>None.</p>" : list_html(data.notes)},
   };
   const auto dumped = [&] { return script_safe(json.dump(-1, ' ', false, Json::error_handler_t::replace)); };
-  double other_bytes = static_cast<double>(dumped().size() + kReportPageHtml.size());
+  double other_bytes = static_cast<double>(dumped().size() + report_page_html.size());
   for (const auto& [name, value] : values) {
     other_bytes += static_cast<double>(value.size());
   }
@@ -271,7 +271,7 @@ ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
   }
   values["pictures"] = escaped(fmt::format("{} The page's limit is {:g} MiB.", embedded.statement, settings.max_mib));
   values["data"] = dumped();
-  return {fill_template(kReportPageHtml, values), std::move(embedded.warnings)};
+  return {fill_template(report_page_html, values), std::move(embedded.warnings)};
 }
 
 }  // namespace gazetrace

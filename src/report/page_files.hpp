@@ -6,8 +6,8 @@
 
 namespace gazetrace {
 
-extern const std::string_view kReportPageHtml;
-extern const std::string_view kReportPageStyle;
-extern const std::string_view kReportPageScript;
+extern const std::string_view report_page_html;
+extern const std::string_view report_page_style;
+extern const std::string_view report_page_script;
 
 }  // namespace gazetrace

@@ -71,6 +71,7 @@ double PlotScale::within(double value) const {
 
 std::vector<double> plotted_range(const std::vector<Estimate>& estimates) {
   std::vector<double> values;
+  values.reserve(3 * estimates.size());
   for (const Estimate& estimate : estimates) {
     values.push_back(estimate.mean);
   }
@@ -96,7 +97,9 @@ std::vector<double> PlotScale::ticks(double count) const {
   }
   std::vector<double> values;
   const bool dense = axis_.high - axis_.low < 1.2;
-  for (double power = std::floor(axis_.low); power <= axis_.high; ++power) {
+  const auto first = static_cast<int>(std::floor(axis_.low));
+  const auto last = static_cast<int>(std::floor(axis_.high));
+  for (int power = first; power <= last; ++power) {
     for (const double digit : {1.0, 2.0, 3.0, 5.0, 7.0}) {
       const double value = digit * std::pow(10.0, power);
       const double place = std::log10(value);
@@ -169,8 +172,9 @@ void PlotSvg::axes(const PlotScale& x, const PlotScale& y, double left, double t
 double PlotSvg::legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top) {
   const double column = (kPlotWidth - left) / 2;
   for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::size_t row = i / 2;
     const double x = left + (i % 2 == 0 ? 0 : column);
-    const double y = top + kLegendLine * static_cast<double>(i / 2) + kLegendLine / 2;
+    const double y = top + kLegendLine * static_cast<double>(row) + kLegendLine / 2;
     const auto& [role, words] = entries[i];
     add(
         fmt::format("<path class=\"role-{}\" stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\" fill=\"none\" "
@@ -183,7 +187,8 @@ double PlotSvg::legend(const std::vector<std::pair<ReportRole, std::string>>& en
 }
 
 double legend_height(std::size_t entries) {
-  return kLegendLine * static_cast<double>((entries + 1) / 2);
+  const std::size_t rows = (entries + 1) / 2;
+  return kLegendLine * static_cast<double>(rows);
 }
 
 std::string plot_file_name(const std::vector<std::string>& parts) {

@@ -20,12 +20,12 @@ std::size_t role_rank(const std::string& name) {
 }  // namespace
 
 const std::vector<ReportRole>& report_roles() {
-  static const std::vector<ReportRole> kRoles{
+  static const std::vector<ReportRole> roles{
 #define REPORT_ROLE(name, words, color, dash, mark) {name, words, color, dash, mark},
 #include "report/roles.def"
 #undef REPORT_ROLE
   };
-  return kRoles;
+  return roles;
 }
 
 ReportRole report_role(const std::string& name) {

@@ -40,6 +40,7 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   const PlotScale x({0, static_cast<double>(data.bands.size())}, kLeft, right, false, true);
   const PlotScale y(values, kBottom, kTop, wants_log(values), bars);
   std::vector<std::pair<ReportRole, std::string>> entries;
+  entries.reserve(rows.size());
   for (const ReportRow* const row : rows) {
     entries.emplace_back(report_role(row->role), row->label);
   }

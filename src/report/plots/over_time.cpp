@@ -95,6 +95,7 @@ std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& tes
   constexpr double kLeft = 84, kTop = 34, kMiddle = 190, kSecond = 214, kBottom = 380, kStrip = 10;
   const double right = kPlotWidth - 26;
   std::vector<std::pair<ReportRole, std::string>> entries;
+  entries.reserve(times.size());
   for (const Series& series : times) {
     entries.emplace_back(report_role(series.row->role), series.row->label);
   }
