@@ -25,6 +25,7 @@ PlannedRow beside(const PlannedRow& test, SweepRole role, const std::string& suf
   result.row.label = label;
   result.row.baselines.clear();
   result.row.published.clear();
+  result.row.runs.clear();  // it is measured by itself
   return result;
 }
 

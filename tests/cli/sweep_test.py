@@ -71,6 +71,8 @@ class Sweep(harness.CliTest):
         table = self.run_ok("sweep", "plan.toml", "-o", "out").stdout
         results = self.results("out")
         rows = {row["id"]: row for row in results["rows"]}
+        # Every row was measured as often as asked, and none carries what another one measured.
+        self.assertEqual({len(row["time_s"]["values"]) for row in rows.values()}, {2})
         for gaze in ("moving", "left"):
             for k in (1, 2):
                 test = rows[f"box-{gaze}-{k}"]
