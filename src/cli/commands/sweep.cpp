@@ -31,9 +31,9 @@ constexpr double kSamplesPerCoreSecond = 2.5e5;
 
 std::string estimate_text(const SweepPlan& plan, int threads) {
   const SweepEstimate estimate = estimate_sweep(plan);
-  std::string text = fmt::format("{:<28}{:<24}{:>16}{:>9}  {}\n", "id", "role", "samples", "repeats", "setting");
+  std::string text = fmt::format("{:<34} {:<24}{:>16}{:>9}  {}\n", "id", "role", "samples", "repeats", "setting");
   for (const SweepEstimate::Row& row : estimate.rows) {
-    text += fmt::format("{:<28}{:<24}{:>16.0f}{:>9}  {}\n", row.id, row.role, row.samples, row.repeats, row.label);
+    text += fmt::format("{:<34} {:<24}{:>16.0f}{:>9}  {}\n", row.id, row.role, row.samples, row.repeats, row.label);
   }
   const double seconds = estimate.samples / kSamplesPerCoreSecond / threads;
   return text + fmt::format(
