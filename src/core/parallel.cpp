@@ -26,11 +26,7 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     }
     return;
   }
-  // More threads than cores are allowed when asked for; the library would print a warning of its own.
-  const auto most = static_cast<std::size_t>(std::max(resolved, tbb::info::default_concurrency()));
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, most);
-  tbb::task_arena arena(resolved);
-  arena.execute([&] {
+  const auto loop = [&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
@@ -39,7 +35,18 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
           }
         },
         tbb::simple_partitioner());
-  });
+  };
+  const int cores = tbb::info::default_concurrency();
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(resolved));
+  if (resolved <= cores) {
+    // A thread that waits in here takes no task of a loop outside, which might wait for it in turn.
+    tbb::this_task_arena::isolate(loop);
+    return;
+  }
+  // More threads than cores need an arena with room for them. Only then: each one made leaves some kilobytes behind
+  // in the task library.
+  tbb::task_arena arena(resolved);
+  arena.execute(loop);
 }
 
 }  // namespace gazetrace
