@@ -130,8 +130,9 @@ class LayeredBsdf {
     } else if (chosen(sheen_probability_)) {
       wi = sample_uniform_hemisphere(u, cos_sin_2pi(u.x));
     } else if (coat_probability_ > 0) {
-      wi = coat_frame_.to_world(coat_.sample(coat_wo_, u));
-      found = found && wi.z > 0;
+      const Vec3f coat_wi = coat_.sample(coat_wo_, u);
+      wi = coat_frame_.to_world(coat_wi);
+      found = found && wi.z > 0 && coat_wi.z > 0;  // beneath either surface it has no density
     } else {
       found = false;
     }

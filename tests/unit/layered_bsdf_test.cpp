@@ -46,6 +46,36 @@ TEST(LayeredBsdf, WithoutExtensionsIsTheBaseModel) {
   }
 }
 
+// The mean weight of samples is the integral of f cos, also where the coat's normal is not the base's: a direction that
+// the coat samples beneath its own horizon or the surface's has no density that could be divided by.
+TEST(LayeredBsdf, SamplesOfATiltedCoatAddUpToItsAlbedo) {
+  for (const float roughness : {0.3F, 0.6F, 1.0F}) {
+    for (const float tilt_deg : {0.0F, 25.0F, 60.0F}) {
+      LayeredSurface s = layered(0, 0.5F, {0.1F, 0.1F, 0.1F});
+      s.clearcoat = 1;
+      s.clearcoat_roughness = roughness;
+      const Vec2f tilt = cos_sin_2pi(tilt_deg / 360);
+      s.clearcoat_normal = {tilt.y, 0, tilt.x};
+      const Model model(s, direction(0.7F, 0.1F));
+      constexpr std::uint32_t kCount = 1 << 18;
+      double by_samples = 0;
+      double squares = 0;
+      double by_quadrature = 0;
+      for (std::uint32_t i = 0; i < kCount; ++i) {
+        const Vec2f u = sample_2d(kKey, i, 21);
+        const BsdfSample sample = model.sample(u, sample_2d(kKey, i, 22).x);
+        const double weight = sample.valid ? static_cast<double>(sample.weight.y) : 0.0;
+        by_samples += weight / kCount;
+        squares += weight * weight / kCount;
+        const Vec2f v = sample_2d(kKey, i, 23);
+        by_quadrature += static_cast<double>(model.evaluate(direction(v.x, v.y)).f_cos.y) * 2 * kPi / kCount;
+      }
+      const double error = std::sqrt((squares - by_samples * by_samples) / kCount);
+      EXPECT_NEAR(by_samples, by_quadrature, 5 * error + 2e-3 * by_quadrature) << roughness << ' ' << tilt_deg;
+    }
+  }
+}
+
 // f / (index on o's side)^2 both ways. Light that goes through is looked at from the other side, where z points the
 // other way.
 TEST(LayeredBsdf, IsReciprocal) {
