@@ -63,7 +63,7 @@ class PrimitiveReader {
     if (needs.uv1) {
       geometry.uv1 = vectors<Vec2f>("TEXCOORD_1", 2);
     }
-    read_colors(geometry);
+    read_colors(geometry, warnings);
     read_morph_targets(geometry);
     if (with_skin) {
       read_influences(geometry, warnings);
@@ -195,17 +195,29 @@ class PrimitiveReader {
     }
   }
 
-  void read_colors(Geometry& geometry) const {
+  // glTF 2.0, 3.7.2.1: colours are clamped to 0..1. More would be reflected than arrives.
+  void read_colors(Geometry& geometry, Warnings& warnings) const {
     const auto index = accessor("COLOR_0");
     if (!index) {
       return;
     }
     if (document_.accessors[static_cast<std::size_t>(*index)].components != 3) {
       geometry.colors = vectors<Vec4f>("COLOR_0", 4);
-      return;
+    } else {
+      for (const Vec3f& rgb : vectors<Vec3f>("COLOR_0", 3)) {
+        geometry.colors.push_back({rgb.x, rgb.y, rgb.z, 1});
+      }
     }
-    for (const Vec3f& rgb : vectors<Vec3f>("COLOR_0", 3)) {
-      geometry.colors.push_back({rgb.x, rgb.y, rgb.z, 1});
+    std::size_t outside = 0;
+    const auto unit = [](float value) { return value > 0 ? std::min(value, 1.0F) : 0.0F; };
+    for (Vec4f& color : geometry.colors) {
+      const Vec4f clamped{unit(color.x), unit(color.y), unit(color.z), unit(color.w)};
+      outside += clamped == color ? 0 : 1;
+      color = clamped;
+    }
+    if (outside > 0) {
+      warnings.push_back(place_ + ".attributes.COLOR_0: the colours of " + std::to_string(outside) +
+                         " vertices are outside 0..1 and were clamped");
     }
   }
 

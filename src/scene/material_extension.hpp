@@ -23,7 +23,7 @@ class ExtensionReader {
       : from_(from), place_(std::move(place)), request_(std::move(request)), warnings_(warnings) {}
 
   [[nodiscard]] float number(const char* key, double fallback, double low = 0,
-                             double high = std::numeric_limits<double>::infinity());
+                             double high = std::numeric_limits<float>::max());
   [[nodiscard]] Vec3f color(const char* key, const Vec3f& fallback, double high = 1);
   [[nodiscard]] Vec4f color_alpha(const char* key, const Vec4f& fallback);
   [[nodiscard]] TextureRef texture(const char* key, TextureUse use);

@@ -75,6 +75,27 @@ TEST(MaterialExtensions, EveryOneOfTheListMayBeRequiredAndChangesNothingWhenEmpt
   }
 }
 
+// Numbers that JSON can hold and floats cannot.
+TEST(MaterialExtensions, HugeNumbersAreClampedWithAWarning) {
+  const auto check = [](const std::string& name, const json& fields, const auto& value_of, float most) {
+    const Scene scene = load(with_extension(name, fields, {{"emissiveFactor", {1, 0, 0}}}));
+    EXPECT_EQ(value_of(scene.materials.at(0)), most) << name;
+    ASSERT_EQ(scene.warnings.size(), 1U) << name;
+    EXPECT_NE(scene.warnings[0].find("is outside its range and was clamped"), std::string::npos) << scene.warnings[0];
+  };
+  check(
+      "KHR_materials_dispersion", {{"dispersion", 1e300}}, [](const Material& m) { return m.dispersion; }, 1000);
+  check(
+      "KHR_materials_iridescence", {{"iridescenceFactor", 1}, {"iridescenceThicknessMaximum", 1e300}},
+      [](const Material& m) { return m.iridescence.thickness_max_nm; }, 1e6F);
+  check(
+      "KHR_materials_emissive_strength", {{"emissiveStrength", 1e300}}, [](const Material& m) { return m.emission.x; },
+      1e30F);
+  const Scene shining = load(with_extension("KHR_materials_emissive_strength", {{"emissiveStrength", 1e300}},
+                                            {{"emissiveFactor", {1, 0, 0}}}));
+  EXPECT_EQ(shining.materials.at(0).emission.y, 0);
+}
+
 TEST(MaterialExtensions, IorAndSpecular) {
   EXPECT_EQ(read("KHR_materials_ior", {{"ior", 1.33}}).ior, 1.33F);
   EXPECT_EQ(read("KHR_materials_ior", {{"ior", 0}}).ior, 0);

@@ -82,6 +82,16 @@ TEST(Primitives, PointsAndLinesAreListedAsIgnored) {
   }
 }
 
+TEST(Accessors, ColorsOutsideTheirRangeAreClampedWithAWarning) {
+  GltfBuilder builder;
+  builder.add_triangle({{"attributes", {{"COLOR_0", builder.add<float>({2, 0.5, -1, 1, 0, 1, 0, 3, 0, 0, 0, 0}, 4)}}}});
+  const Scene scene = load(builder);
+  EXPECT_EQ(only_geometry(scene).colors.at(0), (Vec4f{1, 0.5F, 0, 1}));
+  EXPECT_EQ(only_geometry(scene).colors.at(1), (Vec4f{0, 1, 0, 1}));
+  ASSERT_EQ(scene.warnings.size(), 1U);
+  EXPECT_NE(scene.warnings[0].find("colours of 2 vertices are outside 0..1"), std::string::npos) << scene.warnings[0];
+}
+
 TEST(Accessors, NormalizedIntegersFollowTheSpecification) {
   GltfBuilder builder;
   // unsigned: c / max; signed: max(c / max, -1)

@@ -5,7 +5,8 @@
 namespace gazetrace {
 
 void read_dispersion(ExtensionReader& from, Material& to) {
-  to.dispersion = from.number("dispersion", 0);
+  constexpr double kMost = 1000;  // an Abbe number of 0.02: no body comes near
+  to.dispersion = from.number("dispersion", 0, 0, kMost);
 }
 
 }  // namespace gazetrace
