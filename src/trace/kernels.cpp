@@ -47,7 +47,9 @@ FrameContext make_frame_context(const Scene& scene, const RenderScene& render_sc
   context.settings = settings;
   const SceneFeatures& features = render_scene.features;
   const bool light_found_by_chance = settings.light_sampling != LightSampling::light_only;
-  context.last_ray_needs_surface = features.unlit || (light_found_by_chance && features.emissive_triangles);
+  // Lamps that move or deform are found by chance alone.
+  const bool lamps_found_by_chance = light_found_by_chance || !scene.motions.empty() || !scene.deformations.empty();
+  context.last_ray_needs_surface = features.unlit || (lamps_found_by_chance && features.emissive_triangles);
   context.last_ray_finds_light =
       context.last_ray_needs_surface || (light_found_by_chance && scene.environment.present());
   return context;

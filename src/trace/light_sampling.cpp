@@ -13,6 +13,7 @@
 #include "core/luminance.hpp"
 #include "trace/duplicate_emitters.hpp"
 #include "trace/emission_average.hpp"
+#include "trace/shading_frame.hpp"
 
 namespace gazetrace {
 namespace {
@@ -29,6 +30,10 @@ constexpr std::size_t kTreeFromLights = 4;
 // A triangle smaller than this cannot be told from a line in float.
 constexpr double kSmallestArea = 1e-30;
 constexpr float kGrazing = 1e-6F;
+// Where a shadow ray may meet the lamp itself: roundings of the direction, over the slant that they are seen at. Lamps
+// seen at a lower one lose what is rounded away.
+constexpr float kDirectionUlps = 0x1p-20F;
+constexpr float kLeastSlant = 0.01F;
 
 bool usable(double weight) {
   return weight > 0 && std::isfinite(weight);
@@ -379,7 +384,10 @@ LightSample LightSampler::sample_triangle(std::uint32_t emitter, float selection
   result.distance = std::sqrt(distance_squared);
   result.direction = way / result.distance;
   result.radiance = triangle.emission;
-  result.pdf = density(triangle, selection, -dot(triangle.normal, result.direction), distance_squared);
+  const float cosine = -dot(triangle.normal, result.direction);
+  const float reach = largest(triangle.origin) + largest(triangle.edge1) + largest(triangle.edge2);
+  result.slack = (kOffsetUlps * reach + kDirectionUlps * result.distance) / std::max(std::fabs(cosine), kLeastSlant);
+  result.pdf = density(triangle, selection, cosine, distance_squared);
   result.valid = result.pdf > 0 && faces(normal, result.direction);
   return result;
 }

@@ -26,6 +26,7 @@ inline constexpr std::uint32_t kNoEmitter = 0xffffffffU;
 struct LightSample {
   Vec3f direction;     // world, towards the light, unit length
   float distance = 0;  // infinite: environment and directional lights
+  float slack = 0;     // how much nearer rounding may bring the light's own surface, m
   // Arriving along `direction` if nothing is in the way, before any cosine. Triangles: see `emitter`.
   // Delta lights: W/m^2 on a surface that faces the light, taking the place of radiance times solid angle.
   Vec3f radiance;

@@ -37,10 +37,16 @@ inline Vec3f bend_normal(const Vec3f& shading, const Vec3f& geometric, const Vec
           choose(shading.z, bent.z, geometric.z)};
 }
 
-// Points on a triangle carry rounding errors of a few ulps of its largest coordinate (interpolation, and the ray
-// library's own edge tests); an origin this far along the geometric normal clears them at any scale. The idea of
-// Waechter and Binder, "A Fast and Robust Method for Avoiding Self-Intersection" (Ray Tracing Gems, 2019, chapter 6),
-// with the ulp taken from the triangle instead of the point, so that no absolute constant is left.
+// Points on a triangle carry rounding errors of a few ulps of its coordinates (interpolation, and the ray library's own
+// edge tests); an origin this far along the geometric normal clears them at any scale. What counts is the error across
+// the triangle: each axis's largest coordinate times the normal's share of it, so that large level ground does not
+// swallow what stands on it; and the point's own coordinates, which the ray starts from. The idea of Waechter and
+// Binder, "A Fast and Robust Method for Avoiding Self-Intersection" (Ray Tracing Gems, 2019, chapter 6), with the ulp
+// taken from the triangle, so that no absolute constant is left.
 inline constexpr float kOffsetUlps = 0x1p-19F;
+
+inline float largest(const Vec3f& a) {
+  return std::max(std::max(std::fabs(a.x), std::fabs(a.y)), std::fabs(a.z));
+}
 
 }  // namespace gazetrace

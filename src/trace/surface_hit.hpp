@@ -30,10 +30,6 @@ inline Vec3f apply_columns(const std::array<Vec3f, 3>& columns, const Vec3f& p) 
   return columns[0] * p.x + columns[1] * p.y + columns[2] * p.z;
 }
 
-inline float largest(const Vec3f& a) {
-  return std::max(std::max(std::fabs(a.x), std::fabs(a.y)), std::fabs(a.z));
-}
-
 // Where a lane's hit lies in a texture.
 template <KernelFeatures kFeatures>
 Vec2f coordinates_at(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const ShadingTexture& texture) {
@@ -163,8 +159,6 @@ void place_hits(ChunkHits& chunk, std::size_t count) {
         const Vec3f p1 = chunk.corner[1].get(i);
         const Vec3f p2 = chunk.corner[2].get(i);
         const Vec3f position = p0 * w + p1 * u + p2 * v;
-        const float reach =
-            std::max(std::max(largest(p0), largest(p1)), std::max(largest(p2), chunk.instance_reach[i]));
         // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
         const Vec3f e1 = p1 - p0;
         const Vec3f e2 = p2 - p0;
@@ -180,7 +174,11 @@ void place_hits(ChunkHits& chunk, std::size_t count) {
         const float cosine = dot(flat, direction);
         const float side = cosine < 0 ? 1.0F : -1.0F;
         const Vec3f geometric = flat * side;
-        const float offset = reach * kOffsetUlps;
+        const Vec3f extent{std::max(std::max(std::fabs(p0.x), std::fabs(p1.x)), std::fabs(p2.x)),
+                           std::max(std::max(std::fabs(p0.y), std::fabs(p1.y)), std::fabs(p2.y)),
+                           std::max(std::max(std::fabs(p0.z), std::fabs(p1.z)), std::fabs(p2.z))};
+        const float across = std::fabs(flat.x) * extent.x + std::fabs(flat.y) * extent.y + std::fabs(flat.z) * extent.z;
+        const float offset = std::max(across, std::max(largest(position), chunk.instance_reach[i])) * kOffsetUlps;
         chunk.good[i] = face2 > 1e-30F ? 1.0F : 0.0F;
         chunk.side[i] = side;
         chunk.offset[i] = offset;

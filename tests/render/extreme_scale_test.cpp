@@ -16,7 +16,7 @@ namespace {
 using namespace test;
 
 constexpr int kSize = 32;
-constexpr std::uint32_t kSpp = 16;
+constexpr std::uint32_t kSpp = 64;  // one path that leaks is then less than the smallest share that is allowed
 
 struct Place {
   double scale, offset;  // half the box's side; distance of its centre from the origin along each axis
@@ -110,8 +110,8 @@ TEST(ExtremeScale, NoLightLeaksOutOfAClosedBox) {
     Scene scene = box_scene(place, turned, kind, false);
     scene.materials.push_back(diffuse_material({1, 1, 1}, {1, 1, 1}));
     scene.materials[1].double_sided = true;
-    // Shadow rays stop short of their light by 2^-18 of the largest coordinate, so that it does not shadow itself: a
-    // wall closer to it than that, two thousandths of the box a thousand half sides away, would not be seen.
+    // Shadow rays stop short of their light by a few times 2^-18 of the largest coordinate, so that it does not shadow
+    // itself: a wall closer to it than that, two thousandths of the box a thousand half sides away, would not be seen.
     const double lamp = place.offset > 0 ? 0.9 : 0.999;
     add_mesh(scene, box(1, false, 1), scene.instances[0].to_world * make_affine({}, {}, {lamp, lamp, lamp}));
     // A floor below, from where light samples aim at the lamp through the walls.

@@ -13,7 +13,7 @@ inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_
   ShadowBatch& shadows = work_.shadows;
   const std::size_t n = shadow_count_++;
   // Stops short of the light by what rounding may move either end, so that an emitter does not shadow itself.
-  const float tfar = light.distance * (1.0F - 1e-4F) - 2 * chunk.offset[i];
+  const float tfar = light.distance - light.slack - 2 * chunk.offset[i];
   set_ray(shadows.rays, n, leaving_point(i, light.direction), light.direction, 0.0F, tfar);
   shadows.rays.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex) + 1U);
   shadows.slot[n] = static_cast<std::uint32_t>(slot);

@@ -19,7 +19,7 @@ inline float PathKernel<kFeatures, kDiffuse>::weight_of_found_light(int vertex, 
   }
   switch (frame_.settings.light_sampling) {
     case LightSampling::light_only:
-      return 0.0F;
+      return pdf_light > 0 ? 0.0F : 1.0F;  // what light samples cannot find is left to rays
     case LightSampling::bsdf_only:
       return 1.0F;
     case LightSampling::mis:
@@ -58,6 +58,7 @@ template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::see_sky(int vertex, int count) {
   const RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];
   const PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
+  record(rays, count, RayShape::single, true);
   counts_.rejected +=
       static_cast<std::uint64_t>(frame_.scene->rays->occluded(rays, count, RayShape::single, work_.occluded.data));
   std::array<std::uint16_t, kChunk> sky;
