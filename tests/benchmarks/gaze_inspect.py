@@ -4,7 +4,7 @@
 memory at most. Makes the logs itself: EyeLink ASC, gazetrace CSV with a row for each eye, the same with a row for the
 mean as well (as `gaze convert` writes it), and a TSV of one's own.
 
-  tests/benchmarks/gaze_inspect.py build/dev/bin/gazetrace [--seconds 3600] [--folder /tmp/gaze_hour] [--svg]
+  tests/benchmarks/gaze_inspect.py build/dev/bin/gazetrace [--seconds 3600] [--folder build/gaze_hour] [--svg]
 """
 
 import argparse
@@ -104,7 +104,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
     parser.add_argument("--seconds", type=int, default=3600)
-    parser.add_argument("--folder", type=Path, default=Path("/tmp/gaze_hour"))
+    parser.add_argument("--folder", type=Path, default=Path("build/gaze_hour"))
     parser.add_argument("--svg", action="store_true", help="draw the picture as well")
     arguments = parser.parse_args()
     measure(arguments, make_logs(arguments.folder, arguments.seconds))

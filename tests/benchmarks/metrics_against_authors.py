@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""FLIP and FovVideoVDP beside their authors' programs (PyPI: flip-evaluator, pyfvvdp with a CPU PyTorch).
+"""FLIP and FovVideoVDP beside their authors' programs (Python packages flip-evaluator and pyfvvdp, with a PyTorch for the CPU).
 
     metrics_against_authors.py GAZETRACE [--pairs N] [--time]
 
