@@ -97,7 +97,7 @@ def instanced(path, triangles):
     """The same triangles as turned copies of one rock on 100 m of ground."""
     w = Writer(path)
     side = round(math.sqrt(TRIANGLES_A_ROCK / 2))
-    positions, faces = grid(side, side, 2, lambda x, z: 0)
+    positions, faces = grid(side, side, 2, lambda x, z: np.zeros_like(x))
     # The grid wrapped round a bumpy ball of 1 m.
     u, v = (positions[:, 0] + 1) * math.pi, (positions[:, 2] + 1) * math.pi / 2
     radius = 1 + 0.2 * np.sin(5 * v) * np.sin(4 * u)
