@@ -47,11 +47,11 @@ class Program:
         words = [self.path, "scene", str(scene), "--bvh", "--json", "--threads", self.threads]
         return json.loads(subprocess.run(words, check=True, capture_output=True, text=True).stdout)
 
-    def render(self, scene, size, spp, *more, seed=1):
+    def render(self, scene, size, spp, *more, seed=1, pixels="float"):
         """(row of timing.csv as numbers, picture's path)"""
         picture = self.folder / "picture.exr"
         words = [self.path, "render", str(scene), *VIEW, "--size", size, "--spp", str(spp), "--seed", str(seed), "--quiet",
-                 "--overwrite", "--threads", self.threads, "--exr-pixels", "float", "-o", str(picture), *more]
+                 "--overwrite", "--threads", self.threads, "--exr-pixels", pixels, "-o", str(picture), *more]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"{' '.join(words)}\n{done.stderr}")
@@ -91,8 +91,8 @@ def lights(program, _most):
 def width(program, _most):
     path = generate.unique(program.folder / "scene.gltf", 10**5)
     for n in (1, 4, 16, 64, 256, 1024, 2048, 4096, 8192, 16384):
-        row, _ = program.render(path, f"{n}x{max(1, n * 9 // 16)}", 1 if n > 2048 else 4 if n > 64 else 64, "--env", "sky", "--exr-pixels",
-                                "half")
+        row, _ = program.render(path, f"{n}x{max(1, n * 9 // 16)}", 1 if n > 2048 else 4 if n > 64 else 64, "--env", "sky",
+                                pixels="half")
         megapixels = row["pixels"] / 1e6
         yield {"n": n, "us_a_sample": sample_us(row), "reconstruct_ms_a_mpx": row["reconstruct_ms"] / megapixels,
                "write_ms_a_mpx": row["write_ms"] / megapixels, "peak_mib": row["peak_memory_mib"],
