@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 namespace gazetrace {
 namespace {
@@ -33,6 +35,14 @@ std::string digest_of(const std::string& base, const std::string& what) {
   return digest_settings({{"base", base}, {"what", what}});
 }
 
+// How samples are spread over the picture: of a uniform row there is nothing of that left but its rate.
+bool spreads_samples(const std::string& option) {
+  constexpr std::array<std::string_view, 9> kPrefixes{
+      "region-", "falloff", "budget-", "angle-reading", "sample-unit", "border-", "retinal-", "contrast-", "saccade-"};
+  return std::any_of(kPrefixes.begin(), kPrefixes.end(),
+                     [&](std::string_view prefix) { return option.starts_with(prefix); });
+}
+
 void make_uniform(PlannedRow& row, double spp) {
   FoveationSettings& foveation = row.pipeline.foveation;
   foveation.falloff = "uniform";
@@ -45,6 +55,10 @@ void make_uniform(PlannedRow& row, double spp) {
   } else {
     foveation.budget_spp = spp;
   }
+  NamedValues& settings = row.row.settings;
+  std::erase_if(settings, [](const auto& s) { return spreads_samples(s.first) || s.first == "spp"; });
+  settings.emplace_back("falloff", "uniform");
+  settings.emplace_back(is_whole(spp) ? "spp" : "budget-spp", fmt::format("{:.6g}", spp));
   for (SweepFrame& frame : row.row.frames) {
     frame.rings_px.clear();
   }

@@ -101,6 +101,10 @@ class Sweep(harness.CliTest):
         self.assertEqual(uniform[0]["scores"]["flip"]["whole"], uniform[1]["scores"]["flip"]["whole"])
         self.assertNotEqual(uniform[0]["scores"]["fovvideovdp"], uniform[1]["scores"]["fovvideovdp"])
         self.assertEqual({row["spp_mean"] for row in rows.values() if row["role"] == "uniform-rate"}, {1, 4})
+        # What a uniform row is listed with is its own: nothing of the test's regions.
+        same = next(row for row in rows.values() if row["role"] == "equal-samples")
+        self.assertEqual(same["settings"]["falloff"], "uniform")
+        self.assertFalse([key for key in same["settings"] if key.startswith("region-")])
         # The fixed gaze is 0.3 of the screen off the middle: mirrored and centred are wrong, shuffled is the same.
         self.assertEqual({row["wrong"] for row in rows.values() if row["gaze"] == "left" and row["wrong"]},
                          {"center", "mirrored"})
