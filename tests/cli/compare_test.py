@@ -4,21 +4,8 @@
 import csv
 import json
 import math
-import struct
-import zlib
 
 import harness
-
-
-def png(width, height, pixel):
-    """8-bit RGB; pixel(x, y) gives three code values."""
-    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in pixel(x, y)) for y in range(height))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
 def grey(value):
@@ -37,8 +24,8 @@ class Compare(harness.CliTest):
                     "-o", f"{folder}/p.####.exr", "-o", f"{folder}/p.####.png", "--quiet", *harness.SCREEN, *more)
 
     def test_uniform_pictures_by_hand(self):
-        self.write("a.png", png(32, 32, grey(100)))
-        self.write("b.png", png(32, 32, grey(110)))
+        self.write("a.png", harness.png(32, 32, grey(100)))
+        self.write("b.png", harness.png(32, 32, grey(110)))
         scores, _ = self.compare("a.png", "b.png", "--metrics", "psnr,mse,smape")
         light = [((v / 255 + 0.055) / 1.055) ** 2.4 for v in (100, 110)]
         self.assertAlmostEqual(scores["psnr"]["value"], -20 * math.log10(10 / 255), 5)
@@ -47,8 +34,8 @@ class Compare(harness.CliTest):
 
     def test_sequences_average_before_the_logarithm(self):
         for frame, value in ((1, 100), (2, 100), (3, 100)):
-            self.write(f"a/p.{frame:04}.png", png(32, 32, grey(value)))
-            self.write(f"b/p.{frame:04}.png", png(32, 32, grey(value + 10 * frame)))
+            self.write(f"a/p.{frame:04}.png", harness.png(32, 32, grey(value)))
+            self.write(f"b/p.{frame:04}.png", harness.png(32, 32, grey(value + 10 * frame)))
         scores, result = self.compare("a/p.####.png", "b/p.####.png", "--metrics", "psnr")
         mean = sum((10 * n / 255) ** 2 for n in (1, 2, 3)) / 3
         self.assertAlmostEqual(scores["psnr"]["value"], -10 * math.log10(mean), 5)
@@ -57,8 +44,8 @@ class Compare(harness.CliTest):
 
     def test_bands_are_in_degrees_around_the_gaze(self):
         # A screen of 36 x 36 cm at 60 cm and 36 pixels: a pixel is 0.95 degrees. The error is within 2 pixels of the gaze.
-        self.write("a.png", png(36, 36, grey(100)))
-        self.write("b.png", png(36, 36, lambda x, y: grey(110 if abs(x - 8) <= 1 and abs(y - 17) <= 1 else 100)(x, y)))
+        self.write("a.png", harness.png(36, 36, grey(100)))
+        self.write("b.png", harness.png(36, 36, lambda x, y: grey(110 if abs(x - 8) <= 1 and abs(y - 17) <= 1 else 100)(x, y)))
         screen = ["--screen-px", "36,36", "--screen-cm", "36,36", "--screen-distance-cm", "60"]
         scores, _ = self.compare("a.png", "b.png", "--metrics", "mse", *screen, "--gaze-at", f"{8.5 / 36},{17.5 / 36}")
         near = scores["mse"]["bands"]
@@ -154,7 +141,7 @@ class Compare(harness.CliTest):
     def test_what_needs_gaze_is_refused_without(self):
         for folder, value in (("a", 100), ("b", 110)):
             for frame in range(1, 9):
-                self.write(f"{folder}/p.{frame}.png", png(32, 32, grey(value + frame)))
+                self.write(f"{folder}/p.{frame}.png", harness.png(32, 32, grey(value + frame)))
         screen = ["--screen-px", "32,32", "--screen-cm", "36,36", "--screen-distance-cm", "60", "--fps", "8"]
         pair = ["compare", "a/p.#.png", "b/p.#.png", *screen]
         for name in ("flicker", "fovvideovdp"):
@@ -169,8 +156,8 @@ class Compare(harness.CliTest):
         self.assert_refused([*pair, "--region-angles", "9,3"], ["--region-angles"])
 
     def test_exit_code_over_a_limit(self):
-        self.write("a.png", png(32, 32, grey(100)))
-        self.write("b.png", png(32, 32, grey(110)))
+        self.write("a.png", harness.png(32, 32, grey(100)))
+        self.write("b.png", harness.png(32, 32, grey(110)))
         self.run_ok("compare", "a.png", "b.png", "--metrics", "flip,psnr", "--fail-above", "flip=0.9", "--fail-below", "psnr=20")
         self.assertEqual(self.run_program("compare", "a.png", "b.png", "--metrics", "flip", "--fail-above", "flip=0.01").returncode, 1)
         self.assertEqual(self.run_program("compare", "a.png", "b.png", "--metrics", "psnr", "--fail-below", "psnr=40").returncode, 1)
@@ -179,8 +166,8 @@ class Compare(harness.CliTest):
         self.assert_refused(["compare", "a.png", "b.png", "--fail-above", "smape=1"], ["--metrics"])
 
     def test_what_is_refused(self):
-        self.write("a.png", png(32, 32, grey(100)))
-        self.write("b.png", png(32, 31, grey(110)))
+        self.write("a.png", harness.png(32, 32, grey(100)))
+        self.write("b.png", harness.png(32, 31, grey(110)))
         self.assert_refused(["compare", "a.png", "b.png"], ["b.png", "32x31", "32x32"])
         self.assert_refused(["compare", "a.png", "none.png"], ["none.png"])
         self.assert_refused(["compare", "a.png", "none.####.png"], ["none.####.png"])
@@ -190,8 +177,8 @@ class Compare(harness.CliTest):
         self.write("c.png", b"no picture")
         self.assert_refused(["compare", "a.png", "c.png"], ["c.png"])
         for frame in (1, 2):
-            self.write(f"s/p.{frame}.png", png(16, 16, grey(100)))
-        self.write("t/p.1.png", png(16, 16, grey(100)))
+            self.write(f"s/p.{frame}.png", harness.png(16, 16, grey(100)))
+        self.write("t/p.1.png", harness.png(16, 16, grey(100)))
         self.assert_refused(["compare", "s/p.#.png", "t/p.#.png"], ["1-2", "--anyway"])
         self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--anyway")
         self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--frames", "1")
@@ -213,8 +200,8 @@ class Compare(harness.CliTest):
 
     def test_light_of_hdr_displays(self):
         # 8-bit codes as PQ: FovVideoVDP and FLIP read them as light, which the peak bounds.
-        self.write("a.png", png(32, 32, lambda x, y: (130,) * 3 if x // 4 % 2 else (150,) * 3))
-        self.write("b.png", png(32, 32, lambda x, y: (140,) * 3 if x // 4 % 2 else (150,) * 3))
+        self.write("a.png", harness.png(32, 32, lambda x, y: (130,) * 3 if x // 4 % 2 else (150,) * 3))
+        self.write("b.png", harness.png(32, 32, lambda x, y: (140,) * 3 if x // 4 % 2 else (150,) * 3))
         screen = ["--screen-px", "32,32", "--screen-cm", "10,10", "--screen-distance-cm", "60", "--gaze-at", "0.5,0.5"]
         pair = ["a.png", "b.png", "--metrics", "flip,mse,fovvideovdp", *screen]
         values = {}

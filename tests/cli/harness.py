@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 from pathlib import Path
 
 PROGRAM = os.environ["GAZETRACE"]
@@ -76,6 +77,17 @@ def gaze_csv(rows, header="t[ns],u[1],v[1],valid,eye"):
 
 def moving_gaze(samples=100, step_ns=10_000_000):
     return gaze_csv(f"{i * step_ns},{0.2 + 0.6 * i / samples:.4f},0.5,ok,cyclopean" for i in range(samples))
+
+
+def png(width, height, pixel):
+    """8-bit RGB; pixel(x, y) gives three code values."""
+    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in pixel(x, y)) for y in range(height))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
 class CliTest(unittest.TestCase):

@@ -3,10 +3,8 @@
 
 import json
 import shutil
-import struct
 import subprocess
 import unittest
-import zlib
 
 import harness
 
@@ -14,20 +12,10 @@ FFMPEG = shutil.which("ffmpeg") and shutil.which("ffprobe")
 NEEDS_FFMPEG = unittest.skipUnless(FFMPEG, "ffmpeg and ffprobe are not installed")
 
 
-def png(width, height, pixel):
-    rows = b"".join(b"\0" + bytes(c for x in range(width) for c in pixel(x, y)) for y in range(height))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
 class Video(harness.CliTest):
     def sequence(self, name="p", width=48, height=32, frames=5, pixel=lambda n, x, y: (40 * n, 4 * x, 6 * y)):
         for n in range(1, frames + 1):
-            self.write(f"{name}.{n:04}.png", png(width, height, lambda x, y: pixel(n, x, y)))
+            self.write(f"{name}.{n:04}.png", harness.png(width, height, lambda x, y: pixel(n, x, y)))
 
     def render(self, folder, *more):
         self.write("gaze.csv", harness.moving_gaze())
@@ -129,7 +117,7 @@ class Video(harness.CliTest):
     @NEEDS_FFMPEG
     def test_a_failure_leaves_nothing(self):
         self.sequence()
-        self.write("p.0004.png", png(16, 16, lambda x, y: (0, 0, 0)))
+        self.write("p.0004.png", harness.png(16, 16, lambda x, y: (0, 0, 0)))
         result = self.run_program("video", "p.####.png", "-o", "out.mp4", "--fps", "24")
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertIn("16x16", result.stderr)
