@@ -10,10 +10,10 @@ something else: replay, not viewing. Needs Pillow.
 
 A head-mounted recording (gaze and head from one log) and a desktop one (walk.csv is a path down the nave):
 
-  replay_sheet.py GAZETRACE vive.png Sponza.gltf --env kiara_1_dawn_1k.hdr --exposure auto-1.5 \\
+  replay_sheet.py GAZETRACE vive.png Sponza.gltf --env kiara_1_dawn_1k.hdr --exposure auto-1.5 --filter guided \\
     --gaze TESTNA01_360VR_Fist3.csv \\
     --camera-from-gaze --camera-start 8,1.7,-0.3 --camera-turn 40 --yfov 80 --size 640x360 --fps 2 --frames 1-24
-  replay_sheet.py GAZETRACE studio.png Sponza.gltf --env kiara_1_dawn_1k.hdr --exposure auto-1.5 --gaze data.tsv \\
+  replay_sheet.py GAZETRACE studio.png Sponza.gltf --env kiara_1_dawn_1k.hdr --exposure auto-1.5 --filter guided --gaze data.tsv \\
     --camera-path walk.csv --size 640x360 --fps 2 --frames 1-24
 """
 
