@@ -23,7 +23,8 @@ struct Estimate {
 };
 
 struct ReportScore {
-  std::string part;  // "whole", or a band of eccentricity such as "0-2.6"
+  // "whole"; a band of eccentricity such as "0-2.6"; a retinal region; "weighted", by cortical magnification
+  std::string part;
   std::optional<Estimate> value;
   bool is_resolved = true;  // false: under the floor, not told apart from the reference's own noise
 };
@@ -36,10 +37,17 @@ struct ReportFrame {
   std::optional<Vec2d> gaze_px;                         // gaze_true, continuous frame pixels
   std::vector<double> rings_px;                         // radii of region borders about the gaze
   std::string png;                                      // relative to the results; empty: none
+  std::string flip_png;                                 // the same of its map of FLIP
   std::map<std::string, std::optional<double>> scores;  // metric -> over the whole frame
 };
 
 using ReportSettingsList = std::vector<std::pair<std::string, std::string>>;  // option -> value, in the file's order
+
+// What somebody else printed for a setting.
+struct ReportPublished {
+  double speed_up = 0;  // t_uniform / t_foveated
+  std::string source;
+};
 
 // One measured setting: a test row, or a baseline of the test row that `of` names.
 struct ReportRow {
@@ -52,6 +60,7 @@ struct ReportRow {
   std::optional<Estimate> speed_up;  // t_uniform / t_foveated
   std::optional<Estimate> reached;   // of an equal-time row: its time over the test's
   std::map<std::string, std::vector<ReportScore>> scores;
+  std::vector<ReportPublished> published;
   std::vector<ReportFrame> frames;
 };
 

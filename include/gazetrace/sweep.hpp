@@ -108,6 +108,8 @@ struct Interval {
 };
 double student_t_quantile(double probability, int degrees_of_freedom);  // probability in (0.5, 1)
 Interval mean_interval(const std::vector<double>& values);
+// Of what is above zero, such as times: the geometric mean, its interval by the logarithms.
+Interval geometric_interval(const std::vector<double>& values);
 // Of numerator / denominator, measured in pairs: the geometric mean of the pairs' ratios, its interval by the
 // logarithms.
 Interval ratio_interval(const std::vector<double>& numerator, const std::vector<double>& denominator);
@@ -226,9 +228,24 @@ struct SweepObserver {
   std::function<void(const std::string& line)> tell;  // what is being done, for a person; may be empty
 };
 
+// A sweep's directory, locked as long as this lives or its process does: two sweeps at once would spoil each other's
+// times. Error(input) where another process has it.
+class SweepDirectory {
+ public:
+  explicit SweepDirectory(const std::string& path);
+  ~SweepDirectory();
+  SweepDirectory(SweepDirectory&& other) noexcept;
+  SweepDirectory& operator=(SweepDirectory&&) = delete;
+  SweepDirectory(const SweepDirectory&) = delete;
+  SweepDirectory& operator=(const SweepDirectory&) = delete;
+
+ private:
+  int lock_ = -1;
+};
+
 // Error(usage, input) for what contradicts itself, and where the directory holds work of another build or machine:
 // times and pictures of two builds are never mixed. To be called before anything is rendered; makes the directory.
-void prepare_sweep(const SweepPlan& plan);
+[[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan);
 // Renders what is not yet finished in the directory, in rounds over all rows of a scene, and puts together the tables.
 SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer);
 

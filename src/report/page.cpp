@@ -37,6 +37,7 @@ struct ViewerRun {
   std::string label;
   const ReportRow* row = nullptr;                // empty: the reference
   std::map<std::int32_t, std::string> pictures;  // frame -> path
+  std::map<std::int32_t, std::string> maps;      // of FLIP
 };
 struct ViewerSet {
   SceneGaze both;
@@ -53,10 +54,13 @@ ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
     if (!(SceneGaze{row.scene, row.gaze} == both) || !has_pictures) {
       continue;
     }
-    ViewerRun run{row.label, &row, {}};
+    ViewerRun run{row.label, &row, {}, {}};
     for (const ReportFrame& frame : row.frames) {
       if (!frame.png.empty()) {
         run.pictures[frame.index] = (fs::path(data.directory) / frame.png).string();
+      }
+      if (!frame.png.empty() && !frame.flip_png.empty()) {
+        run.maps[frame.index] = (fs::path(data.directory) / frame.flip_png).string();
       }
     }
     set.runs.push_back(std::move(run));
@@ -73,7 +77,7 @@ ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
   }
   const ReportScene* const scene = find_scene(data, both);
   if (scene != nullptr && !scene->reference_pattern.empty()) {
-    ViewerRun reference{"reference", nullptr, {}};
+    ViewerRun reference{"reference", nullptr, {}, {}};
     const std::string pattern = (fs::path(data.directory) / scene->reference_pattern).string();
     for (const ReportFrame* const frame : set.frames) {
       const std::string path = has_frame_number(pattern) ? frame_file_name(pattern, frame->index) : pattern;
@@ -94,8 +98,10 @@ std::vector<std::vector<std::string>> paths_of_frames(const std::vector<ViewerSe
     for (const ReportFrame* const frame : set.frames) {
       std::vector<std::string> of_frame;
       for (const ViewerRun& run : set.runs) {
-        if (const auto found = run.pictures.find(frame->index); found != run.pictures.end()) {
-          of_frame.push_back(found->second);
+        for (const auto* const kind : {&run.pictures, &run.maps}) {
+          if (const auto found = kind->find(frame->index); found != kind->end()) {
+            of_frame.push_back(found->second);
+          }
         }
       }
       paths.push_back(std::move(of_frame));
@@ -132,16 +138,17 @@ Json frame_json(const ReportFrame& frame, const EmbeddedPicture* picture) {
 class PictureList {
  public:
   PictureList(const EmbeddedPictures& embedded, Json& list) : embedded_(embedded), list_(list) {}
-  [[nodiscard]] const EmbeddedPicture* find(const ViewerRun& run, std::int32_t frame) const {
-    const auto path = run.pictures.find(frame);
-    if (path == run.pictures.end()) {
+  using Paths = std::map<std::int32_t, std::string>;
+  [[nodiscard]] const EmbeddedPicture* find(const Paths& paths, std::int32_t frame) const {
+    const auto path = paths.find(frame);
+    if (path == paths.end()) {
       return nullptr;
     }
     const auto found = embedded_.of_path.find(path->second);
     return found == embedded_.of_path.end() ? nullptr : &found->second;
   }
-  Json index(const ViewerRun& run, std::int32_t frame) {
-    const EmbeddedPicture* const picture = find(run, frame);
+  Json index(const Paths& paths, std::int32_t frame) {
+    const EmbeddedPicture* const picture = find(paths, frame);
     if (picture == nullptr) {
       return {};
     }
@@ -159,10 +166,15 @@ class PictureList {
 };
 
 Json run_json(const ViewerRun& run, const std::vector<const ReportFrame*>& frames, PictureList& pictures) {
-  Json json{{"label", run.label}, {"pictures", Json::array()}, {"times", Json::array()}, {"scores", Json::array()}};
+  Json json{{"label", run.label},
+            {"pictures", Json::array()},
+            {"maps", Json::array()},
+            {"times", Json::array()},
+            {"scores", Json::array()}};
   for (const ReportFrame* const frame : frames) {
     const ReportFrame* const own = find_frame(run.row, frame->index);
-    json["pictures"].push_back(pictures.index(run, frame->index));
+    json["pictures"].push_back(pictures.index(run.pictures, frame->index));
+    json["maps"].push_back(pictures.index(run.maps, frame->index));
     json["times"].push_back(own == nullptr ? Json() : number(own->time_s));
     Json scores = Json::object();
     if (own != nullptr) {
@@ -184,7 +196,7 @@ Json set_json(const ViewerSet& set, PictureList& pictures) {
   for (const ReportFrame* const frame : set.frames) {
     const EmbeddedPicture* any = nullptr;
     for (const ViewerRun& run : set.runs) {
-      any = any != nullptr ? any : pictures.find(run, frame->index);
+      any = any != nullptr ? any : pictures.find(run.pictures, frame->index);
     }
     if (any != nullptr) {
       shown.push_back(frame);

@@ -183,6 +183,7 @@ ReportFrame frame_of(const Node& node) {
   }
   frame.rings_px = numbers_of(node, "rings_px");
   frame.png = text_or(node, "png");
+  frame.flip_png = text_or(node, "flip_png");
   if (node.has("scores")) {
     for (const auto& [metric, value] : node.at("scores").members()) {
       frame.scores[metric] = value.is_null() ? std::nullopt : std::optional(value.number());
@@ -220,6 +221,11 @@ ReportRow row_of(const Node& node) {
         const bool resolved = !value.has("resolved") || value.at("resolved").truth();
         row.scores[metric].push_back({part, estimate_of(value), resolved});
       }
+    }
+  }
+  if (node.has("published")) {
+    for (const Node& other : node.at("published").items()) {
+      row.published.push_back({other.at("speed_up").number(), other.at("source").text()});
     }
   }
   if (node.has("frames")) {

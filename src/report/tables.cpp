@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "core/svg.hpp"
@@ -141,7 +142,8 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
 }
 
 void add_bands(Html& html, const ReportData& data, const SceneGaze& both, const std::vector<const ReportRow*>& rows) {
-  if (data.bands.empty()) {
+  const std::vector<std::string> parts = scored_parts(data);
+  if (parts.empty()) {
     return;
   }
   html.add("<details><summary>By eccentricity, {}</summary>\n", escaped(scene_gaze_text(both)));
@@ -149,23 +151,44 @@ void add_bands(Html& html, const ReportData& data, const SceneGaze& both, const 
   for (const ReportMetric& metric : data.metrics) {
     html.begin_table(metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
     std::vector<std::string> names{"run"};
-    for (std::size_t b = 0; b < data.bands.size(); ++b) {
-      const bool known = shares != data.band_pixel_share.end() && b < shares->second.size();
+    for (const std::string& part : parts) {
+      const auto band = std::find(data.bands.begin(), data.bands.end(), part);
+      const auto b = static_cast<std::size_t>(band - data.bands.begin());
+      const bool known = band != data.bands.end() && shares != data.band_pixel_share.end() && b < shares->second.size();
       names.push_back(
-          fmt::format("{} deg{}", escaped(data.bands[b]),
+          fmt::format("{}{}{}", escaped(part), band != data.bands.end() ? " deg" : "",
                       known ? fmt::format("<small>{:.3g} % of pixels</small>", 100 * shares->second[b]) : ""));
     }
     html.head(names);
     for (const ReportRow* const row : rows) {
       html.add("{}", row_head(*row));
-      for (const std::string& band : data.bands) {
-        html.score(find_score(*row, metric.name, band));
+      for (const std::string& part : parts) {
+        html.score(find_score(*row, metric.name, part));
       }
       html.add("</tr>\n");
     }
     html.end_table();
   }
   html.add("</details>\n");
+}
+
+void add_published(Html& html, const ReportData& data) {
+  const auto has = [](const ReportRow& row) { return !row.published.empty(); };
+  if (std::none_of(data.rows.begin(), data.rows.end(), has)) {
+    return;
+  }
+  html.begin_table("Speed-up beside what was published");
+  html.head({"scene and gaze", "run", "here", "published", "where"});
+  for (const ReportRow& row : data.rows) {
+    for (const ReportPublished& other : row.published) {
+      html.add("<tr><th scope=\"row\">{}</th>", escaped(scene_gaze_text({row.scene, row.gaze})));
+      html.cell(escaped(row.label));
+      html.estimate(row.speed_up);
+      html.cell(value_text(other.speed_up));
+      html.add("<td class=\"words\">{}</td></tr>\n", escaped(other.source));
+    }
+  }
+  html.end_table();
 }
 
 void add_fixed_quality(Html& html, const ReportData& data) {
@@ -216,6 +239,7 @@ std::string tables_html(const ReportData& data) {
     add_runs(html, data, both, rows);
     add_bands(html, data, both, rows);
   }
+  add_published(html, data);
   add_fixed_quality(html, data);
   add_controls(html, data);
   return html.str();

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "gazetrace/compare.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -65,7 +67,26 @@ std::string count_text(const std::optional<double>& value) {
 }
 
 std::string part_text(const std::string& part) {
-  return part == "whole" ? "the whole frame" : part + " degrees";
+  const auto& regions = kRetinalRegionNames;
+  if (std::find(regions.begin(), regions.end(), part) != regions.end()) {
+    return "the " + part + (part == "intermediate" ? " region" : "");
+  }
+  return part == "whole"      ? "the whole frame"
+         : part == "weighted" ? "the frame weighted by cortical magnification"
+                              : part + " degrees";
+}
+
+std::vector<std::string> scored_parts(const ReportData& data) {
+  std::vector<std::string> parts = data.bands;
+  parts.insert(parts.end(), kRetinalRegionNames.begin(), kRetinalRegionNames.end());
+  parts.emplace_back("weighted");
+  std::erase_if(parts, [&](const std::string& part) {
+    return std::none_of(data.rows.begin(), data.rows.end(), [&](const ReportRow& row) {
+      return std::any_of(row.scores.begin(), row.scores.end(),
+                         [&](const auto& metric) { return find_score(row, metric.first, part) != nullptr; });
+    });
+  });
+  return parts;
 }
 
 std::string metric_text(const ReportMetric& metric) {

@@ -23,7 +23,9 @@ std::string mean_text(const std::optional<Estimate>& value);
 std::string interval_text(const std::optional<Estimate>& value);  // "0.11 to 0.13"; empty without an interval
 std::string with_interval(const std::optional<Estimate>& value);  // "0.12 (0.11 to 0.13)"
 std::string count_text(const std::optional<double>& value);       // "1.23 M"
-std::string part_text(const std::string& part);                   // "2.6-5.2 degrees"
+std::string part_text(const std::string& part);                   // "2.6-5.2 degrees", "the fovea"
+// Parts of the picture that some run has scores of: bands from the gaze outwards, retinal regions, "weighted".
+std::vector<std::string> scored_parts(const ReportData& data);
 std::string metric_text(const ReportMetric& metric);              // "flip", with its unit
 std::string list_text(const std::vector<std::string>& items);     // "a, b and c"
 

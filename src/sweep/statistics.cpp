@@ -77,10 +77,11 @@ Interval mean_interval(const std::vector<double>& values) {
   return interval;
 }
 
-Interval ratio_interval(const std::vector<double>& numerator, const std::vector<double>& denominator) {
+Interval geometric_interval(const std::vector<double>& values) {
   std::vector<double> logarithms;
-  for (std::size_t i = 0; i < std::min(numerator.size(), denominator.size()); ++i) {
-    logarithms.push_back(std::log(numerator[i] / denominator[i]));
+  logarithms.reserve(values.size());
+  for (const double value : values) {
+    logarithms.push_back(std::log(value));
   }
   Interval interval = mean_interval(logarithms);
   interval.mean = std::exp(interval.mean);
@@ -89,6 +90,14 @@ Interval ratio_interval(const std::vector<double>& numerator, const std::vector<
     interval.high = std::exp(*interval.high);
   }
   return interval;
+}
+
+Interval ratio_interval(const std::vector<double>& numerator, const std::vector<double>& denominator) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < std::min(numerator.size(), denominator.size()); ++i) {
+    ratios.push_back(numerator[i] / denominator[i]);
+  }
+  return geometric_interval(ratios);
 }
 
 }  // namespace gazetrace

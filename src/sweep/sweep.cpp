@@ -325,12 +325,9 @@ class SceneSweep {
 
 }  // namespace
 
-void prepare_sweep(const SweepPlan& plan) {
+SweepDirectory prepare_sweep(const SweepPlan& plan) {
   if (plan.tests.empty()) {
     throw Error(ErrorKind::usage, plan.plan_file, "there is nothing to measure", "give a [[setting]] or a [grid]");
-  }
-  if (plan.restart) {
-    clear_directory(plan.directory);
   }
   std::error_code problem;
   std::filesystem::create_directories(plan.directory, problem);
@@ -338,7 +335,12 @@ void prepare_sweep(const SweepPlan& plan) {
     throw Error(ErrorKind::input, plan.directory, "the folder cannot be made: " + problem.message(),
                 "choose another --output folder");
   }
+  SweepDirectory directory(plan.directory);
+  if (plan.restart) {
+    clear_directory(plan.directory);
+  }
   claim_directory(plan.directory);
+  return directory;
 }
 
 SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer) {

@@ -266,7 +266,7 @@ std::map<std::string, std::map<std::string, SweepScore>> row_scores(const std::v
 
 void complete_tables(const SweepPlan& plan, SweepResults& results) {
   for (SweepRow& row : results.rows) {
-    row.time_s = mean_interval(times_of(row));
+    row.time_s = geometric_interval(times_of(row));
     for (const SweepReferenceResult& reference : results.references) {
       for (const SweepFloor& floor : reference.floors) {
         if (reference.key == row.reference && floor.gaze == row.gaze) {

@@ -224,6 +224,10 @@ def use_viewer(browser, checks):
     browser.click("[data-mode=blink]")
     checks.that(pressed(browser, "[data-mode=blink]"), "button blink is pressed")
     browser.click("[data-mode=slider]")
+    # The map of FLIP of B: there for runs of a sweep with FLIP, not for the reference.
+    leave_controls(browser)
+    checks.changes(lambda: browser.key("f"), "key f", lambda: browser.key("s"))
+    checks.changes(lambda: browser.click("[data-mode=flip]"), "button flip", lambda: browser.click("[data-mode=slider]"))
     # Which runs.
     for select in ("#view-a", "#view-b"):
         count = browser.run("return document.querySelector(arguments[0]).options.length", select)

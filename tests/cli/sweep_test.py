@@ -2,6 +2,7 @@
 """`gazetrace sweep` from outside: rows and baselines, numbers that must hold, interruption, plans that are refused."""
 
 import csv
+import fcntl
 import json
 import math
 import os
@@ -182,6 +183,14 @@ class Sweep(harness.CliTest):
         self.assert_refused(["sweep", "plan.toml", "-o", "out"], ["another build", "--restart"])
         self.run_ok("sweep", "plan.toml", "-o", "out", "--restart", "--quiet")
         self.assertEqual(json.loads((self.folder / "out/state.json").read_text()), state)
+
+    def test_one_sweep_at_a_time(self):
+        self.plan()
+        (self.folder / "out").mkdir()
+        with open(self.folder / "out/lock", "w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            self.assert_refused(["sweep", "plan.toml", "-o", "out"], ["out", "another sweep is at work there"])
+            self.assert_refused(["sweep", "plan.toml", "-o", "out", "--restart"], ["another sweep is at work there"])
 
     def test_dry_run_renders_nothing(self):
         self.plan()

@@ -83,6 +83,38 @@ TEST(ReportWords, BandsAndLists) {
   EXPECT_EQ(with_interval(Estimate{0.5, std::nullopt, std::nullopt}), "0.5");
 }
 
+// Regions and weighted scores stand beside the bands, in tables and diagrams, only where some run has them.
+TEST(ReportTables, RegionsAndWeightedScores) {
+  ordered_json test = row("t", "test", score(0.1, 0.09, 0.11));
+  EXPECT_THAT(scored_parts(read(results({test}))), testing::IsEmpty());
+  test["scores"]["flip"]["fovea"] = score(0.0123, 0.012, 0.0126);
+  test["scores"]["flip"]["weighted"] = score(0.0345, 0.034, 0.035);
+  test["scores"]["flip"]["2.6-60"] = score(0.0567, 0.056, 0.057);
+  const ReportData data = read(results({test}));
+  EXPECT_THAT(scored_parts(data), testing::ElementsAre("2.6-60", "fovea", "weighted"));
+  const std::string page = page_of(data);
+  for (const char* const value : {"0.0123", "0.0345", "0.0567"}) {
+    EXPECT_THAT(page, HasSubstr(value));
+  }
+  EXPECT_THAT(page, HasSubstr(">fovea</th>"));
+  EXPECT_THAT(page, HasSubstr("2.6-60 deg</th>"));
+  const std::vector<ReportPlot> plots = report_plots(data);
+  const auto bars = std::find_if(plots.begin(), plots.end(), [](const ReportPlot& p) { return p.kind == "bands"; });
+  ASSERT_NE(bars, plots.end());
+  EXPECT_THAT(bars->csv, HasSubstr(",fovea,0.0123,"));
+  EXPECT_EQ(part_text("intermediate"), "the intermediate region");
+}
+
+TEST(ReportTables, PublishedSpeedUpsStandBesideOurs) {
+  ordered_json test = row("t", "test", score(0.1, 0.09, 0.11));
+  EXPECT_THAT(page_of(read(results({test}))), Not(HasSubstr("what was published")));
+  test["published"] = {{{"speed_up", 57.25}, {"source", "Table <2>"}}};
+  const std::string page = page_of(read(results({test})));
+  EXPECT_THAT(page, HasSubstr("Speed-up beside what was published"));
+  EXPECT_THAT(page, HasSubstr("57.25"));
+  EXPECT_THAT(page, HasSubstr("Table &lt;2&gt;"));
+}
+
 TEST(ReportFill, OnlyTheTemplateIsLookedAt) {
   EXPECT_EQ(fill_template("a {{x}} b {{y}}{{x}}", {{"x", "{{y}}"}, {"y", "2"}}), "a {{y}} b 2{{y}}");
   EXPECT_EQ(fill_template("no place", {}), "no place");
@@ -294,7 +326,7 @@ TEST(ReportFamilies, BaselinesThatSeveralTestsShare) {
   for (std::size_t at = html.find("run u"); at != std::string::npos; at = html.find("run u", at + 1)) {
     ++count;
   }
-  EXPECT_EQ(count, 2U);  // runs, and bands
+  EXPECT_EQ(count, 1U);  // of runs: there are no bands
 }
 
 TEST(ReportResults, ComplaintsNameThePlace) {

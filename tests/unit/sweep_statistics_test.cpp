@@ -41,6 +41,17 @@ TEST(SweepStatistics, AnIntervalByHand) {
   EXPECT_TRUE(std::isnan(mean_interval({}).mean));
 }
 
+// log2 of 1, 2 and 4 has the mean 1 and the standard deviation 1: t(0.975, 2) = 4.30265 over the root of 3.
+TEST(SweepStatistics, IntervalsOfTimesStayAboveZero) {
+  const Interval interval = geometric_interval({1, 2, 4});
+  EXPECT_NEAR(interval.mean, 2, 1e-12);
+  EXPECT_NEAR(*interval.low, 2 / std::exp2(4.302652730 / std::sqrt(3.0)), 1e-6);
+  EXPECT_NEAR(*interval.high, 2 * std::exp2(4.302652730 / std::sqrt(3.0)), 1e-6);
+  const Interval two = geometric_interval({1, 1.5});
+  EXPECT_GT(*two.low, 0);
+  EXPECT_LT(*mean_interval({1, 1.5}).low, 0);
+}
+
 TEST(SweepStatistics, ARatioIsTakenPairByPair) {
   // Machine speed drifts by a factor of four, the ratio does not.
   const Interval interval = ratio_interval({8, 16, 32}, {2, 4, 8});

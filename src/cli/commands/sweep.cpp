@@ -60,7 +60,7 @@ int run_sweep_command(const SweepArguments& arguments) {
         estimate_text(plan, given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))));
     return exit_done;
   }
-  prepare_sweep(plan);
+  const SweepDirectory directory = prepare_sweep(plan);
   SweepObserver observer;
   if (!arguments.quiet) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };

@@ -94,7 +94,7 @@
     const inside = (middle) => Math.min(Math.max(middle - 0.5 / kZoom, 0), 1 - 1 / kZoom);
     return { x: inside(u), y: inside(v), size: 1 / kZoom };
   };
-  const drawPicture = (image, view, from, to) => {
+  const drawPicture = (image, view, from, to, missing = "no picture of this frame") => {
     const w = canvas.width, h = canvas.height;
     context.save();
     context.beginPath();
@@ -109,7 +109,7 @@
       context.fillStyle = "#fff";
       context.font = `${Math.max(12, w / 40)}px sans-serif`;
       context.textAlign = "center";
-      context.fillText("no picture of this frame", (from + to) / 2 * w, h / 2);
+      context.fillText(missing, (from + to) / 2 * w, h / 2);
     }
     context.restore();
   };
@@ -151,13 +151,14 @@
     const time = run.times[at];
     return `${name}: ${run.label}` + (time === null ? "" : `, ${shown(time)} s`) + (scores.length ? `, ${scores.join(", ")}` : "");
   };
-  const kModeWords = { slider: "A left, B right", a: "A", b: "B", difference: "difference", blink: "A and B in turns" };
+  const kModeWords = { slider: "A left, B right", a: "A", b: "B", difference: "difference", blink: "A and B in turns", flip: "map of FLIP of B" };
 
   let drawn = 0;
   const draw = async () => {
     const turn = ++drawn;
     const at = Number(scrub.value), frame = state.set.frames[at];
-    const [a, b] = await Promise.all([picture(state.a.pictures[at]), picture(state.b.pictures[at])]);
+    const [a, b, map] = await Promise.all([picture(state.a.pictures[at]), picture(state.b.pictures[at]),
+      state.mode === "flip" ? picture(state.b.maps[at]) : null]);
     if (turn !== drawn) return;
     const first = a || b;
     if (first && (canvas.width !== first.width || canvas.height !== first.height)) {
@@ -173,6 +174,8 @@
       context.fillRect(half * canvas.width - Math.max(1, canvas.width / 640), 0, Math.max(2, canvas.width / 320), canvas.height);
     } else if (state.mode === "difference") {
       drawDifference(a, b, view);
+    } else if (state.mode === "flip") {
+      drawPicture(map, view, 0, 1, "no map of FLIP for B");
     } else {
       const showB = state.mode === "b" || (state.mode === "blink" && state.phase === 1);
       drawPicture(showB ? b : a, view, 0, 1);
@@ -283,6 +286,7 @@
 
   const kKeys = {
     s: () => setMode("slider"), 1: () => setMode("a"), 2: () => setMode("b"), d: () => setMode("difference"), b: () => setMode("blink"),
+    f: () => setMode("flip"),
     g: () => toggle("gaze"), r: () => toggle("rings"), z: () => toggle("zoom"),
     ArrowLeft: () => step(-1), ArrowRight: () => step(1), " ": () => play(!state.playing),
   };

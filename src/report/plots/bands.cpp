@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error in each band of eccentricity: a test row and its baselines side by side.
+// Error in each band of eccentricity and each retinal region: a test row and its baselines side by side.
 #include <fmt/format.h>
 
 #include "report/csv.hpp"
@@ -8,12 +8,13 @@
 namespace gazetrace {
 
 std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric) {
+  const std::vector<std::string> parts = scored_parts(data);
   std::vector<const ReportRow*> rows;
   std::vector<Estimate> estimates;
   for (const ReportRow* const row : plotted_family(data, test)) {
     bool any = false;
-    for (const std::string& band : data.bands) {
-      const ReportScore* const score = find_score(*row, metric.name, band);
+    for (const std::string& part : parts) {
+      const ReportScore* const score = find_score(*row, metric.name, part);
       if (score != nullptr && score->value) {
         any = true;
         estimates.push_back(*score->value);
@@ -29,15 +30,15 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   const std::vector<double> values = plotted_range(estimates);
   ReportPlot plot{"bands", test.scene, test.gaze, metric.name, test.id, "", "", "", ""};
   plot.name = plot_file_name({"bands", test.id, metric.name});
-  plot.title =
-      fmt::format("{} by eccentricity, {}: {}", metric.name, scene_gaze_text({test.scene, test.gaze}), test.label);
+  plot.title = fmt::format("{} by eccentricity and region, {}: {}", metric.name,
+                           scene_gaze_text({test.scene, test.gaze}), test.label);
 
   // Bars begin at 0, which a logarithmic scale has not: a range of better-is-higher values close to each other is shown
   // as points without bars instead.
   const bool bars = metric.is_lower_better && !wants_log(values);
   constexpr double kLeft = 84, kTop = 34, kBottom = 320;
   const double right = kPlotWidth - 26;
-  const PlotScale x({0, static_cast<double>(data.bands.size())}, kLeft, right, false, true);
+  const PlotScale x({0, static_cast<double>(parts.size())}, kLeft, right, false, true);
   const PlotScale y(values, kBottom, kTop, wants_log(values), bars);
   std::vector<std::pair<ReportRole, std::string>> entries;
   entries.reserve(rows.size());
@@ -46,21 +47,25 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   }
   PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
   svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
-  svg.axes(x, y, kLeft, kTop, right, kBottom, "eccentricity [deg]",
+  svg.axes(x, y, kLeft, kTop, right, kBottom, "eccentricity [deg]; region",
            metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"), false);
-  const double band_width = (right - kLeft) / static_cast<double>(data.bands.size());
-  const double step = 0.8 * band_width / static_cast<double>(rows.size());
+  const double part_width = (right - kLeft) / static_cast<double>(parts.size());
+  const double step = 0.8 * part_width / static_cast<double>(rows.size());
   bool any_unresolved = false;
-  for (std::size_t b = 0; b < data.bands.size(); ++b) {
-    const double begin = kLeft + band_width * static_cast<double>(b);
-    svg.text(begin + band_width / 2, kBottom + 17, data.bands[b], "middle", " font-size=\"12\"");
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const double begin = kLeft + part_width * static_cast<double>(p);
+    if (p == data.bands.size()) {  // regions contain bands
+      svg.add(fmt::format("<path class=\"line\" stroke=\"#8a8a8a\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", begin,
+                          kTop, kBottom));
+    }
+    svg.text(begin + part_width / 2, kBottom + 17, parts[p], "middle", " font-size=\"12\"");
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const ReportScore* const score = find_score(*rows[r], metric.name, data.bands[b]);
+      const ReportScore* const score = find_score(*rows[r], metric.name, parts[p]);
       if (score == nullptr || !score->value) {
         continue;
       }
       const ReportRole role = report_role(rows[r]->role);
-      const double left = begin + 0.1 * band_width + step * static_cast<double>(r);
+      const double left = begin + 0.1 * part_width + step * static_cast<double>(r);
       const double top = y.at(score->value->mean);
       if (bars) {
         svg.add(fmt::format(
@@ -88,12 +93,12 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
            "start", " font-size=\"11\"");
   plot.svg = svg.str();
 
-  plot.csv = "id,role,label,band_deg," + csv_cell(metric.name) + ",low,high,resolved\n";
+  plot.csv = "id,role,label,part," + csv_cell(metric.name) + ",low,high,resolved\n";
   for (const ReportRow* const row : rows) {
-    for (const std::string& band : data.bands) {
-      if (const ReportScore* const score = find_score(*row, metric.name, band); score != nullptr) {
+    for (const std::string& part : parts) {
+      if (const ReportScore* const score = find_score(*row, metric.name, part); score != nullptr) {
         plot.csv += fmt::format("{},{},{},{},{},{}\n", csv_cell(row->id), csv_cell(row->role), csv_cell(row->label),
-                                band, csv_estimate(score->value), score->is_resolved ? 1 : 0);
+                                part, csv_estimate(score->value), score->is_resolved ? 1 : 0);
       }
     }
   }
