@@ -88,7 +88,7 @@ void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, co
 }
 
 RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
-    : materials(make_materials(scene, texels)), layered(make_layered_materials(scene)), features(features_of(scene)) {
+    : materials(make_materials(scene)), layered(make_layered_materials(scene)), features(features_of(scene)) {
   const Stopwatch watch;
   const AlphaSource* alpha = this;
   rays = std::make_unique<RayScene>(options.threads, options.bvh_quality == BvhQuality::high, alpha);

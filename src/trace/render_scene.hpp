@@ -77,7 +77,6 @@ class RenderScene : private AlphaSource {
   std::vector<ShapeWay> shape_ways;
   bool blurs = false;  // something moves while the shutter is open: rays need their time
   std::uint32_t first_instance_id = 0;
-  TexelStore texels;
   std::vector<ShadingMaterial> materials;
   LayeredMaterials layered;
   SceneFeatures features;

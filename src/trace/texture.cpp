@@ -2,6 +2,7 @@
 #include "trace/texture.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/texel.hpp"
 
@@ -93,32 +94,33 @@ void read_group(const TexelGroup& group, float u, float v, float level, TexelVal
   const TexelGroup::Level& image = group.levels[index];
   const Axis x = locate(u, image.width_px, group.wrap_u, group.nearest);
   const Axis y = locate(v, image.height_px, group.wrap_v, group.nearest);
-  const std::size_t bytes = group.wide ? 8 : 4;
-  const auto pitch = static_cast<std::size_t>(image.width_px) * bytes;
-  const std::uint8_t* low_row = image.texels + static_cast<std::size_t>(y.low) * pitch;
-  const std::uint8_t* high_row = image.texels + static_cast<std::size_t>(y.high) * pitch;
-  const std::uint8_t* a = low_row + static_cast<std::size_t>(x.low) * bytes;
-  const std::uint8_t* b = low_row + static_cast<std::size_t>(x.high) * bytes;
-  const std::uint8_t* c = high_row + static_cast<std::size_t>(x.low) * bytes;
-  const std::uint8_t* d = high_row + static_cast<std::size_t>(x.high) * bytes;
+  const auto pitch = 4 * static_cast<std::size_t>(image.width_px);
+  const std::size_t low_row = static_cast<std::size_t>(y.low) * pitch;
+  const std::size_t high_row = static_cast<std::size_t>(y.high) * pitch;
+  const std::size_t a = low_row + 4 * static_cast<std::size_t>(x.low);
+  const std::size_t b = low_row + 4 * static_cast<std::size_t>(x.high);
+  const std::size_t c = high_row + 4 * static_cast<std::size_t>(x.low);
+  const std::size_t d = high_row + 4 * static_cast<std::size_t>(x.high);
   const float wd = x.fraction * y.fraction;
   const float wb = x.fraction - wd;
   const float wc = y.fraction - wd;
   const float wa = 1.0F - x.fraction - wc;
-  const auto blend = [&](const std::array<float, 256>& table, std::size_t channel) {
-    return wa * table[a[channel]] + wb * table[b[channel]] + wc * table[c[channel]] + wd * table[d[channel]];
+  const auto blend = [&](const std::array<float, 256>& table, const std::uint8_t* texels) {
+    return wa * table[texels[a]] + wb * table[texels[b]] + wc * table[texels[c]] + wd * table[texels[d]];
   };
   if (group.base) {
     const std::array<float, 256>& table = group.srgb ? kSrgbToLinear : kUnorm;
-    out.base = {blend(table, 0), blend(table, 1), blend(table, 2)};
+    const std::uint8_t* texels = image.texels[0];
+    out.base = {blend(table, texels), blend(table, texels + 1), blend(table, texels + 2)};
   }
   if (group.metal_rough) {
-    out.roughness = blend(kUnorm, group.wide ? 3 : 1);
-    out.metallic = blend(kUnorm, group.wide ? 4 : 2);
+    const std::uint8_t* texels = image.texels[1];
+    out.roughness = blend(kUnorm, texels + 1);
+    out.metallic = blend(kUnorm, texels + 2);
   }
   if (group.normal) {
-    const std::size_t first = group.wide ? 5 : 0;
-    out.normal = {blend(kUnorm, first), blend(kUnorm, first + 1), blend(kUnorm, first + 2)};
+    const std::uint8_t* texels = image.texels[2];
+    out.normal = {blend(kUnorm, texels), blend(kUnorm, texels + 1), blend(kUnorm, texels + 2)};
   }
 }
 
@@ -218,54 +220,19 @@ TexelGroup start_group(const ShadingTexture& texture) {
   return group;
 }
 
-// Which scene textures a group interleaves, and the levels made from them: shared between materials.
-struct MadeGroup {
-  std::array<const Texture*, 3> members;
-  const TexelGroup::Level* levels;
-};
-
-const TexelGroup::Level* make_levels(const std::array<const Texture*, 3>& members, TexelStore& store,
-                                     std::vector<MadeGroup>& made) {
-  for (const MadeGroup& group : made) {
-    if (group.members == members) {
-      return group.levels;
+std::vector<TexelGroup::Level> levels_of(const std::array<const Texture*, 3>& members, const Texture& any_member) {
+  std::vector<TexelGroup::Level> levels(any_member.levels.size());
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    levels[l].width_px = any_member.levels[l].width_px;
+    levels[l].height_px = any_member.levels[l].height_px;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      levels[l].texels[m] = members[m] != nullptr ? members[m]->levels[l].rgba.data() : nullptr;
     }
   }
-  const Texture* single = nullptr;
-  int present = 0;
-  for (const Texture* member : members) {
-    single = member != nullptr ? member : single;
-    present += member != nullptr ? 1 : 0;
-  }
-  const std::size_t count = single->levels.size();
-  auto& levels = store.levels.emplace_back(std::make_unique<TexelGroup::Level[]>(count));
-  for (std::size_t l = 0; l < count; ++l) {
-    const Texture::Level& source = single->levels[l];
-    levels[l] = {source.rgba.data(), source.width_px, source.height_px};
-    if (present == 1) {
-      continue;
-    }
-    const std::size_t texels = source.rgba.size() / 4;
-    auto& wide = store.texels.emplace_back(8 * texels);
-    for (std::size_t i = 0; i < texels; ++i) {
-      std::uint8_t* to = wide.data() + 8 * i;
-      if (members[0] != nullptr) {
-        std::copy_n(members[0]->levels[l].rgba.data() + 4 * i, 3, to);
-      }
-      if (members[1] != nullptr) {
-        std::copy_n(members[1]->levels[l].rgba.data() + 4 * i + 1, 2, to + 3);
-      }
-      if (members[2] != nullptr) {
-        std::copy_n(members[2]->levels[l].rgba.data() + 4 * i, 3, to + 5);
-      }
-    }
-    levels[l].texels = wide.data();
-  }
-  made.push_back({members, levels.get()});
-  return levels.get();
+  return levels;
 }
 
-void make_groups(ShadingMaterial& material, TexelStore& store, std::vector<MadeGroup>& made) {
+void make_groups(ShadingMaterial& material) {
   const std::array<const ShadingTexture*, 3> textures{&material.base, &material.metal_rough, &material.normal};
   std::array<bool, 3> done{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -274,31 +241,27 @@ void make_groups(ShadingMaterial& material, TexelStore& store, std::vector<MadeG
     }
     TexelGroup group = start_group(*textures[i]);
     std::array<const Texture*, 3> members{};
-    int present = 0;
     for (std::size_t j = i; j < 3; ++j) {
       if (!done[j] && textures[j]->texture != nullptr &&
           (j == i ||
            (!group.deep && textures[j]->texture->format == TexelFormat::unorm8 && alike(*textures[i], *textures[j])))) {
         members[j] = textures[j]->texture;
         done[j] = true;
-        ++present;
       }
     }
     group.base = members[0] != nullptr;
     group.metal_rough = members[1] != nullptr;
     group.normal = members[2] != nullptr;
     group.srgb = group.base && members[0]->srgb;
-    group.wide = present > 1;
-    group.levels = make_levels(members, store, made);
+    group.levels = levels_of(members, *textures[i]->texture);
     material.any_own_uv = material.any_own_uv || textures[i]->own_uv;
-    material.groups[material.group_count++] = group;
+    material.groups[material.group_count++] = std::move(group);
   }
 }
 
 }  // namespace
 
-std::vector<ShadingMaterial> make_materials(const Scene& scene, TexelStore& store) {
-  std::vector<MadeGroup> made;
+std::vector<ShadingMaterial> make_materials(const Scene& scene) {
   std::vector<ShadingMaterial> result;
   result.reserve(scene.materials.size());
   for (const Material& source : scene.materials) {
@@ -337,8 +300,8 @@ std::vector<ShadingMaterial> make_materials(const Scene& scene, TexelStore& stor
     m.metal_rough = bind(source.metallic_roughness_texture);
     m.normal = bind(source.normal_texture);
     m.emit = bind(source.emissive_texture);
-    make_groups(m, store, made);
-    result.push_back(m);
+    make_groups(m);
+    result.push_back(std::move(m));
   }
   return result;
 }

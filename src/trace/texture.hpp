@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "gazetrace/scene.hpp"
@@ -20,20 +19,18 @@ struct ShadingTexture {
   std::array<float, 6> transform{1, 0, 0, 0, 1, 0};
 };
 
-// Textures of one material that share size, wrapping and coordinates, read in one go. Two or three of them are
-// interleaved into texels of 8 bytes: R G B of the base colour, roughness, metalness, X Y Z of the normal map; a single
-// one stays where the scene holds it, 4 bytes a texel.
+// Textures of one material that share size, wrapping and coordinates: a place is looked for once, and read in each
+// where the scene holds it.
 struct TexelGroup {
   struct Level {
-    const std::uint8_t* texels = nullptr;
+    std::array<const std::uint8_t*, 3> texels{};  // base colour; roughness and metalness; normals: 4 bytes a texel
     int width_px = 1, height_px = 1;
   };
-  const Level* levels = nullptr;
+  std::vector<Level> levels;
   float last_level = 0;
   float half_log2_texels = 0;  // 0.5 log2(width * height) of level 0
   bool base = false, metal_rough = false, normal = false;
   bool srgb = false;  // of the base colour
-  bool wide = false;  // 8 bytes
   bool deep = false;  // one texture with two bytes a channel
   bool nearest = false;
   TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
@@ -63,16 +60,11 @@ struct ShadingMaterial {
   ShadingTexture base, metal_rough, normal, emit;
 };
 
-// Owns what groups point to, the scene's own texels apart.
-struct TexelStore {
-  std::vector<std::unique_ptr<TexelGroup::Level[]>> levels;
-  std::vector<std::vector<std::uint8_t>> texels;
-};
-
 // The texture whose coordinates ShadingTriangle stores; nullptr without textures.
 const TextureRef* shared_coordinates(const Material& material);
 
-std::vector<ShadingMaterial> make_materials(const Scene& scene, TexelStore& store);
+// Keeps pointers into the scene's texels.
+std::vector<ShadingMaterial> make_materials(const Scene& scene);
 
 // Channels 0..1; RGB of sRGB textures are linearised per texel, before interpolation.
 Vec4f read_texture(const Texture& texture, float u, float v, float level);

@@ -159,8 +159,7 @@ TEST(DeepTexture, FloatsAreLinearAndMayExceedOne) {
 
   // As a base colour nothing reflects more than all light.
   scene.materials.emplace_back().base_color_texture.texture = 0;
-  TexelStore store;
-  const std::vector<ShadingMaterial> shading = make_materials(scene, store);
+  const std::vector<ShadingMaterial> shading = make_materials(scene);
   ASSERT_EQ(shading.at(0).group_count, 1);
   TexelValues values;
   read_group(shading[0].groups[0], 0.25F, 0, 0, values);
@@ -178,8 +177,7 @@ TEST(DeepTexture, ReadsBesideEightBitOnesOfTheSameSize) {
   material.base_color_texture.texture = 0;
   material.metallic_roughness_texture.texture = 1;
   material.normal_texture.texture = 2;
-  TexelStore store;
-  const std::vector<ShadingMaterial> shading = make_materials(scene, store);
+  const std::vector<ShadingMaterial> shading = make_materials(scene);
   ASSERT_EQ(shading.at(0).group_count, 2) << "the 8-bit ones share a read";
   TexelValues values;
   for (std::size_t g = 0; g < 2; ++g) {
