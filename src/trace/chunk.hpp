@@ -80,8 +80,8 @@ struct ChunkHits {
 
   // The scattering event; directions in the local frame about `shading` until they leave it.
   ChunkVec3 view;
-  ChunkVec3 light;       // direction of the light sample, world, then local
-  ChunkVec3 lit_normal;  // what LightSampler was told; only where it depends_on_place
+  ChunkVec3 light;                  // direction of the light sample, world, then local
+  ChunkVec3 lit_point, lit_normal;  // what LightSampler was told; only where it depends_on_place
   ChunkArray<float> table_fraction, e_average;
   ChunkArray<std::int32_t> table_row;
   std::array<ChunkArray<float>, 4> view_terms, light_terms, next_terms;  // AlbedoTerms e, b, lambert, burley

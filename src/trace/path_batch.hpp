@@ -55,8 +55,8 @@ struct PathBatch {
   BatchArray<float> r, g, b;  // throughput
   BatchArray<float> pdf;      // of the ray's direction, over solid angle
   BatchArray<float> cone_width, cone_spread;
-  BatchVec3 normal;  // that lights were chosen with where the ray left; only where LightSampler::depends_on_place
-  BatchArray<std::uint32_t> body;  // that the ray is in: index into LayeredMaterials::materials, kNoId: none
+  BatchVec3 lit_point, lit_normal;  // that lights were chosen with before it left; LightSampler::depends_on_place only
+  BatchArray<std::uint32_t> body;   // that the ray is in: index into LayeredMaterials::materials, kNoId: none
 };
 
 struct ShadowBatch {

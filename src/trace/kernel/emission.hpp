@@ -26,10 +26,10 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
       // The geometric normal is turned towards the ray; the sampler wants the sign of the front face.
       const float cosine = -dot(chunk.geometric.get(i), chunk.direction.get(i)) * chunk.side[i];
       const auto batch = static_cast<std::size_t>(vertex & 1);
-      const RayBatch& rays = work_.rays[batch];
+      const PathBatch& paths = work_.paths[batch];
       const std::size_t k = chunk.path[i];
-      pdf_light = frame_.lights->pdf_triangle(emitter, cosine, chunk.t[i] * chunk.t[i],
-                                              {rays.ox[k], rays.oy[k], rays.oz[k]}, work_.paths[batch].normal.get(k));
+      pdf_light = frame_.lights->pdf_triangle(emitter, cosine, chunk.t[i] * chunk.t[i], paths.lit_point.get(k),
+                                              paths.lit_normal.get(k));
     }
     weight = weight_of_found_light(vertex, pdf_bsdf, pdf_light);
   }

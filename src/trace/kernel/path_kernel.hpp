@@ -140,6 +140,12 @@ class PathKernel {
     }
     return work_.chunk.geometric.get(i);
   }
+  // Where the lights of hit i are chosen from. Where their densities depend on it: where the next ray leaves from, so
+  // that both ways of finding a light see the same, or midway between the two sides that it may leave on.
+  [[nodiscard]] Vec3f lit_point(std::size_t i, const Vec3f& side) const {
+    const bool one_side = side.x != 0 || side.y != 0 || side.z != 0;
+    return frame_.lights->depends_on_place() && one_side ? work_.chunk.origin.get(i) : work_.chunk.position.get(i);
+  }
 
   // generate.hpp
   void start(int count);

@@ -42,15 +42,14 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
     std::array<Vec3f, kChunk> positions;
     std::array<Vec3f, kChunk> normals;
     std::array<float, kChunk> choice;
-    // Where densities depend on the point, it is the one that a ray found later still knows: its origin.
-    const ChunkVec3& point = frame_.lights->depends_on_place() ? chunk.origin : chunk.position;
     for (std::size_t i = 0; i < count; ++i) {
-      positions[i] = point.get(i);
       normals[i] = lit_side(i);
+      positions[i] = lit_point(i, normals[i]);
       choice[i] = select[i].x;
     }
     if (frame_.lights->depends_on_place()) {
       for (std::size_t i = 0; i < count; ++i) {
+        work_.chunk.lit_point.set(i, positions[i]);
         work_.chunk.lit_normal.set(i, normals[i]);
       }
     }
@@ -234,7 +233,8 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
   if (frame_.lights->depends_on_place()) {
-    state.normal.set(n, chunk.lit_normal.get(i));
+    state.lit_point.set(n, chunk.lit_point.get(i));
+    state.lit_normal.set(n, chunk.lit_normal.get(i));
   }
   state.cone_width[n] = chunk.cone_width[i];
   state.cone_spread[n] = chunk.cone_spread[i] + static_cast<float>(frame_.settings.bounce_cone_rad) /
