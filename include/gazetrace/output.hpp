@@ -69,6 +69,7 @@ struct FrameHeader {
   GazeAtTime gaze_render, gaze_true;
   std::vector<std::string> gaze_processing;  // FramePlan::gaze_processing
   double exposure_ev = 0;
+  double enhance_contrast = 0;  // above 0: the picture is no estimate of radiance any more
   std::uint64_t seed = 0;
   std::string settings_digest;  // hex
   std::string software;         // "gazetrace 0.1.0"

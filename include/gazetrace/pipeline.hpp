@@ -24,6 +24,7 @@ struct PipelineSettings {
   TraceSettings trace;
   std::string filter = "linear";
   AccumulateSettings accumulate;
+  double enhance_contrast = 0;  // enhance.hpp; after accumulation and the choice of an exposure
   ExposureSettings exposure;
   OutputSettings output;  // without any pattern nothing is written, timing and run record included
   FrameRate fps;

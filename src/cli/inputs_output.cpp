@@ -174,6 +174,14 @@ void check_settings(const JobSettings& job) {
   check_registry_name("--falloff", "falloff", job.foveation.falloff, falloffs());
   check_foveation(job.foveation);
   check_registry_name("--filter", "filter", job.filter, reconstruction_filters());
+  if (!(job.enhance_contrast >= 0 && job.enhance_contrast <= 1)) {
+    throw Error(ErrorKind::usage, "--enhance-contrast", fmt::format("{} is outside 0..1", job.enhance_contrast));
+  }
+  if (job.enhance_contrast > 0 && (job.filter == "none" || filter_needs_guides(job.filter))) {
+    throw Error(ErrorKind::usage, "--enhance-contrast",
+                fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
+                "give --filter linear, push-pull or tent");
+  }
   if (job.trace.max_bounces < 0 || job.trace.max_bounces > 1000) {
     throw Error(ErrorKind::usage, "--bounces", fmt::format("{} is outside 0..1000", job.trace.max_bounces));
   }
@@ -238,6 +246,7 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
   settings.filter = job.filter;
+  settings.enhance_contrast = job.enhance_contrast;
   settings.accumulate = job.accumulate;
   settings.checkpoint = job.checkpoint;
   settings.checkpoint_every = job.checkpoint_every;

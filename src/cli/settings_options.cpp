@@ -143,6 +143,11 @@ void add_frame_options(OptionTable& table, JobSettings& job) {
 void add_reconstruction_options(OptionTable& table, JobSettings& job) {
   table.group("Between the samples");
   table.value("--filter", job.filter, "NAME", "Fills pixels between samples ('gazetrace list filters')", kPixels);
+  table.value(
+      "--enhance-contrast", job.enhance_contrast, "0..1",
+      "An enhancement, no estimate: raises what contrast blocks have left, as the eye's periphery misses contrast "
+      "more than detail; 1: a wave of half the blocks' limit is as strong as at full rate",
+      kPixels);
 }
 
 void add_accumulate_options(OptionTable& table, JobSettings& job) {

@@ -94,6 +94,7 @@ struct JobSettings {
   TraceSettings trace;
   BvhQuality bvh = BvhQuality::high;
   std::string filter = "linear";
+  double enhance_contrast = 0;
   AccumulateSettings accumulate;
   std::string checkpoint, resume_from;
   std::int32_t checkpoint_every = 0, preroll = 0;

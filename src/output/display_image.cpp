@@ -78,6 +78,9 @@ void write_display_image(const std::string& path, const DisplayImage& image, con
   options.software = header.software;
   options.note = fmt::format("gazetrace:settings_digest={} frame={} t_video_ns={} exposure_ev={}",
                              header.settings_digest, header.frame, header.t_video_ns, header.exposure_ev);
+  if (header.enhance_contrast > 0) {
+    options.note += fmt::format(" enhance_contrast={}", header.enhance_contrast);
+  }
   if (const GazeAtTime& gaze = header.gaze_true; gaze.state != GazeState::none || gaze.no_gaze || gaze.movement) {
     options.note += " " + gaze_words(gaze);
   }

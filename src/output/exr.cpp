@@ -260,6 +260,9 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   add_text(header, "t_video_ns", std::to_string(frame.t_video_ns));
   add_text(header, "seed", std::to_string(frame.seed));
   add_text(header, "settings_digest", frame.settings_digest);
+  if (frame.enhance_contrast > 0) {
+    add_text(header, "enhanced", fmt::format("contrast by {}: no estimate of radiance", frame.enhance_contrast));
+  }
   add_text(header, "camera", camera_text(frame.camera));
   if (frame.shutter_close_ns > frame.shutter_open_ns) {
     add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "gazetrace/enhance.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "gazetrace/version.hpp"
 #include "pipeline/contrast_prepass.hpp"
@@ -135,6 +136,12 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
   rendered.exposure_ev = timed(row.exposure_ms, [&] {
     return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
   });
+  if (settings.enhance_contrast > 0) {
+    rendered.frame.radiance = timed(row.reconstruct_ms, [&] {
+      return enhance_contrast(std::move(rendered.frame.radiance), rendered.map, settings.enhance_contrast,
+                              settings.threads);
+    });
+  }
   row.exposure_ev = rendered.exposure_ev;
   count_trace(sparse.stats, rendered.map, row);
   count_first_look(first_look.stats, row);
@@ -155,6 +162,7 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.gaze_true = request.gaze_true;
   header.gaze_processing = plan.gaze_processing;
   header.exposure_ev = exposure_ev;
+  header.enhance_contrast = settings.enhance_contrast;
   header.seed = settings.trace.seed;
   header.settings_digest = settings.settings_digest;
   header.software = std::string("gazetrace ") + kVersion;

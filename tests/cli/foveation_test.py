@@ -78,6 +78,22 @@ class Foveation(harness.CliTest):
                 rows.append(next(csv.DictReader(file)))
         self.assertLess(int(rows[1]["samples"]), int(rows[0]["samples"]))
 
+    def test_enhanced_pictures_say_so(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        for strength in ("0", "0.5"):
+            self.run_ok("render", "box.gltf", *GAZE, "--enhance-contrast", strength, "-o", f"e{strength}/f.exr", "-o", f"e{strength}/f.png",
+                        "--quiet")
+        label = b"contrast by 0.5: no estimate of radiance"
+        self.assertIn(label, (self.folder / "e0.5/f.exr").read_bytes())
+        self.assertIn(b"enhance_contrast=0.5", (self.folder / "e0.5/f.png").read_bytes())
+        self.assertNotIn(b"enhance", (self.folder / "e0/f.exr").read_bytes() + (self.folder / "e0/f.png").read_bytes())
+        self.assertIn("enhance-contrast = 0.5", json.loads((self.folder / "e0.5/run.json").read_text())["config_toml"])
+        for wanted, *arguments in [("0..1", "1.5"), ("guided", "1", "--filter", "guided"), ("none", "1", "--filter", "none")]:
+            result = self.run_program("render", "box.gltf", *GAZE, "-o", "x/f.exr", "--enhance-contrast", *arguments)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(wanted, result.stderr)
+            self.assertEqual(result.stderr.count("\n"), 1)
+
     def test_what_is_refused(self):
         self.write("bad.csv", "ecc_deg,density\n0,1\n10,0.5\n5,0.2\n")
         self.write("over.csv", "ecc_deg,density\n0,1.5\n")
