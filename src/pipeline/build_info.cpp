@@ -36,6 +36,8 @@ std::string instruction_set() {
   return "x86-64 avx512";
 #elif defined(__AVX2__)
   return "x86-64 avx2";
+#elif defined(__x86_64__) && defined(GAZETRACE_DISPATCH)
+  return "x86-64, inner loops for avx2 too";
 #elif defined(__x86_64__)
   return "x86-64";
 #elif defined(__aarch64__)

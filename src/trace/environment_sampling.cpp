@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "core/fast_math.hpp"
+#include "core/instruction_sets.hpp"
 #include "core/luminance.hpp"
 
 namespace gazetrace {
@@ -235,7 +236,8 @@ void EnvironmentSampler::prefetch(const Place& at) const noexcept {
   __builtin_prefetch(&picture_->pixels[pixel + row < picture_->pixels.size() ? pixel + row : pixel]);
 }
 
-[[gnu::flatten]] void EnvironmentSampler::sample_many(const Vec2f* u, std::size_t count, Sample* out) const noexcept {
+GAZETRACE_CLONES [[gnu::flatten]] void EnvironmentSampler::sample_many(const Vec2f* u, std::size_t count,
+                                                                       Sample* out) const noexcept {
   constexpr std::size_t kStage = 32;
   alignas(64) std::array<float, kStage> cosine{};
   alignas(64) std::array<float, kStage> sine_squared{};
@@ -287,8 +289,8 @@ void EnvironmentSampler::prefetch(const Place& at) const noexcept {
   }
 }
 
-[[gnu::flatten]] void EnvironmentSampler::value_many(const Vec3f* directions, std::size_t count,
-                                                     Value* out) const noexcept {
+GAZETRACE_CLONES [[gnu::flatten]] void EnvironmentSampler::value_many(const Vec3f* directions, std::size_t count,
+                                                                      Value* out) const noexcept {
   constexpr std::size_t kStage = 32;
   if (picture_ == nullptr) {
     std::fill_n(out, count, Value{});

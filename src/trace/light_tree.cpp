@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <span>
 
+#include "core/instruction_sets.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -304,7 +306,8 @@ inline LightTree::Lanes LightTree::importance(const Node& node, const Point& poi
   return result;
 }
 
-LightTree::Choice LightTree::choose(const Vec3f& position, const Vec3f& normal, double u) const noexcept {
+GAZETRACE_CLONES LightTree::Choice LightTree::choose(const Vec3f& position, const Vec3f& normal,
+                                                     double u) const noexcept {
   const Point point = point_of(position, normal);
   float probability = 1;
   std::uint32_t at = 0;
@@ -340,7 +343,8 @@ LightTree::Choice LightTree::choose(const Vec3f& position, const Vec3f& normal, 
   }
 }
 
-float LightTree::probability(std::uint32_t light, const Vec3f& position, const Vec3f& normal) const noexcept {
+GAZETRACE_CLONES float LightTree::probability(std::uint32_t light, const Vec3f& position,
+                                              const Vec3f& normal) const noexcept {
   std::uint32_t place = place_[light];
   if (place == kNone) {
     return 0;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "core/instruction_sets.hpp"
+
 namespace gazetrace {
 
-int SampleList::next(const PixelFilterSampler& filter, SampleBatch& out) {
+GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBatch& out) {
   const float half_width = 0.5F * static_cast<float>(map_->width_px);
   const float half_height = 0.5F * static_cast<float>(map_->height_px);
   int filled = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/instruction_sets.hpp"
 #include "trace/chunk.hpp"
 #include "trace/kernel.hpp"
 #include "trace/octahedral.hpp"
@@ -71,7 +72,8 @@ void locate_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, C
 // From records to lanes. Instanced triangles are brought to world space here.
 // `times`: of the packed rays, read where something moves while the shutter is open.
 template <KernelFeatures kFeatures>
-void gather_triangles(const RenderScene& scene, const BatchArray<float>& times, ChunkHits& chunk, std::size_t count) {
+GAZETRACE_CLONES void gather_triangles(const RenderScene& scene, const BatchArray<float>& times, ChunkHits& chunk,
+                                       std::size_t count) {
   std::array<ChunkArray<std::uint32_t>, 3> normal_code;
   std::array<ChunkArray<std::uint32_t>, 3> tangent_code;
   for (std::size_t i = 0; i < count; ++i) {
@@ -149,7 +151,7 @@ void gather_triangles(const RenderScene& scene, const BatchArray<float>& times, 
 
 // Position, normals, coordinates and texture level of every lane.
 template <KernelFeatures kFeatures>
-void place_hits(ChunkHits& chunk, std::size_t count) {
+GAZETRACE_CLONES void place_hits(ChunkHits& chunk, std::size_t count) {
   for_lanes(
       count, [&](std::size_t i) __attribute__((always_inline)) {
         const float u = chunk.u[i];
@@ -245,7 +247,7 @@ void read_materials(const RenderScene& scene, ChunkHits& chunk, std::size_t coun
 
 // Bumps the normal, turns it to the ray's side and keeps its mirror direction above the surface.
 template <KernelFeatures kFeatures>
-void finish_normals(ChunkHits& chunk, std::size_t count) {
+GAZETRACE_CLONES void finish_normals(ChunkHits& chunk, std::size_t count) {
   for_lanes(
       count, [&](std::size_t i) __attribute__((always_inline)) {
         Vec3f shading = chunk.shading.get(i);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/instruction_sets.hpp"
 #include "scene/texel.hpp"
 
 namespace gazetrace {
@@ -85,7 +86,7 @@ namespace {
 
 }  // namespace
 
-void read_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
+GAZETRACE_CLONES void read_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
   if (group.deep) {
     read_deep_group(group, u, v, level, out);
     return;

@@ -12,6 +12,7 @@
 #include <cstdint>
 
 #include "core/hash.hpp"
+#include "core/instruction_sets.hpp"
 #include "material/bsdf.hpp"
 #include "trace/chunk.hpp"
 #include "trace/kernel.hpp"
@@ -148,7 +149,7 @@ class PathKernel {
   }
 
   // generate.hpp
-  void start(int count);
+  GAZETRACE_CLONES void start(int count);
 
   // sky.hpp
   [[nodiscard]] float weight_of_found_light(int vertex, float pdf_bsdf, float pdf_light) const;
@@ -177,15 +178,16 @@ class PathKernel {
   // scatter.hpp
   void scatter_chunk(int vertex, const PathBatch& paths, std::size_t count, const std::uint16_t* active,
                      std::size_t active_count);
-  static void fill_2d(const std::array<SampleKey, kChunk>& key, const std::array<std::uint32_t, kChunk>& index,
-                      std::size_t count, std::uint32_t dimension, std::array<Vec2f, kChunk>& out);
+  GAZETRACE_CLONES static void fill_2d(const std::array<SampleKey, kChunk>& key,
+                                       const std::array<std::uint32_t, kChunk>& index, std::size_t count,
+                                       std::uint32_t dimension, std::array<Vec2f, kChunk>& out);
   static AlbedoTerms terms_of(const std::array<ChunkArray<float>, 4>& terms, std::size_t i);
   static void read_terms(const ChunkHits& chunk, std::size_t count, const ChunkArray<float>& cosine,
                          std::array<ChunkArray<float>, 4>& out);
   static Surface surface_of(const ChunkHits& chunk, std::size_t i);
   static Bsdf<kDiffuse> bsdf_of(const ChunkHits& chunk, std::size_t i);
-  [[gnu::flatten, gnu::noinline]] static void evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit,
-                                                             bool bounces);
+  GAZETRACE_CLONES [[gnu::flatten, gnu::noinline]] static void evaluate_lanes(ChunkHits& chunk, std::size_t count,
+                                                                              bool lit, bool bounces);
   void take_light_sample(int vertex, std::size_t i, const LightSample& light, const PathBatch& paths);
   void take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths);
 
