@@ -126,6 +126,7 @@ struct RunRecord {
   std::map<std::string, std::string> input_digests;  // path -> content hash
   std::string frames;                                // frame list text
   bool is_part = false;                              // a part of a longer sequence
+  std::string samples;                               // "0:1024": a part of the samples; empty: all of them
   std::map<std::string, std::string> facts;          // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
   Warnings warnings;
   std::vector<BadSample> bad_samples;
@@ -137,6 +138,22 @@ RunRecord read_run_record(const std::string& path);  // Error(input)
 std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part);
 std::string run_record_file_name(const std::string& directory, const std::string& frames, bool is_part);
 
+// How a part of the samples is called in the names of its files, after the frames: "1-3.samples-0-1024".
+std::string part_of_samples_name(const std::string& frames, const SampleRange& samples);
+// samples.0001.0-1024.sums
+std::string samples_file_name(const std::string& directory, std::int32_t frame, const SampleRange& samples);
+
+// What a run over a part left in a directory.
+struct RunPart {
+  std::string timing_path;
+  RunRecord record;
+  std::map<std::int32_t, TimingRow> rows;
+};
+// All of them, by name. Error(input) where there are none, records are missing, or settings or inputs differ.
+std::vector<RunPart> read_run_parts(const std::string& directory);
+// Parts of the samples, for merge_samples() of pipeline.hpp. Error(input) where some are and some are not.
+bool are_parts_of_samples(const std::vector<RunPart>& parts);
+
 // Joins the parts found in a directory into timing.csv and run.json. Error(input) where parts disagree in settings
 // digest or overlap, or frames are missing (unless allowed).
 struct MergeResult {
@@ -144,6 +161,8 @@ struct MergeResult {
   std::string frames;
   Warnings warnings;
 };
+// The record of the whole; what parts say differently is kept apart, or warned of.
+RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings);
 MergeResult merge_runs(const std::string& directory, bool allow_missing, bool overwrite);
 
 // Writes text to a temporary neighbour and renames it.

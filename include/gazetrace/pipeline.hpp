@@ -36,7 +36,8 @@ struct PipelineSettings {
   std::int32_t checkpoint_every = 0;  // and after every so many frames; 0: only at the end
   std::string resume_from;            // a checkpoint whose frame comes before the plan's first; empty: no history
   std::int32_t preroll = 0;           // so many frames at the plan's beginning are rendered for their history alone
-  // The plan is a part of a longer sequence: timing.csv and run.json carry the frame range in their names.
+  // The plan is a part of a longer sequence: timing.csv and run.json carry the frame range in their names. With
+  // `trace.samples` it is a part of the samples: their sums are written in place of pictures, for merge_samples().
   bool is_part = false;
 };
 
@@ -81,8 +82,18 @@ void save_checkpoint(const std::string& path, const TemporalHistory& history, co
 TemporalHistory load_checkpoint(const std::string& path, const std::string& history_digest);
 
 // Every file that rendering these frames would write, in order; run record and timing come first.
-std::vector<std::string> output_files(const OutputSettings& output, const std::vector<std::int32_t>& frames,
-                                      bool is_part);
+std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
+
+// Why a part of the samples is not enough to make a picture later; empty: it is.
+std::string needs_all_samples(const PipelineSettings& settings);
+// Adds up the parts of the samples of every frame of the plan and writes what the run over all of them would have
+// written, to the bit, with timing.csv and run.json. `settings`: those of the parts, without `trace.samples`.
+// Error(input) for files of other settings, and where samples are missing or there twice.
+MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
+                          const PipelineSettings& settings);
+// Sums of one frame's samples in a file, to the bit, as save_checkpoint and load_checkpoint.
+void save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest);
+SampleSums load_samples(const std::string& path, const std::string& settings_digest);
 
 // The scene file and every buffer and image it names, in the order of the file; Error(input) when the file is missing.
 std::vector<std::string> scene_files(const std::string& path);

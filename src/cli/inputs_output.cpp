@@ -168,6 +168,30 @@ void check_history_options(const JobSettings& job) {
   }
 }
 
+void check_sample_range(const JobSettings& job) {
+  if (!job.trace.samples) {
+    return;
+  }
+  PipelineSettings settings;
+  settings.foveation = job.foveation;
+  settings.filter = job.filter;
+  settings.accumulate = job.accumulate;
+  settings.exposure = job.exposure;
+  settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  settings.trace.only_pixel = job.only_pixel;
+  if (const std::string reason = needs_all_samples(settings); !reason.empty()) {
+    throw Error(ErrorKind::usage, "--sample-range", reason, "leave it out, or change that");
+  }
+  const FoveationSettings& foveation = job.foveation;
+  if (foveation.falloff == "uniform" && !foveation.budget_spp && !foveation.budget_samples &&
+      job.trace.samples->end > foveation.uniform_spp) {
+    throw Error(
+        ErrorKind::usage, "--sample-range",
+        fmt::format("{} is beyond the {} samples of a pixel", format_value(*job.trace.samples), foveation.uniform_spp),
+        "end it there, or raise --spp");
+  }
+}
+
 }  // namespace
 
 void check_settings(const JobSettings& job) {
@@ -201,6 +225,7 @@ void check_settings(const JobSettings& job) {
                 "0 takes all");
   }
   check_history_options(job);
+  check_sample_range(job);
   check_stops("--env-ev", job.environment_ev);
   check_stops("--exposure", job.exposure.ev);
   if (job.exr.zip_level < 1 || job.exr.zip_level > 9) {
@@ -291,7 +316,7 @@ void check_names_differ(std::vector<std::string> outputs, const std::map<std::st
 
 // What --resume will go on from, read before anything is rendered or written.
 void check_earlier_run(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
-  const std::vector<std::string> files = output_files(settings.output, frames, settings.is_part);
+  const std::vector<std::string> files = output_files(settings, frames);
   if (files.size() < 2) {
     return;
   }
@@ -318,16 +343,16 @@ void check_earlier_run(const PipelineSettings& settings, const std::vector<std::
 
 void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames,
                      const std::map<std::string, std::string>& input_digests) {
-  check_names_differ(output_files(settings.output, frames, settings.is_part), input_digests);
+  check_names_differ(output_files(settings, frames), input_digests);
   if (settings.output.resume) {
     check_earlier_run(settings, frames);
   }
   if (!settings.output.overwrite && !settings.output.resume) {
-    for (const std::string& path : output_files(settings.output, frames, settings.is_part)) {
+    for (const std::string& path : output_files(settings, frames)) {
       if (fs::exists(path)) {
         const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
         throw Error(ErrorKind::input, path, "this output exists already",
-                    is_record && !settings.is_part
+                    is_record && !settings.is_part && !settings.trace.samples
                         ? "give --overwrite, --resume, --part for one part of a sequence, or another folder"
                         : "give --overwrite, --resume or another name");
       }

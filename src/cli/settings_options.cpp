@@ -136,6 +136,9 @@ void add_frame_options(OptionTable& table, JobSettings& job) {
   table.flag("--part", job.part,
              "The frames are a part of a sequence that other runs share: timing and run record carry the range in "
              "their names, 'gazetrace merge' joins them");
+  table.value("--sample-range", job.trace.samples, "A:B",
+              "Only samples A to B - 1 of every pixel or block: keeps their sums in place of pictures, and 'gazetrace "
+              "merge' makes the pictures once all parts are there, to the bit those of one run");
   table.value("--frame-rect", job.frame_rect, "X,Y,W,H",
               "Where the frame lies on the screen, in screen pixels; default: it fills the screen", kPixels);
 }

@@ -165,6 +165,20 @@ std::string TomlConfig::to_config(const CLI::App* /*app*/, bool /*default_also*/
   return target.table == nullptr ? std::string() : settings_as_toml(*target.table, "gazetrace " + target.command);
 }
 
+void assign_toml(const OptionTable& table, const std::string& text, const std::string& path) {
+  for (const auto& [key, node] : parse_toml(text, path).members) {
+    const OptionEntry* entry = table.find(key);
+    if (entry == nullptr) {
+      throw Error(ErrorKind::input, toml_place(path, node), "unknown key '" + key + "'",
+                  "use the version of gazetrace that wrote it");
+    }
+    const std::vector<std::string> values = toml_values(node, *entry, path);
+    if (!values.empty()) {
+      entry->assign(values, toml_place(path, node) + ": " + key);
+    }
+  }
+}
+
 std::string settings_as_toml(const OptionTable& table, const std::string& title) {
   std::string text = "# Settings of '" + title + "'; paths are relative to the folder it is started in.\n";
   std::string group;

@@ -38,6 +38,9 @@ class TomlConfig : public CLI::Config {
 // The values that an option takes from a node, as the command line would carry them. Error(input) with path:line.
 std::vector<std::string> toml_values(const TomlNode& node, const OptionEntry& entry, const std::string& path);
 
+// Sets a table's options to what the text of settings_as_toml says. Error(input) with path:line, as from_config.
+void assign_toml(const OptionTable& table, const std::string& text, const std::string& path);
+
 // The text of to_config, for a table alone.
 std::string settings_as_toml(const OptionTable& table, const std::string& title);
 

@@ -42,6 +42,14 @@ std::string run_record_file_name(const std::string& directory, const std::string
   return part_file_name(directory, "run", ".json", frames, is_part);
 }
 
+std::string part_of_samples_name(const std::string& frames, const SampleRange& samples) {
+  return fmt::format("{}.samples-{}-{}", frames, samples.begin, samples.end);
+}
+
+std::string samples_file_name(const std::string& directory, std::int32_t frame, const SampleRange& samples) {
+  return directory + fmt::format("/samples.{:04}.{}-{}.sums", frame, samples.begin, samples.end);
+}
+
 std::string run_record_json(const RunRecord& record) {
   Json bad_samples = Json::array();
   for (const BadSample& bad : record.bad_samples) {
@@ -56,6 +64,7 @@ std::string run_record_json(const RunRecord& record) {
                   {"settings_digest", record.settings_digest},
                   {"frames", record.frames},
                   {"is_part", record.is_part},
+                  {"samples", record.samples},
                   {"input_digests", record.input_digests},
                   {"facts", record.facts},
                   {"warnings", record.warnings},
@@ -81,6 +90,7 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
+    record.samples = json.value("samples", "");  // not in records of earlier versions
     json.at("input_digests").get_to(record.input_digests);
     json.at("facts").get_to(record.facts);
     json.at("warnings").get_to(record.warnings);

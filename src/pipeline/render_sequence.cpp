@@ -10,11 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/stopwatch.hpp"
-#include "gazetrace/enhance.hpp"
 #include "gazetrace/pipeline.hpp"
-#include "gazetrace/version.hpp"
 #include "pipeline/contrast_prepass.hpp"
+#include "pipeline/frame_files.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
 
@@ -22,21 +20,6 @@ namespace gazetrace {
 namespace {
 
 constexpr int kEdgeRays = 4;  // measured in tests/benchmarks/filters.cpp
-
-// Adds the wall time of a stage to `ms` and passes its result through.
-template <class Stage>
-auto timed(double& ms, Stage&& stage) {
-  const Stopwatch watch;
-  auto result = stage();
-  ms += watch.elapsed_ms();
-  return result;
-}
-
-struct RenderedFrame {
-  SamplingMap map;
-  Frame frame;
-  double exposure_ev = 0;
-};
 
 void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row) {
   row.samples = stats.samples;
@@ -100,9 +83,14 @@ Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, con
   return merged;
 }
 
-RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
-                           TemporalHistory& history, TimingRow& row, SequenceResult& result) {
-  RenderedFrame rendered;
+struct TracedFrame {
+  SamplingMap map;
+  SparseFrame sparse;
+};
+
+TracedFrame trace_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
+                        TimingRow& row, SequenceResult& result) {
+  TracedFrame traced;
   MapContext context = map_context(request, settings.trace.seed, settings.threads);
   ContrastPrepass first_look;
   if (settings.foveation.contrast_strength > 0 && request.gaze_direction_render) {
@@ -112,126 +100,61 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
     });
     context.contrast = &first_look.multiplier;
   }
-  rendered.map = timed(row.plan_ms, [&] {
+  traced.map = timed(row.plan_ms, [&] {
     return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render, context);
   });
   TraceSettings trace = settings.trace;
   trace.surfaces = filter_needs_guides(settings.filter);
-  const SparseFrame sparse = timed(row.trace_ms, [&] {
+  traced.sparse = timed(row.trace_ms, [&] {
     tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
-    return tracer.trace(request.camera, request.frame, rendered.map, trace);
+    return tracer.trace(request.camera, request.frame, traced.map, trace);
   });
+  const TraceStats& stats = traced.sparse.stats;
+  count_trace(stats, traced.map, row);
+  count_first_look(first_look.stats, row);
+  result.bad_samples.insert(result.bad_samples.end(), stats.bad_samples.begin(), stats.bad_samples.end());
+  return traced;
+}
+
+RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
+                           TemporalHistory& history, TimingRow& row, SequenceResult& result) {
+  TracedFrame traced = trace_frame(tracer, request, settings, row, result);
   std::optional<Guides> guides;
-  if (trace.surfaces) {
+  if (filter_needs_guides(settings.filter)) {
     guides = timed(row.guides_ms, [&] {
       return tracer.guides(request.camera, request.width_px, request.height_px,
-                           {.diffuse = trace.diffuse, .edge_rays = kEdgeRays});
+                           {.diffuse = settings.trace.diffuse, .edge_rays = kEdgeRays});
     });
   }
   const Guides* of_filter = guides ? &*guides : nullptr;
-  rendered.frame = settings.accumulate.mode == AccumulateMode::reproject
-                       ? reprojected_frame(tracer, sparse, rendered.map, of_filter, request, settings, history, row)
-                       : plain_frame(sparse, rendered.map, of_filter, request, settings, history, row);
+  RenderedFrame rendered;
+  rendered.frame =
+      settings.accumulate.mode == AccumulateMode::reproject
+          ? reprojected_frame(tracer, traced.sparse, traced.map, of_filter, request, settings, history, row)
+          : plain_frame(traced.sparse, traced.map, of_filter, request, settings, history, row);
+  rendered.map = std::move(traced.map);
   history.last_frame = request.frame;
-  rendered.exposure_ev = timed(row.exposure_ms, [&] {
-    return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
-  });
-  if (settings.enhance_contrast > 0) {
-    rendered.frame.radiance = timed(row.reconstruct_ms, [&] {
-      return enhance_contrast(std::move(rendered.frame.radiance), rendered.map, settings.enhance_contrast,
-                              settings.threads);
-    });
-  }
-  row.exposure_ev = rendered.exposure_ev;
-  count_trace(sparse.stats, rendered.map, row);
-  count_first_look(first_look.stats, row);
-  result.bad_samples.insert(result.bad_samples.end(), sparse.stats.bad_samples.begin(), sparse.stats.bad_samples.end());
+  expose(request, settings, history, rendered, row);
   return rendered;
 }
 
-FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const PipelineSettings& settings,
-                      double exposure_ev) {
-  FrameHeader header;
-  header.frame = request.frame;
-  header.t_video_ns = request.t_video_ns;
-  header.fps = settings.fps;
-  header.camera = request.camera;
-  header.shutter_open_ns = request.shutter_open_ns;
-  header.shutter_close_ns = request.shutter_close_ns;
-  header.gaze_render = request.gaze_render;
-  header.gaze_true = request.gaze_true;
-  header.gaze_processing = plan.gaze_processing;
-  header.exposure_ev = exposure_ev;
-  header.enhance_contrast = settings.enhance_contrast;
-  header.seed = settings.trace.seed;
-  header.settings_digest = settings.settings_digest;
-  header.software = std::string("gazetrace ") + kVersion;
-  return header;
-}
-
-void tell_gaze(const GazeAtTime& gaze, TimingRow& row) {
-  row.gaze_state = to_string(gaze.state);
-  row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
-  const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
-  row.gaze_age_ms = !has_row            ? ""
-                    : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
-                                        : "unknown";
-  row.no_gaze = gaze.no_gaze ? 1 : 0;
-}
-
-// The map first and the linear picture last: the file that says a frame is there comes when everything else is.
-void write_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
-                 const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row, SequenceResult& result) {
-  const OutputSettings& output = settings.output;
-  const FrameHeader header = header_of(request, plan, settings, rendered.exposure_ev);
-  const auto& aovs = output.exr.aovs;
-  const bool wants_eccentricity =
-      !output.map_pattern.empty() || std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end();
-  std::optional<ImageGray> eccentricity;
-  const Stopwatch map_watch;
-  if (wants_eccentricity && request.gaze_direction_true) {
-    eccentricity = eccentricity_image(request.view, *request.gaze_direction_true);
-  } else if (wants_eccentricity) {
-    // Without gaze there is none, and a sequence keeps its channels through a gap.
-    eccentricity = ImageGray(request.width_px, request.height_px, std::numeric_limits<float>::quiet_NaN());
-  }
-  const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;
-  if (!output.map_pattern.empty()) {
-    write_sampling_map_exr(frame_file_name(output.map_pattern, request.frame), rendered.map, eccentricity_deg);
-  }
-  row.write_ms += map_watch.elapsed_ms();
-  if (!output.display.pattern.empty()) {
-    std::uint64_t clamped = 0;
-    const DisplayImage image = timed(row.color_ms, [&] {
-      return color.apply(rendered.frame.radiance, rendered.exposure_ev, display_image_bits(output.display),
-                         settings.threads, &clamped);
-    });
-    const Stopwatch watch;
-    write_display_image(frame_file_name(output.display.pattern, request.frame), image, header, output.display);
-    row.write_ms += watch.elapsed_ms();
-    result.clamped_view_pixels += clamped;
-  }
-  if (!output.exr.pattern.empty()) {
-    result.clamped_half_values += timed(row.write_ms, [&] {
-      return write_frame_exr(frame_file_name(output.exr.pattern, request.frame), rendered.frame, eccentricity_deg,
-                             header, output.exr, settings.threads);
-    });
-  }
-}
-
-bool writes_anything(const OutputSettings& output) {
-  return !output.exr.pattern.empty() || !output.display.pattern.empty() || !output.map_pattern.empty();
+// A part of the samples: their sums are all that becomes of the frame.
+void render_samples(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings, TimingRow& row,
+                    SequenceResult& result) {
+  const TracedFrame traced = trace_frame(tracer, request, settings, row, result);
+  const Stopwatch watch;
+  save_samples(samples_file_name(settings.output.run_directory, request.frame, *settings.trace.samples),
+               traced.sparse.unrounded, settings.settings_digest);
+  row.write_ms += watch.elapsed_ms();
 }
 
 std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settings) {
-  if (!writes_anything(settings.output)) {
-    return {};
-  }
   std::vector<std::int32_t> frames;
   for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
     frames.push_back(plan.frames[i].frame);
   }
-  return timing_file_name(settings.output.run_directory, format_frame_list(frames), settings.is_part);
+  const std::vector<std::string> files = output_files(settings, frames);
+  return files.empty() ? std::string() : files[1];
 }
 
 bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
@@ -273,7 +196,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   const ResumePlan resume = plan_resume(plan, settings, timing_path);
   result.warnings = resume.warnings;
   TimingLog timing(timing_path, resume.kept_rows);
-  if (!settings.output.display.pattern.empty() && !plan.frames.empty()) {
+  if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
     const FrameRequest& first = plan.frames.front();
     color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
   }
@@ -289,12 +212,18 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         observer.frame_begins(request);
       }
       const Stopwatch total;
-      const RenderedFrame rendered = render_frame(tracer, request, settings, history, row, result);
-      if (observer.frame_ready) {
-        observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
+      if (settings.trace.samples) {
+        render_samples(tracer, request, settings, row, result);
+      } else {
+        const RenderedFrame rendered = render_frame(tracer, request, settings, history, row, result);
+        if (observer.frame_ready) {
+          observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
+        }
+        if (resume.work[i] == FrameWork::render) {
+          write_frame_files(request, plan, rendered, color, settings, row, result);
+        }
       }
       if (resume.work[i] == FrameWork::render) {
-        write_files(request, plan, rendered, color, settings, row, result);
         row.total_ms = total.elapsed_ms();
         row.peak_memory_mib = peak_memory_mib();
         timing.add(row);
@@ -325,25 +254,6 @@ MapContext map_context(const FrameRequest& request, std::uint64_t seed, int thre
   context.in_saccade = request.eye_in_saccade;
   context.threads = threads;
   return context;
-}
-
-std::vector<std::string> output_files(const OutputSettings& output, const std::vector<std::int32_t>& frames,
-                                      bool is_part) {
-  std::vector<std::string> files;
-  if (!writes_anything(output)) {
-    return files;
-  }
-  const std::string text = format_frame_list(frames);
-  files.push_back(run_record_file_name(output.run_directory, text, is_part));
-  files.push_back(timing_file_name(output.run_directory, text, is_part));
-  for (const std::int32_t frame : frames) {
-    for (const std::string& pattern : {output.map_pattern, output.display.pattern, output.exr.pattern}) {
-      if (!pattern.empty()) {
-        files.push_back(frame_file_name(pattern, frame));
-      }
-    }
-  }
-  return files;
 }
 
 }  // namespace gazetrace

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "pipeline/sample_sums_file.hpp"
 #include "pipeline/timing_log.hpp"
 
 namespace gazetrace {
@@ -13,7 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool files_are_complete(const OutputSettings& output, std::int32_t frame, const std::string& digest) {
+bool files_are_complete(const PipelineSettings& settings, std::int32_t frame) {
+  const OutputSettings& output = settings.output;
+  const std::string& digest = settings.settings_digest;
+  if (settings.trace.samples) {
+    return read_samples_digest(samples_file_name(output.run_directory, frame, *settings.trace.samples)) == digest;
+  }
   for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
     if (!pattern.empty()) {
       const std::string path = frame_file_name(pattern, frame);
@@ -50,7 +56,7 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
     const std::int32_t frame = plan.frames[i].frame;
     const bool has_row = resume.kept_rows.contains(frame);
     // Killed between the last file and the row of timing.csv: once more, so that the row is not missing for good.
-    if (files_are_complete(output, frame, settings.settings_digest) && (has_row || !has_timing)) {
+    if (files_are_complete(settings, frame) && (has_row || !has_timing)) {
       resume.work[i] = FrameWork::skip;
       without_row += has_row ? 0 : 1;
     } else {

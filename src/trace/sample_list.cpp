@@ -13,6 +13,12 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
   int filled = 0;
   while (filled < kBatchSize && site_ < end_) {
     const Site& site = map_->sites[site_];
+    const std::uint32_t last = std::min(site.samples, range_.end);
+    if (sample_ >= last) {
+      ++site_;
+      sample_ = range_.begin;
+      continue;
+    }
     const int block = map_->regions[site.region].block_px;
     const bool whole = site.pixels == block * block;
     int first_x = site.block_x * block;
@@ -25,7 +31,7 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
     // Every pixel belongs to one site, so a site's first pixel names it.
     const SampleKey key = make_sample_key(
         seed_, frame_, (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x));
-    const auto left = static_cast<int>(std::min<std::uint32_t>(site.samples - sample_, kBatchSize));
+    const auto left = static_cast<int>(std::min<std::uint32_t>(last - sample_, kBatchSize));
     const int count = std::min(left, kBatchSize - filled);
     const auto size = static_cast<float>(block);
     const auto pixel_count = static_cast<float>(site.pixels);
@@ -63,10 +69,6 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
     }
     filled += count;
     sample_ += static_cast<std::uint32_t>(count);
-    if (sample_ == site.samples) {
-      ++site_;
-      sample_ = 0;
-    }
   }
   return filled;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: tiles in parallel, batches in order, sums in double.
+// PathTracer: tiles in parallel, batches in order, sums without rounding.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +14,7 @@
 #include "trace/guides.hpp"
 #include "trace/kernel.hpp"
 #include "trace/sample_list.hpp"
+#include "trace/sample_sums.hpp"
 #include "trace/surface_motion.hpp"
 #include "trace/surface_sums.hpp"
 
@@ -43,21 +44,38 @@ void keep_first(std::vector<BadSample>& list, BadSample sample) {
 
 // One site at a time: its samples are neighbours in the list, possibly over several batches.
 struct SiteSum {
-  double r = 0, g = 0, b = 0, luminance2 = 0;
-  std::uint32_t count = 0;
-  Vec3d albedo, normal;
-  double depth = 0;
-  std::uint32_t hits = 0;
+  SiteSums light;
+  SiteGuideSums guides;
 };
 
+void add_guides(const GuideBatch& g, std::size_t i, SiteGuideSums& sums) {
+  sums.albedo_red.add(static_cast<double>(g.albedo_r[i]));
+  sums.albedo_green.add(static_cast<double>(g.albedo_g[i]));
+  sums.albedo_blue.add(static_cast<double>(g.albedo_b[i]));
+  sums.normal_x.add(static_cast<double>(g.normal_x[i]));
+  sums.normal_y.add(static_cast<double>(g.normal_y[i]));
+  sums.normal_z.add(static_cast<double>(g.normal_z[i]));
+  sums.depth_m.add(static_cast<double>(g.depth[i]));
+  ++sums.hits;
+}
+
+void add_light(const Vec3f& radiance, SiteSums& sums) {
+  sums.red.add(static_cast<double>(radiance.x));
+  sums.green.add(static_cast<double>(radiance.y));
+  sums.blue.add(static_cast<double>(radiance.z));
+  const double shone = luminance(to_double(radiance));
+  // A float, as all terms of an ExactSum. It saturates: squares leave float's range at a radiance of 1.8e19.
+  constexpr double kMost = std::numeric_limits<float>::max();
+  sums.square_luminance.add(static_cast<double>(static_cast<float>(std::min(shone * shone, kMost))));
+}
+
 void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
-  out.sum[site] = {static_cast<float>(sum.r), static_cast<float>(sum.g), static_cast<float>(sum.b)};
-  // Saturates rather than becoming infinite: squares leave float's range at a radiance of 1.8e19.
-  out.sum_square_luminance[site] =
-      static_cast<float>(std::min(sum.luminance2, static_cast<double>(std::numeric_limits<float>::max())));
-  out.count[site] = sum.count;
-  if (!out.guides.empty()) {
-    out.guides[site] = {to_float(sum.albedo), to_float(sum.normal), static_cast<float>(sum.depth), sum.hits};
+  store_rounded(sum.light, out.guides.empty() ? nullptr : &sum.guides, site, out);
+  if (!out.unrounded.sites.empty()) {
+    out.unrounded.sites[site] = sum.light;
+  }
+  if (!out.unrounded.guides.empty()) {
+    out.unrounded.guides[site] = sum.guides;
   }
 }
 
@@ -167,7 +185,8 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
       out.first_surface[site] = static_cast<std::uint32_t>(tile.surfaces.size() - before);
     }
   };
-  SampleList list(map, range.first, range.count, context.settings.seed, frame);
+  SampleList list(map, range.first, range.count, context.settings.seed, frame,
+                  context.settings.samples.value_or(kAllSamples));
   SiteSum sum;
   std::uint32_t current = range.first;
   std::vector<std::uint64_t> in_region(map.regions.size());
@@ -188,7 +207,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         current = work.samples.site[i];
       }
       ++in_region[map.sites[current].region];
-      ++sum.count;
+      ++sum.light.count;
       const auto report = [&](const char* what) {
         keep_first(tile.bad, {frame, work.samples.pixel_x[i], work.samples.pixel_y[i], work.samples.sample[i], what});
       };
@@ -196,11 +215,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         report("rejected ray");
       }
       if (!out.guides.empty() && work.guides.hit[i] != 0) {
-        const GuideBatch& g = work.guides;
-        sum.albedo += Vec3d{g.albedo_r[i], g.albedo_g[i], g.albedo_b[i]};
-        sum.normal += Vec3d{g.normal_x[i], g.normal_y[i], g.normal_z[i]};
-        sum.depth += static_cast<double>(g.depth[i]);
-        ++sum.hits;
+        add_guides(work.guides, i, sum.guides);
       }
       const float r = work.radiance.r[i];
       const float g = work.radiance.g[i];
@@ -210,11 +225,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         report("non-finite radiance");
         continue;
       }
-      sum.r += static_cast<double>(r);
-      sum.g += static_cast<double>(g);
-      sum.b += static_cast<double>(b);
-      const double shone = luminance(to_double(Vec3f{r, g, b}));
-      sum.luminance2 += shone * shone;
+      add_light({r, g, b}, sum.light);
       if (surfaces && needs_filtering(map, map.sites[current])) {
         sorter.add(work.surfaces, i, {r, g, b});
       }
@@ -226,7 +237,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
     }
     tile.samples += static_cast<std::uint64_t>(count);
   }
-  if (sum.count > 0) {
+  if (sum.light.count > 0) {
     store(sum, current, out);
     finish_site(current);
   }
@@ -260,6 +271,8 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   out.sum_square_luminance.resize(map.sites.size());
   out.count.resize(map.sites.size());
   out.guides.resize(settings.guides ? map.sites.size() : 0);
+  out.unrounded.sites.resize(settings.samples ? map.sites.size() : 0);
+  out.unrounded.guides.resize(settings.samples && settings.guides ? map.sites.size() : 0);
   out.first_surface.resize(settings.surfaces ? map.sites.size() + 1 : 0);
   out.stats.kernel = variant.name;
   out.stats.regions.resize(map.regions.size());

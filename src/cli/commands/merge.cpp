@@ -2,10 +2,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <set>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/inputs.hpp"
+#include "cli/toml_config.hpp"
+#include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -17,8 +23,45 @@ struct MergeArguments {
   bool overwrite = false;
 };
 
+std::vector<std::int32_t> frames_of(const std::vector<RunPart>& parts) {
+  std::set<std::int32_t> frames;
+  for (const RunPart& part : parts) {
+    const std::vector<std::int32_t> listed = parse_frame_list(part.record.frames);
+    frames.insert(listed.begin(), listed.end());
+  }
+  return {frames.begin(), frames.end()};
+}
+
+// The settings of the parts, as their records keep them, over the same files.
+MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
+  const RunPart& first = parts.front();
+  JobSettings job;
+  OptionTable table;
+  add_job_options(table, job);
+  assign_toml(table, first.record.config_toml, first.timing_path);
+  job.frames = FrameList{frames_of(parts)};
+  job.trace.samples.reset();
+  job.part = job.resume = false;
+  job.overwrite = arguments.overwrite;
+  check_settings(job);
+  const ColorPipeline color(job.color);
+  const Inputs inputs = load_inputs(job, InputScope::plan_only);
+  PipelineSettings settings = pipeline_settings(job, inputs.frames);
+  const std::map<std::string, std::string> digests = digest_job_files(job);
+  digest_job(table, job, inputs.frames, digests, settings);
+  if (settings.settings_digest != first.record.settings_digest) {
+    throw Error(ErrorKind::input, first.timing_path, "was rendered from other files, or by another version",
+                "start the merge where the parts were started, with the same files in place");
+  }
+  prepare_outputs(settings, inputs.frames, digests);
+  return merge_samples(parts, inputs.plan, color, settings);
+}
+
 int run_merge(const MergeArguments& arguments) {
-  const MergeResult result = merge_runs(arguments.directory, arguments.allow_missing, arguments.overwrite);
+  const std::vector<RunPart> parts = read_run_parts(arguments.directory);
+  const MergeResult result = are_parts_of_samples(parts)
+                                 ? run_merge_samples(parts, arguments)
+                                 : merge_runs(arguments.directory, arguments.allow_missing, arguments.overwrite);
   print_warnings(result.warnings);
   print_result(fmt::format("{} parts joined, frames {}\n", result.parts.size(), result.frames));
   return exit_done;
@@ -30,7 +73,7 @@ Command add_merge_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<MergeArguments>();
   app.add_option("folder", arguments->directory, "Where the parts were rendered into")->required()->type_name("DIR");
   app.add_flag("--allow-missing", arguments->allow_missing, "Joins what is there though frames are missing");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv and run.json");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and, of parts of samples, pictures");
   return {[arguments] { return run_merge(*arguments); }, nullptr};
 }
 

@@ -47,7 +47,8 @@ RunRecord start_record(const RenderArguments& arguments, const Invocation& invoc
   record.config_toml = settings_as_toml(arguments.table, "gazetrace render");
   record.settings_digest = settings.settings_digest;
   record.frames = format_frame_list(inputs.frames);
-  record.is_part = settings.is_part;
+  record.is_part = settings.is_part || settings.trace.samples.has_value();
+  record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = inputs.warnings;
   for (const auto& [name, text] : inputs.decisions) {
     record.facts[name] = text;
@@ -117,7 +118,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   loading.reset();
   RunRecord record = start_record(arguments, invocation, inputs, settings, tracer, color);
   record.input_digests = digests;
-  const std::vector<std::string> files = output_files(settings.output, inputs.frames, settings.is_part);
+  const std::vector<std::string> files = output_files(settings, inputs.frames);
   if (!files.empty()) {
     if (job.resume) {
       warn_of_other_machine(files.front(), record, inputs.warnings);

@@ -51,7 +51,9 @@ class PathKernel {
         see_sky(vertex, alive);
         return;
       }
-      const RayShape shape = vertex == 0 ? RayShape::coherent_packet : RayShape::single;
+      // Which of two surfaces a ray on their common edge hits may depend on the rays beside it in a packet.
+      const bool alone = frame_.settings.samples.has_value();
+      const RayShape shape = vertex == 0 && !alone ? RayShape::coherent_packet : RayShape::single;
       record(rays, alive, shape, false);
       counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
       shadow_count_ = 0;

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// What runs over parts left behind, and the record of the whole.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+bool is_part_name(const std::string& name) {
+  return name.starts_with("timing.") && name.ends_with(".csv") && name != "timing.csv";
+}
+
+RunPart read_part(const std::filesystem::path& timing) {
+  RunPart part;
+  part.timing_path = timing.string();
+  const std::string name = timing.filename().string();
+  const std::string middle = name.substr(7, name.size() - 7 - 4);
+  const std::string record_path = (timing.parent_path() / ("run." + middle + ".json")).string();
+  if (!std::filesystem::exists(record_path)) {
+    throw Error(ErrorKind::input, part.timing_path, "its run record " + record_path + " is missing",
+                "finish or remove this part");
+  }
+  part.record = read_run_record(record_path);
+  for (TimingRow& row : read_timing_csv(part.timing_path)) {
+    part.rows.insert_or_assign(row.frame, std::move(row));  // a resumed run may have written a frame twice
+  }
+  return part;
+}
+
+void check_same_settings(const std::vector<RunPart>& parts) {
+  const RunPart& first = parts.front();
+  for (const RunPart& part : parts) {
+    if (part.record.settings_digest != first.record.settings_digest) {
+      throw Error(ErrorKind::input, part.timing_path, "was rendered with other settings than " + first.timing_path,
+                  "keep parts of one job in a folder");
+    }
+    for (const auto& [path, digest] : part.record.input_digests) {
+      const auto other = first.record.input_digests.find(path);
+      if (other != first.record.input_digests.end() && other->second != digest) {
+        throw Error(ErrorKind::input, part.timing_path,
+                    "was rendered from another version of " + path + " than " + first.timing_path,
+                    "render the older part again");
+      }
+    }
+  }
+}
+
+void append_new(Warnings& to, const Warnings& from) {
+  for (const std::string& text : from) {
+    if (std::find(to.begin(), to.end(), text) == to.end()) {
+      to.push_back(text);
+    }
+  }
+}
+
+// "1-3", or "1-3, samples 0:1024".
+std::string name_of(const RunRecord& record) {
+  return record.samples.empty() ? record.frames : record.frames + ", samples " + record.samples;
+}
+
+}  // namespace
+
+std::vector<RunPart> read_run_parts(const std::string& directory) {
+  std::error_code error;
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    if (is_part_name(entry.path().filename().string())) {
+      paths.push_back(entry.path());
+    }
+  }
+  if (error) {
+    throw Error(ErrorKind::input, directory, "cannot be listed: " + error.message());
+  }
+  if (paths.empty()) {
+    throw Error(ErrorKind::input, directory, "holds no parts of a run (timing.<part>.csv)",
+                "give the folder that the parts were rendered into");
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<RunPart> parts;
+  for (const auto& path : paths) {
+    parts.push_back(read_part(path));
+  }
+  check_same_settings(parts);
+  return parts;
+}
+
+bool are_parts_of_samples(const std::vector<RunPart>& parts) {
+  const bool first = !parts.front().record.samples.empty();
+  for (const RunPart& part : parts) {
+    if (part.record.samples.empty() == first) {
+      throw Error(ErrorKind::input, part.timing_path,
+                  "is a part of another kind than " + parts.front().timing_path + ": of frames, and of samples",
+                  "keep them in folders of their own");
+    }
+  }
+  return first;
+}
+
+RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings) {
+  RunRecord whole = parts.front().record;
+  whole.is_part = false;
+  whole.samples.clear();
+  whole.frames = frames;
+  whole.facts.clear();
+  whole.warnings.clear();
+  whole.bad_samples.clear();
+  for (const RunPart& part : parts) {
+    const RunRecord& record = part.record;
+    append_new(whole.warnings, record.warnings);
+    whole.bad_samples.insert(whole.bad_samples.end(), record.bad_samples.begin(), record.bad_samples.end());
+    whole.input_digests.insert(record.input_digests.begin(), record.input_digests.end());
+    const auto same = [&](const char* what, const std::string& a, const std::string& b) {
+      if (a != b) {
+        append_new(warnings, {fmt::format("parts differ in {}: '{}' and '{}'", what, a, b)});
+      }
+    };
+    same("version", whole.version, record.version);
+    same("build", whole.build, record.build);
+    same("instruction set", whole.instruction_set, record.instruction_set);
+    same("ray library", whole.ray_library, record.ray_library);
+    for (const auto& [key, value] : record.facts) {
+      const bool shared = std::all_of(parts.begin(), parts.end(), [&, k = key, v = value](const RunPart& other) {
+        const auto it = other.record.facts.find(k);
+        return it != other.record.facts.end() && it->second == v;
+      });
+      whole.facts[shared ? key : fmt::format("{} of {}", key, name_of(record))] = value;
+    }
+  }
+  append_new(whole.warnings, warnings);
+  std::stable_sort(whole.bad_samples.begin(), whole.bad_samples.end(),
+                   [](const BadSample& a, const BadSample& b) { return a.frame < b.frame; });
+  return whole;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/frame_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gazetrace/enhance.hpp"
+#include "gazetrace/version.hpp"
+
+namespace gazetrace {
+namespace {
+
+FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const PipelineSettings& settings,
+                      double exposure_ev) {
+  FrameHeader header;
+  header.frame = request.frame;
+  header.t_video_ns = request.t_video_ns;
+  header.fps = settings.fps;
+  header.camera = request.camera;
+  header.shutter_open_ns = request.shutter_open_ns;
+  header.shutter_close_ns = request.shutter_close_ns;
+  header.gaze_render = request.gaze_render;
+  header.gaze_true = request.gaze_true;
+  header.gaze_processing = plan.gaze_processing;
+  header.exposure_ev = exposure_ev;
+  header.enhance_contrast = settings.enhance_contrast;
+  header.seed = settings.trace.seed;
+  header.settings_digest = settings.settings_digest;
+  header.software = std::string("gazetrace ") + kVersion;
+  return header;
+}
+
+bool writes_anything(const OutputSettings& output) {
+  return !output.exr.pattern.empty() || !output.display.pattern.empty() || !output.map_pattern.empty();
+}
+
+}  // namespace
+
+void tell_gaze(const GazeAtTime& gaze, TimingRow& row) {
+  row.gaze_state = to_string(gaze.state);
+  row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
+  const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
+  row.gaze_age_ms = !has_row            ? ""
+                    : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
+                                        : "unknown";
+  row.no_gaze = gaze.no_gaze ? 1 : 0;
+}
+
+void expose(const FrameRequest& request, const PipelineSettings& settings, TemporalHistory& history,
+            RenderedFrame& rendered, TimingRow& row) {
+  rendered.exposure_ev = timed(row.exposure_ms, [&] {
+    return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
+  });
+  if (settings.enhance_contrast > 0) {
+    rendered.frame.radiance = timed(row.reconstruct_ms, [&] {
+      return enhance_contrast(std::move(rendered.frame.radiance), rendered.map, settings.enhance_contrast,
+                              settings.threads);
+    });
+  }
+  row.exposure_ev = rendered.exposure_ev;
+}
+
+void write_frame_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
+                       const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row,
+                       SequenceResult& result) {
+  const OutputSettings& output = settings.output;
+  const FrameHeader header = header_of(request, plan, settings, rendered.exposure_ev);
+  const auto& aovs = output.exr.aovs;
+  const bool wants_eccentricity =
+      !output.map_pattern.empty() || std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end();
+  std::optional<ImageGray> eccentricity;
+  const Stopwatch map_watch;
+  if (wants_eccentricity && request.gaze_direction_true) {
+    eccentricity = eccentricity_image(request.view, *request.gaze_direction_true);
+  } else if (wants_eccentricity) {
+    // Without gaze there is none, and a sequence keeps its channels through a gap.
+    eccentricity = ImageGray(request.width_px, request.height_px, std::numeric_limits<float>::quiet_NaN());
+  }
+  const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;
+  if (!output.map_pattern.empty()) {
+    write_sampling_map_exr(frame_file_name(output.map_pattern, request.frame), rendered.map, eccentricity_deg);
+  }
+  row.write_ms += map_watch.elapsed_ms();
+  if (!output.display.pattern.empty()) {
+    std::uint64_t clamped = 0;
+    const DisplayImage image = timed(row.color_ms, [&] {
+      return color.apply(rendered.frame.radiance, rendered.exposure_ev, display_image_bits(output.display),
+                         settings.threads, &clamped);
+    });
+    const Stopwatch watch;
+    write_display_image(frame_file_name(output.display.pattern, request.frame), image, header, output.display);
+    row.write_ms += watch.elapsed_ms();
+    result.clamped_view_pixels += clamped;
+  }
+  if (!output.exr.pattern.empty()) {
+    result.clamped_half_values += timed(row.write_ms, [&] {
+      return write_frame_exr(frame_file_name(output.exr.pattern, request.frame), rendered.frame, eccentricity_deg,
+                             header, output.exr, settings.threads);
+    });
+  }
+}
+
+std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
+  const OutputSettings& output = settings.output;
+  std::vector<std::string> files;
+  if (!writes_anything(output)) {
+    return files;
+  }
+  const std::optional<SampleRange>& samples = settings.trace.samples;
+  const std::string list = format_frame_list(frames);
+  const std::string part = samples ? part_of_samples_name(list, *samples) : list;
+  const bool is_part = settings.is_part || samples;
+  files.push_back(run_record_file_name(output.run_directory, part, is_part));
+  files.push_back(timing_file_name(output.run_directory, part, is_part));
+  for (const std::int32_t frame : frames) {
+    if (samples) {
+      files.push_back(samples_file_name(output.run_directory, frame, *samples));
+      continue;
+    }
+    for (const std::string& pattern : {output.map_pattern, output.display.pattern, output.exr.pattern}) {
+      if (!pattern.empty()) {
+        files.push_back(frame_file_name(pattern, frame));
+      }
+    }
+  }
+  return files;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts of the samples -> sums of all -> what render_sequence() does after tracing.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gazetrace/pipeline.hpp"
+#include "pipeline/frame_files.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct FramePart {
+  const RunPart* run = nullptr;
+  SampleRange range;
+};
+
+SampleRange range_of(const RunPart& part) {
+  const std::string& text = part.record.samples;
+  const char* end = text.data() + text.size();
+  SampleRange range;
+  const auto begin = std::from_chars(text.data(), end, range.begin);
+  if (begin.ec != std::errc() || begin.ptr == end || *begin.ptr != ':' ||
+      std::from_chars(begin.ptr + 1, end, range.end).ptr != end || range.begin >= range.end) {
+    throw Error(ErrorKind::input, part.timing_path, "'" + text + "' in its run record is no range of samples",
+                "render this part again");
+  }
+  return range;
+}
+
+// By sample.
+std::vector<FramePart> parts_of_frame(const std::vector<RunPart>& parts, std::int32_t frame) {
+  std::vector<FramePart> found;
+  for (const RunPart& part : parts) {
+    const std::vector<std::int32_t> frames = parse_frame_list(part.record.frames);
+    if (std::find(frames.begin(), frames.end(), frame) != frames.end()) {
+      found.push_back({&part, range_of(part)});
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const FramePart& a, const FramePart& b) { return a.range.begin < b.range.begin; });
+  return found;
+}
+
+std::uint32_t most_samples_of_a_site(const SamplingMap& map) {
+  std::uint32_t most = 0;
+  for (const Site& site : map.sites) {
+    most = std::max(most, site.samples);
+  }
+  return most;
+}
+
+// Every sample that a site has is there once.
+void check_ranges(const std::vector<FramePart>& parts, std::int32_t frame, std::uint32_t samples) {
+  std::uint32_t done = 0;
+  for (const FramePart& part : parts) {
+    if (part.range.begin < done) {
+      throw Error(ErrorKind::input, part.run->timing_path,
+                  fmt::format("samples {}:{} of frame {} are in another part as well", part.range.begin,
+                              std::min(done, part.range.end), frame),
+                  "remove one of the parts");
+    }
+    if (part.range.begin > done) {
+      break;
+    }
+    done = part.range.end;
+  }
+  if (done < samples) {
+    const auto next = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.range.begin > done; });
+    const std::uint32_t until = next == parts.end() ? samples : std::min(next->range.begin, samples);
+    throw Error(ErrorKind::input, "", fmt::format("samples {}:{} of frame {} are missing", done, until, frame),
+                fmt::format("render them with --sample-range {}:{}", done, until));
+  }
+}
+
+SampleSums load_part(const FramePart& part, std::int32_t frame, const PipelineSettings& settings) {
+  const std::string folder = std::filesystem::path(part.run->timing_path).parent_path().string();
+  return load_samples(samples_file_name(folder, frame, part.range), settings.settings_digest);
+}
+
+SampleSums join_sums(const std::vector<FramePart>& parts, std::int32_t frame, const PipelineSettings& settings) {
+  SampleSums sums = load_part(parts.front(), frame, settings);
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    add_sums(load_part(parts[i], frame, settings), sums);
+  }
+  return sums;
+}
+
+// What tracing took, in all parts.
+void add_traced(const TimingRow& part, TimingRow& whole) {
+  whole.trace_ms += part.trace_ms;
+  whole.trace_cpu_ms += part.trace_cpu_ms;
+  whole.total_ms += part.total_ms;
+  whole.samples += part.samples;
+  whole.rays_primary += part.rays_primary;
+  whole.rays_bounce += part.rays_bounce;
+  whole.rays_shadow += part.rays_shadow;
+  whole.rejected_rays += part.rejected_rays;
+  whole.non_finite_samples += part.non_finite_samples;
+  whole.region_pixels = part.region_pixels;
+  for (std::size_t i = 0; i < kTimingRegions; ++i) {
+    whole.region_samples.at(i) += part.region_samples.at(i);
+    whole.region_cpu_ms.at(i) += part.region_cpu_ms.at(i);
+  }
+}
+
+TimingRow row_of(const std::vector<FramePart>& parts, const FrameRequest& request) {
+  TimingRow row;
+  row.frame = request.frame;
+  row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
+  tell_gaze(request.gaze_render, row);
+  for (const FramePart& part : parts) {
+    const auto traced = part.run->rows.find(request.frame);
+    if (traced == part.run->rows.end()) {
+      throw Error(ErrorKind::input, part.run->timing_path, fmt::format("frame {} is not in it", request.frame),
+                  "finish this part with --resume");
+    }
+    add_traced(traced->second, row);
+  }
+  return row;
+}
+
+}  // namespace
+
+std::string needs_all_samples(const PipelineSettings& settings) {
+  if (uses_history(settings)) {
+    return "frames depend on those before them";
+  }
+  if (filter_needs_guides(settings.filter)) {
+    return fmt::format("the filter '{}' looks at every sample", settings.filter);
+  }
+  if (settings.foveation.contrast_strength > 0) {
+    return "the sampling map needs a first look at the frame";
+  }
+  if (settings.trace.only_pixel) {
+    return "only one pixel is traced";
+  }
+  return {};
+}
+
+MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
+                          const PipelineSettings& settings) {
+  const auto map_of = [&](const FrameRequest& request) {
+    return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render,
+                             map_context(request, settings.trace.seed, settings.threads));
+  };
+  std::vector<std::vector<FramePart>> found;
+  std::vector<TimingRow> rows;
+  std::vector<std::int32_t> frames;
+  for (const FrameRequest& request : plan.frames) {
+    found.push_back(parts_of_frame(parts, request.frame));
+    check_ranges(found.back(), request.frame, most_samples_of_a_site(map_of(request)));
+    rows.push_back(row_of(found.back(), request));
+    frames.push_back(request.frame);
+  }
+  SequenceResult written;
+  TemporalHistory none;
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    const FrameRequest& request = plan.frames[i];
+    TimingRow& row = rows[i];
+    const Stopwatch total;
+    RenderedFrame rendered;
+    rendered.map = timed(row.plan_ms, [&] { return map_of(request); });
+    const SampleSums sums = join_sums(found[i], request.frame, settings);
+    rendered.frame = timed(row.reconstruct_ms, [&] {
+      return reconstruct(sparse_frame_of(sums, rendered.map), rendered.map, settings.filter, settings.threads);
+    });
+    expose(request, settings, none, rendered, row);
+    write_frame_files(request, plan, rendered, color, settings, row, written);
+    row.total_ms += total.elapsed_ms();
+    row.peak_memory_mib = peak_memory_mib();
+  }
+  MergeResult result;
+  for (const RunPart& part : parts) {
+    result.parts.push_back(part.timing_path);
+  }
+  result.frames = format_frame_list(frames);
+  if (written.clamped_half_values > 0) {
+    result.warnings.push_back(
+        fmt::format("{} values were clamped to the range of half floats", written.clamped_half_values));
+  }
+  if (written.clamped_view_pixels > 0) {
+    result.warnings.push_back(
+        fmt::format("{} pixels were clamped before the viewing transform", written.clamped_view_pixels));
+  }
+  const RunRecord record = join_records(parts, result.frames, result.warnings);
+  write_text_atomically(timing_file_name(settings.output.run_directory, "", false), timing_csv_text(rows));
+  write_text_atomically(run_record_file_name(settings.output.run_directory, "", false), run_record_json(record));
+  return result;
+}
+
+}  // namespace gazetrace
