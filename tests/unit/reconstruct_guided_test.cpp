@@ -3,14 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/reconstruct.hpp"
+#include "reconstruct/surface_smoothing.hpp"
 
 namespace gazetrace {
 namespace {
@@ -210,6 +213,41 @@ TEST(ReconstructGuided, NoiseIsSmoothedAndTheMeanKept) {
   const auto [mean, variance] = mean_and_spread(guided(sparse, map, guides));
   EXPECT_LT(variance, none_variance / 16);
   EXPECT_NEAR(mean / none_mean, 1, 0.02);
+}
+
+// A few samples carry most of the light, as where a lamp is rarely found: smoothed it is all there still.
+TEST(ReconstructGuided, RareLightIsNotLost) {
+  Layout layout;
+  layout.regions = {{"uniform", 1, 2, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kSize, kSize, 0);
+  const SamplingMap map = map_from_layout(std::move(layout));
+  Guides guides = wall();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (std::size_t i = 0; i < guides.albedo.pixels.size(); ++i) {
+    guides.albedo.pixels[i] = Vec3f{1, 1, 1} * (0.1F + 0.8F * unit(random));
+    guides.normal.pixels[i] = normalize(Vec3f{0.3F * unit(random), 0.3F * unit(random), 1});
+    guides.depth_m.pixels[i] = i % kSize < 30 ? 10.0F : 10.1F;
+  }
+  const SparseFrame sparse =
+      trace_planted(map, guides, [&](int, int) { return unit(random) < 0.03F ? 30.0F : 0.1F * unit(random); });
+  SurfaceCells cells = make_surface_cells(sparse, map, guides.camera, 1);
+  const auto sums = [&] {
+    Vec3d light;
+    Vec3d albedo;
+    for (const SurfaceCell& cell : cells.cells) {
+      light += static_cast<double>(cell.samples) * to_double(cell.reflected);
+      albedo += static_cast<double>(cell.samples) * to_double(cell.albedo);
+    }
+    return std::pair{light.x, albedo.x};
+  };
+  const auto [light, albedo] = sums();
+  smooth_surfaces(cells, map, {}, 2);
+  EXPECT_NEAR(sums().first / light, 1, 1e-5);
+  EXPECT_NEAR(sums().second / albedo, 1, 1e-5);
+  const auto brightest = std::max_element(cells.cells.begin(), cells.cells.end(),
+                                          [](const auto& a, const auto& b) { return a.light < b.light; });
+  EXPECT_LT(brightest->light, 15) << "and it is smoothed";
 }
 
 TEST(ReconstructGuided, SitesWithoutSamplesTakeFromLikeSurfacesAndNoSamplesAtAllLeaveWhatShines) {
