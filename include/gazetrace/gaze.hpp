@@ -93,6 +93,9 @@ struct GazeReadOptions {
   GazeColumns columns;
   // Converts px, mm and degrees to fractions; needed only for those.
   std::optional<DisplayGeometry> display;
+  // Where the eye's perpendicular meets the display, as the user gave it; empty: `display`'s where that is not its
+  // center, else what the log states.
+  std::optional<Vec2d> eye_cm;
   // Used as `display` only for what neither the log nor `display` states: the screen that the gaze is to be shown on.
   std::optional<DisplayGeometry> fallback_display;
   UnorderedPolicy unordered = UnorderedPolicy::error;
@@ -101,6 +104,9 @@ struct GazeReadOptions {
   GazeFrame frame = GazeFrame::automatic;
   double min_confidence = std::numeric_limits<double>::quiet_NaN();  // NaN: the format's own (Pupil Core: 0.6)
   bool zero_is_missing = false;  // exactly (0, 0) is missing, whatever the validity says
+  // Places with exactly this in every coordinate, in the log's unit, are missing. Always so: coordinates of -32768 and
+  // of 1e7 and more.
+  std::optional<double> missing_value;
   bool swap_xy = false;          // the log has its axes the wrong way round
   bool flip_x = false;           // left and right are exchanged: u becomes 1 - u, direction x becomes -x
   bool flip_y = false;           // top and bottom likewise

@@ -136,6 +136,14 @@ struct GazeWitness {
   std::string what;
   std::size_t count = 0;
   double xx = 0, yy = 0, xy = 0, yx = 0;  // xy: gaze x with its y
+  std::optional<Eye> eye = std::nullopt;  // whose gaze it tells of; empty: that of all rows
+};
+
+// A place beside the display, in the file's unit, that is left and come back to by jumps alone, over and over: no eye
+// does that.
+struct RecurringPlace {
+  double x = 0, y = 0;
+  std::size_t rows = 0;
 };
 
 struct GazeLog {
@@ -164,6 +172,7 @@ struct GazeLog {
 
   GazeOrder order;
   std::size_t zero_positions = 0;  // rows at exactly (0, 0) in the file's units that nothing marks as missing
+  std::optional<RecurringPlace> recurring_place;  // the one with most rows; only after GazeReadOptions::for_inspection
   std::vector<GazeWitness> witnesses;
   std::vector<GazeFault> faults;  // empty but after GazeReadOptions::for_inspection
 };

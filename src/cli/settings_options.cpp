@@ -292,6 +292,10 @@ void add_gaze_file_options(OptionTable& table, GazeFileSettings& gaze) {
               "Samples below it are not used; default: the format's own, such as 0.6 for Pupil Core", kPixels);
   table.flag("--gaze-zero-missing", gaze.read.zero_is_missing, "Takes positions of exactly (0, 0) for missing ones",
              kPixels);
+  table.value("--gaze-missing-value", gaze.read.missing_value, "VALUE",
+              "What the log has in both axes, such as -1, where it has no position; -32768, and 1e7 and beyond, are "
+              "always taken for that",
+              kPixels);
   table.flag("--gaze-swap-xy", gaze.read.swap_xy, "Exchanges the two axes", kPixels);
   table.flag("--gaze-flip-x", gaze.read.flip_x, "Exchanges left and right", kPixels);
   table.flag("--gaze-flip-y", gaze.read.flip_y, "Exchanges top and bottom", kPixels);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "gaze/missing_values.hpp"
 #include "gaze/read_support.hpp"
 #include "gaze/units.hpp"
 
@@ -262,6 +263,7 @@ void finish_positions(GazeLog& log, const ColumnPlan& plan, const GazeFile& file
                    style == ValidityStyle::names && plan.sources.front().validity.has_value(),
                    options.columns.origin == PositionOrigin::automatic ? Evidence::format : declared};
   if (space.unit == PositionUnit::automatic) {
+    mark_missing_values(log, options);  // would widen the range that is guessed from
     std::string evidence;
     space.unit = guess_position_unit(log.samples, evidence);
     space.evidence = Evidence::statistics;

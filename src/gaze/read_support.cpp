@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "gaze/missing_values.hpp"
 #include "gaze/units.hpp"
 
 namespace gazetrace {
@@ -263,6 +264,7 @@ void WitnessTally::finish(GazeLog& log, std::string what) const {
 }
 
 void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpace& space, const std::string& place) {
+  mark_missing_values(log, options);
   for (GazeSample& sample : log.samples) {
     if (sample.u == 0 && sample.v == 0) {
       if (options.zero_is_missing) {
@@ -285,6 +287,13 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
     flip_directions(log, options);
     return;
   }
+  std::vector<Vec2d> raw;
+  if (options.for_inspection) {
+    raw.reserve(log.samples.size());
+    for (const GazeSample& sample : log.samples) {
+      raw.push_back({sample.u, sample.v});
+    }
+  }
   std::optional<DisplayGeometry> display = conversion_display(log, options, place);
   const bool sized = display && display->width_px > 0 && display->height_px > 0;
   if (chosen.unit == PositionUnit::px && !sized && look_only) {
@@ -301,6 +310,9 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
   }
   if (!space.validity_is_final && log.kind == GazeKind::screen) {
     mark_off_screen(log.samples);
+  }
+  if (options.for_inspection) {
+    log.recurring_place = find_recurring_place(log, raw);
   }
 }
 
@@ -352,7 +364,12 @@ void finish_directions(GazeLog& log, const GazeReadOptions& options, GazeAxes ow
   std::size_t backwards = 0;
   std::size_t usable = 0;
   for (GazeSample& sample : log.samples) {
-    Vec3d d = from_axes(sample.direction, axes);
+    const Vec3d& written = sample.direction;
+    const bool is_given = options.missing_value && written.x == *options.missing_value && written.y == written.x &&
+                          written.z == written.x;
+    const bool missing =
+        is_given || is_missing_marker(written.x) || is_missing_marker(written.y) || is_missing_marker(written.z);
+    Vec3d d = missing ? Vec3d{kNan, kNan, kNan} : from_axes(written, axes);
     if (options.swap_xy) {
       std::swap(d.x, d.y);
     }

@@ -290,8 +290,10 @@ class AscReader {
     sample.v = number(column + 1) - top_px_;
     const double pupil = number(column + 2);
     sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-    const bool zero = options_.zero_is_missing && number(column) == 0 && number(column + 1) == 0;
-    if (zero || std::isnan(sample.u) || std::isnan(sample.v)) {
+    const auto both_are = [&](double value) { return number(column) == value && number(column + 1) == value; };
+    const bool missing =
+        (options_.zero_is_missing && both_are(0)) || (options_.missing_value && both_are(*options_.missing_value));
+    if (missing || std::isnan(sample.u) || std::isnan(sample.v)) {
       sample.u = sample.v = kNan;
       sample.validity = GazeValidity::lost;
     } else if (!flags.empty()) {
@@ -368,8 +370,14 @@ class AscReader {
                Evidence::header, coordinates_ + ", inclusive corners");
     }
     fixations_.finish(log_, "the fixations' means (EFIX)");
-    finish_places(log_, options_, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"},
+    GazeReadOptions settled = options_;
+    settled.missing_value.reset();  // was held against what the file has, before corners were taken off
+    finish_places(log_, settled, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"},
                   file_.path);
+    if (log_.recurring_place) {
+      log_.recurring_place->x += left_px_;
+      log_.recurring_place->y += top_px_;
+    }
   }
 
   const GazeFile& file_;

@@ -45,6 +45,7 @@ class Doctor {
     time_unit();
     const bool unit_is_wrong = position_unit();
     zeros();
+    recurring_place();
     axes(unit_is_wrong);
     rest();
     verdict();
@@ -255,6 +256,19 @@ class Doctor {
         "statistics: noise never gives exact zeros in both axes that often", "--gaze-zero-missing");
   }
 
+  void recurring_place() {
+    if (!log_.recurring_place) {
+      return;
+    }
+    const RecurringPlace& place = *log_.recurring_place;
+    add(FindingKind::suspicion, "missing-value",
+        fmt::format("{} of {} rows are exactly at ({}, {}), beside the display, and count as good: a mark of missing "
+                    "values",
+                    place.rows, log_.order.rows, place.x, place.y),
+        "statistics: gaze comes to this place and leaves it by jumps alone",
+        place.x == place.y ? fmt::format("--gaze-missing-value {}", place.x) : "");
+  }
+
   void axes(bool unit_is_wrong) {
     for (const char axis : {'x', 'y'}) {
       report_.axes.push_back(
@@ -391,9 +405,10 @@ class Doctor {
           fmt::format("{:.1f} % of the samples lie beside the display", 100 * share(beside)),
           "positions outside 0..1 of the display");
     }
-    const bool are_zeros = std::any_of(report_.findings.begin(), report_.findings.end(),
-                                       [](const GazeFinding& f) { return f.code == "zero-missing"; });
-    const bool tells = !are_zeros && !log_.sample_age_unknown;  // zeros stand still, too, and are told already
+    const bool are_marks = std::any_of(report_.findings.begin(), report_.findings.end(), [](const GazeFinding& f) {
+      return f.code == "zero-missing" || f.code == "missing-value";
+    });
+    const bool tells = !are_marks && !log_.sample_age_unknown;  // marks stand still, too, and are told already
     if (tells && report_.frozen.samples * 20 > loss.usable && report_.frozen.runs > 0) {
       add(FindingKind::suspicion, "frozen",
           fmt::format("positions stand still bit by bit in {} runs, the longest of {:.0f} ms in line {}",

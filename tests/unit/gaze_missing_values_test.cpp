@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Marks of missing values that are numbers: what is always one, what the user names, and what only looks like one.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gazetrace/gaze_inspect.hpp"
+#include "support/gaze_format_files.hpp"
+
+namespace gazetrace {
+namespace {
+
+using ::testing::HasSubstr;
+
+class GazeMissingValues : public GazeFormats {
+ protected:
+  GazeInspection inspect(std::string_view name, std::string_view text, const GazeReadOptions& options = {}) {
+    return inspect_gaze(load_for_inspection(files_.write(name, text), options), {});
+  }
+};
+
+// 1000 rows in pixels of the middle of a display of 1920 x 1080; every 40th and the three behind it are `cells`.
+std::string with_marks(const std::string& cells) {
+  std::string text = "t[ms],x[px],y[px]\n";
+  for (int i = 0; i < 1000; ++i) {
+    const double phase = i * 0.7;
+    text += i % 40 < 4 ? fmt::format("{},{}\n", i, cells)
+                       : fmt::format("{},{:.2f},{:.2f}\n", i, 900 + 90 * std::sin(phase), 500 + 80 * std::cos(phase));
+  }
+  return text;
+}
+
+GazeReadOptions full_hd() {
+  GazeReadOptions options;
+  options.display = DisplayGeometry{.width_px = 1920, .height_px = 1080};
+  return options;
+}
+
+std::ptrdiff_t lost_rows(const GazeLog& log) {
+  return std::count_if(log.samples.begin(), log.samples.end(),
+                       [](const GazeSample& s) { return s.validity == GazeValidity::lost && std::isnan(s.u); });
+}
+
+const GazeFinding* finding(const GazeInspection& report, std::string_view code) {
+  const auto found = std::find_if(report.findings.begin(), report.findings.end(),
+                                  [&](const GazeFinding& f) { return f.code == code; });
+  return found == report.findings.end() ? nullptr : &*found;
+}
+
+TEST_F(GazeMissingValues, NoUnitHasTheseCoordinates) {
+  for (const std::string cells : {"-32768,-32768", "1e8,1e8", "100000000.0,100000000.0", "-1e7,-1e7", "900,-32768"}) {
+    const GazeLog log = read("a.csv", with_marks(cells), full_hd());
+    EXPECT_EQ(lost_rows(log), 100) << cells;
+    EXPECT_EQ(finding(inspect("b.csv", with_marks(cells), full_hd()), "missing-value"), nullptr) << cells;
+  }
+  // Neither do they widen the range from which a unit is guessed.
+  std::string fractions = "t[ms],x,y\n";
+  for (int i = 0; i < 100; ++i) {
+    fractions += i % 10 == 0 ? fmt::format("{},-32768,-32768\n", i) : fmt::format("{},0.4,0.{}\n", i, 1 + i % 8);
+  }
+  const GazeLog log = read("c.csv", fractions);
+  EXPECT_EQ(lost_rows(log), 10);
+  EXPECT_EQ(log.samples[1].u, 0.4);
+}
+
+TEST_F(GazeMissingValues, DirectionsLikewise) {
+  const std::string text = "t[ms],dx,dy,dz\n1,0,0,-1\n2,-32768,-32768,-32768\n3,1e8,1e8,1e8\n4,-9,-9,-9\n5,0,0,-1\n";
+  EXPECT_EQ(read("a.csv", text).samples[1].validity, GazeValidity::lost);
+  EXPECT_EQ(read("a.csv", text).samples[2].validity, GazeValidity::lost);
+  EXPECT_EQ(read("a.csv", text).samples[3].validity, GazeValidity::ok);
+  GazeReadOptions options;
+  options.missing_value = -9;
+  EXPECT_EQ(read("a.csv", text, options).samples[3].validity, GazeValidity::lost);
+  EXPECT_EQ(read("a.csv", text, options).samples[4].validity, GazeValidity::ok);
+}
+
+TEST_F(GazeMissingValues, TheUserNamesOne) {
+  GazeReadOptions options = full_hd();
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,-1"), options)), 0);
+  options.missing_value = -1;
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,-1"), options)), 100);
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,5"), options)), 0);  // in both axes
+}
+
+// `edf2asc -miss -1`; with corners that do not begin at zero the mark is still what the file has.
+TEST_F(GazeMissingValues, EyeLinkOfAnotherMark) {
+  std::string rows;
+  for (int i = 0; i < 100; ++i) {
+    rows += i % 10 == 0 ? fmt::format("{}\t -1\t -1\t 0.0\t...\n", 100 + i)
+                        : fmt::format("{}\t {}\t 540.0\t 900.0\t...\n", 100 + i, 900 + i % 7);
+  }
+  std::string text = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", rows);
+  for (const std::string corners : {"0 0 1919 1079", "10 0 1929 1079"}) {
+    text.replace(text.find("COORDS ") + 7, text.find("\nSTART") - text.find("COORDS ") - 7, corners);
+    GazeReadOptions options;
+    const GazeInspection report = inspect("a.asc", text);
+    const GazeFinding* const found = finding(report, "missing-value");
+    ASSERT_NE(found, nullptr) << corners;
+    EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+    options.missing_value = -1;
+    EXPECT_EQ(lost_rows(read("a.asc", text, options)), 10) << corners;
+    EXPECT_EQ(finding(inspect("a.asc", text, options), "missing-value"), nullptr);
+  }
+}
+
+TEST_F(GazeMissingValues, TheDoctorNamesAMarkBesideTheDisplay) {
+  const GazeInspection report = inspect("a.csv", with_marks("-1,-1"), full_hd());
+  const GazeFinding* const found = finding(report, "missing-value");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+  EXPECT_THAT(found->what, HasSubstr("100 of 1000 rows are exactly at (-1, -1)"));
+  EXPECT_THAT(report.verdict, HasSubstr("--gaze-missing-value -1 mends it"));
+  // Two different numbers no option takes; they are told all the same.
+  const GazeInspection unequal = inspect("b.csv", with_marks("-9999,-1"), full_hd());
+  ASSERT_NE(finding(unequal, "missing-value"), nullptr);
+  EXPECT_EQ(finding(unequal, "missing-value")->flag, "");
+}
+
+// Whole pixels repeat in a fixation beside the display; they are come to by small steps.
+TEST_F(GazeMissingValues, AFixationBesideTheDisplayIsNoMark) {
+  std::string text = "t[ms],x[px],y[px]\n";
+  for (int i = 0; i < 1000; ++i) {
+    text += i < 500 ? fmt::format("{},{},{}\n", i, 900 + i * 7 % 5, 500 + i * 3 % 4)
+                    : fmt::format("{},{},{}\n", i, 1930 + i * 7 % 5, 500 + i * 3 % 4);
+  }
+  EXPECT_EQ(finding(inspect("a.csv", text, full_hd()), "missing-value"), nullptr);
+}
+
+// A marker on the display or within an angle is a place as any other.
+TEST_F(GazeMissingValues, MinusOneDegreeIsAPlace) {
+  std::string text = with_marks("-1,-1");
+  for (std::size_t at = text.find("[px]"); at != std::string::npos; at = text.find("[px]")) {
+    text.replace(at, 4, "[deg]");
+  }
+  EXPECT_EQ(finding(inspect("a.csv", text), "missing-value"), nullptr);
+}
+
+}  // namespace
+}  // namespace gazetrace
