@@ -87,7 +87,7 @@ void for_known_positions(GazeLog& log, const Convert& convert) {
 }  // namespace
 
 std::optional<PositionUnit> position_unit_from(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 18> kSpellings{{
+  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 20> kSpellings{{
       {"1", PositionUnit::fraction},
       {"norm", PositionUnit::fraction},
       {"normalized", PositionUnit::fraction},
@@ -103,6 +103,8 @@ std::optional<PositionUnit> position_unit_from(std::string_view text) {
       {"degree", PositionUnit::deg},
       {"degrees", PositionUnit::deg},
       {"dva", PositionUnit::deg},
+      {"degree of visual angle", PositionUnit::deg},
+      {"degrees of visual angle", PositionUnit::deg},
       {"\xC2\xB0", PositionUnit::deg},
       {"unit", PositionUnit::unit_vector},
       {"unit vector", PositionUnit::unit_vector},

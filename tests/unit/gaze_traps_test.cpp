@@ -85,7 +85,7 @@ TEST_F(GazeTraps, BidsDraftsHaveOtherNamesAndCentimetres) {
   put("dataset_description.json", "{}");
   put("sub-1_task-x_eyetrack.json",
       R"({"Columns": ["eye_timestamp", "eye1_x_coordinate", "eye1_y_coordinate"], "SamplingFrequency": 1000,
-          "SampleCoordinateSystem": "gaze-on-screen"})");
+          "SampleCoordinateSystem": "gaze-on-screen", "SampleCoordinateUnit": "pixel"})");
   put("sub-1_task-x_events.json", R"({"StimulusPresentation": {"ScreenDistance": 60, "ScreenSize": [53, 30],
           "ScreenResolution": [1920, 1080], "ScreenOrigin": ["center", "center"]}})");
   const GazeLog log = read("sub-1_task-x_eyetrack.tsv", "time\tx\ty\n1\t0\t0\n2\t480\t270\n");

@@ -13,6 +13,7 @@
 #include "core/text.hpp"
 #include "gaze/bids_sidecars.hpp"
 #include "gaze/gzip.hpp"
+#include "gaze/missing_values.hpp"
 #include "gaze/read_support.hpp"
 #include "gaze/units.hpp"
 #include "gaze/validity.hpp"
@@ -26,6 +27,7 @@ struct BidsColumns {
   // Of recordings that gazetrace wrote: every bit of the places, and what the standard has no name for.
   std::optional<std::size_t> z, validity, confidence, origin_x, origin_y, origin_z;
   bool is_fraction = false, is_direction = false;
+  std::string x_name, y_name;
 
   [[nodiscard]] std::size_t needed() const {
     std::size_t last = std::max({time, x, y});
@@ -57,6 +59,8 @@ BidsColumns find_columns(const DelimitedTable& table, const GazeReadOptions& opt
   c.x = need(options.columns.x, {"x_coordinate", "eye1_x_coordinate", "eye2_x_coordinate"});
   c.y = need(options.columns.y, {"y_coordinate", "eye1_y_coordinate", "eye2_y_coordinate"});
   c.pupil = table.find_any({"pupil_size", "eye1_pupil_size", "eye2_pupil_size"});
+  c.x_name = table.headings[c.x].text;
+  c.y_name = table.headings[c.y].text;
   if (!options.columns.x.empty() || !options.columns.y.empty()) {
     return c;
   }
@@ -91,9 +95,49 @@ void mend_resolution(DisplayGeometry& g, GazeLog& log, const std::string& place)
   }
 }
 
-PositionOrigin read_geometry(const BidsName& name, GazeLog& log) {
-  const Sidecars events(name, "events");
-  const auto key = [](std::string_view what) { return fmt::format("StimulusPresentation.{}", what); };
+std::string screen_key(std::string_view what) {
+  return fmt::format("StimulusPresentation.{}", what);
+}
+
+// ["top", "left"], in any order. None but these can be read.
+PositionOrigin screen_origin(const Sidecars& events, const GazeReadOptions& options) {
+  std::vector<std::string> words = events.texts(screen_key("ScreenOrigin"));
+  if (words.empty()) {
+    return PositionOrigin::top_left;
+  }
+  std::string stated;
+  for (std::string& word : words) {
+    word = to_lower(trim(word));
+    stated += (stated.empty() ? "" : ", ") + word.substr(0, 20);
+  }
+  const auto is = [&](std::string_view vertical, std::string_view horizontal) {
+    const auto either = [&](const std::string& word) { return word == vertical || word == horizontal; };
+    return std::all_of(words.begin(), words.end(), either);
+  };
+  if (is("top", "left")) {
+    return PositionOrigin::top_left;
+  }
+  if (is("bottom", "left")) {
+    return PositionOrigin::bottom_left;
+  }
+  if (is("center", "centre")) {
+    return PositionOrigin::center;
+  }
+  const bool from_right = is("top", "right") || is("bottom", "right");
+  if (options.columns.origin != PositionOrigin::automatic) {
+    return PositionOrigin::top_left;  // overruled
+  }
+  if (from_right && options.flip_x) {
+    return is("top", "right") ? PositionOrigin::top_left : PositionOrigin::bottom_left;
+  }
+  throw Error(ErrorKind::input, events.source(screen_key("ScreenOrigin")),
+              fmt::format("its ScreenOrigin is '{}'", stated),
+              from_right ? "give --gaze-flip-x, which counts from the left what counts from the right"
+                         : "top left, bottom left and center can be read; else give --gaze-origin");
+}
+
+void read_geometry(const Sidecars& events, GazeLog& log) {
+  const auto& key = screen_key;
   const std::vector<double> resolution = events.numbers(key("ScreenResolution"));
   const std::vector<double> size = events.numbers(key("ScreenSize"));
   const std::vector<double> point = events.numbers(key("ScreenDistance"));
@@ -122,6 +166,12 @@ PositionOrigin read_geometry(const BidsName& name, GazeLog& log) {
   }
   if (distance > 0 && distance < 1e4) {
     g.distance_cm = distance > 10 ? distance : distance * 100;
+    if (point.size() == 3 && (point[0] != 0 || point[1] != 0)) {
+      log.warnings.push_back(fmt::format(
+          "{}: of ScreenDistance [{}, {}, {}] only the last is used, for the distance; where the eye stands "
+          "beside the display's center can be given with --screen-eye-cm",
+          events.source(key("ScreenDistance")), point[0], point[1], point[2]));
+    }
     add_fact(log, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
   }
   if (const std::vector<double> eye = events.numbers(key("EyeOffset")); eye.size() == 2) {  // gazetrace's own, metres
@@ -135,13 +185,57 @@ PositionOrigin read_geometry(const BidsName& name, GazeLog& log) {
   if (g.width_px > 0 || g.width_cm > 0 || g.distance_cm > 0) {
     log.recording_geometry = g;
   }
-  const std::vector<std::string> origin = events.texts(key("ScreenOrigin"));
-  const auto said = [&](std::string_view word) {
-    return std::find(origin.begin(), origin.end(), word) != origin.end();
-  };
-  return said("bottom")   ? PositionOrigin::bottom_left
-         : said("center") ? PositionOrigin::center
-                          : PositionOrigin::top_left;
+}
+
+// A unit, and how many of it a number of the file counts.
+struct StatedUnit {
+  PositionUnit unit = PositionUnit::px;
+  double each = 1;
+};
+
+std::optional<StatedUnit> unit_from(const std::string& text) {
+  const std::string lower = to_lower(trim(text));
+  if (lower == "rad" || lower == "radian" || lower == "radians") {
+    return StatedUnit{PositionUnit::deg, kDegPerRad};
+  }
+  if (lower == "m" || lower == "meter" || lower == "metre") {
+    return StatedUnit{PositionUnit::cm, 100};
+  }
+  const auto unit = position_unit_from(lower);
+  return unit && *unit != PositionUnit::unit_vector ? std::optional(StatedUnit{*unit}) : std::nullopt;
+}
+
+// What the sidecar says of the positions' unit, or the user where it says nothing that is understood.
+StatedUnit stated_unit(const Sidecars& sidecars, const BidsColumns& columns, const GazeReadOptions& options,
+                       GazeLog& log, Evidence& evidence) {
+  std::string x = sidecars.text(columns.x_name + ".Units");
+  if (x.empty()) {
+    x = sidecars.text("SampleCoordinateUnit");  // of drafts
+  }
+  const std::string y = sidecars.text(columns.y_name + ".Units");
+  const auto unit = unit_from(x);
+  const auto y_unit = y.empty() ? unit : unit_from(y);
+  const bool is_understood = unit && y_unit && unit->unit == y_unit->unit && unit->each == y_unit->each;
+  const PositionUnit given = options.columns.position_unit;
+  if (given != PositionUnit::automatic && (!is_understood || unit->each != 1)) {
+    evidence = Evidence::option;
+    if (!x.empty()) {
+      log.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; --gaze-unit {} was given and is used",
+                                         log.source, columns.x_name, x.substr(0, 40), to_string(given)));
+    }
+    return {given};
+  }
+  if (is_understood) {
+    evidence = Evidence::sidecar;
+    return *unit;
+  }
+  const std::string source = sidecars.source(columns.x_name + ".Units");
+  throw Error(ErrorKind::input, source.empty() ? log.source : source,
+              x.empty()             ? fmt::format("no sidecar states the Units of {}", columns.x_name)
+              : x == y || y.empty() ? fmt::format("its Units of {} are '{}'", columns.x_name, x.substr(0, 40))
+                                    : fmt::format("its Units are '{}' of {} and '{}' of {}", x.substr(0, 40),
+                                                  columns.x_name, y.substr(0, 40), columns.y_name),
+              fmt::format("give --gaze-unit, or write \"{}\": {{\"Units\": \"pixel\"}} into it", columns.x_name));
 }
 
 Eye recorded_eye(const Sidecars& sidecars) {
@@ -321,7 +415,8 @@ GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
     throw Error(ErrorKind::input, file.path, fmt::format("its SampleCoordinateSystem is '{}'", space.substr(0, 40)),
                 "gaze-on-screen and eye-in-head can be read");
   }
-  const PositionOrigin origin = read_geometry(name, log);
+  const Sidecars events(name, "events");
+  read_geometry(events, log);
   const BidsColumns columns = read_samples(file, sidecars, options, log);
   read_events(sidecars, file.path, log);
   std::vector<Eye> read{recorded_eye(sidecars)};
@@ -351,21 +446,31 @@ GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
     finish_directions(log, options, GazeAxes::gl, Evidence::sidecar, file.path);
     return log;
   }
-  const std::string unit_text = sidecars.text("x_coordinate.Units");
-  const auto unit = position_unit_from(unit_text);
   GazeReadOptions settled = options;
   if (space == "eye-in-head") {
     settled.frame = GazeFrame::head;
   }
-  finish_places(
-      log, settled,
-      {columns.is_fraction ? PositionUnit::fraction : unit.value_or(PositionUnit::px),
-       unit == PositionUnit::deg ? PositionOrigin::center
-       : columns.is_fraction     ? PositionOrigin::top_left
-                                 : origin,
-       unit ? Evidence::sidecar : Evidence::format,
-       columns.is_fraction ? "display_x, display_y" : "x_coordinate, y_coordinate", columns.validity.has_value()},
-      file.path);
+  PlaceSpace places{PositionUnit::fraction, PositionOrigin::top_left, Evidence::sidecar, "display_x, display_y",
+                    columns.validity.has_value()};
+  if (!columns.is_fraction) {
+    const StatedUnit unit = stated_unit(sidecars, columns, options, log, places.evidence);
+    places.unit = unit.unit;
+    places.origin = unit.unit == PositionUnit::deg ? PositionOrigin::center : screen_origin(events, options);
+    const bool says_origin = !events.texts(screen_key("ScreenOrigin")).empty();
+    places.origin_evidence = unit.unit == PositionUnit::deg ? places.evidence
+                             : says_origin                  ? Evidence::sidecar
+                                                            : Evidence::format;
+    places.columns = columns.x_name + ", " + columns.y_name;
+    if (unit.each != 1) {
+      mark_missing_values(log, settled);  // in the unit of the file
+      settled.missing_value.reset();
+      for (GazeSample& sample : log.samples) {
+        sample.u *= unit.each;
+        sample.v *= unit.each;
+      }
+    }
+  }
+  finish_places(log, settled, places, file.path);
   return log;
 }
 
