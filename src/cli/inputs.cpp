@@ -260,6 +260,7 @@ GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings&
   options.columns = merged_columns(gaze);
   options.min_confidence = gaze.min_confidence.value_or(options.min_confidence);
   options.display = screen_geometry(screen);
+  options.eye_cm = screen.eye_cm;
   options.unordered = gaze.sort ? UnorderedPolicy::sort : UnorderedPolicy::error;
   return options;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "gaze/missing_values.hpp"
+#include "gaze/recording_geometry.hpp"
 #include "gaze/units.hpp"
 
 namespace gazetrace {
@@ -20,48 +21,6 @@ void mark_off_screen(std::vector<GazeSample>& samples) {
       sample.validity = GazeValidity::off_screen;
     }
   }
-}
-
-void warn_about_size(GazeLog& log, const DisplayGeometry& given, const DisplayGeometry& stated,
-                     const std::string& place) {
-  const auto differ = [](double a, double b) { return a > 0 && b > 0 && std::abs(a - b) > 0.02 * b; };
-  if (differ(given.width_cm, stated.width_cm) || differ(given.height_cm, stated.height_cm)) {
-    log.warnings.push_back(
-        fmt::format("{}: the log states a display of {:.4g} x {:.4g} cm; the given {:.4g} x {:.4g} cm are used", place,
-                    stated.width_cm, stated.height_cm, given.width_cm, given.height_cm));
-  }
-  if (differ(given.distance_cm, stated.distance_cm)) {
-    log.warnings.push_back(fmt::format("{}: the log states a distance of {:.4g} cm; the given {:.4g} cm are used",
-                                       place, stated.distance_cm, given.distance_cm));
-  }
-}
-
-// What the log states, overruled by what the user gave, which is the recording's geometry from then on.
-std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOptions& options,
-                                                  const std::string& place) {
-  if (log.kind == GazeKind::scene_camera) {
-    return log.recording_geometry;
-  }
-  if (!options.display) {
-    return log.recording_geometry && options.fallback_display
-               ? completed_geometry(*log.recording_geometry, *options.fallback_display)
-           : log.recording_geometry ? log.recording_geometry
-                                    : options.fallback_display;
-  }
-  const DisplayGeometry& given = *options.display;
-  if (log.recording_geometry) {
-    const DisplayGeometry& stated = *log.recording_geometry;
-    if (stated.width_px > 0 && given.width_px > 0 &&
-        (stated.width_px != given.width_px || stated.height_px != given.height_px)) {
-      log.warnings.push_back(fmt::format("{}: the log states a display of {}x{} px; the given {}x{} px are used", place,
-                                         stated.width_px, stated.height_px, given.width_px, given.height_px));
-    }
-    warn_about_size(log, given, stated, place);
-    log.recording_geometry = completed_geometry(given, stated);
-  } else {
-    log.recording_geometry = given;
-  }
-  return log.recording_geometry;
 }
 
 // The smallest usual display that holds nearly all places: good enough to look at a log, never to render from one.
@@ -191,23 +150,6 @@ PlaceSpace overrule(GazeLog& log, const GazeReadOptions& options, const PlaceSpa
 }
 
 }  // namespace
-
-DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry& by) {
-  if (stated.width_px <= 0 || stated.height_px <= 0) {
-    stated.width_px = by.width_px;
-    stated.height_px = by.height_px;
-  }
-  if (!(stated.width_cm > 0) || !(stated.height_cm > 0)) {
-    stated.width_cm = by.width_cm;
-    stated.height_cm = by.height_cm;
-  }
-  if (!(stated.distance_cm > 0)) {
-    stated.distance_cm = by.distance_cm;
-    stated.eye_x_cm = by.eye_x_cm;
-    stated.eye_y_cm = by.eye_y_cm;
-  }
-  return stated;
-}
 
 void add_fact(GazeLog& log, std::string what, std::string value, Evidence evidence, std::string detail) {
   log.facts.push_back({std::move(what), std::move(value), evidence, std::move(detail)});

@@ -41,6 +41,19 @@ bool is_complete(const std::optional<DisplayGeometry>& g) {
   return g && g->width_cm > 0 && g->height_cm > 0 && g->distance_cm > 0;
 }
 
+// What is known of angles in the recording, by size and distance or by pixels a degree.
+std::optional<DisplayGeometry> recording_screen(const GazeLog& log) {
+  if (is_complete(log.recording_geometry)) {
+    return log.recording_geometry;
+  }
+  const auto& g = log.recording_geometry;
+  const auto& ppd = log.pixels_per_degree;
+  if (g && g->width_px > 0 && g->height_px > 0 && ppd && ppd->x > 0 && ppd->y > 0) {
+    return display_of_pixels_per_degree(g->width_px, g->height_px, *ppd);
+  }
+  return std::nullopt;
+}
+
 bool same_place(const DisplayGeometry& a, const DisplayGeometry& b) {
   const auto close = [](double x, double y, double scale) { return std::abs(x - y) <= kSameSize * scale; };
   const double width = b.width_cm / b.distance_cm;
@@ -53,14 +66,15 @@ bool same_place(const DisplayGeometry& a, const DisplayGeometry& b) {
 // The recording's screen where gaze is carried over by angle; empty where places are the same.
 std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometry& display,
                                         const std::optional<GazeTransfer>& how, Warnings& warnings) {
-  if (!is_complete(log.recording_geometry)) {
+  const std::optional<DisplayGeometry> known = recording_screen(log);
+  if (!known) {
     if (how == GazeTransfer::angle) {
       throw Error(ErrorKind::input, log.source, "the size and distance of the recording's screen are not known",
                   "give --recording-screen to carry gaze over by angle");
     }
     return std::nullopt;
   }
-  const DisplayGeometry& recording = *log.recording_geometry;
+  const DisplayGeometry& recording = *known;
   if (same_place(recording, display)) {
     return std::nullopt;
   }

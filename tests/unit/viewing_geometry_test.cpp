@@ -118,6 +118,21 @@ TEST(GazeTransfer, KeepsPlacesOrAngles) {
   EXPECT_EQ(plan(without, settings).frames[0].gaze_render.u, 0.75);
 }
 
+// EyeLink states pixels per degree and no size: that is an angle, too.
+TEST(GazeTransfer, PixelsPerDegreeAreAGeometryAsWell) {
+  GazeLog log = log_at(0.75, 0.25);
+  log.recording_geometry = DisplayGeometry{.width_px = 1000, .height_px = 500};
+  log.pixels_per_degree = Vec2d{40, 40};
+  PlanSettings settings = settings_for(kLarge);
+  // 25 degrees as an arc, 2 atan(25 pi / 360) = 24.6 as an angle, on a display of 77.3.
+  EXPECT_THAT(refusal(log, settings), HasSubstr("recorded on a display 24.6 deg wide and shown on one 77.3 deg wide"));
+  settings.transfer = GazeTransfer::angle;
+  // 250 px right of the center and 125 up are tan = 6.25 and 3.125 pi / 180, times 50 cm on 80 x 45.
+  const FramePlan result = plan(log, settings);
+  EXPECT_NEAR(result.frames[0].gaze_render.u, 0.5 + 6.25 * kPi / 180 * 50 / 80, 1e-12);
+  EXPECT_NEAR(result.frames[0].gaze_render.v, 0.5 - 3.125 * kPi / 180 * 50 / 45, 1e-12);
+}
+
 TEST(ScreenLogs, HaveNoAnglesWithoutSizeAndDistance) {
   GazeLog log = log_at(0.5, 0.5);
   log.recording_geometry.reset();

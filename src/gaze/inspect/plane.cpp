@@ -25,6 +25,10 @@ GazePlane::GazePlane(const GazeLog& log, const std::optional<DisplayGeometry>& g
       g.height_cm = stated->height_cm;
     }
     g.distance_cm = g.distance_cm > 0 ? g.distance_cm : stated->distance_cm;
+    if (g.eye_x_cm == 0 && g.eye_y_cm == 0) {  // reading has given the log what was given of the eye
+      g.eye_x_cm = stated->eye_x_cm;
+      g.eye_y_cm = stated->eye_y_cm;
+    }
   }
   geometry_ = g;
   if (g.width_cm > 0 && g.height_cm > 0 && g.distance_cm > 0) {
