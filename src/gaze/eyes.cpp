@@ -377,7 +377,7 @@ void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
       log.samples[i].eye = choice == EyeChoice::left ? Eye::left : Eye::right;
       take_eye(log.samples[i], choice == EyeChoice::left ? log.eyes[i].left : log.eyes[i].right, log.kind);
     }
-    add_fact(log, "eye", choice == EyeChoice::left ? "left" : "right", evidence);
+    add_fact(log, "eye", choice == EyeChoice::left ? "left" : "right", evidence, "alone");
     return;
   }
   if (choice == EyeChoice::automatic && rows.own() > 0) {

@@ -192,7 +192,7 @@ void WitnessTally::add(double x, double y, double witness_x, double witness_y) {
   }
 }
 
-void WitnessTally::finish(GazeLog& log, std::string what) const {
+void WitnessTally::finish(GazeLog& log, std::string what, std::optional<Eye> eye) const {
   constexpr std::size_t kLeast = 5;
   if (count_ < kLeast) {
     return;
@@ -202,7 +202,7 @@ void WitnessTally::finish(GazeLog& log, std::string what) const {
     return spread > 0 ? product_[i][j] / spread : kNan;
   };
   log.witnesses.push_back(
-      {std::move(what), count_, correlation(0, 2), correlation(1, 3), correlation(0, 3), correlation(1, 2)});
+      {std::move(what), count_, correlation(0, 2), correlation(1, 3), correlation(0, 3), correlation(1, 2), eye});
 }
 
 void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpace& space, const std::string& place) {

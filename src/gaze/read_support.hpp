@@ -55,7 +55,8 @@ class WitnessTally {
  public:
   void add(double x, double y, double witness_x, double witness_y);
   // Adds the witness to the log where there were enough rows. Call it before finish_places or finish_directions.
-  void finish(GazeLog& log, std::string what) const;
+  // `eye`: whose gaze it tells of, where not of all rows'.
+  void finish(GazeLog& log, std::string what, std::optional<Eye> eye = std::nullopt) const;
 
  private:
   std::size_t count_ = 0;

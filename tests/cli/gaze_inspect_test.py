@@ -162,7 +162,9 @@ class Doctor(harness.CliTest):
 
         path.chmod(0o644)
         path.write_bytes(gzip.compress(breaking.cells_changed(text, lambda line: "\t" in line, "\t", flip).encode()))
-        self.assertIn("one-eye-flipped", [f["code"] for f in self.accused(self.inspect(path))])
+        found = [(f["code"], f["flag"]) for f in self.accused(self.inspect(path))]
+        self.assertEqual(found, [("one-eye-flipped", "")])  # nothing in the file says which eye it is
+        self.assertEqual(self.accused(self.inspect(path, "--gaze-eye", "right")), [])
 
     def test_axes_exchanged(self):
         name = "tobii-studio-tsv/data.tsv"
@@ -249,6 +251,22 @@ class Doctor(harness.CliTest):
         whole = [line.split(",")[0] + ",," if i in lost else line for i, line in enumerate(lines)]
         self.assert_mended("toy.csv", "\n".join(broken), "zero-missing", "--gaze-zero-missing", "\n".join(whole),
                            ["--screen-px", "1280,1024"])
+
+    def test_other_numbers_for_missing(self):
+        lines = self.sample("plain-csv/gaze-toy-example.csv").split("\n")
+        lost = [i for i in range(1, len(lines) - 1) if i % 400 < 30]
+        whole = "\n".join(line.split(",")[0] + ",," if i in lost else line for i, line in enumerate(lines))
+        common = ["--screen-px", "1280,1024"]
+
+        def broken(mark):
+            return "\n".join(f"{line.split(',')[0]},{mark},{mark}" if i in lost else line for i, line in enumerate(lines))
+
+        self.assert_mended("toy.csv", broken(-1), "missing-value", "--gaze-missing-value -1", whole, common)
+        for mark in ("-32768", "1e8"):
+            self.write("marks.csv", broken(mark))
+            self.write("whole.csv", whole)
+            self.assertEqual(self.accused(self.inspect("marks.csv", *common)), [])
+            self.assert_same_log(self.rows("marks.csv", *common), self.rows("whole.csv", *common))
 
     # -- order
 

@@ -240,7 +240,9 @@ class AscReader {
       }
     }
     if (count > 0) {
-      fixations_.add(x / count, y / count, number(column) - left_px_, number(column + 1) - top_px_);
+      const Vec2d mean{number(column) - left_px_, number(column + 1) - top_px_};
+      fixations_.add(x / count, y / count, mean.x, mean.y);
+      fixations_of_eye_[eye == Eye::right ? 1 : 0].add(x / count, y / count, mean.x, mean.y);
     }
   }
 
@@ -370,6 +372,10 @@ class AscReader {
                Evidence::header, coordinates_ + ", inclusive corners");
     }
     fixations_.finish(log_, "the fixations' means (EFIX)");
+    if (block_.eyes() == 2) {
+      fixations_of_eye_[0].finish(log_, "the left eye's fixations' means (EFIX L)", Eye::left);
+      fixations_of_eye_[1].finish(log_, "the right eye's fixations' means (EFIX R)", Eye::right);
+    }
     GazeReadOptions settled = options_;
     settled.missing_value.reset();  // was held against what the file has, before corners were taken off
     finish_places(log_, settled, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"},
@@ -396,6 +402,7 @@ class AscReader {
   std::vector<Vec2d> resolutions_;
   std::array<std::vector<Span>, 2> blinks_, saccades_;
   WitnessTally fixations_;
+  std::array<WitnessTally, 2> fixations_of_eye_;
 };
 
 }  // namespace

@@ -264,7 +264,7 @@ class StudioReader {
       }
       place_eyes(g);
     }
-    millimetres_.finish(log_, "the left eye in millimetres (ADCSmm)");
+    millimetres_.finish(log_, "the left eye in millimetres (ADCSmm)", Eye::left);
     finish_places(log_, options_,
                   {PositionUnit::px, PositionOrigin::top_left, Evidence::header,
                    c_.x ? "GazePointX (ADCSpx), GazePointY (ADCSpx)" : "GazePointLeftX (ADCSpx), ..."},

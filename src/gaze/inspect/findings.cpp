@@ -13,7 +13,6 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kWitnessAgrees = 0.6;  // correlation from which a witness speaks
 constexpr double kPlausibleLowHz = 5, kPlausibleHighHz = 5000;
 
 class Doctor {
@@ -46,7 +45,9 @@ class Doctor {
     const bool unit_is_wrong = position_unit();
     zeros();
     recurring_place();
-    axes(unit_is_wrong);
+    if (!examine_axes(log_, unit_is_wrong, report_)) {
+      swapped_by_extent();
+    }
     rest();
     verdict();
   }
@@ -57,11 +58,7 @@ class Doctor {
   void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string flag = {}) {
     report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(flag)});
   }
-  [[nodiscard]] const GazeFact* fact(std::string_view what) const {
-    const auto found =
-        std::find_if(log_.facts.rbegin(), log_.facts.rend(), [&](const GazeFact& f) { return f.what == what; });
-    return found == log_.facts.rend() ? nullptr : &*found;
-  }
+  [[nodiscard]] const GazeFact* fact(std::string_view what) const { return find_fact(log_, what); }
   [[nodiscard]] std::string fact_text(std::string_view what) const {
     const GazeFact* const found = fact(what);
     return found == nullptr ? "" : found->value;
@@ -269,89 +266,6 @@ class Doctor {
         place.x == place.y ? fmt::format("--gaze-missing-value {}", place.x) : "");
   }
 
-  void axes(bool unit_is_wrong) {
-    for (const char axis : {'x', 'y'}) {
-      report_.axes.push_back(
-          {axis, AxisVerdict::undecided, "nothing in the log speaks for or against: no second account of the gaze"});
-    }
-    if (unit_is_wrong) {
-      report_.axes[0].evidence = report_.axes[1].evidence = "not tested: the unit or the origin is wrong";
-      return;
-    }
-    bool swapped = false;
-    for (const GazeWitness& w : log_.witnesses) {
-      const bool across = std::abs(w.xy) > kWitnessAgrees && std::abs(w.yx) > kWitnessAgrees;
-      const bool along = std::abs(w.xx) > kWitnessAgrees || std::abs(w.yy) > kWitnessAgrees;
-      if (across && !along) {
-        swapped = true;
-        add(FindingKind::fault, "swapped-axes", "the axes are exchanged",
-            fmt::format("gaze x goes with y of {} (r = {:.2f}), and y with its x (r = {:.2f}), {} values", w.what, w.xy,
-                        w.yx, w.count),
-            "--gaze-swap-xy");
-        continue;
-      }
-      witness(w.what, w.count, w.xx, report_.axes[0]);
-      witness(w.what, w.count, w.yy, report_.axes[1]);
-    }
-    for (const VorTest& test : report_.vor) {
-      vor(test, report_.axes[test.axis == 'x' ? 0 : 1]);
-    }
-    for (const GazeAxisTest& test : report_.axes) {
-      if (test.verdict == AxisVerdict::flipped) {
-        const bool by_vor = test.evidence.starts_with("vestibulo");
-        add(by_vor ? FindingKind::suspicion : FindingKind::fault, fmt::format("{}-flip", test.axis),
-            test.axis == 'x' ? "left and right are exchanged" : "top and bottom are exchanged", test.evidence,
-            fmt::format("--gaze-flip-{}", test.axis));
-      }
-    }
-    one_eye_flipped();
-    if (!swapped) {
-      swapped_by_extent();
-    }
-  }
-
-  static void witness(const std::string& what, std::size_t count, double r, GazeAxisTest& test) {
-    if (std::isnan(r) || std::abs(r) < kWitnessAgrees || test.verdict != AxisVerdict::undecided) {
-      return;
-    }
-    test.verdict = r > 0 ? AxisVerdict::confirmed : AxisVerdict::flipped;
-    test.evidence = fmt::format("against {} in the same file: {} (r = {:.2f}, {} values)", what,
-                                r > 0 ? "the same way" : "the other way", r, count);
-  }
-
-  static void vor(const VorTest& vor, GazeAxisTest& test) {
-    if (test.verdict != AxisVerdict::undecided) {
-      return;
-    }
-    test.verdict = vor.verdict;
-    if (vor.stretches == 0) {
-      test.evidence = "the head turns too little about it for the vestibulo-ocular reflex to tell";
-      return;
-    }
-    test.evidence = fmt::format(
-        "vestibulo-ocular reflex: gaze in the world moves by {:.1f} deg/s as read and {:.1f} deg/s with {} turned, and "
-        "is steadier as read in {} of {} stretches of head movement",
-        vor.speed_as_read_deg_s, vor.speed_flipped_deg_s, vor.axis, vor.steadier_as_read, vor.stretches);
-    if (vor.verdict == AxisVerdict::flipped) {
-      test.evidence += "; the head's axes could be the wrong ones instead";
-    }
-  }
-
-  void one_eye_flipped() {
-    if (!report_.disparity || report_.disparity->pairs < 50) {
-      return;
-    }
-    for (const auto& [r, axis] : {std::pair(report_.disparity->horizontal_correlation, "x"),
-                                  std::pair(report_.disparity->vertical_correlation, "y")}) {
-      if (r < -kWitnessAgrees) {
-        add(FindingKind::fault, "one-eye-flipped",
-            fmt::format("the eyes go opposite ways along {}: one of them has this axis the other way round", axis),
-            fmt::format("r = {:.2f} between left and right eye, {} pairs", r, report_.disparity->pairs),
-            "--gaze-eye left");
-      }
-    }
-  }
-
   // More than a display's height but never its width.
   void swapped_by_extent() {
     const Vec2d size = picture_px();
@@ -445,6 +359,17 @@ class Doctor {
     }
   }
 
+  // A flipped axis without a second account of the gaze is nothing that could have been found.
+  [[nodiscard]] std::string untested_axes() const {
+    std::string names;
+    for (const GazeAxisTest& test : report_.axes) {
+      if (test.verdict == AxisVerdict::undecided) {
+        names += fmt::format("{}{}", names.empty() ? "" : " and ", test.axis);
+      }
+    }
+    return names.empty() ? "" : fmt::format("; the direction of {} could not be tested", names);
+  }
+
   void verdict() {
     std::size_t faults = 0;
     std::size_t helpless = 0;
@@ -460,7 +385,7 @@ class Doctor {
       }
     }
     if (faults == 0) {
-      report_.verdict = "nothing suspicious was found";
+      report_.verdict = "nothing suspicious was found" + untested_axes();
     } else if (report_.flags.empty()) {
       report_.verdict = "suspicious, and no option mends it";
     } else {
@@ -476,6 +401,12 @@ class Doctor {
 };
 
 }  // namespace
+
+const GazeFact* find_fact(const GazeLog& log, std::string_view what) {
+  const auto found =
+      std::find_if(log.facts.rbegin(), log.facts.rend(), [&](const GazeFact& f) { return f.what == what; });
+  return found == log.facts.rend() ? nullptr : &*found;
+}
 
 void conclude(const GazeLog& log, const GazeInspectOptions& options, GazeInspection& inspection) {
   Doctor(log, options, inspection).examine();

@@ -2,6 +2,7 @@
 // Parts of an inspection; each file beside this one holds one or two of them.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "gazetrace/gaze_inspect.hpp"
@@ -37,6 +38,13 @@ GazeFrozen measure_frozen(const GazeLog& log);
 std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePlane& plane, double median_step_ns);
 std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane);
 std::vector<VorTest> test_vor(const GazeLog& log);
+
+// Which way the axes run, into `inspection`, with what is wrong of it. Returns whether they are exchanged, or could not
+// be looked at because `unit_is_wrong`.
+bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspection);
+
+// The last fact of that name; null: there is none.
+const GazeFact* find_fact(const GazeLog& log, std::string_view what);
 
 // Fills axes, findings, verdict and flags from the rest of the inspection.
 void conclude(const GazeLog& log, const GazeInspectOptions& options, GazeInspection& inspection);

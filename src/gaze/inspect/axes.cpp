@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which way the axes run: by second accounts of the gaze in the same file, by the vestibulo-ocular reflex, and by one
+// eye against the other.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gaze/inspect/inspect.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kWitnessAgrees = 0.6;  // correlation from which a witness speaks
+constexpr std::size_t kFewestPairs = 50;
+
+class Axes {
+ public:
+  Axes(const GazeLog& log, GazeInspection& report) : log_(log), report_(report) {}
+
+  // Whether they are exchanged, or not to be tested.
+  bool examine(bool unit_is_wrong) {
+    for (const char axis : {'x', 'y'}) {
+      report_.axes.push_back(
+          {axis, AxisVerdict::undecided, "nothing in the log speaks for or against: no second account of the gaze"});
+    }
+    if (unit_is_wrong) {
+      report_.axes[0].evidence = report_.axes[1].evidence = "not tested: the unit or the origin is wrong";
+      return true;
+    }
+    bool swapped = false;
+    for (const GazeWitness& w : log_.witnesses) {
+      if (!is_of_this_gaze(w)) {
+        continue;
+      }
+      const bool across = std::abs(w.xy) > kWitnessAgrees && std::abs(w.yx) > kWitnessAgrees;
+      const bool along = std::abs(w.xx) > kWitnessAgrees || std::abs(w.yy) > kWitnessAgrees;
+      if (across && !along) {
+        if (swapped) {
+          continue;
+        }
+        swapped = true;
+        add(FindingKind::fault, "swapped-axes", "the axes are exchanged",
+            fmt::format("gaze x goes with y of {} (r = {:.2f}), and y with its x (r = {:.2f}), {} values", w.what, w.xy,
+                        w.yx, w.count),
+            "--gaze-swap-xy");
+        continue;
+      }
+      if (!eyes_oppose('x')) {
+        witness(w.what, w.count, w.xx, report_.axes[0]);
+      }
+      if (!eyes_oppose('y')) {
+        witness(w.what, w.count, w.yy, report_.axes[1]);
+      }
+    }
+    for (const VorTest& test : report_.vor) {
+      vor(test, report_.axes[test.axis == 'x' ? 0 : 1]);
+    }
+    for (const GazeAxisTest& test : report_.axes) {
+      if (test.verdict == AxisVerdict::flipped) {
+        const bool by_vor = test.evidence.starts_with("vestibulo");
+        add(by_vor ? FindingKind::suspicion : FindingKind::fault, fmt::format("{}-flip", test.axis),
+            test.axis == 'x' ? "left and right are exchanged" : "top and bottom are exchanged", test.evidence,
+            fmt::format("--gaze-flip-{}", test.axis));
+      }
+    }
+    one_eye_flipped();
+    return swapped;
+  }
+
+ private:
+  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string flag) {
+    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(flag)});
+  }
+
+  static void witness(const std::string& what, std::size_t count, double r, GazeAxisTest& test) {
+    if (std::isnan(r) || std::abs(r) < kWitnessAgrees || test.verdict != AxisVerdict::undecided) {
+      return;
+    }
+    test.verdict = r > 0 ? AxisVerdict::confirmed : AxisVerdict::flipped;
+    test.evidence = fmt::format("against {} in the same file: {} (r = {:.2f}, {} values)", what,
+                                r > 0 ? "the same way" : "the other way", r, count);
+  }
+
+  static void vor(const VorTest& vor, GazeAxisTest& test) {
+    if (test.verdict != AxisVerdict::undecided) {
+      return;
+    }
+    test.verdict = vor.verdict;
+    if (vor.stretches == 0) {
+      test.evidence = "the head turns too little about it for the vestibulo-ocular reflex to tell";
+      return;
+    }
+    test.evidence = fmt::format(
+        "vestibulo-ocular reflex: gaze in the world moves by {:.1f} deg/s as read and {:.1f} deg/s with {} turned, and "
+        "is steadier as read in {} of {} stretches of head movement",
+        vor.speed_as_read_deg_s, vor.speed_flipped_deg_s, vor.axis, vor.steadier_as_read, vor.stretches);
+    if (vor.verdict == AxisVerdict::flipped) {
+      test.evidence += "; the head's axes could be the wrong ones instead";
+    }
+  }
+
+  // The eye that alone was taken of two.
+  [[nodiscard]] std::optional<Eye> only_eye() const {
+    const GazeFact* const eye = find_fact(log_, "eye");
+    if (eye == nullptr || eye->detail != "alone") {
+      return std::nullopt;
+    }
+    return eye->value == "left" ? Eye::left : Eye::right;
+  }
+
+  // Of one eye alone, the witnesses of that eye speak where it has some.
+  [[nodiscard]] bool is_of_this_gaze(const GazeWitness& witness) const {
+    const std::optional<Eye> only = only_eye();
+    if (!only || witness.eye == only) {
+      return true;
+    }
+    return !witness.eye && std::none_of(log_.witnesses.begin(), log_.witnesses.end(),
+                                        [&](const GazeWitness& w) { return w.eye == only; });
+  }
+
+  [[nodiscard]] double correlation_of_eyes(char axis) const {
+    if (!report_.disparity || report_.disparity->pairs < kFewestPairs) {
+      return 0;
+    }
+    return axis == 'x' ? report_.disparity->horizontal_correlation : report_.disparity->vertical_correlation;
+  }
+  [[nodiscard]] bool eyes_oppose(char axis) const { return !only_eye() && correlation_of_eyes(axis) < -kWitnessAgrees; }
+
+  // What the witnesses of one eye say of an axis.
+  [[nodiscard]] AxisVerdict eye_verdict(Eye eye, char axis) const {
+    for (const GazeWitness& w : log_.witnesses) {
+      const double r = axis == 'x' ? w.xx : w.yy;
+      if (w.eye == eye && std::abs(r) > kWitnessAgrees) {
+        return r > 0 ? AxisVerdict::confirmed : AxisVerdict::flipped;
+      }
+    }
+    return AxisVerdict::undecided;
+  }
+
+  void one_eye_flipped() {
+    for (const char axis : {'x', 'y'}) {
+      if (!eyes_oppose(axis)) {
+        continue;
+      }
+      if (GazeAxisTest& test = report_.axes[axis == 'x' ? 0 : 1]; test.verdict == AxisVerdict::undecided) {
+        test.evidence = "the eyes go opposite ways along it";
+      }
+      const AxisVerdict left = eye_verdict(Eye::left, axis);
+      const AxisVerdict right = eye_verdict(Eye::right, axis);
+      const bool told = left != right;
+      const bool left_is_good =
+          left == AxisVerdict::confirmed || (left == AxisVerdict::undecided && right == AxisVerdict::flipped);
+      const std::string which = !told          ? "one of them, left or right, it cannot be told,"
+                                : left_is_good ? "the right one"
+                                               : "the left one";
+      add(FindingKind::fault, "one-eye-flipped",
+          fmt::format("the eyes go opposite ways along {}: {} has this axis the other way round", axis, which),
+          fmt::format("r = {:.2f} between left and right eye, {} pairs", correlation_of_eyes(axis),
+                      report_.disparity->pairs),
+          !told          ? ""
+          : left_is_good ? "--gaze-eye left"
+                         : "--gaze-eye right");
+    }
+  }
+
+  const GazeLog& log_;
+  GazeInspection& report_;
+};
+
+}  // namespace
+
+bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspection) {
+  return Axes(log, inspection).examine(unit_is_wrong);
+}
+
+}  // namespace gazetrace
