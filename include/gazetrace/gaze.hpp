@@ -159,7 +159,8 @@ bool is_bids_file_name(const std::string& path);
 // rows no farther apart than `max_interpolation_gap_ns`, so never across blinks and lost rows; where it is known what
 // the eye does, also only within a fixation, else the nearer row. Where nearest or linear find no usable row they hold.
 enum class GazeInterpolation { hold, nearest, linear };
-// What a frame without usable gaze does. hold: takes the last usable row however old, before the first one the first.
+// What a frame without usable gaze does. hold: takes the last usable row however old; before the first one the
+// center, as a gaze that is yet to come steers nothing.
 enum class NoGazePolicy { hold, center, uniform, error };
 
 // t_video = scale * (t_log - t_event) + offset.

@@ -101,10 +101,11 @@ struct TimingRow {
   std::array<std::uint64_t, kTimingRegions> region_pixels{}, region_samples{};
   std::array<double, kTimingRegions> region_cpu_ms{};
   double exposure_ev = 0;
-  std::string gaze_state;   // of the gaze that steers
-  std::string gaze_event;   // fixation, saccade, blink, ...; "none": not known
-  std::string gaze_age_ms;  // "unknown" where a log repeats values once a frame; empty without a row
-  int no_gaze = 0;          // 1: the log has none at this time, the policy decided
+  std::string gaze_state;             // of the gaze that steers
+  std::string gaze_event;             // fixation, saccade, blink, ...; "none": not known
+  std::string gaze_age_ms;            // "unknown" where a log repeats values once a frame; empty without a row
+  std::string gaze_effective_age_ms;  // in the middle of the frame's display, latency included; empty where not known
+  int no_gaze = 0;                    // 1: the log has none at this time, the policy decided
   double peak_memory_mib = 0;
 };
 

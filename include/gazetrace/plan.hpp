@@ -76,6 +76,8 @@ struct FrameRequest {
   PlanarView view;         // of the eye: display or, for gaze directions, the camera's own frustum
   GazeAtTime gaze_render;  // steers the sampling
   GazeAtTime gaze_true;    // the clean log at that time; metrics use this one
+  // See GazeAges, video time; empty without gaze and where the log does not tell.
+  std::optional<std::int64_t> gaze_effective_age_ns;
   // The angle by which the gaze that steers may be off (PlanSettings::uncertainty); 0: not asked for.
   double gaze_uncertainty_deg = 0;
   // Of the eye by the clean log, at the time whose gaze steers: known without foresight. Speed only if asked for.
@@ -90,6 +92,7 @@ struct FrameRequest {
 // half_frame_ns less to half_frame_ns more.
 struct GazeAges {
   std::size_t frames = 0, unknown = 0;  // with a known age; with gaze of unknown age
+  std::size_t without = 0;              // without gaze, whatever steers them instead; no part of the ages
   double min_ns = 0, median_ns = 0, mean_ns = 0, p95_ns = 0, max_ns = 0;
   double half_frame_ns = 0;
 };

@@ -97,8 +97,11 @@ void add_gaze_mapping_options(OptionTable& table, JobSettings& job) {
               kPixels);
   table.value("--gaze-mode", job.gaze_mode, choices<GazeInterpolation>(), "Which samples of the log a frame gets",
               kPixels);
-  table.value("--gaze-missing", job.gaze_missing, choices<NoGazePolicy>(),
-              "For frames without usable gaze: hold the last, look at the centre, render uniformly, or stop", kPixels);
+  table.value(
+      "--gaze-missing", job.gaze_missing, choices<NoGazePolicy>(),
+      "For frames without usable gaze: hold the last (the centre before there is one), look at the centre, render "
+      "uniformly, or stop",
+      kPixels);
   table.value("--gaze-max-age", job.gaze_max_age, "DURATION", "An older sample counts as no gaze", kPixels);
   table.value("--gaze-max-gap", job.gaze_max_gap, "DURATION",
               "A longer step between two samples is a gap: not interpolated, and held samples in it are marked so",

@@ -174,6 +174,13 @@ class Resampler {
     return true;
   }
 
+  // Within the log a nearest row comes half a step later at most; before its first row no more than that is taken
+  // either.
+  [[nodiscard]] bool is_far_ahead(std::int64_t age_ns) const {
+    return after_ == 0 && samples_.size() > 1 &&
+           age_ns < -saturating_difference(samples_[1].t_ns, samples_[0].t_ns) / 2;
+  }
+
   bool nearest() {
     const GazeSample* closest = after_ > 0 ? &samples_[after_ - 1] : nullptr;
     if (after_ < samples_.size()) {
@@ -190,7 +197,7 @@ class Resampler {
       return false;
     }
     const std::int64_t age_ns = age(*closest);
-    if (age_ns > mapping_.max_age_ns || age_ns < -mapping_.max_age_ns || is_gap(age_ns)) {
+    if (age_ns > mapping_.max_age_ns || age_ns < -mapping_.max_age_ns || is_gap(age_ns) || is_far_ahead(age_ns)) {
       return false;
     }
     take(*closest, GazeState::measured, fmt::format("nearest: row {}", closest->row));
@@ -253,9 +260,9 @@ class Resampler {
       case NoGazePolicy::hold:
         if (before != nullptr) {
           take(*before, GazeState::held, fmt::format("no gaze ({}): held it", why));
-        } else if (after != nullptr) {
-          take(*after, GazeState::held,
-               fmt::format("no gaze ({}): took row {}, {} ahead", why, after->row, milliseconds(-age(*after))));
+        } else if (after != nullptr) {  // a gaze that is yet to come steers nothing
+          result_.state = GazeState::center;
+          result_.reason = fmt::format("no gaze ({}): nothing to hold yet, center", why);
         } else {
           result_.reason = "no gaze (the log has no usable row): uniform";
         }

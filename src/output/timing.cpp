@@ -45,6 +45,7 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("gaze_state", row.gaze_state);
   visit("gaze_event", row.gaze_event);
   visit("gaze_age_ms", row.gaze_age_ms);
+  visit("gaze_effective_age_ms", row.gaze_effective_age_ms);
   visit("no_gaze", row.no_gaze);
   visit("peak_memory_mib", row.peak_memory_mib);
 }

@@ -41,13 +41,17 @@ bool writes_anything(const OutputSettings& output) {
 
 }  // namespace
 
-void tell_gaze(const GazeAtTime& gaze, TimingRow& row) {
+void tell_gaze(const FrameRequest& request, TimingRow& row) {
+  const GazeAtTime& gaze = request.gaze_render;
   row.gaze_state = to_string(gaze.state);
   row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
   const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
   row.gaze_age_ms = !has_row            ? ""
                     : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
                                         : "unknown";
+  if (request.gaze_effective_age_ns) {
+    row.gaze_effective_age_ms = fmt::format("{:.3f}", static_cast<double>(*request.gaze_effective_age_ns) * 1e-6);
+  }
   row.no_gaze = gaze.no_gaze ? 1 : 0;
 }
 

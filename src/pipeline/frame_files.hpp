@@ -25,7 +25,7 @@ struct RenderedFrame {
 };
 
 // Where the eye was, for the frame's row.
-void tell_gaze(const GazeAtTime& gaze, TimingRow& row);
+void tell_gaze(const FrameRequest& request, TimingRow& row);
 
 // Chooses the frame's exposure, then enhances its picture where that is asked for.
 void expose(const FrameRequest& request, const PipelineSettings& settings, TemporalHistory& history,

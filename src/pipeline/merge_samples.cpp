@@ -112,7 +112,7 @@ TimingRow row_of(const std::vector<FramePart>& parts, const FrameRequest& reques
   TimingRow row;
   row.frame = request.frame;
   row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
-  tell_gaze(request.gaze_render, row);
+  tell_gaze(request, row);
   for (const FramePart& part : parts) {
     const auto traced = part.run->rows.find(request.frame);
     if (traced == part.run->rows.end()) {

@@ -205,7 +205,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     const FrameRequest& request = plan.frames[i];
     TimingRow row;
     row.frame = request.frame;
-    tell_gaze(request.gaze_render, row);
+    tell_gaze(request, row);
     row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
     if (resume.work[i] != FrameWork::skip) {
       if (observer.frame_begins) {

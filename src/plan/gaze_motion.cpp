@@ -74,13 +74,11 @@ std::optional<GazeAges> gaze_ages(const FramePlan& plan, const PlanSettings& set
   GazeAges ages;
   std::vector<double> all;
   for (const FrameRequest& request : plan.frames) {
-    const auto age_ns = effective_age_ns(request);
-    if (!age_ns) {
-      continue;
-    }
-    if (request.gaze_render.age_is_known) {
-      all.push_back(static_cast<double>(*age_ns) * settings.gaze.scale);
-    } else {
+    if (request.gaze_render.no_gaze) {
+      ++ages.without;
+    } else if (request.gaze_effective_age_ns) {
+      all.push_back(static_cast<double>(*request.gaze_effective_age_ns));
+    } else if (effective_age_ns(request)) {
       ++ages.unknown;
     }
   }

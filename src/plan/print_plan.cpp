@@ -59,8 +59,9 @@ std::string notes_text(const FramePlan& plan) {
 }
 
 Json ages_json(const GazeAges& a) {
-  return Json{{"frames", a.frames},   {"unknown", a.unknown}, {"min_ns", a.min_ns}, {"median_ns", a.median_ns},
-              {"mean_ns", a.mean_ns}, {"p95_ns", a.p95_ns},   {"max_ns", a.max_ns}, {"half_frame_ns", a.half_frame_ns}};
+  return Json{{"frames", a.frames}, {"unknown", a.unknown},     {"without", a.without},
+              {"min_ns", a.min_ns}, {"median_ns", a.median_ns}, {"mean_ns", a.mean_ns},
+              {"p95_ns", a.p95_ns}, {"max_ns", a.max_ns},       {"half_frame_ns", a.half_frame_ns}};
 }
 
 // A number that JSON can hold: NaN and infinities become null.
@@ -114,9 +115,10 @@ std::string gaze_ages_text(const GazeAges& ages) {
   }
   return fmt::format(
       "{:.1f} ms in the median, mean {:.1f}, {:.1f} to {:.1f}, 95 % up to {:.1f}, over {} frames; {:.1f} ms less "
-      "when a frame appears, as much more when it goes{}{}",
+      "when a frame appears, as much more when it goes{}{}{}",
       ms(ages.median_ns), ms(ages.mean_ns), ms(ages.min_ns), ms(ages.max_ns), ms(ages.p95_ns), ages.frames,
-      ms(ages.half_frame_ns), unknown.empty() ? "" : "; ", unknown);
+      ms(ages.half_frame_ns), unknown.empty() ? "" : "; ", unknown,
+      ages.without > 0 ? fmt::format("; {} frames without gaze are left out", ages.without) : "");
 }
 
 std::string plan_as_table(const FramePlan& plan) {

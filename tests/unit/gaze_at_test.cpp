@@ -80,8 +80,17 @@ TEST(GazeAt, Hold) {
                 {480 * kMs, GazeState::held, 0.9, 9, 0, 80 * kMs, "80.0 ms after the log's last row: held row 9"},
                 {901 * kMs, GazeState::held, 0.9, 9, 0, 501 * kMs,
                  "no gaze (501 ms after the log's last row, last usable row 9 is 501 ms old (limit 500 ms)): held it"},
-                {-7 * kMs, GazeState::held, 0.0, 0, 2, -7 * kMs,
-                 "no gaze (before the log's first row): took row 2, 7.0 ms ahead"}});
+                {-7 * kMs, GazeState::center, 0.5, 0, 0, 0,
+                 "no gaze (before the log's first row): nothing to hold yet, center"}});
+}
+
+// What is yet to come steers nothing: an effect that precedes its cause would spoil a study of latency.
+TEST(GazeAt, NothingFromTheFutureBeforeTheLogBegins) {
+  for (const GazeInterpolation how : {GazeInterpolation::hold, GazeInterpolation::nearest, GazeInterpolation::linear}) {
+    const GazeAtTime gaze = gaze_at(with_gaps(), mapping(how), -6 * kMs);
+    EXPECT_TRUE(gaze.no_gaze);
+    EXPECT_EQ(gaze.state, GazeState::center);
+  }
 }
 
 TEST(GazeAt, Nearest) {

@@ -108,6 +108,23 @@ TEST(GazeAges, AreLatencyPlusTheWaitForTheFrame) {
   EXPECT_NEAR(later.ages->mean_ns, 55e6, 1);
 }
 
+TEST(GazeAges, FramesWithoutGazeAreLeftOut) {
+  SynthSettings synthetic;
+  synthetic.rate_hz = 100;
+  const GazeLog log = synthesize_gaze(synthetic).log;
+  PlanSettings settings = second_at(25);
+  settings.gaze_latency_ns = 50 * kMs;
+  settings.gaze.offset_ns = 1100 * kMs;  // frames at 1020 + 40 k ms: 4 begin to see gaze before the log has any
+  const FramePlan plan = plan_frames(still(), &log, settings);
+  EXPECT_EQ(plan.ages->without, 4U);
+  EXPECT_EQ(plan.ages->frames, 21U);
+  EXPECT_NEAR(plan.ages->min_ns, 50e6, 1);
+  EXPECT_NEAR(plan.ages->max_ns, 50e6, 1);
+  EXPECT_FALSE(plan.frames[3].gaze_effective_age_ns.has_value());
+  EXPECT_EQ(plan.frames[4].gaze_effective_age_ns, 50 * kMs);
+  EXPECT_THAT(plan_as_table(plan), HasSubstr("4 frames without gaze are left out"));
+}
+
 TEST(GazeAges, SlowFramesAreWarnedAbout) {
   const GazeLog log = synthesize_gaze({}).log;
   PlanSettings settings = second_at(24);

@@ -113,9 +113,9 @@ TEST(PlanFrames, LatencyChangesTheSteeringGazeOnly) {
   EXPECT_EQ(second.gaze_true.row_before, 2 + 15);
   EXPECT_EQ(second.gaze_render.row_before, 2 + 3);
   EXPECT_EQ(second.gaze_render.t_log_ns + 50 * kMs, second.gaze_true.t_log_ns);
-  // Before the log: takes the first row.
-  EXPECT_EQ(plan.frames[0].gaze_render.row_after, 2);
-  EXPECT_EQ(plan.frames[0].gaze_render.state, GazeState::held);
+  // Before the log: nothing is known yet.
+  EXPECT_EQ(plan.frames[0].gaze_render.row_after, 0);
+  EXPECT_EQ(plan.frames[0].gaze_render.state, GazeState::center);
   EXPECT_THAT(plan_as_table(plan), HasSubstr("true gaze"));
 }
 

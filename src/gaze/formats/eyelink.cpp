@@ -30,6 +30,16 @@ struct Block {
   }
 };
 
+std::size_t rows_that_begin_with_a_digit(std::string_view text) {
+  std::size_t rows = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    rows += text[at] >= '0' && text[at] <= '9' ? 1 : 0;
+    const std::size_t end = text.find('\n', at);
+    at = end == std::string_view::npos ? text.size() : end + 1;
+  }
+  return rows;
+}
+
 struct Span {
   std::int64_t begin_ns, end_ns;
 };
@@ -44,7 +54,8 @@ class AscReader {
   }
 
   GazeLog read() {
-    log_.samples.reserve(file_.text.size() / 30);
+    // Two eyes a row at most. What is not used costs no memory; growing would hold the samples twice.
+    log_.samples.reserve(2 * rows_that_begin_with_a_digit(file_.text));
     // Messages of a calibration go on in lines that begin with digits; only what stands between START and END is a
     // sample. Files of samples alone have neither.
     const bool has_blocks = file_.text.starts_with("START") || file_.text.find("\nSTART") != std::string::npos;
