@@ -163,7 +163,7 @@ class Doctor(harness.CliTest):
         path.chmod(0o644)
         path.write_bytes(gzip.compress(breaking.cells_changed(text, lambda line: "\t" in line, "\t", flip).encode()))
         found = [(f["code"], f["flag"]) for f in self.accused(self.inspect(path))]
-        self.assertEqual(found, [("one-eye-flipped", "")])  # nothing in the file says which eye it is
+        self.assertEqual(found, [("one-eye-flipped", None)])  # nothing in the file says which eye it is
         self.assertEqual(self.accused(self.inspect(path, "--gaze-eye", "right")), [])
 
     def test_axes_exchanged(self):
