@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <type_traits>
 #include <utility>
 
@@ -12,6 +11,7 @@
 #include "gaze/json.hpp"
 #include "gaze/read_support.hpp"
 #include "gaze/units.hpp"
+#include "gaze/write_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -203,13 +203,7 @@ GazeColumns load_gaze_columns(const std::string& path) {
 void save_gaze_columns(const GazeColumns& columns, const std::string& path) {
   Saver saver;
   visit(columns, saver);
-  const std::string text = json_text(saver.values);
-  std::FILE* const file = std::fopen(path.c_str(), "wb");
-  bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  good = (file == nullptr || std::fclose(file) == 0) && good;
-  if (!good) {
-    throw Error(ErrorKind::runtime, path, "cannot be written", "check that its folder exists and has room");
-  }
+  write_whole_file(path, json_text(saver.values));
 }
 
 GazeColumns merge_gaze_columns(const GazeColumns& base, const GazeColumns& over) {

@@ -43,6 +43,16 @@ class GazeLogs(harness.CliTest):
         self.assertEqual(first["range"], second["range"])
         self.assertEqual(second["first_ns"], 7_000_000)
 
+    def test_a_column_map_is_saved_only_of_a_log_that_was_read_and_over_nothing(self):
+        self.write("log.csv", harness.moving_gaze())
+        self.write("precious.json", "precious")
+        self.assert_refused(["gaze", "inspect", "none.csv", "--gaze-time-column", "a", "--save-columns", "map.json"], ["none.csv"])
+        self.assert_refused(["gaze", "inspect", "log.csv", "--gaze-x-column", "u[1]", "--gaze-y-column", "v[1]", "--save-columns", "precious.json"],
+                            ["precious.json", "exists already", "--overwrite"])
+        self.assertEqual((self.folder / "precious.json").read_text(), "precious")
+        self.run_ok("gaze", "inspect", "log.csv", "--gaze-x-column", "u[1]", "--gaze-y-column", "v[1]", "--save-columns", "precious.json", "--overwrite")
+        self.assertIn("u[1]", (self.folder / "precious.json").read_text())
+
     def test_what_was_concluded_says_from_what(self):
         self.write("log.csv", "time,u,v\n0,0.5,0.5\n4,0.5,0.5\n8,0.5,0.5\n")
         facts = {fact["what"]: fact for fact in self.summary("log.csv")["facts"]}

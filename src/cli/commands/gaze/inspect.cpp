@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "cli/command.hpp"
@@ -39,17 +38,19 @@ void write_picture(const InspectArguments& arguments, const GazeLog& log, const 
 }
 
 int run_inspect(const InspectArguments& arguments) {
-  if (!arguments.svg.empty() && !arguments.overwrite && std::filesystem::exists(arguments.svg)) {
-    throw Error(ErrorKind::input, arguments.svg, "this output exists already", "give --overwrite or another name");
-  }
-  if (!arguments.save_columns.empty()) {
-    save_gaze_columns(merged_columns(arguments.gaze), arguments.save_columns);
+  for (const std::string& output : {arguments.svg, arguments.save_columns}) {
+    if (!output.empty()) {
+      check_output_file(output, arguments.overwrite);
+    }
   }
   const GazeLog log = load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
   GazeInspectOptions options;
   options.display = screen_geometry(arguments.screen);
   options.keep_ids = arguments.keep_ids;
   const GazeInspection inspection = inspect_gaze(log, options);
+  if (!arguments.save_columns.empty()) {
+    save_gaze_columns(merged_columns(arguments.gaze), arguments.save_columns);
+  }
   if (!arguments.svg.empty()) {
     write_picture(arguments, log, inspection);
   }
@@ -71,7 +72,7 @@ Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/
       ->type_name("FILE");
   app.add_option("--save-columns", arguments->save_columns, "Writes what was declared of the columns as a column map")
       ->type_name("MAP.json");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces OUT.svg when it is there");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces OUT.svg and MAP.json when they are there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also shows what can identify a person or a session, such as times of day; left out otherwise");
   app.add_flag("--json", arguments->json, "As JSON");
