@@ -7,15 +7,21 @@
 
 namespace gazetrace {
 
-// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header.
+// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header; of gazetrace CSV also what is
+// no row: `# event TYPE EYE BEGIN_NS END_NS TEXT`, `# calibration EYE NS MEAN_DEG MAX_DEG`, `# head NS X Y Z QX QY QZ QW`.
 struct GazetracePreamble {
   std::optional<int> version;  // of `# gazetrace-gaze N`
   std::string clock;
   bool is_scene_camera = false;  // `# kind scene-camera`
   std::optional<DisplayGeometry> geometry;
   std::optional<Vec2d> pixels_per_degree;
+  double nominal_rate_hz = 0;       // `# rate_hz R`; 0: not stated
+  bool sample_age_unknown = false;  // `# sample_age unknown`
+  std::vector<GazeEvent> events;
+  std::vector<GazeCalibration> calibrations;
+  std::vector<HeadPose> head;
 };
-// Error(input) for lines that state a geometry wrongly.
+// Error(input) for lines that say wrongly what they say.
 GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
 
 // Reads the rows and converts positions; everything but order, duplicates and eyes. `columns` replaces

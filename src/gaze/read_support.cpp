@@ -386,7 +386,9 @@ void finish_head(GazeLog& log) {
     if (!kept.empty() && kept.back().t_ns == pose.t_ns) {
       kept.pop_back();
     }
-    kept.push_back({pose.t_ns, pose.position_m, normalize(q)});
+    // Of unit length but for rounding: what was written by gazetrace keeps its bits.
+    const bool is_unit = std::abs(norm - 1) <= 8 * std::numeric_limits<double>::epsilon();
+    kept.push_back({pose.t_ns, pose.position_m, is_unit ? q : normalize(q)});
   }
   log.head = std::move(kept);
 }

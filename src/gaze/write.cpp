@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -21,6 +22,13 @@ std::string geometry_line(std::string_view key, std::initializer_list<double> va
     line += fmt::format(" {}", exact ? value * 10.0 : value);
   }
   return line + "\n";
+}
+
+// Line ends would break the preamble.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
 }
 
 std::string preamble(const GazeLog& log) {
@@ -47,7 +55,47 @@ std::string preamble(const GazeLog& log) {
   if (!log.clock.empty()) {
     text += fmt::format("# clock {}\n", log.clock);
   }
+  if (log.nominal_rate_hz > 0) {
+    text += fmt::format("# rate_hz {}\n", log.nominal_rate_hz);
+  }
+  text += log.sample_age_unknown ? "# sample_age unknown\n" : "";
+  for (const GazeCalibration& c : log.calibrations) {
+    text += fmt::format("# calibration {} {} {} {}\n", to_string(c.eye), c.t_ns, c.mean_error_deg, c.max_error_deg);
+  }
+  for (const GazeEvent& event : log.events) {
+    text += fmt::format("# event {} {} {} {} {}\n", to_string(event.type), to_string(event.eye), event.begin_ns,
+                        event.end_ns, one_line(event.text));
+  }
   return text;
+}
+
+std::string pose_text(const HeadPose& pose, char separator) {
+  const Vec3d& p = pose.position_m;
+  const Quatd& q = pose.orientation;
+  return fmt::format("{1}{0}{2}{0}{3}{0}{4}{0}{5}{0}{6}{0}{7}", separator, p.x, p.y, p.z, q.x, q.y, q.z, q.w);
+}
+
+// The pose of each sample's time, or none; a log that repeats a sample may have poses at times of their own.
+struct PosesOfSamples {
+  std::vector<const HeadPose*> of_sample;
+  std::vector<const HeadPose*> others;
+};
+
+PosesOfSamples poses_of_samples(const GazeLog& log) {
+  PosesOfSamples poses;
+  poses.of_sample.resize(log.samples.size(), nullptr);
+  std::size_t i = 0;
+  for (const HeadPose& pose : log.head) {
+    while (i < log.samples.size() && log.samples[i].t_ns < pose.t_ns) {
+      ++i;
+    }
+    if (i < log.samples.size() && log.samples[i].t_ns == pose.t_ns) {
+      poses.of_sample[i] = &pose;
+    } else {
+      poses.others.push_back(&pose);
+    }
+  }
+  return poses;
 }
 
 // Shortest text that reads back as the same bits; nothing for what is unknown.
@@ -96,10 +144,11 @@ class RowWriter {
     text += has_confidence_ ? ",confidence" : "";
     text += has_pupil_ ? log_.pupil_unit.empty() ? ",pupil" : ",pupil[" + log_.pupil_unit + "]" : "";
     text += log_.origins.empty() ? "" : ",ox[mm],oy[mm],oz[mm]";
+    text += log_.head.empty() ? "" : ",hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw";
     return text + "\n";
   }
 
-  void write(const GazeSample& sample, const Vec3f* origin, std::string& text) const {
+  void write(const GazeSample& sample, const Vec3f* origin, const HeadPose* pose, std::string& text) const {
     fmt::format_to(std::back_inserter(text), "{}", sample.t_ns);
     if (log_.kind == GazeKind::direction) {
       append_number(text, sample.direction.x);
@@ -123,6 +172,9 @@ class RowWriter {
       append_number(text, at.y);
       append_number(text, at.z);
     }
+    if (!log_.head.empty()) {
+      text += pose == nullptr ? ",,,,,,," : "," + pose_text(*pose, ',');
+    }
     text += '\n';
   }
 
@@ -136,25 +188,31 @@ class RowWriter {
 
 void write_gaze_csv(const GazeLog& log, const std::string& path) {
   const RowWriter rows(log);
-  std::string text = preamble(log) + rows.header();
+  const PosesOfSamples poses = poses_of_samples(log);
+  std::string text = preamble(log);
+  for (const HeadPose* const pose : poses.others) {
+    text += fmt::format("# head {} {}\n", pose->t_ns, pose_text(*pose, ' '));
+  }
+  text += rows.header();
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     GazeSample sample = log.samples[i];
     const EyeOrigins* const origins = log.origins.empty() ? nullptr : &log.origins[i];
+    const HeadPose* const pose = poses.of_sample[i];  // once a time
     if (log.eyes.empty()) {
       rows.write(sample,
                  origins == nullptr         ? nullptr
                  : sample.eye == Eye::right ? &origins->right_mm
                                             : &origins->left_mm,
-                 text);
+                 pose, text);
       continue;
     }
     // What was chosen stands for both from now on.
     sample.eye = Eye::cyclopean;
-    rows.write(sample, nullptr, text);
+    rows.write(sample, nullptr, pose, text);
     rows.write(eye_row(sample, log.eyes[i].left, Eye::left, log.kind), origins == nullptr ? nullptr : &origins->left_mm,
-               text);
+               nullptr, text);
     rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind),
-               origins == nullptr ? nullptr : &origins->right_mm, text);
+               origins == nullptr ? nullptr : &origins->right_mm, nullptr, text);
   }
   write_whole_file(path, text);
 }

@@ -5,9 +5,20 @@ import base64
 import csv
 import gzip
 import json
+import math
 import xml.etree.ElementTree
 
 import harness
+
+
+def eyelink(messages=()):
+    """Two fixations of one eye with a saccade between them, as EyeLink writes them."""
+    lines = ["** CONVERTED FROM x.edf", "MSG\t1000 DISPLAY_COORDS 0 0 1023 767", *messages, "START\t1000 \tLEFT\tSAMPLES\tEVENTS",
+             "SAMPLES\tGAZE\tLEFT\tRATE\t250.00\tTRACKING\tCR"]
+    lines += [f"{1000 + 4 * i}\t {200 + 4 * max(0, min(i - 50, 5)) * 20:.1f}\t  300.0\t  900.0\t..." for i in range(100)]
+    lines += ["EFIX L  1000\t1196\t200\t  200.0\t  300.0\t  900", "ESACC L  1200\t1216\t20\t  200.0\t  300.0\t  600.0\t  300.0\t  9.0\t 400",
+              "EFIX L  1220\t1396\t180\t  600.0\t  300.0\t  900", "END\t1400 \tSAMPLES\tEVENTS\tRES\t  35.00\t  35.00"]
+    return "\n".join(lines) + "\n"
 
 
 class GazeTools(harness.CliTest):
@@ -68,6 +79,42 @@ class GazeTools(harness.CliTest):
             return [line for line in lines if not line.startswith("#")]
         self.assertEqual(rows("again.csv"), rows("log.csv"))
         self.assert_refused(["gaze", "convert", "log.csv", "-o", "sub-01_task-view_physio.tsv.gz"], ["exists already"])
+
+    def head_log(self, repeats=False):
+        """OpenXR poses: the eye rests on a thing in the world while the head turns by 40 degrees a second."""
+        rows = []
+        for i in range(200):
+            a = math.radians(20 * math.sin(0.02 * i))
+            head = f"0.1,{1.5 + 0.001 * i},-0.2,0,{math.sin(a / 2)},0,{math.cos(a / 2)}"
+            stamp = 10_000_000 * (i // 2 * 2 if repeats else i) + 1
+            rows.append(f"{10_000_000 * i + 1},{stamp},0,{math.sin(-a / 2)},0,{math.cos(-a / 2)},{head}")
+        names = [f"gaze_q{c}" for c in "xyzw"] + [f"head_position_{c}" for c in "xyz"] + [f"head_q{c}" for c in "xyzw"]
+        self.write("head.csv", "time[ns],sample_time," + ",".join(names) + "\n" + "\n".join(rows) + "\n")
+
+    def test_a_converted_log_keeps_the_head_and_what_follows_from_it(self):
+        for repeats in (False, True):
+            self.head_log(repeats)
+            self.run_ok("gaze", "convert", "head.csv", "-o", "converted.csv", "--overwrite")
+            columns = ("movement", "onset_ns", "offset_ns", "amplitude_deg", "dispersion_deg", "dx", "dy", "dz")
+            of, kept = ([[event[c] for c in columns] for event in self.events(log)] for log in ("head.csv", "converted.csv"))
+            self.assertEqual(of, kept)
+            moving = ["plan", "--camera-from-gaze", "--size", "64x36", "--frames", "1-5", "--json"]
+            views = [[frame["camera"] for frame in json.loads(self.run_ok(*moving, "--gaze", log).stdout)["frames"]]
+                     for log in ("head.csv", "converted.csv")]
+            self.assertEqual(*views)
+
+    def test_a_converted_log_keeps_its_own_events(self):
+        self.write("labels.asc", eyelink())
+        self.run_ok("gaze", "convert", "labels.asc", "-o", "labels.csv")
+        own = [[(e["movement"], e["onset_ns"], e["offset_ns"]) for e in self.events(log, "--method", "log")] for log in ("labels.asc", "labels.csv")]
+        self.assertEqual([movement for movement, *_ in own[0]], ["fixation", "saccade", "fixation"])
+        self.assertEqual(*own)
+
+    def test_what_bids_has_no_place_for_is_said(self):
+        self.head_log()
+        result = self.run_ok("gaze", "convert", "head.csv", "-o", "sub-01_physio.tsv.gz")
+        self.assertIn("200 poses of the head", result.stderr)
+        self.assertIn("gazetrace CSV keeps them", result.stderr)
 
     def test_processing_is_printed_recorded_and_exported(self):
         self.synth("--lost-share", "0.05")

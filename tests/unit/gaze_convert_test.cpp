@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/gaze_synth.hpp"
@@ -72,6 +73,30 @@ void expect_same_log(const GazeLog& a, const GazeLog& b) {
   EXPECT_EQ(a.pixels_per_degree, b.pixels_per_degree);
 }
 
+void expect_same_head(const GazeLog& a, const GazeLog& b) {
+  ASSERT_EQ(a.head.size(), b.head.size());
+  for (std::size_t i = 0; i < a.head.size() && !::testing::Test::HasFailure(); ++i) {
+    EXPECT_EQ(a.head[i].t_ns, b.head[i].t_ns) << i;
+    EXPECT_TRUE(a.head[i].position_m == b.head[i].position_m && a.head[i].orientation == b.head[i].orientation) << i;
+  }
+}
+
+void expect_same_events(const GazeLog& a, const GazeLog& b) {
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t i = 0; i < a.events.size() && !::testing::Test::HasFailure(); ++i) {
+    const GazeEvent& e = a.events[i];
+    const GazeEvent& r = b.events[i];
+    EXPECT_TRUE(e.type == r.type && e.eye == r.eye && e.begin_ns == r.begin_ns && e.end_ns == r.end_ns) << i;
+    EXPECT_EQ(e.text, r.text) << i;
+  }
+  ASSERT_EQ(a.calibrations.size(), b.calibrations.size());
+  for (std::size_t i = 0; i < a.calibrations.size(); ++i) {
+    EXPECT_TRUE(a.calibrations[i].eye == b.calibrations[i].eye && a.calibrations[i].t_ns == b.calibrations[i].t_ns);
+    expect_same(a.calibrations[i].mean_error_deg, b.calibrations[i].mean_error_deg, "mean error");
+    expect_same(a.calibrations[i].max_error_deg, b.calibrations[i].max_error_deg, "greatest error");
+  }
+}
+
 class Conversion : public ::testing::TestWithParam<const char*> {
  protected:
   // Empty where there is no such recording.
@@ -88,7 +113,13 @@ TEST_P(Conversion, ToCsvAndBack) {
   const GazeLog log = load_gaze_log(sample(), {});
   const TextFiles files;
   write_gaze_csv(log, files.path("log.csv"));
-  expect_same_log(log, load_gaze_log(files.path("log.csv"), {}));
+  const GazeLog back = load_gaze_log(files.path("log.csv"), {});
+  expect_same_log(log, back);
+  expect_same_head(log, back);
+  expect_same_events(log, back);
+  EXPECT_EQ(log.nominal_rate_hz, back.nominal_rate_hz);
+  EXPECT_EQ(log.sample_age_unknown, back.sample_age_unknown);
+  EXPECT_EQ(default_event_preset(log).name, default_event_preset(back).name);
 }
 
 TEST_P(Conversion, ToBidsAndBack) {
@@ -136,6 +167,54 @@ TEST(GazeConvert, SyntheticLogsSurviveBids) {
     write_gaze_bids(log, files.path("sub-02_recording-eye1_physio.tsv.gz"));
     EXPECT_TRUE(std::filesystem::exists(files.path("sub-02_recording-cyclopean_physio.tsv.gz")));
     expect_same_log(log, load_gaze_log(files.path("sub-02_recording-cyclopean_physio.tsv.gz"), {}));
+  }
+}
+
+TEST(GazeConvert, PosesBetweenSamplesAndTextsOfManyKindsSurviveCsv) {
+  GazeLog log = synthesize_gaze({}).log;
+  log.sample_age_unknown = true;
+  log.nominal_rate_hz = 120.03;
+  std::int64_t k = 0;
+  for (std::size_t i = 0; i < 400; ++i, ++k) {
+    const double a = 0.1 * static_cast<double>(k);
+    const Vec3d p{std::sin(a), 1.0 / 3.0, 1e-17 * a};
+    const Quatd q = normalize(Quatd{std::sin(a), std::cos(3 * a), 0.3, 1.1});
+    log.head.push_back({log.samples[i].t_ns, p, q});
+    if (i % 3 == 0) {
+      log.head.push_back({log.samples[i].t_ns + 1, p, q});
+    }
+  }
+  for (const GazeEventType type : {GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
+                                   GazeEventType::message, GazeEventType::segment}) {
+    for (const std::string text : {"", "TRIALID 7, \"a;b\"  # c", "23"}) {
+      log.events.push_back({type, Eye::right, -5, 1'700'000'000'123'456'789, text, 0});
+    }
+  }
+  log.calibrations.push_back({77, Eye::left, 0.1, std::numeric_limits<double>::quiet_NaN(), 0});
+  const TextFiles files;
+  write_gaze_csv(log, files.path("log.csv"));
+  const GazeLog back = load_gaze_log(files.path("log.csv"), {});
+  expect_same_log(log, back);
+  expect_same_head(log, back);
+  expect_same_events(log, back);
+  EXPECT_TRUE(back.sample_age_unknown);
+  EXPECT_EQ(back.nominal_rate_hz, 120.03);
+}
+
+TEST(GazeConvert, RecordsOfThePreambleThatAreWrongAreNamed) {
+  const TextFiles files;
+  for (const std::string line : {"event blunk left 1 2", "event blink left 1.5 2", "event blink", "head 1 2 3",
+                                 "calibration left x 1 1", "rate_hz fast"}) {
+    const std::string path = files.write("log.csv", "# gazetrace-gaze 1\n# " + line + "\nt[ns],u[1],v[1]\n1,0.5,0.5\n");
+    try {
+      load_gaze_log(path, {});
+      ADD_FAILURE() << line;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("log.csv:2"), std::string::npos) << error.what();
+    }
+    // A comment of somebody else's table is no record.
+    EXPECT_NO_THROW(load_gaze_log(files.write("other.csv", "# " + line + "\nt[ns],u[1],v[1]\n1,0.5,0.5\n"), {}))
+        << line;
   }
 }
 

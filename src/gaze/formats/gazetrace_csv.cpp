@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // gazetrace CSV. Preamble `# gazetrace-gaze 1` with `# display_px W H`, `# display_mm W H`, `# distance_mm D` and
-// `# clock TEXT`; header with units, `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`.
+// `# clock TEXT`; header with units, `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`, with a head's pose
+// `hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw` (position and quaternion; empty in rows without one). What is no row stands in
+// the preamble, see mapped_table.hpp.
 #include <fmt/format.h>
 
 #include "gaze/mapped_table.hpp"
+#include "gaze/read_support.hpp"
 
 namespace gazetrace {
 
@@ -26,8 +29,28 @@ GazeLog read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& opt
                 fmt::format("is gazetrace CSV of version {}; this program reads version 1", *preamble.version),
                 "use a newer gazetrace");
   }
+  GazeColumns columns = options.columns;
+  if (columns.head_x.empty() && columns.head_rotation_x.empty() &&
+      table.has_all({"hx[m]", "hy[m]", "hz[m]", "hqx", "hqy", "hqz", "hqw"})) {
+    columns.head_x = "hx[m]";
+    columns.head_y = "hy[m]";
+    columns.head_z = "hz[m]";
+    columns.head_rotation_x = "hqx";
+    columns.head_rotation_y = "hqy";
+    columns.head_rotation_z = "hqz";
+    columns.head_rotation_w = "hqw";
+  }
   const bool names = options.columns.valid_values.empty() && options.columns.valid_mask == 0;
-  return read_mapped_table(file, table, options, options.columns, names ? ValidityStyle::names : ValidityStyle::any);
+  GazeLog log = read_mapped_table(file, table, options, columns, names ? ValidityStyle::names : ValidityStyle::any);
+  log.nominal_rate_hz = preamble.nominal_rate_hz;
+  log.sample_age_unknown = preamble.sample_age_unknown;
+  log.events = preamble.events;
+  log.calibrations = preamble.calibrations;
+  if (!preamble.head.empty()) {
+    log.head.insert(log.head.end(), preamble.head.begin(), preamble.head.end());
+    finish_head(log);
+  }
+  return log;
 }
 
 }  // namespace gazetrace

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
@@ -40,6 +42,12 @@ int run_convert(const ConvertArguments& arguments) {
   }
   for (const std::string& path : bids_file_names(log, arguments.output)) {
     check_output_file(path, arguments.overwrite);
+  }
+  if (!log.head.empty()) {
+    print_warnings(
+        {fmt::format("{}: {} poses of the head are left out: BIDS eye tracking has no place for them, "
+                     "gazetrace CSV keeps them",
+                     log.source, log.head.size())});
   }
   write_gaze_bids(log, arguments.output);
   return exit_done;
