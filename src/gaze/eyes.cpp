@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "gaze/facts.hpp"
 #include "gaze/read_support.hpp"
 
 namespace gazetrace {
@@ -343,12 +344,71 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
   return alone;
 }
 
+std::optional<double> great_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
+  const auto disparity = median_vertical_disparity_deg(log, plane);
+  return disparity && std::abs(*disparity) > kMaxVerticalDisparityDeg ? disparity : std::nullopt;
+}
+
+void warn_of_disparity(GazeLog& log, double disparity_deg, Eye taken) {
+  log.warnings.push_back(
+      fmt::format("{}: the eyes differ vertically by {:.2f} deg in the median, as after a poor calibration; the {} eye "
+                  "is used, --gaze-eye mean takes the mean",
+                  log.source, disparity_deg, to_string(taken)));
+}
+
+void take_one_eye(GazeLog& log, Eye eye) {
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    log.samples[i].eye = eye;
+    take_eye(log.samples[i], eye == Eye::left ? log.eyes[i].left : log.eyes[i].right, log.kind);
+  }
+}
+
+// What was chosen before the log was converted stays chosen.
+void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane& plane) {
+  if (has_own_rows) {  // the other eye stood in where it was lost, or they were processed
+    for (GazeSample& sample : log.samples) {
+      sample.eye = eye;
+    }
+  } else {
+    take_one_eye(log, eye);
+  }
+  add_fact(log, "eye", std::string(to_string(eye)), Evidence::header, has_own_rows ? "" : "alone");
+  if (const auto disparity = great_disparity_deg(log, plane)) {
+    warn_of_disparity(log, *disparity, eye);
+  }
+}
+
+std::optional<Eye> stated_eye(const GazeLog& log) {
+  const std::string_view name = fact_value(log, kStatedEye);
+  return name == "left" ? std::optional(Eye::left) : name == "right" ? std::optional(Eye::right) : std::nullopt;
+}
+
 [[noreturn]] void no_such_eye(const GazeLog& log, std::string_view eye) {
   throw Error(ErrorKind::usage, log.source, fmt::format("has no rows of the {} eye", eye),
               "leave --gaze-eye out, or choose another");
 }
 
 }  // namespace
+
+ChosenEye chosen_eye(const GazeLog& log) {
+  if (log.eyes.empty() || log.samples.empty() || log.samples.front().eye == Eye::cyclopean) {
+    return {};
+  }
+  const auto same = [](auto a, auto b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  ChosenEye chosen{log.samples.front().eye, true};
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample& sample = log.samples[i];
+    if (sample.eye != *chosen.eye) {
+      return {};
+    }
+    const EyeGaze a = eye_gaze(sample, log.kind);
+    const EyeGaze& b = *chosen.eye == Eye::left ? log.eyes[i].left : log.eyes[i].right;
+    chosen.is_alone = chosen.is_alone && a.validity == b.validity && same(a.confidence, b.confidence) &&
+                      same(a.pupil, b.pupil) && same(a.at.x, b.at.x) && same(a.at.y, b.at.y) &&
+                      (log.kind != GazeKind::direction || same(a.at.z, b.at.z));
+  }
+  return chosen;
+}
 
 void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
   Rows rows;
@@ -373,11 +433,13 @@ void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
   const AnglePlane plane(log);
   const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
   if (choice == EyeChoice::left || choice == EyeChoice::right) {
-    for (std::size_t i = 0; i < log.samples.size(); ++i) {
-      log.samples[i].eye = choice == EyeChoice::left ? Eye::left : Eye::right;
-      take_eye(log.samples[i], choice == EyeChoice::left ? log.eyes[i].left : log.eyes[i].right, log.kind);
-    }
+    take_one_eye(log, choice == EyeChoice::left ? Eye::left : Eye::right);
     add_fact(log, "eye", choice == EyeChoice::left ? "left" : "right", evidence, "alone");
+    return;
+  }
+  if (const auto stated = stated_eye(log);
+      choice == EyeChoice::automatic && stated && (rows.own() > 0 || (rows.left() > 0 && rows.right() > 0))) {
+    take_stated_eye(log, *stated, rows.own() > 0, plane);
     return;
   }
   if (choice == EyeChoice::automatic && rows.own() > 0) {
@@ -390,14 +452,9 @@ void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
   } else if (choice == EyeChoice::best) {
     preferred = better_eye(log, plane);
   } else if (choice == EyeChoice::automatic) {
-    const auto disparity = median_vertical_disparity_deg(log, plane);
-    if (disparity && std::abs(*disparity) > kMaxVerticalDisparityDeg) {
+    if (const auto disparity = great_disparity_deg(log, plane)) {
       preferred = better_eye(log, plane);
-      log.warnings.push_back(
-          fmt::format("{}: the eyes differ vertically by {:.2f} deg in the median, as after a poor calibration; the {} "
-                      "eye is used, "
-                      "--gaze-eye mean takes the mean",
-                      log.source, *disparity, to_string(preferred)));
+      warn_of_disparity(log, *disparity, preferred);
     }
   }
   const std::size_t alone = join_eyes(log, plane, preferred);

@@ -9,4 +9,11 @@ namespace gazetrace {
 // and there is at most one of each eye at a time.
 void choose_eyes(GazeLog& log, const GazeReadOptions& options);
 
+// How the samples of a log with both eyes relate to one of them.
+struct ChosenEye {
+  std::optional<Eye> eye;  // left or right: the samples are that eye's, by GazeSample::eye; empty: of both
+  bool is_alone = false;   // ... and nothing but its rows: the other never stood in, nothing was processed
+};
+ChosenEye chosen_eye(const GazeLog& log);
+
 }  // namespace gazetrace

@@ -7,8 +7,9 @@
 
 namespace gazetrace {
 
-// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header; of gazetrace CSV also what is
-// no row: `# event TYPE EYE BEGIN_NS END_NS TEXT`, `# calibration EYE NS MEAN_DEG MAX_DEG`, `# head NS X Y Z QX QY QZ QW`.
+// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header; of gazetrace CSV also what
+// is no row: `# event TYPE EYE BEGIN_NS END_NS TEXT`, `# calibration EYE NS MEAN_DEG MAX_DEG`, `# head NS X Y Z QX QY
+// QZ QW`.
 struct GazetracePreamble {
   std::optional<int> version;  // of `# gazetrace-gaze N`
   std::string clock;
@@ -17,6 +18,7 @@ struct GazetracePreamble {
   std::optional<Vec2d> pixels_per_degree;
   double nominal_rate_hz = 0;       // `# rate_hz R`; 0: not stated
   bool sample_age_unknown = false;  // `# sample_age unknown`
+  std::optional<Eye> eye;           // `# eye right`: that whose gaze the cyclopean rows are, or was taken without such
   std::vector<GazeEvent> events;
   std::vector<GazeCalibration> calibrations;
   std::vector<HeadPose> head;

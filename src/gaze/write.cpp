@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "gaze/eyes.hpp"
 #include "gaze/write_file.hpp"
 #include "gazetrace/gaze.hpp"
 
@@ -54,6 +55,9 @@ std::string preamble(const GazeLog& log) {
   }
   if (!log.clock.empty()) {
     text += fmt::format("# clock {}\n", log.clock);
+  }
+  if (const ChosenEye chosen = chosen_eye(log); chosen.eye) {
+    text += fmt::format("# eye {}\n", to_string(*chosen.eye));
   }
   if (log.nominal_rate_hz > 0) {
     text += fmt::format("# rate_hz {}\n", log.nominal_rate_hz);
@@ -194,6 +198,7 @@ void write_gaze_csv(const GazeLog& log, const std::string& path) {
     text += fmt::format("# head {} {}\n", pose->t_ns, pose_text(*pose, ' '));
   }
   text += rows.header();
+  const bool has_own_rows = !chosen_eye(log).is_alone;
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     GazeSample sample = log.samples[i];
     const EyeOrigins* const origins = log.origins.empty() ? nullptr : &log.origins[i];
@@ -206,11 +211,12 @@ void write_gaze_csv(const GazeLog& log, const std::string& path) {
                  pose, text);
       continue;
     }
-    // What was chosen stands for both from now on.
-    sample.eye = Eye::cyclopean;
-    rows.write(sample, nullptr, pose, text);
+    if (has_own_rows) {
+      sample.eye = Eye::cyclopean;
+      rows.write(sample, nullptr, pose, text);
+    }
     rows.write(eye_row(sample, log.eyes[i].left, Eye::left, log.kind), origins == nullptr ? nullptr : &origins->left_mm,
-               nullptr, text);
+               has_own_rows ? nullptr : pose, text);
     rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind),
                origins == nullptr ? nullptr : &origins->right_mm, nullptr, text);
   }

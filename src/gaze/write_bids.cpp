@@ -12,10 +12,13 @@
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "gaze/angles.hpp"
 #include "gaze/bids_sidecars.hpp"
+#include "gaze/eyes.hpp"
 #include "gaze/gzip.hpp"
+#include "gaze/inspect/inspect.hpp"
 #include "gaze/write_file.hpp"
 #include "gazetrace/gaze.hpp"
 
@@ -63,8 +66,10 @@ Row row_of(const GazeSample& sample, GazeKind kind) {
   return {sample.t_ns, {at, sample.confidence, sample.pupil, sample.validity}, {NAN, NAN, NAN}};
 }
 
-// The gaze of each eye, and what was made of both; or the one gaze there is, by the eyes that its samples name.
+// The gaze of each eye, and what was made of both, unless one of them was taken as it is; or the one gaze there is, by
+// the eyes that its samples name.
 std::vector<Recording> recordings_of(const GazeLog& log) {
+  const bool has_own_rows = !chosen_eye(log).is_alone;
   std::vector<Recording> all{{Eye::left, {}}, {Eye::right, {}}, {Eye::cyclopean, {}}};
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     const GazeSample& sample = log.samples[i];
@@ -79,7 +84,9 @@ std::vector<Recording> recordings_of(const GazeLog& log) {
     }
     all[0].rows.push_back({sample.t_ns, log.eyes[i].left, origins != nullptr ? origins->left_mm : Row().origin_mm});
     all[1].rows.push_back({sample.t_ns, log.eyes[i].right, origins != nullptr ? origins->right_mm : Row().origin_mm});
-    all[2].rows.push_back(row_of(sample, log.kind));
+    if (has_own_rows) {
+      all[2].rows.push_back(row_of(sample, log.kind));
+    }
   }
   std::erase_if(all, [](const Recording& r) { return r.rows.empty(); });
   return all;
@@ -177,6 +184,9 @@ class RecordingWriter {
               {"StartTime", 0},
               {"RecordedEye", to_string(recording_.eye)},
               {"SampleCoordinateSystem", is_direction ? "eye-in-head" : "gaze-on-screen"}};
+    if (const ChosenEye chosen = chosen_eye(log_); chosen.eye) {
+      json["ChosenEye"] = to_string(*chosen.eye);  // our own: whose gaze stands for both
+    }
     json["Columns"] = {"timestamp", "x_coordinate", "y_coordinate"};
     json["timestamp"] = {{"Units", "ns"}, {"Origin", log_.clock}};
     json["x_coordinate"] = {{"Units", unit}};
@@ -218,8 +228,9 @@ class RecordingWriter {
 
  private:
   [[nodiscard]] double rate_hz() const {
-    const std::int64_t step_ns = median_step_ns(times_of(log_));
-    return log_.nominal_rate_hz > 0 ? log_.nominal_rate_hz : step_ns > 0 ? 1e9 / static_cast<double>(step_ns) : 1;
+    // By the mean: steps of a frame log are of two or three lengths, and the median is one of them.
+    const double measured_hz = measure_timing(log_).mean_rate_hz;
+    return log_.nominal_rate_hz > 0 ? log_.nominal_rate_hz : measured_hz > 0 ? measured_hz : 1;
   }
 
   const GazeLog& log_;
@@ -261,18 +272,22 @@ std::string one_cell(std::string text) {
   return text.empty() ? "n/a" : text;
 }
 
-// Events of both eyes go with what was made of both, or with the only eye there is.
-bool belongs(const GazeEvent& event, Eye eye, bool is_first, bool is_only) {
+// Where an event goes: to the recording of its eye, else to that of the gaze, else to the first; messages and segments
+// are of no eye.
+Eye home_of(const GazeEvent& event, const std::vector<Recording>& recordings, const std::optional<Eye>& chosen) {
   const bool moves = event.type == GazeEventType::fixation || event.type == GazeEventType::saccade ||
                      event.type == GazeEventType::blink;
-  return moves ? event.eye == eye || (event.eye == Eye::cyclopean && is_only)
-               : event.type == GazeEventType::message && is_first;
+  const auto has = [&](Eye eye) {
+    return std::any_of(recordings.begin(), recordings.end(), [&](const Recording& r) { return r.eye == eye; });
+  };
+  return !moves ? recordings.front().eye : has(event.eye) ? event.eye : chosen ? *chosen : recordings.front().eye;
 }
 
-std::string events_table(const GazeLog& log, Eye eye, bool is_first, bool is_only) {
+std::string events_table(const GazeLog& log, Eye eye, const std::vector<Recording>& recordings) {
+  const std::optional<Eye> chosen = chosen_eye(log).eye;
   std::string text;
   for (const GazeEvent& event : log.events) {
-    if (!belongs(event, eye, is_first, is_only)) {
+    if (home_of(event, recordings, chosen) != eye) {
       continue;
     }
     const std::int64_t length_ns = std::max<std::int64_t>(event.end_ns - event.begin_ns, 0);
@@ -317,7 +332,6 @@ std::vector<File> files_of(const GazeLog& log, const std::string& path) {
                 "convert to gazetrace CSV, or use --gaze-frame head");
   }
   std::vector<File> files;
-  bool is_first = true;
   const std::vector<Recording> recordings = recordings_of(log);
   const PixelScale scale = pixel_scale(log);
   const bool is_exact = are_pixels_exact(recordings, log.kind, scale);
@@ -326,15 +340,13 @@ std::vector<File> files_of(const GazeLog& log, const std::string& path) {
     const std::string label = label_of(recording.eye);
     files.push_back({path_of(name, label, "physio.tsv.gz"), pack_gzip(writer.table())});
     files.push_back({path_of(name, label, "physio.json"), json_text(writer.sidecar())});
-    if (const std::string events = events_table(log, recording.eye, is_first, recordings.size() == 1);
-        !events.empty()) {
+    if (const std::string events = events_table(log, recording.eye, recordings); !events.empty()) {
       files.push_back({path_of(name, label, "physioevents.tsv.gz"), pack_gzip(events)});
       files.push_back({path_of(name, label, "physioevents.json"),
                        json_text({{"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
                                   {"OnsetSource", "timestamp"},
                                   {"duration", {{"Units", "s"}}}})});
     }
-    is_first = false;
   }
   if (const Json screen = screen_json(log); !screen.is_null()) {
     files.push_back({path_of(name, "", "events.json"), json_text({{"StimulusPresentation", screen}})});

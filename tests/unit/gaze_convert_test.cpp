@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_synth.hpp"
 #include "support/text_file.hpp"
 
@@ -47,7 +48,7 @@ void expect_same_log(const GazeLog& a, const GazeLog& b) {
     const GazeSample& r = b.samples[i];
     const std::string at = "sample " + std::to_string(i);
     EXPECT_EQ(s.t_ns, r.t_ns) << at;
-    EXPECT_EQ(s.eye, a.eyes.empty() ? r.eye : s.eye) << at;
+    EXPECT_EQ(s.eye, r.eye) << at;
     const auto place = [&](const GazeSample& g) {
       return a.kind == GazeKind::direction ? g.direction : Vec3d{g.u, g.v, 0};
     };
@@ -131,14 +132,18 @@ TEST_P(Conversion, ToBidsAndBack) {
   for (const std::string& name : names) {
     EXPECT_TRUE(std::filesystem::exists(name)) << name;
   }
+  for (const std::string& name : names) {  // whichever is opened, its neighbours come along
+    if (is_bids_file_name(name)) {
+      expect_same_log(log, load_gaze_log(name, {}));
+    }
+  }
   const GazeLog back = load_gaze_log(names.front(), {});
   EXPECT_EQ(back.format, "bids");
-  expect_same_log(log, back);
-  // Events of the eyes come along; recordings of a tracker's blocks have no name there.
   const auto count = [](const GazeLog& l, GazeEventType type) {
     return std::count_if(l.events.begin(), l.events.end(), [&](const GazeEvent& e) { return e.type == type; });
   };
-  for (const GazeEventType type : {GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink}) {
+  for (const GazeEventType type : {GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
+                                   GazeEventType::message, GazeEventType::segment}) {
     EXPECT_EQ(count(back, type), count(log, type)) << to_string(type);
   }
 }
@@ -168,6 +173,83 @@ TEST(GazeConvert, SyntheticLogsSurviveBids) {
     EXPECT_TRUE(std::filesystem::exists(files.path("sub-02_recording-cyclopean_physio.tsv.gz")));
     expect_same_log(log, load_gaze_log(files.path("sub-02_recording-cyclopean_physio.tsv.gz"), {}));
   }
+}
+
+// Eyes that differ vertically by a degree: automatic takes one of them, and says so.
+GazeLog log_of_two_eyes(const TextFiles& files, bool loses_the_better) {
+  std::string text =
+      "# gazetrace-gaze 1\n# display_px 1000 1000\n# display_cm 50 50\n# distance_cm 60\nt[ns],u[1],v[1],valid,eye\n";
+  for (int i = 0; i < 300; ++i) {
+    const double u = 0.5 + 0.1 * std::sin(0.05 * i);
+    text += std::to_string(4'000'000LL * i) + "," + std::to_string(u) + ",0.50,ok,left\n";
+    text += std::to_string(4'000'000LL * i) + "," + std::to_string(u + 0.02 * (i % 2)) + ",0.53," +
+            (i % 50 == 7 && loses_the_better ? "lost" : "ok") + ",right\n";
+  }
+  GazeReadOptions options;
+  options.eye = loses_the_better ? EyeChoice::dominant : EyeChoice::automatic;
+  options.dominant_eye = Eye::right;
+  GazeLog log = load_gaze_log(files.write("eyes.csv", text), options);
+  log.events = {{GazeEventType::fixation, Eye::left, 0, 8'000'000, "L", 0},
+                {GazeEventType::fixation, Eye::right, 4'000'000, 16'000'000, "R", 0},
+                {GazeEventType::segment, Eye::cyclopean, 0, 1'196'000'000, "", 0}};
+  return log;
+}
+
+TEST(GazeConvert, TheChosenEyeStaysChosen) {
+  for (const bool stands_in : {false, true}) {
+    const TextFiles files;
+    const GazeLog log = log_of_two_eyes(files, stands_in);
+    const Eye eye = stands_in ? Eye::right : Eye::left;  // the steadier one, the dominant one
+    ASSERT_EQ(log.samples.front().eye, eye);
+    write_gaze_csv(log, files.path("log.csv"));
+    EXPECT_EQ(read_file(files.path("log.csv")).find("ok,cyclopean") != std::string::npos, stands_in);
+    write_gaze_bids(log, files.path("sub-1_physio.tsv.gz"));
+    EXPECT_EQ(std::filesystem::exists(files.path("sub-1_recording-cyclopean_physio.tsv.gz")), stands_in);
+    for (const char* const name :
+         {"log.csv", "sub-1_recording-eye1_physio.tsv.gz", "sub-1_recording-eye2_physio.tsv.gz"}) {
+      const GazeLog back = load_gaze_log(files.path(name), {});
+      expect_same_log(log, back);
+      EXPECT_EQ(events_of_log(back).events.front().end_ns, events_of_log(log).events.front().end_ns) << name;
+      EXPECT_EQ(std::count_if(back.events.begin(), back.events.end(),
+                              [](const GazeEvent& e) { return e.type == GazeEventType::segment; }),
+                1);
+      const bool warned = std::any_of(back.warnings.begin(), back.warnings.end(), [](const std::string& w) {
+        return w.find("differ vertically") != std::string::npos;
+      });
+      EXPECT_TRUE(warned) << name;
+    }
+    // Asking for the mean still gives it.
+    GazeReadOptions mean;
+    mean.eye = EyeChoice::mean;
+    EXPECT_EQ(load_gaze_log(files.path("log.csv"), mean).samples.front().eye, Eye::cyclopean);
+  }
+}
+
+TEST(GazeConvert, ThePupilsUnitIsThatOfAnyRecording) {
+  const TextFiles files;
+  std::string text = "# gazetrace-gaze 1\nt[ns],u[1],v[1],valid,eye,pupil[mm]\n";
+  for (int i = 0; i < 10; ++i) {
+    for (const char* const eye : {"cyclopean,", "left,3.5", "right,3.25"}) {
+      text += std::to_string(i * 8'000'000) + ",0.5,0.5,ok," + eye + "\n";
+    }
+  }
+  const GazeLog log = load_gaze_log(files.write("log.csv", text), {});
+  ASSERT_EQ(log.pupil_unit, "mm");
+  write_gaze_bids(log, files.path("sub-1_physio.tsv.gz"));
+  EXPECT_EQ(load_gaze_log(files.path("sub-1_recording-cyclopean_physio.tsv.gz"), {}).pupil_unit, "mm");
+}
+
+TEST(GazeConvert, TheRateOfAFrameLogIsItsMean) {
+  GazeLog log;
+  log.source = "frames";
+  std::int64_t t_ns = 0;
+  for (int i = 0; i < 300; ++i) {  // 8, 8 and 9 ms: 120 Hz
+    log.samples.push_back({t_ns, 0.5, 0.5, {}, GazeValidity::ok, Eye::cyclopean, 1, 0, i});
+    t_ns += i % 3 == 2 ? 9'000'000 : 8'000'000;
+  }
+  const TextFiles files;
+  write_gaze_bids(log, files.path("sub-1_physio.tsv.gz"));
+  EXPECT_NEAR(load_gaze_log(files.path("sub-1_recording-cyclopean_physio.tsv.gz"), {}).nominal_rate_hz, 120, 0.1);
 }
 
 TEST(GazeConvert, PosesBetweenSamplesAndTextsOfManyKindsSurviveCsv) {

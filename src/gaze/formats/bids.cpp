@@ -12,6 +12,7 @@
 
 #include "core/text.hpp"
 #include "gaze/bids_sidecars.hpp"
+#include "gaze/facts.hpp"
 #include "gaze/gzip.hpp"
 #include "gaze/missing_values.hpp"
 #include "gaze/read_support.hpp"
@@ -380,6 +381,7 @@ void read_events(const Sidecars& physio, const std::string& path, GazeLog& log) 
       event.type = blinks               ? GazeEventType::blink
                    : text == "fixation" ? GazeEventType::fixation
                    : text == "saccade"  ? GazeEventType::saccade
+                   : text == "segment"  ? GazeEventType::segment
                                         : GazeEventType::message;
       event.text = is_missing(rows.cell(message)) ? "" : std::string(rows.cell(message));
       log.events.push_back(std::move(event));
@@ -410,6 +412,9 @@ GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
   log.format = "bids";
   log.nominal_rate_hz = sidecars.number("SamplingFrequency").value_or(0);
   log.clock = sidecars.text("timestamp.Origin");
+  if (const std::string chosen = sidecars.text("ChosenEye"); chosen == "left" || chosen == "right") {
+    add_fact(log, kStatedEye, chosen, Evidence::sidecar, "chosen before it was converted");  // gazetrace's own
+  }
   const std::string space = sidecars.text("SampleCoordinateSystem");
   if (!space.empty() && space != "gaze-on-screen" && space != "eye-in-head") {
     throw Error(ErrorKind::input, file.path, fmt::format("its SampleCoordinateSystem is '{}'", space.substr(0, 40)),
@@ -435,6 +440,7 @@ GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
       throw Error(ErrorKind::input, path, "says its places in other columns than the recording beside it",
                   "read one of them alone, from another folder");
     }
+    log.pupil_unit = log.pupil_unit.empty() ? second.pupil_unit : log.pupil_unit;
     read_events(other, path, log);
     log.origins.insert(log.origins.end(), second.origins.begin(), second.origins.end());
     log.samples.insert(log.samples.end(), second.samples.begin(), second.samples.end());

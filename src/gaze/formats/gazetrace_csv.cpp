@@ -5,6 +5,7 @@
 // the preamble, see mapped_table.hpp.
 #include <fmt/format.h>
 
+#include "gaze/facts.hpp"
 #include "gaze/mapped_table.hpp"
 #include "gaze/read_support.hpp"
 
@@ -44,6 +45,10 @@ GazeLog read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& opt
   GazeLog log = read_mapped_table(file, table, options, columns, names ? ValidityStyle::names : ValidityStyle::any);
   log.nominal_rate_hz = preamble.nominal_rate_hz;
   log.sample_age_unknown = preamble.sample_age_unknown;
+  if (preamble.eye) {
+    add_fact(log, kStatedEye, std::string(to_string(*preamble.eye)), Evidence::header,
+             "chosen before it was converted");
+  }
   log.events = preamble.events;
   log.calibrations = preamble.calibrations;
   if (!preamble.head.empty()) {
