@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gaze is biometric: what tells whose a log is does not get into pictures, records, plans and reports by itself."""
 
+import gzip
+
 import harness
 
 FIRST_NS = 1698682600011534600  # 30 October 2023
@@ -44,6 +46,43 @@ class Privacy(harness.CliTest):
         for place in ("inspect log.csv []", "plan --json", "f.0001.exr"):
             self.assertIn(STAMP, said[place], place)
         self.assertIn("2023/10/30", said["inspect log.csv []"])
+
+    def converted(self, *more):
+        """Text of all files that converting an EyeLink log with a talkative experiment writes."""
+        self.write("talk.asc", "MSG\t1000 participant Ada Lovelace 2023/10/30 13:34:49 serial TG02B-080105\n" +
+                   "MSG\t1000 DISPLAY_COORDS 0 0 1023 767\nSTART\t1000 \tLEFT\tSAMPLES\tEVENTS\nSAMPLES\tGAZE\tLEFT\tRATE\t250.00\n" +
+                   "".join(f"{1000 + 4 * i}\t  200.0\t  300.0\t  900.0\t...\n" for i in range(60)) +
+                   "MSG\t1100 Ada Lovelace answers\nEND\t1240 \tSAMPLES\tEVENTS\tRES\t  35.00\t  35.00\n")
+        for output in ("talk.csv", "sub-01_physio.tsv.gz"):
+            warnings = self.run_ok("gaze", "convert", "talk.asc", "-o", output, "--overwrite", *more).stderr
+        self.write("log.csv", LOG)
+        self.run_ok("gaze", "convert", "log.csv", "-o", "clock.csv", "--overwrite", *more)
+        names = ["talk.csv", "clock.csv", *(name for name in self.files() if name.startswith("sub-01"))]
+        self.assertGreater(len(names), 4)
+        data = [(self.folder / name).read_bytes() for name in names]
+        return warnings, "\n".join((gzip.decompress(d) if d[:2] == b"\x1f\x8b" else d).decode() for d in data)
+
+    def test_converted_logs_name_nobody(self):
+        warnings, text = self.converted()
+        for word in NAMES:
+            self.assertNotIn(word, text)
+        self.assertIn("--keep-ids", warnings)
+        self.assertIn("messages are left out", warnings)
+
+    def test_converted_logs_keep_messages_when_asked_to(self):
+        warnings, text = self.converted("--keep-ids")
+        for word in (*NAMES, "answers"):
+            self.assertIn(word, text)
+        self.assertNotIn("left out", warnings)
+
+    def test_events_tell_no_time_of_day(self):
+        self.write("log.csv", LOG)
+        hidden, kept = ([line.split("\t") for line in self.run_ok("gaze", "events", "log.csv", *more).stdout.splitlines()[1:]]
+                        for more in ([], ["--keep-ids"]))
+        self.assertEqual([(row[0], int(row[1]) + FIRST_NS, int(row[2]) + FIRST_NS, *row[3:]) for row in hidden],
+                         [(row[0], int(row[1]), int(row[2]), *row[3:]) for row in kept])
+        self.run_ok("gaze", "events", "log.csv", "-o", "events.json")
+        self.assertNotIn(STAMP, (self.folder / "events.json").read_text())
 
     def test_frames_get_the_same_gaze_either_way(self):
         self.write("log.csv", LOG)

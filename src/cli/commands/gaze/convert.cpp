@@ -8,6 +8,7 @@
 #include "cli/exit_codes.hpp"
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_inspect.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,7 +20,21 @@ struct ConvertArguments {
   std::vector<std::string> steps;
   std::string output;
   bool overwrite = false;
+  bool keep_ids = false;
 };
+
+// Experiments write participants, serial numbers and dates into messages. Stamps stay: a copy is for other programs,
+// which hold it against recordings of the same clock.
+void leave_out_identities(GazeLog& log) {
+  log.clock = without_dates(log.clock);
+  const std::size_t left_out =
+      std::erase_if(log.events, [](const GazeEvent& event) { return event.type == GazeEventType::message; });
+  if (left_out > 0) {
+    print_warnings(
+        {fmt::format("{}: {} left out, as messages may say who was recorded; --keep-ids keeps them", log.source,
+                     left_out == 1 ? "1 message is" : fmt::format("{} messages are", left_out))});
+  }
+}
 
 int run_convert(const ConvertArguments& arguments) {
   const bool is_bids = is_bids_file_name(arguments.output);
@@ -28,6 +43,9 @@ int run_convert(const ConvertArguments& arguments) {
   }
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   print_warnings(log.warnings);
+  if (!arguments.keep_ids) {
+    leave_out_identities(log);
+  }
   if (!arguments.steps.empty()) {
     complete_recording_geometry(log, arguments.screen);
     ProcessedGaze processed = process_gaze(log, gaze_steps_of(arguments.steps));
@@ -70,6 +88,9 @@ Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/
       ->required()
       ->type_name("OUT");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
+  app.add_flag("--keep-ids", arguments->keep_ids,
+               "Also writes messages of the experiment and dates in the description of the clock, which can identify a "
+               "person or a session; stamps are written as they are either way");
   return {[arguments] { return run_convert(*arguments); }, nullptr};
 }
 

@@ -9,6 +9,7 @@
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_events.hpp"
+#include "gazetrace/gaze_inspect.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -22,6 +23,7 @@ struct EventsArguments {
   std::optional<GazeDevice> device;
   std::string output;
   bool overwrite = false;
+  bool keep_ids = false;
 };
 
 EyeEvents find_events(const EventsArguments& arguments, const GazeLog& log) {
@@ -54,6 +56,11 @@ int run_events(const EventsArguments& arguments) {
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   complete_recording_geometry(log, arguments.screen);
   print_warnings(log.warnings);
+  if (!arguments.keep_ids && is_wall_clock(log)) {
+    count_from_first_sample(log);
+    print_warnings({log.source + ": its stamps are times of day; events count from its first sample, with --keep-ids "
+                                 "from where the stamps do"});
+  }
   const EyeEvents events = find_events(arguments, log);
   const bool json = arguments.output.ends_with(".json");
   const std::string text = json ? events_as_json(events, log) : events_as_tsv(events, log);
@@ -86,6 +93,8 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
   app.add_option("-o,--output", arguments->output, "Events, .tsv or .json; default: as TSV to stdout")
       ->type_name("FILE");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces the file when it is there");
+  app.add_flag("--keep-ids", arguments->keep_ids,
+               "Times of day of the log stay; otherwise such times count from its first sample");
   return {[arguments] { return run_events(*arguments); }, nullptr};
 }
 
