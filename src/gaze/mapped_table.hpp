@@ -19,6 +19,7 @@ struct GazetracePreamble {
   double nominal_rate_hz = 0;       // `# rate_hz R`; 0: not stated
   bool sample_age_unknown = false;  // `# sample_age unknown`
   std::optional<Eye> eye;           // `# eye right`: that whose gaze the cyclopean rows are, or was taken without such
+  std::string device;               // `# device desktop`, where it does not follow from the kind of gaze
   std::vector<GazeEvent> events;
   std::vector<GazeCalibration> calibrations;
   std::vector<HeadPose> head;

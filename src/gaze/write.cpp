@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "gaze/eyes.hpp"
+#include "gaze/facts.hpp"
 #include "gaze/write_file.hpp"
 #include "gazetrace/gaze.hpp"
 
@@ -61,6 +62,9 @@ std::string preamble(const GazeLog& log) {
   }
   if (log.nominal_rate_hz > 0) {
     text += fmt::format("# rate_hz {}\n", log.nominal_rate_hz);
+  }
+  if (const std::string_view device = fact_value(log, kDevice); !device.empty()) {
+    text += fmt::format("# device {}\n", device);
   }
   text += log.sample_age_unknown ? "# sample_age unknown\n" : "";
   for (const GazeCalibration& c : log.calibrations) {

@@ -17,6 +17,7 @@
 #include "gaze/angles.hpp"
 #include "gaze/bids_sidecars.hpp"
 #include "gaze/eyes.hpp"
+#include "gaze/facts.hpp"
 #include "gaze/gzip.hpp"
 #include "gaze/inspect/inspect.hpp"
 #include "gaze/write_file.hpp"
@@ -186,6 +187,9 @@ class RecordingWriter {
               {"SampleCoordinateSystem", is_direction ? "eye-in-head" : "gaze-on-screen"}};
     if (const ChosenEye chosen = chosen_eye(log_); chosen.eye) {
       json["ChosenEye"] = to_string(*chosen.eye);  // our own: whose gaze stands for both
+    }
+    if (const std::string_view device = fact_value(log_, kDevice); !device.empty()) {
+      json["RecordedOn"] = device;  // our own: desktop or head-mounted
     }
     json["Columns"] = {"timestamp", "x_coordinate", "y_coordinate"};
     json["timestamp"] = {{"Units", "ns"}, {"Origin", log_.clock}};

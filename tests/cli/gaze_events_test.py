@@ -56,6 +56,16 @@ class GazeTools(harness.CliTest):
         self.assertTrue(self.events("head.csv", "--method", "ivt", "--device", "desktop"))
         self.assert_refused(["gaze", "events", "head.csv", "--method", "ivtt"], ["did you mean 'ivt'"])
 
+    def test_degrees_of_a_desktop_tracker_are_known_by_their_format(self):
+        self.write("gazebase.csv", "n,x,y,val,xT,yT,dP,lab\n" + "".join(f"{i},{0.01 * i},1.5,0,0,0,900,1\n" for i in range(500)))
+        self.write("vr.csv", "n,x,y,lx,ly,rx,ry\n" + "".join(f"{4 * i},{0.01 * i},1.5,{0.01 * i},1.5,{0.01 * i},1.5\n" for i in range(500)))
+        for output in ("again.csv", "sub-1_physio.tsv.gz"):
+            self.run_ok("gaze", "convert", "gazebase.csv", "-o", output)
+        for log, preset in (("gazebase.csv", "ivt"), ("again.csv", "ivt"), ("sub-1_recording-cyclopean_physio.tsv.gz", "ivt"),
+                            ("vr.csv", "ivt-attention")):
+            self.run_ok("gaze", "events", log, "-o", "events.json", "--overwrite")
+            self.assertEqual(json.loads((self.folder / "events.json").read_text())["preset"], preset, log)
+
     def test_places_without_angles_are_refused_until_a_screen_is_given(self):
         self.write("bare.csv", "t[ns],u[1],v[1]\n" + "".join(f"{i * 4000000},0.5,0.5\n" for i in range(100)))
         self.assert_refused(["gaze", "events", "bare.csv"], ["size and distance", "--screen"])

@@ -415,6 +415,9 @@ GazeLog read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
   if (const std::string chosen = sidecars.text("ChosenEye"); chosen == "left" || chosen == "right") {
     add_fact(log, kStatedEye, chosen, Evidence::sidecar, "chosen before it was converted");  // gazetrace's own
   }
+  if (const std::string device = sidecars.text("RecordedOn"); !device.empty()) {
+    add_fact(log, kDevice, device, Evidence::sidecar);  // likewise
+  }
   const std::string space = sidecars.text("SampleCoordinateSystem");
   if (!space.empty() && space != "gaze-on-screen" && space != "eye-in-head") {
     throw Error(ErrorKind::input, file.path, fmt::format("its SampleCoordinateSystem is '{}'", space.substr(0, 40)),

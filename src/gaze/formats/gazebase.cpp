@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // GazeBase and GazeBaseVR: `n` in milliseconds, gaze x, y in degrees from straight ahead, right and up, `val` 0 where
-// valid; GazeBaseVR has lx, ly, rx, ry of each eye. Angles are angles: they become directions, and no display is
-// needed.
+// valid, from a desktop EyeLink; GazeBaseVR has lx, ly, rx, ry of each eye, from a headset. Angles are angles: they
+// become directions, and no display is needed.
+#include "gaze/facts.hpp"
 #include "gaze/mapped_table.hpp"
+#include "gaze/read_support.hpp"
+#include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
 namespace {
@@ -44,7 +47,12 @@ GazeLog read_gaze_gazebase(const GazeFile& file, const GazeReadOptions& options)
   }
   GazeReadOptions in_head = options;
   in_head.frame = GazeFrame::head;
-  return read_preset(file, table, in_head, c);
+  GazeLog log = read_preset(file, table, in_head, c);
+  if (c.left.x.empty()) {
+    add_fact(log, kDevice, std::string(to_string(GazeDevice::desktop)), Evidence::format,
+             "EyeLink 1000, chin on a rest");
+  }
+  return log;
 }
 
 }  // namespace gazetrace

@@ -49,6 +49,9 @@ GazeLog read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& opt
     add_fact(log, kStatedEye, std::string(to_string(*preamble.eye)), Evidence::header,
              "chosen before it was converted");
   }
+  if (!preamble.device.empty()) {
+    add_fact(log, kDevice, preamble.device, Evidence::header);
+  }
   log.events = preamble.events;
   log.calibrations = preamble.calibrations;
   if (!preamble.head.empty()) {
