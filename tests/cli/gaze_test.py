@@ -53,6 +53,22 @@ class GazeLogs(harness.CliTest):
         self.run_ok("gaze", "inspect", "log.csv", "--gaze-x-column", "u[1]", "--gaze-y-column", "v[1]", "--save-columns", "precious.json", "--overwrite")
         self.assertIn("u[1]", (self.folder / "precious.json").read_text())
 
+    def test_gazepoint_of_several_media_goes_on_by_its_ticks(self):
+        header = "MEDIA_ID,CNT,TIME(2023/10/30 13:34:49.156),TIMETICK(f=10000000),BPOGX,BPOGY,BPOGV,\n"
+        rows = [f"{i // 30},{i},{0.016 * (i % 30):.3f},{160000 * i},{0.5 + 0.001 * (i % 7)},{0.5 + 0.001 * (i % 5)},1,\n" for i in range(60)]
+        self.write("media.csv", header + "".join(rows))
+        report = self.summary("media.csv")
+        accused = [(f["code"], f["flag"]) for f in report["findings"] if f["kind"] != "note"]
+        self.assertEqual(accused, [("media", "--gaze-time-column TIMETICK")])
+        self.assertEqual((report["samples"], report["first_ns"], report["last_ns"]), (60, 0, 59 * 16_000_000))
+        self.assert_refused(["gaze", "convert", "media.csv", "-o", "out.csv"], ["media.csv:32", "another medium", "--gaze-time-column TIMETICK,"])
+        self.run_ok("gaze", "convert", "media.csv", "-o", "out.csv", "--gaze-time-column", "TIMETICK")
+        mended = self.summary("media.csv", "--gaze-time-column", "TIMETICK")
+        self.assertEqual([f for f in mended["findings"] if f["kind"] != "note"], [])
+        # Without ticks there is nothing to go on by.
+        self.write("bare.csv", header.replace("TIMETICK(f=10000000)", "X") + "".join(rows))
+        self.assert_refused(["gaze", "inspect", "bare.csv"], ["bare.csv:32", "one medium a file"])
+
     def test_what_was_concluded_says_from_what(self):
         self.write("log.csv", "time,u,v\n0,0.5,0.5\n4,0.5,0.5\n8,0.5,0.5\n")
         facts = {fact["what"]: fact for fact in self.summary("log.csv")["facts"]}

@@ -12,6 +12,9 @@
 #include "gaze/read_support.hpp"
 
 namespace gazetrace {
+
+GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options);
+
 namespace {
 
 struct Point {
@@ -59,6 +62,17 @@ std::optional<int> tick_exponent(const ColumnHeading& heading) {
     return std::nullopt;
   }
   return 9 - static_cast<int>(digits.size() - 1);
+}
+
+// For looking at a log whose TIME starts anew: by the ticks of the computer, which go on.
+GazeLog read_by_ticks(const GazeFile& file, const GazeReadOptions& options, const std::string& ticks,
+                      std::int64_t line) {
+  GazeReadOptions by_ticks = options;
+  by_ticks.columns.time = ticks;
+  GazeLog log = read_gaze_gazepoint(file, by_ticks);
+  log.faults.push_back(
+      {"media", fmt::format("line {}: TIME starts anew with another medium", line), "--gaze-time-column " + ticks});
+  return log;
 }
 
 }  // namespace
@@ -111,8 +125,15 @@ GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
     const std::int64_t t_ns = rows.time_ns(time, scale);
     if (media && rows.cell(*media) != medium) {
       if (!log.samples.empty() && t_ns < last) {
-        rows.fail("TIME starts anew with another medium",
-                  "use --gaze-time-column TIMETICK(f=...), which goes on, or one medium a file");
+        const std::string ticks_name = ticks && !is_tick ? table.headings[*ticks].name : "";
+        if (!ticks_name.empty() && options.for_inspection) {
+          return read_by_ticks(file, options, ticks_name, rows.line());
+        }
+        rows.fail(
+            fmt::format("{} starts anew with another medium", table.headings[time].name),
+            ticks_name.empty()
+                ? "export one medium a file"
+                : fmt::format("use --gaze-time-column {}, which goes on, or export one medium a file", ticks_name));
       }
       medium = rows.cell(*media);
       log.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "medium " + medium, rows.line()});
