@@ -40,6 +40,11 @@ class CameraPaths(harness.CliTest):
         self.assert_refused(["plan", "--size", "64x36", "--camera-path", "path.tum", "--save-camera", "x.fbx"],
                             ["x.fbx", ".chan"])
 
+    def test_the_help_says_how_a_saved_path_is_read_again(self):
+        text = " ".join(self.run_ok("plan", "--help").stdout.split())
+        saving = text[text.index("--save-camera"):]
+        self.assertIn("--camera-keep-time", saving[:saving.index("--json")])
+
     def test_a_path_is_placed(self):
         self.write("path.tum", PATH)
         placed = self.cameras("--camera-path", "path.tum", "--fps", "2", "--camera-turn", "90", "--camera-scale", "2",

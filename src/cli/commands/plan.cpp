@@ -135,8 +135,10 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--counts", arguments->counts,
                "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");
-  app.add_option("--save-camera", arguments->save_camera,
-                 "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM")
+  app.add_option(
+         "--save-camera", arguments->save_camera,
+         "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM, whose "
+         "stamps are the video times of the frames' middles: read it again with --camera-keep-time")
       ->type_name("FILE");
   app.add_flag("--json", arguments->json, "As JSON");
   return {[arguments] { return run_plan(*arguments); },
