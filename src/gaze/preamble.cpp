@@ -34,7 +34,8 @@ class Words {
   std::int64_t time_ns() {
     const std::string_view word = next();
     std::int64_t t_ns = 0;
-    return scaled_integer(word, 0, t_ns) == NumberStatus::ok ? t_ns : fail(word, "whole nanoseconds");
+    const bool is_whole = word.find_first_not_of("-0123456789") == std::string_view::npos;
+    return is_whole && scaled_integer(word, 0, t_ns) == NumberStatus::ok ? t_ns : fail(word, "whole nanoseconds");
   }
   template <class Value>
   Value one_of(std::initializer_list<Value> values) {
