@@ -107,9 +107,9 @@ struct GazeReadOptions {
   // Places with exactly this in every coordinate, in the log's unit, are missing. Always so: coordinates of -32768 and
   // of 1e7 and more.
   std::optional<double> missing_value;
-  bool swap_xy = false;          // the log has its axes the wrong way round
-  bool flip_x = false;           // left and right are exchanged: u becomes 1 - u, direction x becomes -x
-  bool flip_y = false;           // top and bottom likewise
+  bool swap_xy = false;  // the log has its axes the wrong way round
+  bool flip_x = false;   // left and right are exchanged: u becomes 1 - u, direction x becomes -x
+  bool flip_y = false;   // top and bottom likewise
   // Numbers are written with a decimal comma in a table that commas separate: cells are joined again. Where tabs or
   // semicolons separate, decimal commas are understood without it.
   bool decimal_comma = false;

@@ -92,8 +92,9 @@ std::string_view to_string(FindingKind kind);
 
 struct GazeFinding {
   FindingKind kind = FindingKind::note;
-  std::string code;  // "unordered", "repeated-rows", "time-unit", "position-unit", "origin", "zero-missing",
-                     // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
+  std::string
+      code;  // "unordered", "repeated-rows", "time-unit", "position-unit", "origin", "zero-missing",
+             // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
   std::string what;
   std::string evidence;
   std::string flag;  // the exact option that mends it; empty: none does

@@ -26,8 +26,8 @@ std::string count_text(const std::optional<double>& value);       // "1.23 M"
 std::string part_text(const std::string& part);                   // "2.6-5.2 degrees", "the fovea"
 // Parts of the picture that some run has scores of: bands from the gaze outwards, retinal regions, "weighted".
 std::vector<std::string> scored_parts(const ReportData& data);
-std::string metric_text(const ReportMetric& metric);              // "flip", with its unit
-std::string list_text(const std::vector<std::string>& items);     // "a, b and c"
+std::string metric_text(const ReportMetric& metric);           // "flip", with its unit
+std::string list_text(const std::vector<std::string>& items);  // "a, b and c"
 
 const ReportScore* find_score(const ReportRow& row, const std::string& metric, const std::string& part);
 const ReportRow* find_row(const ReportData& data, const std::string& id);
