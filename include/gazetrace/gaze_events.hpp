@@ -87,7 +87,8 @@ const EventPreset& event_preset(std::string_view name);  // Error(usage) with th
 // "ivt" for gaze on a screen, "ivt-hmd" for directions with a head pose, "ivt-attention" for those without.
 // `device` is that of the recording where the user says so.
 const EventPreset& default_event_preset(const GazeLog& log, std::optional<GazeDevice> device = std::nullopt);
-// Directions from a head are head-mounted, gaze on a screen is desktop.
+// Directions from a head are head-mounted, gaze on a screen is desktop, unless the log's reader knows better
+// (GazeBase).
 GazeDevice recorded_device(const GazeLog& log);
 
 struct EyeEvent {
