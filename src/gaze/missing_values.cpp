@@ -2,8 +2,10 @@
 #include "gaze/missing_values.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <utility>
@@ -13,15 +15,21 @@ namespace {
 
 constexpr double kInt16Min = -32768;
 constexpr double kLarge = 1e7;
-constexpr double kJump = 0.1;                 // of the display, in either axis
-constexpr std::size_t kMostPlaces = 200'000;  // a log in the wrong unit has a place for every row
+constexpr double kJump = 0.1;  // of the display, in either axis
 constexpr std::size_t kFewestRows = 3;
 constexpr std::size_t kFewestRowsInLog = 2000;  // one of so many
 
 struct Visits {
+  double raw_x = 0, raw_y = 0;
   std::size_t rows = 0;
   std::size_t moves = 0, jumps = 0;  // to it and away from it
 };
+
+using Place = std::pair<double, double>;
+
+bool is_often(std::size_t rows, std::size_t rows_in_log) {
+  return rows >= kFewestRows && rows * kFewestRowsInLog >= rows_in_log;
+}
 
 }  // namespace
 
@@ -39,31 +47,66 @@ void mark_missing_values(GazeLog& log, const GazeReadOptions& options) {
   }
 }
 
-std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std::vector<Vec2d>& raw) {
-  std::map<std::pair<double, double>, Visits> places;
+std::vector<FrequentPlace> frequent_places(const std::vector<GazeSample>& samples) {
+  // A log has nearly as many places as rows. Counting them by a hash first leaves few to be told apart.
+  constexpr int kHashBits = 18;
+  const auto hash = [](const GazeSample& sample) {
+    const auto u = std::bit_cast<std::uint64_t>(sample.u);
+    const auto v = std::bit_cast<std::uint64_t>(sample.v);
+    return ((u ^ std::rotl(v, 32)) * 0x9E37'79B9'7F4A'7C15U) >> (64 - kHashBits);
+  };
+  std::vector<std::uint32_t> counts(std::size_t{1} << kHashBits, 0);
+  for (const GazeSample& sample : samples) {
+    ++counts[hash(sample)];
+  }
+  struct Found {
+    std::size_t rows = 0, first = 0;
+  };
+  std::map<Place, Found> found;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const GazeSample& sample = samples[i];
+    if (!std::isnan(sample.u) && !std::isnan(sample.v) && is_often(counts[hash(sample)], samples.size())) {
+      ++found.try_emplace({sample.u, sample.v}, Found{0, i}).first->second.rows;
+    }
+  }
+  std::vector<FrequentPlace> frequent;
+  for (const auto& [place, times] : found) {
+    if (is_often(times.rows, samples.size())) {
+      frequent.push_back({place.first, place.second, times.first});
+    }
+  }
+  return frequent;
+}
+
+std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std::vector<FrequentPlace>& frequent) {
+  std::map<Place, Visits> places;
+  for (const FrequentPlace& place : frequent) {
+    const GazeSample& sample = log.samples[place.sample];
+    const bool on_display = sample.u >= 0 && sample.u <= 1 && sample.v >= 0 && sample.v <= 1;
+    if (!on_display && !std::isnan(sample.u) && !std::isnan(sample.v)) {
+      places.try_emplace({sample.u, sample.v}, Visits{place.x, place.y});
+    }
+  }
+  if (places.empty()) {
+    return std::nullopt;
+  }
   struct Last {
     const GazeSample* sample = nullptr;
-    Visits* visits = nullptr;  // of its place; none on the display
-    Vec2d at;
+    Visits* visits = nullptr;  // of its place, where it is one of those looked at
   };
   std::array<Last, 3> last_of_eye;
-  for (std::size_t i = 0; i < log.samples.size(); ++i) {
-    const GazeSample& sample = log.samples[i];
+  for (const GazeSample& sample : log.samples) {
     Last& last = last_of_eye[static_cast<std::size_t>(sample.eye)];
-    if (!is_usable(sample.validity)) {
+    if (!is_usable(sample.validity) || std::isnan(sample.u) || std::isnan(sample.v)) {
       last = {};
       continue;
     }
-    Last now{&sample, nullptr, raw[i]};
-    if (sample.u < 0 || sample.u > 1 || sample.v < 0 || sample.v > 1) {
-      const std::pair<double, double> key(raw[i].x, raw[i].y);
-      const auto known = places.find(key);
-      now.visits = known != places.end() ? &known->second : places.size() < kMostPlaces ? &places[key] : nullptr;
-    }
+    const auto known = places.find({sample.u, sample.v});
+    const Last now{&sample, known == places.end() ? nullptr : &known->second};
     if (now.visits != nullptr) {
       ++now.visits->rows;
     }
-    if (last.sample != nullptr && (last.at.x != now.at.x || last.at.y != now.at.y)) {
+    if (last.sample != nullptr && (last.sample->u != sample.u || last.sample->v != sample.v)) {
       const bool jumps = std::abs(sample.u - last.sample->u) > kJump || std::abs(sample.v - last.sample->v) > kJump;
       for (Visits* const visits : {last.visits, now.visits}) {
         if (visits != nullptr) {
@@ -76,10 +119,9 @@ std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std
   }
   std::optional<RecurringPlace> most;
   for (const auto& [at, visits] : places) {
-    const bool recurs = visits.rows >= kFewestRows && visits.rows * kFewestRowsInLog >= log.samples.size();
     const bool only_jumps = visits.moves > 0 && visits.jumps * 10 >= visits.moves * 9;
-    if (recurs && only_jumps && (!most || visits.rows > most->rows)) {
-      most = RecurringPlace{at.first, at.second, visits.rows};
+    if (is_often(visits.rows, log.samples.size()) && only_jumps && (!most || visits.rows > most->rows)) {
+      most = RecurringPlace{visits.raw_x, visits.raw_y, visits.rows};
     }
   }
   return most;

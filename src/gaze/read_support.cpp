@@ -229,13 +229,8 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
     flip_directions(log, options);
     return;
   }
-  std::vector<Vec2d> raw;
-  if (options.for_inspection) {
-    raw.reserve(log.samples.size());
-    for (const GazeSample& sample : log.samples) {
-      raw.push_back({sample.u, sample.v});
-    }
-  }
+  const std::vector<FrequentPlace> frequent =
+      options.for_inspection ? frequent_places(log.samples) : std::vector<FrequentPlace>();
   std::optional<DisplayGeometry> display = conversion_display(log, options, place);
   const bool sized = display && display->width_px > 0 && display->height_px > 0;
   if (chosen.unit == PositionUnit::px && !sized && look_only) {
@@ -254,7 +249,7 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
     mark_off_screen(log.samples);
   }
   if (options.for_inspection) {
-    log.recurring_place = find_recurring_place(log, raw);
+    log.recurring_place = find_recurring_place(log, frequent);
   }
 }
 
