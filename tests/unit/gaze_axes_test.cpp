@@ -46,6 +46,31 @@ std::string two_eyes(std::optional<Eye> flipped, bool with_means) {
   return asc("SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t1000.00", rows);
 }
 
+// Gaze along a line of text: the eyes' heights hardly move, and not together, so that only the tracker's means of each
+// eye tell which way up it is. Of the eyes in `with_means`.
+std::string line_of_text(std::optional<Eye> flipped, std::string_view with_means) {
+  std::string rows;
+  for (int fixation = 0; fixation < 20; ++fixation) {
+    const double x = 200 + 70 * fixation;
+    const std::array<double, 2> y{500 + 4 * std::sin(fixation * 1.7), 503 + 4 * std::cos(fixation * 2.9)};
+    const int begin = 100 + 20 * fixation;
+    const auto of = [&](Eye eye, double noise) {
+      const double at = y[eye == Eye::left ? 0 : 1] + noise;
+      return eye == flipped ? 1080 - at : at;
+    };
+    for (int i = 0; i < 20; ++i) {
+      const double noise = 0.3 * (i % 5);
+      rows += fmt::format("{}\t {:.1f}\t {:.1f}\t 900.0\t {:.1f}\t {:.1f}\t 900.0\t.....\n", begin + i, x + noise,
+                          of(Eye::left, noise), x + 4 - noise, of(Eye::right, noise));
+    }
+    for (const char eye : with_means) {
+      rows +=
+          fmt::format("EFIX {} {} {} 20 {:.1f} {:.1f} 900\n", eye, begin, begin + 19, x, y[eye == 'L' ? 0 : 1] + 0.6);
+    }
+  }
+  return asc("SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t1000.00", rows);
+}
+
 std::vector<std::string> codes(const GazeInspection& report) {
   std::vector<std::string> all;
   for (const GazeFinding& finding : report.findings) {
@@ -73,6 +98,39 @@ TEST_F(GazeAxisFindings, WitnessesOfEachEyeTellWhichIsFlipped) {
     EXPECT_EQ(good.axes[1].verdict, AxisVerdict::confirmed);
     options.eye = left ? EyeChoice::left : EyeChoice::right;
     EXPECT_THAT(inspect("a.asc", text, options).flags, ElementsAre("--gaze-flip-y"));
+  }
+}
+
+// The eyes' positions tell nothing here, each eye's witness all.
+TEST_F(GazeAxisFindings, NoEyesWitnessDecidesForTheOther) {
+  const GazeInspection whole = inspect("whole.asc", line_of_text(std::nullopt, "LR"));
+  ASSERT_TRUE(whole.disparity);
+  EXPECT_LT(std::abs(whole.disparity->vertical_correlation), 0.5);
+  EXPECT_THAT(codes(whole), IsEmpty());
+  EXPECT_EQ(whole.axes[1].verdict, AxisVerdict::confirmed);
+  for (const Eye flipped : {Eye::left, Eye::right}) {
+    const bool left = flipped == Eye::left;
+    const GazeInspection report = inspect("a.asc", line_of_text(flipped, "LR"));
+    EXPECT_THAT(codes(report), ElementsAre("one-eye-flipped"));
+    EXPECT_THAT(report.findings.front().what, HasSubstr(left ? "the left one has" : "the right one has"));
+    EXPECT_THAT(report.flags, ElementsAre(left ? "--gaze-eye right" : "--gaze-eye left"));
+    EXPECT_NE(report.axes[1].verdict, AxisVerdict::confirmed);
+    EXPECT_EQ(report.axes[0].verdict, AxisVerdict::confirmed);
+  }
+}
+
+TEST_F(GazeAxisFindings, AWitnessOfOneEyeLeavesTheOtherUntested) {
+  for (const Eye flipped : {Eye::left, Eye::right}) {
+    const GazeInspection report = inspect("a.asc", line_of_text(flipped, "L"));
+    EXPECT_EQ(report.axes[1].verdict, AxisVerdict::undecided);
+    EXPECT_THAT(report.axes[1].evidence, HasSubstr("nothing tells of the right eye"));
+    if (flipped == Eye::left) {
+      EXPECT_THAT(codes(report), ElementsAre("y-flip", "one-eye-untested"));
+      EXPECT_THAT(report.flags, ElementsAre("--gaze-flip-y", "--gaze-eye left"));
+    } else {
+      EXPECT_THAT(codes(report), IsEmpty());
+      EXPECT_THAT(report.verdict, HasSubstr("the direction of y could not be tested"));
+    }
   }
 }
 

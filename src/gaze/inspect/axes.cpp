@@ -46,10 +46,10 @@ class Axes {
             "--gaze-swap-xy");
         continue;
       }
-      if (!eyes_oppose('x')) {
+      if (speaks_for_gaze('x')) {
         witness(w.what, w.count, w.xx, report_.axes[0]);
       }
-      if (!eyes_oppose('y')) {
+      if (speaks_for_gaze('y')) {
         witness(w.what, w.count, w.yy, report_.axes[1]);
       }
     }
@@ -64,6 +64,7 @@ class Axes {
             fmt::format("--gaze-flip-{}", test.axis));
       }
     }
+    one_eye_told();
     one_eye_flipped();
     return swapped;
   }
@@ -119,23 +120,82 @@ class Axes {
                                         [&](const GazeWitness& w) { return w.eye == only; });
   }
 
+  [[nodiscard]] bool both_eyes_are_in_use() const {
+    return !only_eye() && report_.disparity && report_.disparity->pairs >= kFewestPairs;
+  }
   [[nodiscard]] double correlation_of_eyes(char axis) const {
-    if (!report_.disparity || report_.disparity->pairs < kFewestPairs) {
+    if (!both_eyes_are_in_use()) {
       return 0;
     }
     return axis == 'x' ? report_.disparity->horizontal_correlation : report_.disparity->vertical_correlation;
   }
-  [[nodiscard]] bool eyes_oppose(char axis) const { return !only_eye() && correlation_of_eyes(axis) < -kWitnessAgrees; }
+  // By their positions, or, where gaze hardly moves along the axis, by what the witnesses of each say.
+  [[nodiscard]] bool eyes_oppose(char axis) const {
+    if (!both_eyes_are_in_use()) {
+      return false;
+    }
+    const double r = correlation_of_eyes(axis);
+    const AxisVerdict left = eye_verdict(Eye::left, axis);
+    const AxisVerdict right = eye_verdict(Eye::right, axis);
+    const bool both_speak = left != AxisVerdict::undecided && right != AxisVerdict::undecided;
+    return r < -kWitnessAgrees || (both_speak && left != right && !(r > kWitnessAgrees));
+  }
 
-  // What the witnesses of one eye say of an axis.
+  static double along(const GazeWitness& witness, char axis) { return axis == 'x' ? witness.xx : witness.yy; }
+  static AxisVerdict verdict_of(double r) {
+    return !(std::abs(r) > kWitnessAgrees) ? AxisVerdict::undecided
+           : r > 0                         ? AxisVerdict::confirmed
+                                           : AxisVerdict::flipped;
+  }
+
+  // The witness of one eye that speaks of an axis; null: none does.
+  [[nodiscard]] const GazeWitness* eye_witness(Eye eye, char axis) const {
+    const auto found = std::find_if(log_.witnesses.begin(), log_.witnesses.end(), [&](const GazeWitness& w) {
+      return w.eye == eye && verdict_of(along(w, axis)) != AxisVerdict::undecided;
+    });
+    return found == log_.witnesses.end() ? nullptr : &*found;
+  }
   [[nodiscard]] AxisVerdict eye_verdict(Eye eye, char axis) const {
-    for (const GazeWitness& w : log_.witnesses) {
-      const double r = axis == 'x' ? w.xx : w.yy;
-      if (w.eye == eye && std::abs(r) > kWitnessAgrees) {
-        return r > 0 ? AxisVerdict::confirmed : AxisVerdict::flipped;
+    const GazeWitness* const witness = eye_witness(eye, axis);
+    return witness == nullptr ? AxisVerdict::undecided : verdict_of(along(*witness, axis));
+  }
+
+  // With both eyes in use, a witness of one speaks for the other only where that one goes the same way. One of no
+  // stated eye may hold the values of one eye alone.
+  [[nodiscard]] bool speaks_for_gaze(char axis) const {
+    if (!both_eyes_are_in_use() || correlation_of_eyes(axis) > kWitnessAgrees) {
+      return true;
+    }
+    return !eyes_oppose(axis) && eye_verdict(Eye::left, axis) == eye_verdict(Eye::right, axis);
+  }
+
+  // One eye's witness speaks, and neither a witness of the other eye nor its positions say that it goes along.
+  void one_eye_told() {
+    for (const char axis : {'x', 'y'}) {
+      GazeAxisTest& test = report_.axes[axis == 'x' ? 0 : 1];
+      if (test.verdict != AxisVerdict::undecided || !both_eyes_are_in_use() || eyes_oppose(axis)) {
+        continue;
+      }
+      const GazeWitness* const left = eye_witness(Eye::left, axis);
+      const GazeWitness* const told = left != nullptr ? left : eye_witness(Eye::right, axis);
+      if (told == nullptr) {
+        continue;
+      }
+      const std::string_view other = told->eye == Eye::left ? "right" : "left";
+      witness(told->what, told->count, along(*told, axis), test);
+      const bool flipped = test.verdict == AxisVerdict::flipped;
+      test.verdict = AxisVerdict::undecided;
+      test.evidence += fmt::format("; nothing tells of the {} eye", other);
+      if (flipped) {
+        add(FindingKind::fault, fmt::format("{}-flip", axis),
+            fmt::format("{} of the {} eye are exchanged", axis == 'x' ? "left and right" : "top and bottom",
+                        to_string(*told->eye)),
+            test.evidence, fmt::format("--gaze-flip-{}", axis));
+        add(FindingKind::suspicion, "one-eye-untested",
+            fmt::format("which way {} of the {} eye runs could not be tested", axis, other), test.evidence,
+            fmt::format("--gaze-eye {}", to_string(*told->eye)));
       }
     }
-    return AxisVerdict::undecided;
   }
 
   void one_eye_flipped() {
@@ -156,12 +216,22 @@ class Axes {
                                                : "the left one";
       add(FindingKind::fault, "one-eye-flipped",
           fmt::format("the eyes go opposite ways along {}: {} has this axis the other way round", axis, which),
-          fmt::format("r = {:.2f} between left and right eye, {} pairs", correlation_of_eyes(axis),
-                      report_.disparity->pairs),
+          evidence_of_opposed_eyes(axis),
           !told          ? ""
           : left_is_good ? "--gaze-eye left"
                          : "--gaze-eye right");
     }
+  }
+
+  [[nodiscard]] std::string evidence_of_opposed_eyes(char axis) const {
+    const double r = correlation_of_eyes(axis);
+    if (r < -kWitnessAgrees) {
+      return fmt::format("r = {:.2f} between left and right eye, {} pairs", r, report_.disparity->pairs);
+    }
+    const GazeWitness& left = *eye_witness(Eye::left, axis);
+    const GazeWitness& right = *eye_witness(Eye::right, axis);
+    return fmt::format("against {} r = {:.2f}, {} values; against {} r = {:.2f}, {} values", left.what,
+                       along(left, axis), left.count, right.what, along(right, axis), right.count);
   }
 
   const GazeLog& log_;
