@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gaze/missing_values.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -18,10 +19,13 @@ constexpr double kLarge = 1e7;
 constexpr double kJump = 0.1;  // of the display, in either axis
 constexpr std::size_t kFewestRows = 3;
 constexpr std::size_t kFewestRowsInLog = 2000;  // one of so many
+constexpr std::size_t kFewestVisits = 3;
 
 struct Visits {
   double raw_x = 0, raw_y = 0;
   std::size_t rows = 0;
+  // Of each eye: rows of a chosen eye may be there twice. A loss between is no end of a visit, as a value may be held.
+  std::array<std::size_t, 3> times{};
   std::size_t moves = 0, jumps = 0;  // to it and away from it
 };
 
@@ -95,8 +99,10 @@ std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std
     Visits* visits = nullptr;  // of its place, where it is one of those looked at
   };
   std::array<Last, 3> last_of_eye;
+  std::array<const Visits*, 3> was_at{};  // the same, losses left out
   for (const GazeSample& sample : log.samples) {
-    Last& last = last_of_eye[static_cast<std::size_t>(sample.eye)];
+    const auto eye = static_cast<std::size_t>(sample.eye);
+    Last& last = last_of_eye[eye];
     if (!is_usable(sample.validity) || std::isnan(sample.u) || std::isnan(sample.v)) {
       last = {};
       continue;
@@ -105,7 +111,9 @@ std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std
     const Last now{&sample, known == places.end() ? nullptr : &known->second};
     if (now.visits != nullptr) {
       ++now.visits->rows;
+      now.visits->times[eye] += was_at[eye] != now.visits ? 1 : 0;
     }
+    was_at[eye] = now.visits;
     if (last.sample != nullptr && (last.sample->u != sample.u || last.sample->v != sample.v)) {
       const bool jumps = std::abs(sample.u - last.sample->u) > kJump || std::abs(sample.v - last.sample->v) > kJump;
       for (Visits* const visits : {last.visits, now.visits}) {
@@ -120,7 +128,8 @@ std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std
   std::optional<RecurringPlace> most;
   for (const auto& [at, visits] : places) {
     const bool only_jumps = visits.moves > 0 && visits.jumps * 10 >= visits.moves * 9;
-    if (is_often(visits.rows, log.samples.size()) && only_jumps && (!most || visits.rows > most->rows)) {
+    const bool comes_again = *std::max_element(visits.times.begin(), visits.times.end()) >= kFewestVisits;
+    if (is_often(visits.rows, log.samples.size()) && comes_again && only_jumps && (!most || visits.rows > most->rows)) {
       most = RecurringPlace{visits.raw_x, visits.raw_y, visits.rows};
     }
   }

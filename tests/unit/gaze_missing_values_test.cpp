@@ -129,6 +129,24 @@ TEST_F(GazeMissingValues, AFixationBesideTheDisplayIsNoMark) {
   EXPECT_EQ(finding(inspect("a.csv", text, full_hd()), "missing-value"), nullptr);
 }
 
+// A value held while the eye is lost, by a jump come to and left; rows of the two eyes, or of one eye written twice.
+TEST_F(GazeMissingValues, AHeldValueIsNoMark) {
+  for (const std::string_view eyes : {"left", "left right", "combined left"}) {
+    std::string text = "t[ms],u[1],v[1],valid,eye\n";
+    for (int i = 0; i < 2000; ++i) {
+      const bool held = i >= 1000 && i < 1005;
+      const bool lost = i == 1001 || i == 1003;
+      const std::string cells = lost   ? "nan,nan,lost"
+                                : held ? "-0.0302,-0.0815,ok"
+                                       : fmt::format("{:.4f},{:.4f},ok", 0.5 + 0.2 * std::sin(i * 0.7), 0.4 + i * 1e-4);
+      for (const std::string_view eye : {"left", "right", "combined"}) {
+        text += eyes.find(eye) == std::string_view::npos ? "" : fmt::format("{},{},{}\n", i, cells, eye);
+      }
+    }
+    EXPECT_EQ(finding(inspect("a.csv", text), "missing-value"), nullptr) << eyes;
+  }
+}
+
 // A marker on the display or within an angle is a place as any other.
 TEST_F(GazeMissingValues, MinusOneDegreeIsAPlace) {
   std::string text = with_marks("-1,-1");
