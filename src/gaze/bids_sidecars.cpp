@@ -109,21 +109,39 @@ std::string Sidecars::source(std::string_view path) const {
   return file == nullptr ? "" : fs::path(file->path).filename().string();
 }
 
-std::vector<std::string> sibling_recordings(const BidsName& name, std::string_view suffix) {
+std::vector<std::string> files_of_bids_name(const BidsName& name) {
   const auto without_recording = [](std::vector<std::string> entities) {
     std::erase_if(entities, [](const std::string& entity) { return entity.starts_with("recording-"); });
     return entities;
   };
-  std::vector<std::string> siblings;
-  const std::string folder = name.folder.empty() ? "." : name.folder;
-  for (const std::string& path : files_in(folder)) {
+  std::vector<std::string> files = files_in(name.folder.empty() ? "." : name.folder);
+  std::erase_if(files, [&](const std::string& path) {
+    return without_recording(parse_bids_name(path).entities) != without_recording(name.entities);
+  });
+  return files;
+}
+
+std::vector<std::string> sibling_recordings(const BidsName& name, std::string_view suffix) {
+  std::vector<std::string> siblings = files_of_bids_name(name);
+  std::erase_if(siblings, [&](const std::string& path) {
     const BidsName other = parse_bids_name(path);
-    if (other.suffix == suffix && (other.extension == ".tsv" || other.extension == ".tsv.gz") &&
-        other.entities != name.entities && without_recording(other.entities) == without_recording(name.entities)) {
-      siblings.push_back(path);
-    }
-  }
+    const bool is_table = other.extension == ".tsv" || other.extension == ".tsv.gz";
+    return other.suffix != suffix || !is_table || other.entities == name.entities;
+  });
   return siblings;
+}
+
+BidsSignal recorded_signal(const Sidecars& sidecars, const std::string& x_column) {
+  const std::vector<std::string> columns = sidecars.texts("Columns");
+  const bool has_positions = std::any_of(columns.begin(), columns.end(), [&](const std::string& column) {
+    return column == "x_coordinate" || column == "eye1_x_coordinate" || column == "eye2_x_coordinate" ||
+           (!x_column.empty() && column == x_column);
+  });
+  const std::string type = to_lower(trim(sidecars.text("PhysioType")));
+  if (!type.empty() && type != "eyetrack") {
+    return has_positions ? BidsSignal::mislabeled : BidsSignal::other;
+  }
+  return columns.empty() || has_positions ? BidsSignal::gaze : BidsSignal::other;  // unnamed columns may be anything
 }
 
 }  // namespace gazetrace

@@ -43,7 +43,18 @@ class Sidecars {
   std::vector<File> files_;  // the most specific first
 };
 
-// Files in the folder of `name` with the same entities but for `recording`, and this suffix.
+// Files in the folder of `name` with the same entities but for `recording`.
+std::vector<std::string> files_of_bids_name(const BidsName& name);
+// The tables of them that have this suffix, without that of `name`.
 std::vector<std::string> sibling_recordings(const BidsName& name, std::string_view suffix);
+
+// Physiology is recorded in files of the same names. mislabeled: has positions, but its PhysioType is not eyetrack.
+enum class BidsSignal { gaze, mislabeled, other };
+// `x_column`: the column of positions where it has a name of its own.
+BidsSignal recorded_signal(const Sidecars& sidecars, const std::string& x_column = {});
+
+// Our own key, in every JSON file that gazetrace writes.
+inline constexpr const char* kBidsWriterKey = "WrittenBy";
+inline constexpr const char* kBidsWriter = "gazetrace";
 
 }  // namespace gazetrace

@@ -180,7 +180,8 @@ class RecordingWriter {
   [[nodiscard]] Json sidecar() const {
     const bool is_direction = log_.kind == GazeKind::direction;
     const std::string unit = is_direction ? "deg" : width_px_ > 1 ? "pixel" : "1";
-    Json json{{"PhysioType", "eyetrack"},
+    Json json{{kBidsWriterKey, kBidsWriter},
+              {"PhysioType", "eyetrack"},
               {"SamplingFrequency", rate_hz()},
               {"StartTime", 0},
               {"RecordedEye", to_string(recording_.eye)},
@@ -347,13 +348,15 @@ std::vector<File> files_of(const GazeLog& log, const std::string& path) {
     if (const std::string events = events_table(log, recording.eye, recordings); !events.empty()) {
       files.push_back({path_of(name, label, "physioevents.tsv.gz"), pack_gzip(events)});
       files.push_back({path_of(name, label, "physioevents.json"),
-                       json_text({{"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
+                       json_text({{kBidsWriterKey, kBidsWriter},
+                                  {"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
                                   {"OnsetSource", "timestamp"},
                                   {"duration", {{"Units", "s"}}}})});
     }
   }
   if (const Json screen = screen_json(log); !screen.is_null()) {
-    files.push_back({path_of(name, "", "events.json"), json_text({{"StimulusPresentation", screen}})});
+    files.push_back({path_of(name, "", "events.json"),
+                     json_text({{kBidsWriterKey, kBidsWriter}, {"StimulusPresentation", screen}})});
   }
   return files;
 }

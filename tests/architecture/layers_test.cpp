@@ -44,8 +44,8 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"enhance", "reconstruct"}, {"temporal", "temporal"}, {"color", "color"},         {"output", "output"},
     {"pipeline", "pipeline"},   {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
     {"compare", "compare"},     {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
-    {"gaze_synth", "gaze"},     {"motion", "camera"},     {"deformation", "scene"},   {"report", "report"},
-    {"video", "video"},         {"sweep", "sweep"},
+    {"gaze_synth", "gaze"},     {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
+    {"report", "report"},       {"video", "video"},       {"sweep", "sweep"},
 };
 
 // Which files may meet which dependency.

@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_bids.hpp"
 #include "gazetrace/gaze_inspect.hpp"
 
 namespace gazetrace {
@@ -36,6 +39,42 @@ void leave_out_identities(GazeLog& log) {
   }
 }
 
+std::string file_names(const std::vector<BidsLeftover>& files) {
+  std::string names;
+  for (const BidsLeftover& file : files) {
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(file.path).filename().string();
+  }
+  return names;
+}
+
+// Recordings of the name that is written to are read with it. Those of an earlier conversion go with --overwrite, never
+// others, nor what is being converted.
+std::vector<BidsLeftover> removable_leftovers(const std::vector<std::string>& written,
+                                              const ConvertArguments& arguments) {
+  std::vector<BidsLeftover> leftovers = bids_leftovers(written);
+  if (leftovers.empty()) {
+    return leftovers;
+  }
+  const auto is_source = [&](const std::string& path) {
+    std::error_code code;
+    return std::filesystem::equivalent(path, arguments.gaze.path, code);
+  };
+  const bool reads_itself =
+      std::any_of(written.begin(), written.end(), is_source) ||
+      std::any_of(leftovers.begin(), leftovers.end(), [&](const BidsLeftover& l) { return is_source(l.path); });
+  std::vector<BidsLeftover> foreign = leftovers;
+  std::erase_if(foreign, [](const BidsLeftover& leftover) { return leftover.is_own; });
+  if (reads_itself || !foreign.empty() || !arguments.overwrite) {
+    throw Error(ErrorKind::input, arguments.output,
+                fmt::format("beside it lies, and would be read with it: {}",
+                            file_names(reads_itself || foreign.empty() ? leftovers : foreign)),
+                reads_itself       ? "it is what is converted: give another name"
+                : !foreign.empty() ? "gazetrace did not write that: move it away, or give another name"
+                                   : "give --overwrite, which removes it, or another name");
+  }
+  return leftovers;
+}
+
 int run_convert(const ConvertArguments& arguments) {
   const bool is_bids = is_bids_file_name(arguments.output);
   if (!is_bids) {
@@ -58,9 +97,11 @@ int run_convert(const ConvertArguments& arguments) {
     write_gaze_csv(log, arguments.output);
     return exit_done;
   }
-  for (const std::string& path : bids_file_names(log, arguments.output)) {
+  const std::vector<std::string> written = bids_file_names(log, arguments.output);
+  for (const std::string& path : written) {
     check_output_file(path, arguments.overwrite);
   }
+  const std::vector<BidsLeftover> leftovers = removable_leftovers(written, arguments);
   if (!log.head.empty()) {
     print_warnings(
         {fmt::format("{}: {} poses of the head are left out: BIDS eye tracking has no place for them, "
@@ -68,6 +109,15 @@ int run_convert(const ConvertArguments& arguments) {
                      log.source, log.head.size())});
   }
   write_gaze_bids(log, arguments.output);
+  for (const BidsLeftover& leftover : leftovers) {
+    std::error_code code;
+    if (!std::filesystem::remove(leftover.path, code) && code) {
+      throw Error(ErrorKind::runtime, leftover.path, "cannot be removed", "remove it: it would be read with the rest");
+    }
+  }
+  if (!leftovers.empty()) {
+    print_warnings({fmt::format("{}: removed, of an earlier conversion: {}", arguments.output, file_names(leftovers))});
+  }
   return exit_done;
 }
 

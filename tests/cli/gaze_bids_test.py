@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Conversion to BIDS where recordings of the same name lie already."""
+
+import json
+
+import harness
+
+NAME = "sub-1_task-t_physio.tsv.gz"
+
+
+def log(eyes, events=False, screen=True):
+    lines = ["# gazetrace-gaze 1"] + ["# display_px 1000 500"] * screen
+    lines += ["# event fixation left 0 40000000 "] * events + ["t[ns],u[1],v[1],valid,eye"]
+    lines += [f"{i * 10_000_000},0.{400 + i},0.5,ok,{eye}" for i in range(20) for eye in eyes]
+    return "\n".join(lines) + "\n"
+
+
+class BidsFolder(harness.CliTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "b").mkdir()
+        self.write("both.csv", log(["left", "right"], events=True))
+        self.write("left.csv", log(["left"], screen=False))
+        self.write("gaze.csv", log(["cyclopean"]))
+
+    def convert(self, source, *arguments):
+        return self.run_ok("gaze", "convert", source, "-o", f"b/{NAME}", *arguments)
+
+    def refused(self, words, source, *arguments):
+        before = self.contents()
+        self.assert_refused(["gaze", "convert", source, "-o", f"b/{NAME}", *arguments], words)
+        self.assertEqual(self.contents(), before)
+
+    def contents(self):
+        return {path.name: path.read_bytes() for path in (self.folder / "b").iterdir()}
+
+    def fresh(self, source):
+        (self.folder / "f").mkdir(exist_ok=True)
+        for path in (self.folder / "f").iterdir():
+            path.unlink()
+        self.run_ok("gaze", "convert", source, "-o", f"f/{NAME}")
+        return {path.name: path.read_bytes() for path in (self.folder / "f").iterdir()}
+
+    def test_overwriting_leaves_what_a_fresh_folder_has(self):
+        for first, second in (("both", "left"), ("both", "gaze"), ("gaze", "both"), ("left", "gaze")):
+            for path in (self.folder / "b").iterdir():
+                path.unlink()
+            self.convert(f"{first}.csv")
+            removed = self.convert(f"{second}.csv", "--overwrite").stderr
+            self.assertEqual(self.contents(), self.fresh(f"{second}.csv"), (first, second))
+            self.assertEqual("removed" in removed, second != "both", (first, second))
+        self.assertIn("recording-eye1_physio.tsv.gz", removed)
+
+    def test_without_overwrite_nothing_is_joined(self):
+        self.convert("left.csv")
+        self.refused(["recording-eye1_physio.tsv.gz", "--overwrite"], "gaze.csv")
+
+    def test_recordings_of_others_stay(self):
+        self.convert("both.csv")
+        sidecar = self.folder / "b" / "sub-1_task-t_recording-eye2_physio.json"
+        other = json.loads(sidecar.read_text())
+        del other["WrittenBy"]
+        sidecar.write_text(json.dumps(other))
+        self.refused(["recording-eye2_physio.tsv.gz", "did not write"], "left.csv", "--overwrite")
+
+    def test_what_is_no_gaze_of_this_name_stays(self):
+        self.convert("both.csv")
+        for name, text in (("sub-1_task-t_recording-cardiac_physio.json", '{"SamplingFrequency": 100, "Columns": ["cardiac"]}'),
+                           ("sub-1_task-t_recording-cardiac_physio.tsv", "0.1\n"), ("sub-1_task-t_events.tsv", "onset\tduration\n"),
+                           ("sub-1_task-u_recording-eye2_physio.tsv", "1\t2\t3\n"), ("sub-1_task-t_bold.json", "{}")):
+            (self.folder / "b" / name).write_text(text)
+        self.convert("gaze.csv", "--overwrite")
+        self.assertEqual(len([name for name in self.contents() if "eye2" in name or "cardiac" in name or "bold" in name]), 4)
+        self.assertIn("sub-1_task-t_events.tsv", self.contents())
+
+    def test_what_is_converted_is_not_removed(self):
+        self.convert("both.csv")
+        self.refused(["recording-cyclopean_physio.tsv.gz", "another name"], f"b/{NAME}".replace("_physio", "_recording-eye1_physio"),
+                     "--gaze-eye", "left", "--overwrite")
+
+
+if __name__ == "__main__":
+    harness.main()
