@@ -23,7 +23,8 @@ Vec3f emitted_radiance(const RenderScene& scene, const ChunkHits& chunk, std::si
   Vec3f emission = material.emission;
   if (material.emit.texture != nullptr) {
     const Vec2f at = coordinates_at<kFeatures>(scene, chunk, i, material.emit);
-    const Vec4f c = read_texture(*material.emit.texture, at.x, at.y, chunk.lod[i] + material.emit.half_log2_texels);
+    const Vec4f c =
+        read_texture(*material.emit.texture, at.x, at.y, level_at<kFeatures>(scene, chunk, i, material.emit));
     emission *= Vec3f{c.x, c.y, c.z};
   }
   if constexpr (kLayers) {

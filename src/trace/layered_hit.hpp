@@ -23,7 +23,7 @@ Vec4f read_layer(const RenderScene& scene, const ChunkHits& chunk, std::size_t i
     return {1, 1, 1, 1};
   }
   const Vec2f at = coordinates_at<kFeatures>(scene, chunk, i, texture);
-  return read_texture(*texture.texture, at.x, at.y, chunk.lod[i] + texture.half_log2_texels);
+  return read_texture(*texture.texture, at.x, at.y, level_at<kFeatures>(scene, chunk, i, texture));
 }
 
 // The coat's normal on the viewer's side: the interpolated one, bumped by the coat's own map if it has one.

@@ -50,6 +50,29 @@ Vec2f coordinates_at(const RenderScene& scene, const ChunkHits& chunk, std::size
   return chunk.uv.get(i);
 }
 
+// Level of detail at a lane's hit, after place_hits. ChunkHits::lod is that of the triangle's stored coordinates;
+// others are as much coarser or finer as their triangle in the picture is larger or smaller.
+template <KernelFeatures kFeatures>
+float level_at(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const ShadingTexture& texture) {
+  const float level = chunk.lod[i] + texture.half_log2_texels;
+  if constexpr (kFeatures.extras) {
+    if (texture.own_uv && chunk.extra[i] != kNoId) {
+      const auto area = [](const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+        return std::fabs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+      };
+      const TriangleExtra& extra = scene.extras[chunk.extra[i]];
+      const auto& set = texture.uv_set == 1 ? extra.uv1 : extra.uv0;
+      const auto& m = texture.transform;
+      const float own = area(set[0], set[1], set[2]) * std::fabs(m[0] * m[4] - m[1] * m[3]);
+      const float stored = area(chunk.corner_uv[0].get(i), chunk.corner_uv[1].get(i), chunk.corner_uv[2].get(i));
+      if (own > 0 && stored > 0) {
+        return level + 0.5F * std::log2(own / stored);
+      }
+    }
+  }
+  return level;
+}
+
 // Finds the data of hit k of the packed batch and asks the memory for them.
 template <KernelFeatures kFeatures>
 void locate_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, ChunkHits& chunk, std::size_t i) {
@@ -227,7 +250,7 @@ void read_materials(const RenderScene& scene, ChunkHits& chunk, std::size_t coun
       for (std::size_t g = 0; g < material.group_count; ++g) {
         const TexelGroup& group = material.groups[g];
         const Vec2f at = coordinates_at<kFeatures>(scene, chunk, i, group.coordinates);
-        read_group(group, at.x, at.y, chunk.lod[i] + group.half_log2_texels, texel);
+        read_group(group, at.x, at.y, level_at<kFeatures>(scene, chunk, i, group.coordinates), texel);
       }
       base *= texel.base;
       metallic *= texel.metallic;

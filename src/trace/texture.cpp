@@ -212,7 +212,6 @@ bool alike(const ShadingTexture& a, const ShadingTexture& b) {
 TexelGroup start_group(const ShadingTexture& texture) {
   TexelGroup group;
   group.coordinates = texture;
-  group.half_log2_texels = texture.half_log2_texels;
   group.last_level = static_cast<float>(texture.texture->levels.size() - 1);
   group.nearest = texture.texture->nearest;
   group.deep = texture.texture->format != TexelFormat::unorm8;

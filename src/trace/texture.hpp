@@ -28,7 +28,6 @@ struct TexelGroup {
   };
   std::vector<Level> levels;
   float last_level = 0;
-  float half_log2_texels = 0;  // 0.5 log2(width * height) of level 0
   bool base = false, metal_rough = false, normal = false;
   bool srgb = false;  // of the base colour
   bool deep = false;  // one texture with two bytes a channel
