@@ -11,7 +11,7 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
   own         relative MSE at one sample a pixel (measured at --error-spp, times it) against a converged picture of the
               program's own, its noise taken out: mean over seeds, with a 95 % interval of that mean
   common      the same against one reference, the mean of all programs' converged pictures (matte materials only: there
-              the models coincide)
+              the models coincide; normal maps are taken out of the scene)
   cost        us * own: time to a given error. The ratio column is that of gazetrace
   furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
 
@@ -114,6 +114,19 @@ def glowing_box(path):
     pathlib.Path(path).write_text(json.dumps(document))
 
 
+def without_normal_maps(scene, folder):
+    """The same scene beside links to its files; Mitsuba's matte surfaces have no normal maps."""
+    scene = pathlib.Path(scene).resolve()
+    document = json.loads(scene.read_text())
+    for material in document.get("materials", []):
+        material.pop("normalTexture", None)
+    for file in scene.parent.iterdir():
+        (folder / file.name).symlink_to(file)
+    out = folder / f"{scene.stem}-matte.gltf"
+    out.write_text(json.dumps(document))
+    return str(out)
+
+
 def furnace(program, options, folder):
     scene = folder / "box.gltf"
     glowing_box(scene)
@@ -149,6 +162,9 @@ def main():
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        if options.materials == "matte":
+            (folder / "scene").mkdir()
+            options.scene = without_normal_maps(options.scene, folder / "scene")
         shine = {p: furnace(p, options, folder) if options.materials == "matte" else math.nan for p in programs}
 
         few, many = map(int, options.spp.split(","))
