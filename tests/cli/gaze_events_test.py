@@ -121,7 +121,7 @@ class GazeTools(harness.CliTest):
         self.assertEqual(*own)
 
     def test_what_bids_has_no_place_for_is_said(self):
-        self.head_log()
+        self.head_log(repeats=True)  # not as many samples as poses
         result = self.run_ok("gaze", "convert", "head.csv", "-o", "sub-01_physio.tsv.gz")
         self.assertIn("200 poses of the head", result.stderr)
         self.assertIn("gazetrace CSV keeps them", result.stderr)

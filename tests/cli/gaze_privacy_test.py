@@ -76,11 +76,14 @@ class Privacy(harness.CliTest):
         self.assertNotIn("left out", warnings)
 
     def test_events_tell_no_time_of_day(self):
-        self.write("log.csv", LOG)
-        hidden, kept = ([line.split("\t") for line in self.run_ok("gaze", "events", "log.csv", *more).stdout.splitlines()[1:]]
-                        for more in ([], ["--keep-ids"]))
-        self.assertEqual([(row[0], int(row[1]) + FIRST_NS, int(row[2]) + FIRST_NS, *row[3:]) for row in hidden],
-                         [(row[0], int(row[1]), int(row[2]), *row[3:]) for row in kept])
+        own = f"# event fixation cyclopean {FIRST_NS + 20_000_000} {FIRST_NS + 300_000_000}\n"
+        self.write("log.csv", LOG.replace("t[ns]", own + "t[ns]"))
+        for method in ([], ["--method", "log"]):
+            hidden, kept = ([line.split("\t") for line in self.run_ok("gaze", "events", "log.csv", *method, *more).stdout.splitlines()[1:]]
+                            for more in ([], ["--keep-ids"]))
+            self.assertTrue(kept)
+            self.assertEqual([(row[0], int(row[1]) + FIRST_NS, int(row[2]) + FIRST_NS, *row[3:]) for row in hidden],
+                             [(row[0], int(row[1]), int(row[2]), *row[3:]) for row in kept])
         self.run_ok("gaze", "events", "log.csv", "-o", "events.json")
         self.assertNotIn(STAMP, (self.folder / "events.json").read_text())
 

@@ -67,7 +67,8 @@ class GazeLogs(harness.CliTest):
         self.assertEqual([f for f in mended["findings"] if f["kind"] != "note"], [])
         # Without ticks there is nothing to go on by.
         self.write("bare.csv", header.replace("TIMETICK(f=10000000)", "X") + "".join(rows))
-        self.assert_refused(["gaze", "inspect", "bare.csv"], ["bare.csv:32", "one medium a file"])
+        refusal = self.assert_refused(["gaze", "inspect", "bare.csv"], ["bare.csv:32", "one medium a file"])
+        self.assertNotIn("--gaze-time-column", refusal)
 
     def test_what_was_concluded_says_from_what(self):
         self.write("log.csv", "time,u,v\n0,0.5,0.5\n4,0.5,0.5\n8,0.5,0.5\n")

@@ -64,13 +64,16 @@ TEST_F(GazeBidsUnits, MetresAndWordsForDegrees) {
 TEST_F(GazeBidsUnits, OthersAreRefusedUnlessTheUserSays) {
   GazeReadOptions px;
   px.columns.position_unit = PositionUnit::px;
-  for (const std::string& text : {units("arbitrary", "arbitrary"), units("pixel", "mm"), std::string()}) {
+  for (const std::string& text :
+       {units("arbitrary", "arbitrary"), units("pixel", "mm"), units("m", "cm"), units("rad", "deg"), std::string()}) {
     const std::string path = recording(text, R"(["top", "left"])", "250\t125");
     EXPECT_THAT(refusal_of(path), AllOf(HasSubstr("Units"), HasSubstr("--gaze-unit"))) << text;
     const GazeLog log = load_gaze_log(path, px);
     EXPECT_EQ(log.samples[0].u, 0.25) << text;
     EXPECT_EQ(log.samples[0].v, 0.25) << text;
   }
+  // Against metres, too, his unit is that of the numbers as they stand.
+  EXPECT_EQ(load_gaze_log(recording(units("m", "m"), R"(["top", "left"])", "250\t125"), px).samples[0].u, 0.25);
   EXPECT_THAT(refusal_of(recording(units("arbitrary", "arbitrary"), "", "1\t1")), HasSubstr("'arbitrary'"));
 }
 

@@ -192,6 +192,9 @@ GazeLog log_of_two_eyes(const TextFiles& files, bool loses_the_better) {
   log.events = {{GazeEventType::fixation, Eye::left, 0, 8'000'000, "L", 0},
                 {GazeEventType::fixation, Eye::right, 4'000'000, 16'000'000, "R", 0},
                 {GazeEventType::segment, Eye::cyclopean, 0, 1'196'000'000, "", 0}};
+  for (const GazeSample& sample : log.samples) {
+    log.head.push_back({sample.t_ns, {0.25, 1.5, 1e-9 * static_cast<double>(sample.t_ns)}, {0, 0, 0, 1}});
+  }
   return log;
 }
 
@@ -202,6 +205,7 @@ TEST(GazeConvert, TheChosenEyeStaysChosen) {
     const Eye eye = stands_in ? Eye::right : Eye::left;  // the steadier one, the dominant one
     ASSERT_EQ(log.samples.front().eye, eye);
     write_gaze_csv(log, files.path("log.csv"));
+    expect_same_head(log, load_gaze_log(files.path("log.csv"), {}));
     EXPECT_EQ(read_file(files.path("log.csv")).find("ok,cyclopean") != std::string::npos, stands_in);
     write_gaze_bids(log, files.path("sub-1_physio.tsv.gz"));
     EXPECT_EQ(std::filesystem::exists(files.path("sub-1_recording-cyclopean_physio.tsv.gz")), stands_in);
@@ -223,6 +227,20 @@ TEST(GazeConvert, TheChosenEyeStaysChosen) {
     mean.eye = EyeChoice::mean;
     EXPECT_EQ(load_gaze_log(files.path("log.csv"), mean).samples.front().eye, Eye::cyclopean);
   }
+}
+
+// BIDS has no recording of both there.
+TEST(GazeConvert, EventsOfBothEyesGoWithTheOneThatWasTaken) {
+  const TextFiles files;
+  log_of_two_eyes(files, false);
+  GazeReadOptions options;
+  options.eye = EyeChoice::right;
+  GazeLog log = load_gaze_log(files.path("eyes.csv"), options);
+  log.events = {{GazeEventType::blink, Eye::cyclopean, 0, 8'000'000, "", 0}};
+  write_gaze_bids(log, files.path("sub-1_physio.tsv.gz"));
+  const GazeLog back = load_gaze_log(files.path("sub-1_recording-eye2_physio.tsv.gz"), {});
+  ASSERT_EQ(back.events.size(), 1U);
+  EXPECT_EQ(back.events.front().eye, Eye::right);
 }
 
 TEST(GazeConvert, ThePupilsUnitIsThatOfAnyRecording) {
@@ -250,6 +268,9 @@ TEST(GazeConvert, TheRateOfAFrameLogIsItsMean) {
   const TextFiles files;
   write_gaze_bids(log, files.path("sub-1_physio.tsv.gz"));
   EXPECT_NEAR(load_gaze_log(files.path("sub-1_recording-cyclopean_physio.tsv.gz"), {}).nominal_rate_hz, 120, 0.1);
+  log.nominal_rate_hz = 125;  // stated
+  write_gaze_bids(log, files.path("sub-2_physio.tsv.gz"));
+  EXPECT_EQ(load_gaze_log(files.path("sub-2_recording-cyclopean_physio.tsv.gz"), {}).nominal_rate_hz, 125);
 }
 
 TEST(GazeConvert, PosesBetweenSamplesAndTextsOfManyKindsSurviveCsv) {
@@ -272,12 +293,14 @@ TEST(GazeConvert, PosesBetweenSamplesAndTextsOfManyKindsSurviveCsv) {
       log.events.push_back({type, Eye::right, -5, 1'700'000'000'123'456'789, text, 0});
     }
   }
+  log.events.push_back({GazeEventType::message, Eye::cyclopean, 3, 3, "two\nlines", 0});
   log.calibrations.push_back({77, Eye::left, 0.1, std::numeric_limits<double>::quiet_NaN(), 0});
   const TextFiles files;
   write_gaze_csv(log, files.path("log.csv"));
   const GazeLog back = load_gaze_log(files.path("log.csv"), {});
   expect_same_log(log, back);
   expect_same_head(log, back);
+  log.events.back().text = "two lines";
   expect_same_events(log, back);
   EXPECT_TRUE(back.sample_age_unknown);
   EXPECT_EQ(back.nominal_rate_hz, 120.03);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "gazetrace/gaze_inspect.hpp"
 #include "support/gaze_format_files.hpp"
@@ -22,12 +23,14 @@ class GazeMissingValues : public GazeFormats {
   }
 };
 
-// 1000 rows in pixels of the middle of a display of 1920 x 1080; every 40th and the three behind it are `cells`.
-std::string with_marks(const std::string& cells) {
+// 1000 rows in pixels of the middle of a display of 1920 x 1080; every 40th and the three behind it are `cells`,
+// and of these every fifth time `others`.
+std::string with_marks(const std::string& cells, const std::string& others = {}) {
   std::string text = "t[ms],x[px],y[px]\n";
   for (int i = 0; i < 1000; ++i) {
     const double phase = i * 0.7;
-    text += i % 40 < 4 ? fmt::format("{},{}\n", i, cells)
+    const std::string& mark = i % 200 < 40 && !others.empty() ? others : cells;
+    text += i % 40 < 4 ? fmt::format("{},{}\n", i, mark)
                        : fmt::format("{},{:.2f},{:.2f}\n", i, 900 + 90 * std::sin(phase), 500 + 80 * std::cos(phase));
   }
   return text;
@@ -67,14 +70,18 @@ TEST_F(GazeMissingValues, NoUnitHasTheseCoordinates) {
 }
 
 TEST_F(GazeMissingValues, DirectionsLikewise) {
-  const std::string text = "t[ms],dx,dy,dz\n1,0,0,-1\n2,-32768,-32768,-32768\n3,1e8,1e8,1e8\n4,-9,-9,-9\n5,0,0,-1\n";
+  const std::string text =
+      "t[ms],dx,dy,dz\n1,0,0,-1\n2,-32768,-32768,-32768\n3,1e8,1e8,1e8\n4,-9,-9,-9\n5,0,0,-1\n"
+      "6,-9,0,0\n7,-9,-9,0\n8,0,0,-9\n";
   EXPECT_EQ(read("a.csv", text).samples[1].validity, GazeValidity::lost);
   EXPECT_EQ(read("a.csv", text).samples[2].validity, GazeValidity::lost);
   EXPECT_EQ(read("a.csv", text).samples[3].validity, GazeValidity::ok);
   GazeReadOptions options;
   options.missing_value = -9;
   EXPECT_EQ(read("a.csv", text, options).samples[3].validity, GazeValidity::lost);
-  EXPECT_EQ(read("a.csv", text, options).samples[4].validity, GazeValidity::ok);
+  for (const std::size_t i : {4, 5, 6, 7}) {  // in all three
+    EXPECT_EQ(read("a.csv", text, options).samples[i].validity, GazeValidity::ok) << i;
+  }
 }
 
 TEST_F(GazeMissingValues, TheUserNamesOne) {
@@ -89,11 +96,13 @@ TEST_F(GazeMissingValues, TheUserNamesOne) {
 TEST_F(GazeMissingValues, EyeLinkOfAnotherMark) {
   std::string rows;
   for (int i = 0; i < 100; ++i) {
-    rows += i % 10 == 0 ? fmt::format("{}\t -1\t -1\t 0.0\t...\n", 100 + i)
-                        : fmt::format("{}\t {}\t 540.0\t 900.0\t...\n", 100 + i, 900 + i % 7);
+    // (9, 19) is at (-1, -1) of the second display, and is a place.
+    rows += i == 55       ? fmt::format("{}\t 9.0\t 19.0\t 900.0\t...\n", 100 + i)
+            : i % 10 == 0 ? fmt::format("{}\t -1\t -1\t 0.0\t...\n", 100 + i)
+                          : fmt::format("{}\t {}\t 540.0\t 900.0\t...\n", 100 + i, 900 + i % 7);
   }
   std::string text = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", rows);
-  for (const std::string corners : {"0 0 1919 1079", "10 0 1929 1079"}) {
+  for (const std::string corners : {"0 0 1919 1079", "10 20 1929 1099"}) {
     text.replace(text.find("COORDS ") + 7, text.find("\nSTART") - text.find("COORDS ") - 7, corners);
     GazeReadOptions options;
     const GazeInspection report = inspect("a.asc", text);
@@ -114,9 +123,16 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkBesideTheDisplay) {
   EXPECT_THAT(found->what, HasSubstr("100 of 1000 rows are exactly at (-1, -1)"));
   EXPECT_THAT(report.verdict, HasSubstr("--gaze-missing-value -1 mends it"));
   // Two different numbers no option takes; they are told all the same.
-  const GazeInspection unequal = inspect("b.csv", with_marks("-9999,-1"), full_hd());
-  ASSERT_NE(finding(unequal, "missing-value"), nullptr);
-  EXPECT_EQ(finding(unequal, "missing-value")->flag, "");
+  for (const auto& [cells, place] : {std::pair("-9999,-1", "(-9999, -1)"), std::pair("-1,500", "(-1, 500)")}) {
+    const GazeInspection unequal = inspect("b.csv", with_marks(cells), full_hd());
+    ASSERT_NE(finding(unequal, "missing-value"), nullptr) << cells;
+    EXPECT_EQ(finding(unequal, "missing-value")->flag, "");
+    EXPECT_THAT(finding(unequal, "missing-value")->what, HasSubstr(place));
+  }
+  // Of two the one with more rows.
+  const GazeInspection two = inspect("c.csv", with_marks("-1,-1", "-9,-9"), full_hd());
+  ASSERT_NE(finding(two, "missing-value"), nullptr);
+  EXPECT_EQ(finding(two, "missing-value")->flag, "--gaze-missing-value -1");
 }
 
 // Whole pixels repeat in a fixation beside the display; they are come to by small steps.
@@ -147,7 +163,14 @@ TEST_F(GazeMissingValues, AHeldValueIsNoMark) {
   }
 }
 
-// A marker on the display or within an angle is a place as any other.
+// Places that are come to by jumps alone.
+TEST_F(GazeMissingValues, APlaceOnTheDisplayIsNoMark) {
+  for (const std::string cells : {"300,200", "0,1080", "1920,0"}) {
+    EXPECT_EQ(finding(inspect("a.csv", with_marks(cells), full_hd()), "missing-value"), nullptr) << cells;
+  }
+}
+
+// Within an angle there is no display to be beside of.
 TEST_F(GazeMissingValues, MinusOneDegreeIsAPlace) {
   std::string text = with_marks("-1,-1");
   for (std::size_t at = text.find("[px]"); at != std::string::npos; at = text.find("[px]")) {
