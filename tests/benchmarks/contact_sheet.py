@@ -4,8 +4,8 @@
 
   contact_sheet.py GAZETRACE FOLDER OUT.png [options of `gazetrace render` ...]
 
-Files with lights of their own are shown in them; the others under the built-in sky unless --env says otherwise. A file
-that is refused leaves its one-line reason. Needs Pillow.
+Files with lights or strong emission of their own are shown in those; the others under the built-in sky unless --env says
+otherwise. A file that is refused leaves its one-line reason. Needs Pillow.
 """
 
 import argparse
@@ -17,6 +17,12 @@ import textwrap
 from PIL import Image, ImageDraw
 
 WIDTH, HEIGHT, LABEL = 320, 180, 16
+
+
+def environment(scene):
+    """Labels that shine a little are no light to see by."""
+    text = scene.read_bytes()
+    return "auto" if b"KHR_lights_punctual" in text or b"KHR_materials_emissive_strength" in text else "sky"
 
 
 def main():
@@ -36,9 +42,10 @@ def main():
         for i, scene in enumerate(scenes):
             x, y = i % arguments.columns * WIDTH, i // arguments.columns * (HEIGHT + LABEL)
             draw.text((x + 4, y + 2), scene.stem, fill="black")
+            light = [] if "--env" in extra else ["--env", environment(scene)]
             done = subprocess.run(
                 [arguments.program, "render", scene, "-o", picture, "--size", f"{WIDTH}x{HEIGHT}", "--spp", arguments.spp,
-                 "--frames", "1", "--bounces", "8", "--quiet", "--overwrite", *extra], stderr=subprocess.PIPE, text=True)
+                 "--frames", "1", "--bounces", "8", "--quiet", "--overwrite", *light, *extra], stderr=subprocess.PIPE, text=True)
             if done.returncode == 0:
                 sheet.paste(Image.open(picture), (x, y + LABEL))
             else:
