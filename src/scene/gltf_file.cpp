@@ -136,6 +136,11 @@ std::vector<std::uint8_t> read_whole_file(const std::string& path, const std::st
   if (std::filesystem::is_directory(file, error)) {
     throw Error(ErrorKind::input, place, "'" + path + "' is a folder, not a file");
   }
+  // Opening a pipe would wait for its other end for ever.
+  if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
+    throw Error(ErrorKind::input, place, "'" + path + "' is a pipe or a device, not a file",
+                "write its content to a file");
+  }
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
     throw Error(ErrorKind::input, place, "cannot open '" + path + "'", "check the name and the permissions");
