@@ -2,6 +2,7 @@
 #include "scene/gltf_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -40,6 +41,36 @@ bool is_nested_too_deep(std::string_view text) {
     }
   }
   return false;
+}
+
+// "Integers may be stored as decimals with a zero fractional part" (glTF 2.0 section 3.2), which the parser refuses. In
+// extensions it cuts integers to 32 bits, but not decimals: larger numbers are integers only where sizes stand.
+void tidy_numbers(Json& value, bool sizes) {
+  constexpr double kLargestInt = std::numeric_limits<std::int32_t>::max();
+  constexpr double kLargestExact = 9007199254740992.0;  // 2^53
+  if (value.is_number()) {
+    const auto number = value.get<double>();
+    if (value.is_number_float() && std::trunc(number) == number &&
+        std::abs(number) <= (sizes ? kLargestExact : kLargestInt)) {
+      if (number >= 0) {
+        value = static_cast<std::uint64_t>(number);
+      } else {
+        value = static_cast<std::int64_t>(number);
+      }
+    } else if (value.is_number_integer() && !sizes && std::abs(number) > kLargestInt) {
+      value = number;
+    }
+  } else if (value.is_structured()) {
+    for (Json& item : value) {
+      tidy_numbers(item, sizes);
+    }
+  }
+}
+
+void tidy_numbers(Json& root) {
+  for (const auto& [key, value] : root.items()) {
+    tidy_numbers(value, key == "buffers" || key == "bufferViews" || key == "accessors");
+  }
 }
 
 using Step = Walker::Step;
@@ -465,6 +496,7 @@ CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text)
   if (!root.is_object()) {
     throw Error(ErrorKind::input, path, "is not a glTF file: the JSON is no object");
   }
+  tidy_numbers(root);
   Walker walker(path, root);
   check_asset(walker, root, path);
   check_accessors(walker, root);

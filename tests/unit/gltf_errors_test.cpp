@@ -2,6 +2,7 @@
 // Broken files: each is refused with one line that names the place and the fault.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <functional>
 #include <limits>
@@ -341,6 +342,65 @@ const BrokenFile kBroken[] = {
 
 INSTANTIATE_TEST_SUITE_P(Table, BrokenFiles, ::testing::ValuesIn(kBroken),
                          [](const auto& test) { return std::string(test.param.name); });
+
+// glTF 2.0 section 3.2: integers may be written as decimals with a zero fractional part.
+TEST(WholeNumbers, MayBeDecimals) {
+  GltfBuilder builder;
+  builder.add_triangle({{"indices", builder.add<std::uint16_t>({0, 1, 2}, 1)}, {"mode", 4}, {"material", 0}});
+  builder.json["materials"] = {{{"name", "only"}}};
+  const std::string integers = builder.text();
+  json decimals = json::parse(integers);
+  const std::function<void(json&)> to_decimals = [&](json& value) {
+    if (value.is_number_integer()) {
+      value = value.get<double>();
+    } else if (value.is_structured()) {
+      for (json& item : value) {
+        to_decimals(item);
+      }
+    }
+  };
+  to_decimals(decimals);
+  ASSERT_THAT(decimals.dump(), HasSubstr("\"componentType\":5126.0"));
+  const test::TempFolder folder;
+  const Scene plain = load_scene(folder.write("integers.gltf", integers));
+  const Scene same = load_scene(folder.write("decimals.gltf", decimals.dump()));
+  ASSERT_EQ(same.meshes.size(), 1U);
+  EXPECT_EQ(same.meshes[0].geometries.at(0).positions, plain.meshes[0].geometries.at(0).positions);
+  EXPECT_EQ(same.meshes[0].geometries.at(0).triangles, plain.meshes[0].geometries.at(0).triangles);
+  EXPECT_EQ(same.instances.size(), 1U);
+
+  decimals["accessors"][0]["count"] = 3.5;
+  EXPECT_THAT(error_of(folder.write("half.gltf", decimals.dump())),
+              HasSubstr("accessors[0].count: 3.5 is not a whole"));
+}
+
+TEST(WholeNumbers, MayExceed32Bits) {
+  GltfBuilder builder;
+  builder.add_triangle({{"material", 0}});
+  json file = json::parse(builder.text());
+  const test::TempFolder folder;
+  for (const json& distance : {json(10000000000U), json(1e10)}) {  // integer and decimal
+    file["materials"] = {{{"extensions", {{"KHR_materials_volume", {{"attenuationDistance", distance}}}}}}};
+    const Scene scene = load_scene(folder.write("far.gltf", file.dump()));
+    EXPECT_EQ(scene.materials.at(0).volume.attenuation_distance_m, 1e10F) << distance;
+  }
+  file["bufferViews"][0]["byteLength"] = 5e9;
+  EXPECT_THAT(error_of(folder.write("long.gltf", file.dump())), HasSubstr("5000000000 lie outside buffers[0]"));
+}
+
+// Nobody writes to the pipe: opening it would wait for ever.
+TEST(BrokenContainers, Pipes) {
+  const test::TempFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT(error_of(pipe), HasSubstr("is a pipe or a device, not a file"));
+  GltfBuilder builder;
+  builder.add_triangle();
+  json file = json::parse(builder.text());
+  file["buffers"][0]["uri"] = "pipe";
+  const std::string path = folder.write("scene.gltf", file.dump());
+  expect_one_line(error_of(path), path, {"buffers[0]", "is a pipe or a device"});
+}
 
 TEST(BrokenContainers, MissingFileFolderAndNonsense) {
   const test::TempFolder folder;
