@@ -4,10 +4,10 @@
 // over a film of index n over a base with normal reflectance f0.
 //   R(phase) = C0 + 2 sum_m Cm cos(m phase),   C0 = R12 + Rs,  Cm = sqrt(R12 R23)^m (Rs - T121),
 //   Rs = T121^2 R23 / (1 - R12 R23)
-// R12, R23: reflectances of the film's top and bottom (Schlick), T121 = 1 - R12, phase = 2 pi (2 n d cos) / lambda +
-// phi. The sum over wavelengths of the colour matching functions is closed because those are Gaussians (the paper's eq.
-// 9 and its fit); m runs to 2. Below 30 nm the film's index fades to air's, so that no film and none that shows are the
-// same.
+// R12, R23: reflectances of the film's top (Fresnel) and bottom (Schlick), T121 = 1 - R12, phase = 2 pi (2 n d cos) /
+// lambda + phi. The sum over wavelengths of the colour matching functions is closed because those are Gaussians (the
+// paper's eq. 9 and its fit); m runs to 2. Below 30 nm the film's index fades to air's; a film of air shows the bare
+// base under every angle, which Schlick's formula for the top would not: it reflects at grazing whatever the index.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "gazetrace/math.hpp"
+#include "material/lobes/dielectric.hpp"
 #include "material/microfacet.hpp"
 
 namespace gazetrace {
@@ -55,8 +56,7 @@ inline Vec3f thin_film_fresnel(float cosine, float film_ior, float thickness_nm,
   const float sin2 = (1.0F - cosine * cosine) / (eta * eta);
   const float inside = std::sqrt(std::max(1.0F - sin2, 0.0F));
 
-  const float top = (eta - 1.0F) / (eta + 1.0F);
-  const float r12 = top * top + (1.0F - top * top) * schlick_weight(cosine);
+  const float r12 = fresnel_dielectric(std::clamp(cosine, 0.0F, 1.0F), eta);
   const float t121 = 1.0F - r12;
   const float phi12 = eta < 1.0F ? thin_film_detail::kPiF : 0.0F;
   const float phi21 = thin_film_detail::kPiF - phi12;
@@ -75,7 +75,7 @@ inline Vec3f thin_film_fresnel(float cosine, float film_ior, float thickness_nm,
   const Vec3f phi{phi21 + b[0].phi, phi21 + b[1].phi, phi21 + b[2].phi};
   const Vec3f r23{b[0].r, b[1].r, b[2].r};
   const auto each = [](const Vec3f& v, const auto& f) { return Vec3f{f(v.x), f(v.y), f(v.z)}; };
-  const Vec3f r123 = each(r23, [&](float r) { return std::clamp(r12 * r, 1e-5F, 0.9999F); });
+  const Vec3f r123 = each(r23, [&](float r) { return std::clamp(r12 * r, 0.0F, 0.9999F); });
   const Vec3f root = each(r123, [](float r) { return std::sqrt(r); });
   const Vec3f rs{t121 * t121 * r23.x / (1.0F - r123.x), t121 * t121 * r23.y / (1.0F - r123.y),
                  t121 * t121 * r23.z / (1.0F - r123.z)};
