@@ -69,11 +69,26 @@ std::optional<StatedUnit> unit_from(const std::string& text) {
   return unit && *unit != PositionUnit::unit_vector ? std::optional(StatedUnit{*unit}) : std::nullopt;
 }
 
+constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+
 void add_origin(GazeLog& log, Eye eye, std::int64_t t_ns, const Vec3f& place_mm) {
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   EyeOrigins origins{{kUnknown, kUnknown, kUnknown}, {kUnknown, kUnknown, kUnknown}, t_ns};
   (eye == Eye::right ? origins.right_mm : origins.left_mm) = place_mm;
   log.origins.push_back(origins);
+}
+
+// After so many seconds, digit by digit; never longer than can be counted, nor later than the last time there is.
+std::int64_t end_of(std::int64_t begin_ns, std::string_view seconds) {
+  std::int64_t length_ns = 0;
+  const NumberStatus status = scaled_integer(trim(seconds), 9, length_ns);
+  if (status == NumberStatus::overflow) {
+    length_ns = trim(seconds).starts_with('-') ? 0 : kMost;
+  }
+  std::int64_t end_ns = 0;
+  return status == NumberStatus::malformed || length_ns <= 0    ? begin_ns
+         : __builtin_add_overflow(begin_ns, length_ns, &end_ns) ? kMost
+                                                                : end_ns;
 }
 
 // Where no unit is stated: that in which the steps are what SamplingFrequency says.
@@ -216,8 +231,7 @@ void read_bids_events(const Sidecars& physio, const std::string& path, GazeLog& 
       event.row = rows.line();
       event.eye = eye;
       event.begin_ns = rows.time_ns(*onset, {*exponent, 0});
-      const double seconds = rows.number(duration);
-      event.end_ns = event.begin_ns + (seconds > 0 && seconds < 1e6 ? std::llround(seconds * 1e9) : 0);
+      event.end_ns = end_of(event.begin_ns, duration ? rows.cell(*duration) : std::string_view());
       const std::string text = to_lower(rows.cell(type));
       const bool blinks = blink && rows.cell(*blink) == "1";
       event.type = blinks               ? GazeEventType::blink

@@ -28,6 +28,11 @@ std::string screen_key(std::string_view what) {
   return fmt::format("StimulusPresentation.{}", what);
 }
 
+// The same length as it was before it became metres, unless somebody mended the metres since.
+double with_every_bit(double from_metres_cm, double cm) {
+  return std::abs(cm - from_metres_cm) <= 1e-12 * from_metres_cm ? cm : from_metres_cm;
+}
+
 }  // namespace
 
 // ["top", "left"], in any order. None but these can be read.
@@ -105,12 +110,18 @@ void read_bids_screen(const Sidecars& events, GazeLog& log) {
     }
     add_fact(log, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
   }
-  if (const std::vector<double> eye = events.numbers(key("EyeOffset")); eye.size() == 2) {  // gazetrace's own, metres
-    g.eye_x_cm = eye[0] * 100;
-    g.eye_y_cm = eye[1] * 100;
+  // gazetrace's own, from here.
+  if (const std::vector<double> cm = events.numbers(key("ScreenSizeCm")); cm.size() == 2) {
+    g.width_cm = with_every_bit(g.width_cm, cm[0]);
+    g.height_cm = with_every_bit(g.height_cm, cm[1]);
+  }
+  g.distance_cm = with_every_bit(g.distance_cm, events.number(key("ScreenDistanceCm")).value_or(0));
+  if (const std::vector<double> eye = events.numbers(key("EyeOffsetCm")); eye.size() == 2) {
+    g.eye_x_cm = eye[0];
+    g.eye_y_cm = eye[1];
   }
   if (const std::vector<double> density = events.numbers(key("PixelsPerDegree"));
-      density.size() == 2 && density[0] > 0 && density[1] > 0) {  // likewise
+      density.size() == 2 && density[0] > 0 && density[1] > 0) {
     log.pixels_per_degree = Vec2d{density[0], density[1]};
   }
   if (g.width_px > 0 || g.width_cm > 0 || g.distance_cm > 0) {

@@ -70,6 +70,12 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
     event.eye = words.one_of({Eye::left, Eye::right, Eye::cyclopean});
     event.begin_ns = words.time_ns();
     event.end_ns = words.time_ns();
+    if (std::int64_t length_ns = 0; __builtin_sub_overflow(event.end_ns, event.begin_ns, &length_ns)) {
+      throw Error(ErrorKind::input, place,
+                  fmt::format("`# event` lasts from {} to {}, longer than int64 nanoseconds count", event.begin_ns,
+                              event.end_ns),
+                  "mend the line, or leave it out");
+    }
     event.text = words.rest();
     event.row = line.line;
     preamble.events.push_back(std::move(event));

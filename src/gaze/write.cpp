@@ -33,6 +33,13 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// Nor may a column's name be two.
+std::string one_heading(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '[' || c == ']'; }, ' ');
+  return one_line(std::move(text));
+}
+
 std::string preamble(const GazeLog& log) {
   std::string text = "# gazetrace-gaze 1\n";
   text += log.kind == GazeKind::scene_camera ? "# kind scene-camera\n" : "";
@@ -55,7 +62,7 @@ std::string preamble(const GazeLog& log) {
     text += fmt::format("# pixels_per_degree {} {}\n", log.pixels_per_degree->x, log.pixels_per_degree->y);
   }
   if (!log.clock.empty()) {
-    text += fmt::format("# clock {}\n", log.clock);
+    text += fmt::format("# clock {}\n", one_line(log.clock));
   }
   if (const ChosenEye chosen = chosen_eye(log); chosen.eye) {
     text += fmt::format("# eye {}\n", to_string(*chosen.eye));
@@ -64,7 +71,7 @@ std::string preamble(const GazeLog& log) {
     text += fmt::format("# rate_hz {}\n", log.nominal_rate_hz);
   }
   if (const std::string_view device = fact_value(log, kDevice); !device.empty()) {
-    text += fmt::format("# device {}\n", device);
+    text += fmt::format("# device {}\n", one_line(std::string(device)));
   }
   text += log.sample_age_unknown ? "# sample_age unknown\n" : "";
   for (const GazeCalibration& c : log.calibrations) {
@@ -150,7 +157,7 @@ class RowWriter {
   [[nodiscard]] std::string header() const {
     std::string text = log_.kind == GazeKind::direction ? "t[ns],dx,dy,dz,valid,eye" : "t[ns],u[1],v[1],valid,eye";
     text += has_confidence_ ? ",confidence" : "";
-    text += has_pupil_ ? log_.pupil_unit.empty() ? ",pupil" : ",pupil[" + log_.pupil_unit + "]" : "";
+    text += has_pupil_ ? log_.pupil_unit.empty() ? ",pupil" : ",pupil[" + one_heading(log_.pupil_unit) + "]" : "";
     text += log_.origins.empty() ? "" : ",ox[mm],oy[mm],oz[mm]";
     text += log_.head.empty() ? "" : ",hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw";
     return text + "\n";

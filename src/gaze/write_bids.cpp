@@ -192,6 +192,15 @@ class RecordingWriter {
     if (const std::string_view device = fact_value(log_, kDevice); !device.empty()) {
       json["RecordedOn"] = device;  // our own: desktop or head-mounted
     }
+    if (log_.sample_age_unknown) {
+      json["SampleAge"] = "unknown";  // our own
+    }
+    for (const GazeCalibration& c : log_.calibrations) {  // our own: ns, degrees, null where not stated
+      json["Calibrations"].push_back({{"Eye", to_string(c.eye)},
+                                      {"Time", c.t_ns},
+                                      {"MeanError", c.mean_error_deg},
+                                      {"MaxError", c.max_error_deg}});
+    }
     json["Columns"] = {"timestamp", "x_coordinate", "y_coordinate"};
     json["timestamp"] = {{"Units", "ns"}, {"Origin", log_.clock}};
     json["x_coordinate"] = {{"Units", unit}};
@@ -252,14 +261,24 @@ Json screen_json(const GazeLog& log) {
     if (g.width_px > 0 && g.height_px > 0) {
       screen["ScreenResolution"] = {g.width_px, g.height_px};
     }
+    // The standard's metres, and of our own the centimetres that metres do not give back to the last bit.
     if (g.width_cm > 0 && g.height_cm > 0) {
-      screen["ScreenSize"] = {inverse_of_product(g.width_cm, 100), inverse_of_product(g.height_cm, 100)};
+      const double width_m = inverse_of_product(g.width_cm, 100);
+      const double height_m = inverse_of_product(g.height_cm, 100);
+      screen["ScreenSize"] = {width_m, height_m};
+      if (width_m * 100 != g.width_cm || height_m * 100 != g.height_cm) {
+        screen["ScreenSizeCm"] = {g.width_cm, g.height_cm};
+      }
     }
     if (g.distance_cm > 0) {
-      screen["ScreenDistance"] = inverse_of_product(g.distance_cm, 100);
+      const double distance_m = inverse_of_product(g.distance_cm, 100);
+      screen["ScreenDistance"] = distance_m;
+      if (distance_m * 100 != g.distance_cm) {
+        screen["ScreenDistanceCm"] = g.distance_cm;
+      }
     }
     if (g.eye_x_cm != 0 || g.eye_y_cm != 0) {
-      screen["EyeOffset"] = {inverse_of_product(g.eye_x_cm, 100), inverse_of_product(g.eye_y_cm, 100)};
+      screen["EyeOffsetCm"] = {g.eye_x_cm, g.eye_y_cm};
     }
     screen["ScreenOrigin"] = {"top", "left"};
   }
@@ -295,7 +314,10 @@ std::string events_table(const GazeLog& log, Eye eye, const std::vector<Recordin
     if (home_of(event, recordings, chosen) != eye) {
       continue;
     }
-    const std::int64_t length_ns = std::max<std::int64_t>(event.end_ns - event.begin_ns, 0);
+    // Unsigned, as the longest does not fit the times' own type.
+    const std::uint64_t length_ns = event.end_ns > event.begin_ns ? static_cast<std::uint64_t>(event.end_ns) -
+                                                                        static_cast<std::uint64_t>(event.begin_ns)
+                                                                  : 0;
     const bool is_blink = event.type == GazeEventType::blink;
     const bool is_message = event.type == GazeEventType::message;
     fmt::format_to(std::back_inserter(text), "{}\t{}.{:09d}\t{}\t{}\t{}\n", event.begin_ns, length_ns / 1'000'000'000,

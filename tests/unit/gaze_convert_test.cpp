@@ -90,6 +90,9 @@ void expect_same_events(const GazeLog& a, const GazeLog& b) {
     EXPECT_TRUE(e.type == r.type && e.eye == r.eye && e.begin_ns == r.begin_ns && e.end_ns == r.end_ns) << i;
     EXPECT_EQ(e.text, r.text) << i;
   }
+}
+
+void expect_same_calibrations(const GazeLog& a, const GazeLog& b) {
   ASSERT_EQ(a.calibrations.size(), b.calibrations.size());
   for (std::size_t i = 0; i < a.calibrations.size(); ++i) {
     EXPECT_TRUE(a.calibrations[i].eye == b.calibrations[i].eye && a.calibrations[i].t_ns == b.calibrations[i].t_ns);
@@ -118,6 +121,7 @@ TEST_P(Conversion, ToCsvAndBack) {
   expect_same_log(log, back);
   expect_same_head(log, back);
   expect_same_events(log, back);
+  expect_same_calibrations(log, back);
   EXPECT_EQ(log.nominal_rate_hz, back.nominal_rate_hz);
   EXPECT_EQ(log.sample_age_unknown, back.sample_age_unknown);
   EXPECT_EQ(default_event_preset(log).name, default_event_preset(back).name);
@@ -139,6 +143,8 @@ TEST_P(Conversion, ToBidsAndBack) {
   }
   const GazeLog back = load_gaze_log(names.front(), {});
   EXPECT_EQ(back.format, "bids");
+  expect_same_calibrations(log, back);
+  EXPECT_EQ(log.sample_age_unknown, back.sample_age_unknown);
   const auto count = [](const GazeLog& l, GazeEventType type) {
     return std::count_if(l.events.begin(), l.events.end(), [&](const GazeEvent& e) { return e.type == type; });
   };
@@ -302,6 +308,7 @@ TEST(GazeConvert, PosesBetweenSamplesAndTextsOfManyKindsSurviveCsv) {
   expect_same_head(log, back);
   log.events.back().text = "two lines";
   expect_same_events(log, back);
+  expect_same_calibrations(log, back);
   EXPECT_TRUE(back.sample_age_unknown);
   EXPECT_EQ(back.nominal_rate_hz, 120.03);
 }

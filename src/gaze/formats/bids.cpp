@@ -97,6 +97,19 @@ void read_own_keys(const Sidecars& sidecars, GazeLog& log) {
   if (const std::string device = sidecars.text("RecordedOn"); !device.empty()) {
     add_fact(log, kDevice, device, Evidence::sidecar);
   }
+  log.sample_age_unknown = sidecars.text("SampleAge") == "unknown";
+  for (std::size_t i = 0;; ++i) {
+    const std::string key = fmt::format("Calibrations.{}.", i);
+    const std::string eye = sidecars.text(key + "Eye");
+    GazeCalibration calibration;
+    if (eye.empty() || scaled_integer(sidecars.text(key + "Time"), 0, calibration.t_ns) != NumberStatus::ok) {
+      break;
+    }
+    calibration.eye = eye == "left" ? Eye::left : eye == "right" ? Eye::right : Eye::cyclopean;
+    calibration.mean_error_deg = sidecars.number(key + "MeanError").value_or(kNan);
+    calibration.max_error_deg = sidecars.number(key + "MaxError").value_or(kNan);
+    log.calibrations.push_back(calibration);
+  }
 }
 
 }  // namespace
