@@ -18,13 +18,19 @@ void mark_missing_values(GazeLog& log, const GazeReadOptions& options);
 
 // A place at which many rows of a log lie, and one of them.
 struct FrequentPlace {
-  double x = 0, y = 0;     // as in the file
+  Vec3d raw;               // as in the file: a direction, or u, v, 0
   std::size_t sample = 0;  // index
 };
-// `samples` have u, v as the file has them. At most a few thousand places, whatever the log's length.
-std::vector<FrequentPlace> frequent_places(const std::vector<GazeSample>& samples);
+// `samples` have directions, or u, v, as the file has them. At most a few thousand places, whatever the log's length.
+std::vector<FrequentPlace> frequent_places(const std::vector<GazeSample>& samples, GazeKind kind);
 
-// `frequent` was found before u, v of the same samples became fractions of the display, which they are now.
-std::optional<RecurringPlace> find_recurring_place(const GazeLog& log, const std::vector<FrequentPlace>& frequent);
+// A place that gaze comes to again and again, and from elsewhere by a jump: beside the display rarely, else in a
+// hundredth of the rows and at no other place alike. `frequent` was found before the same samples became fractions of
+// the display or unit vectors, as `log.kind` says, which they are now.
+struct Mark {
+  Vec3d raw;
+  std::size_t rows = 0;
+};
+std::optional<Mark> find_mark(const GazeLog& log, const std::vector<FrequentPlace>& frequent);
 
 }  // namespace gazetrace

@@ -116,6 +116,22 @@ void turn_witnesses(GazeLog& log, const GazeReadOptions& options, bool other_way
   }
 }
 
+void note_mark(GazeLog& log, const std::vector<FrequentPlace>& frequent) {
+  if (const auto mark = find_mark(log, frequent)) {
+    log.recurring_place = RecurringPlace{mark->raw.x, mark->raw.y, mark->rows};
+  }
+}
+
+// Of directions only those that loggers write: three times one number, and straight ahead.
+void note_mark_of_directions(GazeLog& log, const std::vector<FrequentPlace>& frequent) {
+  if (const auto mark = find_mark(log, frequent)) {
+    const Vec3d& raw = mark->raw;
+    if ((raw.x == raw.y && raw.y == raw.z) || (raw.x == 0 && raw.y == 0)) {
+      log.recurring_place = RecurringPlace{raw.x, raw.y, mark->rows};
+    }
+  }
+}
+
 bool grows_up(const PlaceSpace& space) {
   return space.unit == PositionUnit::deg || space.origin == PositionOrigin::bottom_left ||
          space.origin == PositionOrigin::center;
@@ -223,14 +239,15 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
   const PlaceSpace chosen = overrule(log, options, space, place);
   turn_witnesses(log, options, grows_up(chosen) != grows_up(space));
   const bool look_only = options.guess_display || options.for_inspection;
+  const std::vector<FrequentPlace> frequent =
+      options.for_inspection ? frequent_places(log.samples, GazeKind::screen) : std::vector<FrequentPlace>();
   if (chosen.unit == PositionUnit::deg &&
       (options.frame == GazeFrame::head || (look_only && !options.display && !log.recording_geometry))) {
     directions_from_degrees(log, options);
     flip_directions(log, options);
+    note_mark(log, frequent);
     return;
   }
-  const std::vector<FrequentPlace> frequent =
-      options.for_inspection ? frequent_places(log.samples) : std::vector<FrequentPlace>();
   std::optional<DisplayGeometry> display = conversion_display(log, options, place);
   const bool sized = display && display->width_px > 0 && display->height_px > 0;
   if (chosen.unit == PositionUnit::px && !sized && look_only) {
@@ -248,9 +265,7 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
   if (!space.validity_is_final && log.kind == GazeKind::screen) {
     mark_off_screen(log.samples);
   }
-  if (options.for_inspection) {
-    log.recurring_place = find_recurring_place(log, frequent);
-  }
+  note_mark(log, frequent);
 }
 
 Vec3d from_axes(const Vec3d& v, GazeAxes axes) {
@@ -297,6 +312,8 @@ void finish_directions(GazeLog& log, const GazeReadOptions& options, GazeAxes ow
   add_fact(log, "axes", std::string(to_string(axes == GazeAxes::automatic ? GazeAxes::gl : axes)),
            given == GazeAxes::automatic ? evidence : Evidence::option);
   turn_witnesses(log, options, false);
+  const std::vector<FrequentPlace> frequent =
+      options.for_inspection ? frequent_places(log.samples, GazeKind::direction) : std::vector<FrequentPlace>();
   std::size_t not_unit = 0;
   std::size_t backwards = 0;
   std::size_t usable = 0;
@@ -326,6 +343,7 @@ void finish_directions(GazeLog& log, const GazeReadOptions& options, GazeAxes ow
     backwards += is_usable(sample.validity) && d.z > 0 ? 1 : 0;
   }
   flip_directions(log, options);
+  note_mark_of_directions(log, frequent);
   for (EyeOrigins& origins : log.origins) {
     origins.left_mm = to_float(from_axes(to_double(origins.left_mm), axes));
     origins.right_mm = to_float(from_axes(to_double(origins.right_mm), axes));

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -163,20 +164,94 @@ TEST_F(GazeMissingValues, AHeldValueIsNoMark) {
   }
 }
 
-// Places that are come to by jumps alone.
-TEST_F(GazeMissingValues, APlaceOnTheDisplayIsNoMark) {
+// Places that are come to by jumps alone, in one of 400 rows: a mark beside the display, on it and on its edges gaze.
+TEST_F(GazeMissingValues, ASeldomPlaceOnTheDisplayIsNoMark) {
+  const auto with_seldom_marks = [](const std::string& cells) {
+    std::string text = "t[ms],x[px],y[px]\n";
+    for (int i = 0; i < 8000; ++i) {
+      text += i % 400 == 7 ? fmt::format("{},{}\n", i, cells)
+                           : fmt::format("{},{:.2f},{:.2f}\n", i, 900 + 90 * std::sin(i * 0.7), 500 + 0.01 * i);
+    }
+    return text;
+  };
   for (const std::string cells : {"300,200", "0,1080", "1920,0"}) {
-    EXPECT_EQ(finding(inspect("a.csv", with_marks(cells), full_hd()), "missing-value"), nullptr) << cells;
+    EXPECT_EQ(finding(inspect("a.csv", with_seldom_marks(cells), full_hd()), "missing-value"), nullptr) << cells;
+  }
+  EXPECT_NE(finding(inspect("a.csv", with_seldom_marks("-1,-1"), full_hd()), "missing-value"), nullptr);
+}
+
+// 4000 rows of fixations of 40 all over 40 x 24 degrees, with noise; every 10th begins with four rows of `cells`.
+// `write` makes cells of degrees right and up.
+template <class Write>
+std::string fixations_with_marks(const std::string& header, const std::string& cells, const Write& write) {
+  std::string text = header;
+  for (int i = 0; i < 4000; ++i) {
+    const int fixation = i / 40;
+    const double x = 20 * std::sin(fixation * 2.3) + 0.05 * std::sin(i * 1.9);
+    const double y = 12 * std::cos(fixation * 3.7) + 0.05 * std::cos(i * 1.3);
+    text += fmt::format("{},{}\n", 2 * i, i % 40 < 4 ? cells : write(x, y));
+  }
+  return text;
+}
+std::string degrees(double x, double y) {
+  return fmt::format("{:.3f},{:.3f}", x, y);
+}
+const char* const kDegrees = "t[ms],x[deg],y[deg]\n";
+
+GazeReadOptions full_hd_at_60_cm() {
+  GazeReadOptions options;
+  options.display =
+      DisplayGeometry{.width_px = 1920, .height_px = 1080, .width_cm = 53, .height_cm = 30, .distance_cm = 60};
+  return options;
+}
+
+// Minus one degree is in the middle of the display: there a mark tells itself by how often gaze jumps to it.
+TEST_F(GazeMissingValues, TheDoctorNamesAMarkWhereGazeIs) {
+  const std::string text = fixations_with_marks(kDegrees, "-1,-1", degrees);
+  for (const GazeReadOptions& options : {full_hd_at_60_cm(), GazeReadOptions{}}) {
+    const GazeInspection report = inspect("a.csv", text, options);
+    const GazeFinding* const found = finding(report, "missing-value");
+    ASSERT_NE(found, nullptr);
+    EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+    EXPECT_THAT(found->what, HasSubstr("400 of 4000 rows are exactly at (-1, -1)"));
   }
 }
 
-// Within an angle there is no display to be beside of.
-TEST_F(GazeMissingValues, MinusOneDegreeIsAPlace) {
-  std::string text = with_marks("-1,-1");
-  for (std::size_t at = text.find("[px]"); at != std::string::npos; at = text.find("[px]")) {
-    text.replace(at, 4, "[deg]");
+TEST_F(GazeMissingValues, TheDoctorNamesAMarkOfDirections) {
+  const auto vector = [](double x, double y) {
+    const double right = std::tan(x * kRadPerDeg);
+    const double up = std::tan(y * kRadPerDeg);
+    const double norm = std::sqrt(right * right + up * up + 1);
+    return fmt::format("{:.6f},{:.6f},{:.6f}", right / norm, up / norm, -1 / norm);
+  };
+  const std::string header = "t[ms],dx,dy,dz\n";
+  const GazeInspection report = inspect("a.csv", fixations_with_marks(header, "-1,-1,-1", vector));
+  const GazeFinding* const found = finding(report, "missing-value");
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+  EXPECT_THAT(found->what, HasSubstr("at (-1, -1, -1)"));
+  const GazeInspection ahead = inspect("b.csv", fixations_with_marks(header, "0,0,-1", vector));
+  ASSERT_NE(finding(ahead, "missing-value"), nullptr);
+  EXPECT_EQ(finding(ahead, "missing-value")->flag, "");
+  GazeReadOptions options;
+  options.missing_value = -1;
+  EXPECT_EQ(finding(inspect("a.csv", fixations_with_marks(header, "-1,-1,-1", vector), options), "missing-value"),
+            nullptr);
+}
+
+TEST_F(GazeMissingValues, WhereGazeIsAPlaceIsAPlace) {
+  // Whole pixels repeat in fixations, which are come to once by a jump and then by small steps: here 25 times.
+  const std::array<std::array<int, 2>, 4> targets{{{300, 200}, {1600, 250}, {900, 540}, {400, 900}}};
+  std::string whole = "t[ms],x[px],y[px]\n";
+  // Gaze without noise, as a model has it, only jumps.
+  std::string exact = whole;
+  for (int i = 0; i < 4000; ++i) {
+    const auto& [x, y] = targets[static_cast<std::size_t>(i / 40 % 4)];
+    whole += fmt::format("{},{},{}\n", 2 * i, x + i * 7 % 3, y + i * 3 % 2);
+    exact += fmt::format("{},{},{}\n", 2 * i, x, y);
   }
-  EXPECT_EQ(finding(inspect("a.csv", text), "missing-value"), nullptr);
+  EXPECT_EQ(finding(inspect("a.csv", whole, full_hd()), "missing-value"), nullptr);
+  EXPECT_EQ(finding(inspect("b.csv", exact, full_hd()), "missing-value"), nullptr);
 }
 
 }  // namespace

@@ -258,12 +258,16 @@ class Doctor {
       return;
     }
     const RecurringPlace& place = *log_.recurring_place;
+    const bool is_vector = log_.kind == GazeKind::direction && fact_text("position unit") != "deg";
+    const std::string where = is_vector && place.x == 0 ? "straight ahead"
+                              : is_vector               ? fmt::format("at ({0}, {0}, {0})", place.x)
+                                                        : fmt::format("at ({}, {})", place.x, place.y);
+    const bool option_takes_it = place.x == place.y && place.x != 0;
     add(FindingKind::suspicion, "missing-value",
-        fmt::format("{} of {} rows are exactly at ({}, {}), beside the display, and count as good: a mark of missing "
-                    "values",
-                    place.rows, log_.order.rows, place.x, place.y),
-        "statistics: gaze comes to this place and leaves it by jumps alone",
-        place.x == place.y ? fmt::format("--gaze-missing-value {}", place.x) : "");
+        fmt::format("{} of {} rows are exactly {} and count as good: a mark of missing values", place.rows,
+                    log_.order.rows, where),
+        "statistics: gaze comes to this place again and again, and by jumps",
+        option_takes_it ? fmt::format("--gaze-missing-value {}", place.x) : "");
   }
 
   // More than a display's height but never its width.
