@@ -15,6 +15,10 @@ namespace gazetrace {
 // with at most one parent and no cycle. Error(input) with the JSON place.
 void check_gltf_ranges(const GltfDocument& document, const std::vector<GltfBufferSource>& buffers);
 
+// What a file asks for beyond its own size: zeros of accessors without bufferView, over all their uses, and instances.
+// After compressed geometry has been unpacked, whose accessors have no bufferView before. Error(input) with the place.
+void check_gltf_size(const GltfDocument& document);
+
 std::size_t component_size(int component_type);
 
 // The bytes of a bufferView. Error(input) at `place` when the buffer has no data.

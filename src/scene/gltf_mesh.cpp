@@ -103,14 +103,13 @@ class PrimitiveReader {
       return {};
     }
     const std::string place = owner + "." + attribute;
-    std::vector<float> values = read_floats(document_, it->second, components, place);
-    const std::size_t count = values.size() / static_cast<std::size_t>(components);
+    const auto count = document_.accessors[static_cast<std::size_t>(it->second)].count;
     if (vertex_count_ && count != *vertex_count_) {
       throw Error(ErrorKind::input, place,
                   std::to_string(count) + " values for " + std::to_string(*vertex_count_) + " positions",
                   "export the file again");
     }
-    return values;
+    return read_floats(document_, it->second, components, place);
   }
 
   std::vector<float> floats(const std::string& attribute, int components) const {

@@ -52,14 +52,14 @@ std::vector<Affine> instancing_transforms(const GltfDocument& document, int node
     const auto it = node.instancing.find(name);
     std::vector<float> values;
     if (it != node.instancing.end()) {
-      values = read_floats(document, it->second, components, place + name);
-      const std::size_t elements = values.size() / static_cast<std::size_t>(components);
+      const auto elements = document.accessors[static_cast<std::size_t>(it->second)].count;
       if (count && *count != elements) {
         throw Error(ErrorKind::input, place + name,
                     std::to_string(elements) + " elements, other attributes have " + std::to_string(*count),
                     "export the file again");
       }
       count = elements;
+      values = read_floats(document, it->second, components, place + name);
     }
     return values;
   };

@@ -122,6 +122,7 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   document.buffers = load_buffers(file, checked.buffers, storage);
   unpack_meshopt(document, checked.meshopt_views, storage, options.threads);
   unpack_draco(document, checked.draco_primitives, storage, options.threads);
+  check_gltf_size(document);
 
   Scene scene;
   scene.source = path;

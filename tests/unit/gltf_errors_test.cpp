@@ -162,6 +162,51 @@ const BrokenFile kBroken[] = {
        b.json["accessors"][1]["count"] = 4000000000U;
      },
      {"accessors[1]", "4000000000"}},
+    // Many uses of zeros that are allowed once; the same for what they place.
+    {"ZerosOfManyPrimitives",
+     [](auto& b) {
+       const json accessor{{"componentType", 5126}, {"count", 1U << 22U}, {"type", "VEC3"}};
+       b.json["accessors"].push_back(accessor);
+       b.json["meshes"][0]["primitives"] = std::vector<json>(6, {{"attributes", {{"POSITION", 2}}}});
+     },
+     {"meshes[0].primitives[5].attributes", "75497472 zeros"}},
+    {"ZerosInManyPoses",
+     [](auto& b) {
+       b.json["accessors"].push_back({{"componentType", 5126}, {"count", 1U << 22U}, {"type", "VEC3"}});
+       b.json["meshes"][0] = {{"primitives", {{{"attributes", {{"POSITION", 2}}}, {"targets", {{{"POSITION", 2}}}}}}},
+                              {"weights", {0.5}}};
+       for (int i = 0; i < 5; ++i) {
+         b.add_node({{"mesh", 0}});
+       }
+     },
+     {"meshes[0].primitives[0].attributes", "75497472 zeros"}},
+    {"ZerosOfMorphTargets",
+     [](auto& b) {
+       b.json["accessors"].push_back({{"componentType", 5126}, {"count", 1U << 24U}, {"type", "VEC3"}});
+       primitive_of(b)["targets"] = std::vector<json>(6, {{"POSITION", 2}});
+     },
+     {"meshes[0].primitives[0].targets", "301989888 zeros"}},
+    {"ZerosOfMatrices",
+     [](auto& b) {
+       b.json["accessors"].push_back({{"componentType", 5126}, {"count", (1U << 22U) + 1}, {"type", "MAT4"}});
+       b.json["skins"] = {{{"joints", {0}}, {"inverseBindMatrices", 2}}};
+     },
+     {"skins[0].inverseBindMatrices", "67108880 zeros"}},
+    {"ZeroInstances",
+     [](auto& b) {
+       b.json["accessors"].push_back({{"componentType", 5126}, {"count", 65537}, {"type", "VEC3"}});
+       b.json["nodes"][0]["extensions"] = {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", 2}}}}}};
+     },
+     {"nodes[0].extensions.EXT_mesh_gpu_instancing", "65537 instances without data"}},
+    {"EndlessInstances",
+     [](auto& b) {
+       const int places = b.template add<float>(std::vector<float>(3U << 18U), 3);
+       const json extensions{{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}};
+       for (int i = 0; i < 65; ++i) {
+         b.add_node({{"mesh", 0}, {"extensions", extensions}});
+       }
+     },
+     {"nodes[65].extensions.EXT_mesh_gpu_instancing", "17039360 instances;"}},
     {"SparseIndex",
      [](auto& b) {
        const int i = b.template add<std::uint8_t>({3}, 1);
