@@ -137,7 +137,9 @@ Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/
                  "sidecars and events beside it")
       ->required()
       ->type_name("OUT");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
+  app.add_flag(
+      "--overwrite", arguments->overwrite,
+      "Replaces files that are there; recordings of that BIDS name that an earlier conversion left are removed");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also writes messages of the experiment and dates in the description of the clock, which can identify a "
                "person or a session; stamps are written as they are either way");
