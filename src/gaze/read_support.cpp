@@ -237,6 +237,16 @@ void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpac
     }
   }
   const PlaceSpace chosen = overrule(log, options, space, place);
+  const bool is_stated = chosen.unit != space.unit || space.evidence != Evidence::statistics;
+  if (options.for_inspection && is_stated && log.kind == GazeKind::screen) {
+    const DisplayGeometry display = completed_geometry(options.display.value_or(DisplayGeometry{}),
+                                                       log.recording_geometry.value_or(DisplayGeometry{}));
+    // Degrees count from straight ahead, whatever else the log's positions count from.
+    const PositionOrigin origin = chosen.unit == PositionUnit::deg ? space.origin : chosen.origin;
+    if (auto doubt = doubt_position_unit(log.samples, chosen.unit, origin, display)) {
+      log.faults.push_back(*std::move(doubt));
+    }
+  }
   turn_witnesses(log, options, grows_up(chosen) != grows_up(space));
   const bool look_only = options.guess_display || options.for_inspection;
   const std::vector<FrequentPlace> frequent =

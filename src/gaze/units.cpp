@@ -77,6 +77,34 @@ Vec2d display_size(PositionUnit unit, const std::optional<DisplayGeometry>& disp
   return {d.width_cm * per_cm, d.height_cm * per_cm};
 }
 
+// 90 % of the values of usable samples.
+struct Extent {
+  double low = 0, median = 0, high = 0;
+};
+// Empty of a few.
+std::optional<Extent> extent_of(const std::vector<GazeSample>& samples, double GazeSample::*coordinate) {
+  std::vector<double> values;
+  values.reserve(samples.size());
+  for (const GazeSample& sample : samples) {
+    if (is_usable(sample.validity) && std::isfinite(sample.*coordinate)) {
+      values.push_back(sample.*coordinate);
+    }
+  }
+  if (values.size() < 10) {
+    return std::nullopt;
+  }
+  const auto at = [&](double share) {
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+  };
+  return Extent{at(0.05), at(0.5), at(0.95)};
+}
+
+bool is_known(const Vec2d& size) {
+  return size.x > 0 && size.y > 0;
+}
+
 template <class Convert>
 void for_known_positions(GazeLog& log, const Convert& convert) {
   for (GazeSample& sample : log.samples) {
@@ -226,6 +254,69 @@ PositionUnit guess_position_unit(const std::vector<GazeSample>& samples, std::st
   const auto has_both_signs = [](const Range& range) { return range.low < 0 && range.high > 0; };
   const bool both_signs = has_both_signs(s.x) || has_both_signs(s.y);
   return s.share_small >= 0.95 && both_signs ? PositionUnit::deg : PositionUnit::px;
+}
+
+std::optional<GazeFault> doubt_position_unit(const std::vector<GazeSample>& samples, PositionUnit stated,
+                                             PositionOrigin origin, const DisplayGeometry& display) {
+  const std::optional<Extent> known_x = extent_of(samples, &GazeSample::u);
+  const std::optional<Extent> known_y = extent_of(samples, &GazeSample::v);
+  if (!known_x || !known_y) {
+    return std::nullopt;
+  }
+  const Extent& x = *known_x;
+  const Extent& y = *known_y;
+  const double most = std::max({-x.low, x.high, -y.low, y.high});
+  const double spread = std::max(x.high - x.low, y.high - y.low);
+  const Vec2d size_cm{display.width_cm, display.height_cm};
+  const Vec2d size_mm{10 * size_cm.x, 10 * size_cm.y};
+  const Vec2d size_px{static_cast<double>(display.width_px), static_cast<double>(display.height_px)};
+  const auto doubt = [&](std::string_view is_not, std::string_view but, std::string flag) {
+    return GazeFault{"position-unit",
+                     fmt::format("the positions are no {} but {}: 90 % of x lie in {:.4g} .. {:.4g}, of y in {:.4g} .. "
+                                 "{:.4g}",
+                                 is_not, but, x.low, x.high, y.low, y.high),
+                     std::move(flag)};
+  };
+
+  const bool is_deg = stated == PositionUnit::deg;
+  const bool is_length = stated == PositionUnit::mm || stated == PositionUnit::cm;
+  const std::string_view stated_name = is_deg ? "degrees" : stated == PositionUnit::mm ? "millimetres" : "centimetres";
+  const bool from_center = origin == PositionOrigin::center;
+  if (is_length && !from_center && most < 1.5 && spread > 0.02) {
+    return doubt(stated_name, "fractions of the display", "--gaze-unit fraction");
+  }
+  const Vec2d size = stated == PositionUnit::mm ? size_mm : size_cm;
+  const Vec2d reach = from_center ? Vec2d{0.5 * size.x, 0.5 * size.y} : size;
+  const auto far = [](const Extent& e, double most_of_it, bool both_ways) {
+    return e.high > 1.5 * most_of_it && (both_ways ? e.low < -1.5 * most_of_it : e.median > most_of_it);
+  };
+  // No eye turns by a right angle, and no gaze is beside the display for most of the time. Medians, because the ends
+  // may be marks of missing values.
+  const auto turns_too_far = [](const Extent& e) { return std::abs(e.median) > 90 || (e.low < -90 && e.high > 90); };
+  const bool is_wrong =
+      is_deg ? turns_too_far(x) || turns_too_far(y)
+             : is_length && is_known(size) && (far(x, reach.x, from_center) || far(y, reach.y, from_center));
+  if (!is_wrong) {
+    return std::nullopt;
+  }
+
+  const bool centered = std::min(x.low, y.low) < -0.1 * most;
+  const auto fits = [&](const Vec2d& wanted) {
+    const double low = centered ? -0.6 : -0.1;
+    const double high = centered ? 0.6 : 1.1;
+    return is_known(wanted) && x.low >= low * wanted.x && x.high <= high * wanted.x && y.low >= low * wanted.y &&
+           y.high <= high * wanted.y;
+  };
+  const std::string_view counts_from = centered == from_center ? ""
+                                       : centered              ? " --gaze-origin center"
+                                                               : " --gaze-origin top-left";
+  if (stated != PositionUnit::mm && fits(size_mm)) {
+    return doubt(stated_name, "millimetres", fmt::format("--gaze-unit mm{}", counts_from));
+  }
+  if (fits(size_px) || (is_deg && !is_known(size_px))) {
+    return doubt(stated_name, "pixels", fmt::format("--gaze-unit px{}", counts_from));
+  }
+  return is_deg ? std::optional(doubt(stated_name, "something else", "")) : std::nullopt;
 }
 
 void convert_positions(GazeLog& log, PositionUnit unit, PositionOrigin origin,

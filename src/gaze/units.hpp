@@ -24,6 +24,11 @@ std::optional<int> guess_time_exponent(const std::vector<double>& raw_times);
 // From the values of usable samples; `evidence` says what was seen. Always a guess.
 PositionUnit guess_position_unit(const std::vector<GazeSample>& samples, std::string& evidence);
 
+// Whether 90 % of the raw positions can be of the unit that was stated: degrees, or lengths on a display that is known.
+// Empty: they can. `origin` is where other units would count from.
+std::optional<GazeFault> doubt_position_unit(const std::vector<GazeSample>& samples, PositionUnit stated,
+                                             PositionOrigin origin, const DisplayGeometry& display);
+
 // Raw positions to fractions of the display, in place. Error(input) at `place` where a unit needs a display that is not
 // known well enough. Also warns of values that look like another origin.
 void convert_positions(GazeLog& log, PositionUnit unit, PositionOrigin origin,

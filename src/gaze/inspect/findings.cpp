@@ -13,6 +13,7 @@
 namespace gazetrace {
 namespace {
 
+constexpr std::string_view kPositionUnit = "position-unit";
 constexpr double kPlausibleLowHz = 5, kPlausibleHighHz = 5000;
 
 class Doctor {
@@ -69,6 +70,10 @@ class Doctor {
     const bool repeats = order.duplicates > 0 && order.identical_duplicates * 10 >= order.duplicates * 9;
     bool said = false;
     for (const GazeFault& fault : log_.faults) {
+      if (fault.code == kPositionUnit) {
+        add(FindingKind::suspicion, fault.code, fault.problem, "statistics: the sizes of the positions", fault.flag);
+        continue;
+      }
       if (fault.code != "unordered" && fault.code != "duplicates") {
         add(FindingKind::fault, fault.code, fault.problem, "the rows themselves", fault.flag);
         continue;
@@ -170,6 +175,10 @@ class Doctor {
   }
 
   bool position_unit() {
+    if (std::any_of(log_.faults.begin(), log_.faults.end(),
+                    [](const GazeFault& fault) { return fault.code == kPositionUnit; })) {
+      return true;  // was seen before degrees and lengths became places
+    }
     const std::string unit = fact_text("position unit");
     if (log_.kind == GazeKind::direction || usable_.size() < 10 || (unit != "px" && unit != "fraction")) {
       return false;
