@@ -21,14 +21,26 @@ namespace {
               error == ENOSPC ? "free some space and run again with --resume" : "check the output folder");
 }
 
+constexpr int kMaxAttempts = 1000;
+
+std::filesystem::path temporary_name(const std::filesystem::path& path, int attempt) {
+  const std::string number = std::to_string(::getpid()) + (attempt == 0 ? "" : "-" + std::to_string(attempt));
+  std::filesystem::path name = path;
+  return name.replace_filename("." + path.stem().string() + "." + number + ".part" + path.extension().string());
+}
+
 // Removes the temporary file unless it was renamed, and closes the descriptor in any case.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& final_path, std::filesystem::path temporary)
-      : final_path_(final_path), temporary_(std::move(temporary)) {
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) {
-      fail(final_path_, "cannot create the file", errno);
+  // The first name that nobody has: not another thread's, another process's, or one of the same number on another
+  // machine that shares the folder.
+  explicit TemporaryFile(const std::string& final_path) : final_path_(final_path) {
+    for (int attempt = 0; descriptor_ < 0; ++attempt) {
+      temporary_ = temporary_name(final_path, attempt);
+      descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && (errno != EEXIST || attempt == kMaxAttempts)) {
+        fail(final_path_, "cannot create the file", errno);
+      }
     }
   }
   ~TemporaryFile() {
@@ -77,10 +89,7 @@ class TemporaryFile {
 }  // namespace
 
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes) {
-  const std::filesystem::path final_path(path);
-  std::filesystem::path temporary = final_path;
-  temporary.replace_filename("." + final_path.stem().string() + ".part" + final_path.extension().string());
-  TemporaryFile file(path, temporary);
+  TemporaryFile file(path);
   file.write(bytes);
   file.rename();
 }

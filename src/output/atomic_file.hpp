@@ -8,7 +8,8 @@
 
 namespace gazetrace {
 
-// Writes `.name.part.ext` in the folder of `path` and renames it. On failure the temporary is removed, what stood under
+// Writes `.name.PID.part.ext` in the folder of `path` and renames it. Of several that write the same file at once, in
+// any processes, each succeeds and the last one's bytes stay. On failure the temporary is removed, what stood under
 // `path` stays, and Error(runtime) gives the path and the system's reason.
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes);
 

@@ -32,7 +32,9 @@ std::string suffix_of(const std::string& path) {
 
 std::string temporary_name(const std::string& path) {
   const fs::path name(path);
-  return (name.parent_path() / ("." + name.stem().string() + ".part" + name.extension().string())).string();
+  return (name.parent_path() /
+          ("." + name.stem().string() + "." + std::to_string(::getpid()) + ".part" + name.extension().string()))
+      .string();
 }
 
 // FFV1 keeps RGB, H.264 and HEVC code luma and two color differences of half the size.

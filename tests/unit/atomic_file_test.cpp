@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several that write the same file at once: two renders into one folder both write run.json.
+#include "output/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kWriters = 4, kTimes = 300;
+
+// `kTimes` files of 70000 bytes of one value; how many could not be written.
+int write_often(const std::string& path, unsigned char value) {
+  const std::vector<std::byte> bytes(70000, std::byte{value});
+  int failed = 0;
+  for (int i = 0; i < kTimes; ++i) {
+    try {
+      write_bytes_atomically(path, bytes);
+    } catch (const Error&) {
+      ++failed;
+    }
+  }
+  return failed;
+}
+
+void expect_one_writers_file(const TemporaryFolder& folder) {
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"run.json"});
+  const std::string bytes = file_bytes(folder / "run.json");
+  ASSERT_EQ(bytes.size(), 70000U);
+  EXPECT_EQ(bytes, std::string(70000, bytes[0]));
+}
+
+TEST(AtomicFile, ThreadsMayWriteTheSameFile) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run.json";
+  std::vector<int> failed(kWriters);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kWriters; ++i) {
+    threads.emplace_back(
+        [&, i] { failed[static_cast<std::size_t>(i)] = write_often(path, static_cast<unsigned char>(i)); });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(failed, std::vector<int>(kWriters));
+  expect_one_writers_file(folder);
+}
+
+TEST(AtomicFile, ProcessesMayWriteTheSameFile) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run.json";
+  std::vector<pid_t> children;
+  for (int i = 0; i < kWriters; ++i) {
+    children.push_back(::fork());
+    if (children.back() == 0) {
+      ::_exit(write_often(path, static_cast<unsigned char>(i)) == 0 ? 0 : 1);
+    }
+  }
+  for (const pid_t child : children) {
+    int status = -1;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  expect_one_writers_file(folder);
+}
+
+}  // namespace
+}  // namespace gazetrace
