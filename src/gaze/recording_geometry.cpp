@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
 namespace gazetrace {
 namespace {
@@ -51,6 +53,34 @@ void warn_about_density(GazeLog& log, const DisplayGeometry& used, const std::st
                     "is used",
                     place, stated.x, stated.y, x, y));
   }
+}
+
+// Size and distance are angles only together. Where the log has them by its pixels per degree, a part alone does
+// nothing.
+void warn_about_unused(GazeLog& log, const GazeReadOptions& options, const DisplayGeometry& used,
+                       const std::string& place) {
+  if (!log.pixels_per_degree || has_angles(used)) {
+    return;
+  }
+  const DisplayGeometry given = options.display.value_or(DisplayGeometry{});
+  std::vector<std::string_view> parts;
+  if (given.width_cm > 0 && given.height_cm > 0) {
+    parts.emplace_back("the size in cm");
+  }
+  if (given.distance_cm > 0) {
+    parts.emplace_back("the distance");
+  }
+  if (options.eye_cm || given.eye_x_cm != 0 || given.eye_y_cm != 0) {
+    parts.emplace_back("the eye's place");
+  }
+  if (parts.empty()) {
+    return;
+  }
+  const Vec2d& stated = *log.pixels_per_degree;
+  log.warnings.push_back(fmt::format(
+      "{}: not used: {} of the screen that {} given, because angles are taken from the log's {:.4g} x {:.4g} "
+      "pixels a degree; give --screen-cm and --screen-distance-cm both to overrule them",
+      place, fmt::join(parts, " and "), parts.size() > 1 ? "were" : "was", stated.x, stated.y));
 }
 
 // The eye's place is a thing of its own: whoever gives another distance has not said that the eye is before the center.
@@ -107,6 +137,7 @@ std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOp
   DisplayGeometry used = completed_geometry(given, stated);
   warn_about_size(log, given, stated, place);
   warn_about_density(log, used, place);
+  warn_about_unused(log, options, used, place);
   place_eye(log, options, stated, place, used);
   log.recording_geometry = used;
   return log.recording_geometry;

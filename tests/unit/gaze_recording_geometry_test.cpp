@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "gazetrace/gaze_inspect.hpp"
 #include "support/gaze_format_files.hpp"
@@ -96,6 +97,28 @@ TEST_F(GazeRecordingGeometry, PixelsPerDegreeAreHeldAgainstTheGivenScreen) {
   EXPECT_THAT(with(24 * kRadPerDeg * 100, 13.5 * kRadPerDeg * 100),
               ElementsAre(AllOf(HasSubstr("states 40 x 40 pixels a degree"), HasSubstr("has 80 x 80"))));
   EXPECT_THAT(with(48 * kRadPerDeg * 100, 26 * kRadPerDeg * 100), ElementsAre(HasSubstr("pixels a degree")));
+}
+
+TEST_F(GazeRecordingGeometry, APartThatDoesNothingIsTold) {
+  const std::string text = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", "100\t1\t1\t9\t...\n101\t1\t1\t9\t...\n");
+  const auto with = [&](const DisplayGeometry& display, std::optional<Vec2d> eye_cm) {
+    GazeReadOptions options;
+    options.display = display;
+    options.eye_cm = eye_cm;
+    return read("a.asc", text, options).warnings;
+  };
+  EXPECT_THAT(with({}, Vec2d{10, 5}), ElementsAre(AllOf(HasSubstr("not used: the eye's place"), HasSubstr("40 x 40"))));
+  EXPECT_THAT(with({.distance_cm = 57}, Vec2d{10, 5}), ElementsAre(HasSubstr("the distance and the eye's place")));
+  EXPECT_THAT(with({.width_cm = 40, .height_cm = 30}, std::nullopt), ElementsAre(HasSubstr("the size in cm")));
+  // Pixels alone are used, and with size and distance all is.
+  EXPECT_THAT(with({.width_px = 1920, .height_px = 1080}, std::nullopt), IsEmpty());
+  const double width_cm = 48 * kRadPerDeg * 100;
+  const double height_cm = 27 * kRadPerDeg * 100;
+  EXPECT_THAT(with({.width_cm = width_cm, .height_cm = height_cm, .distance_cm = 100}, Vec2d{10, 5}), IsEmpty());
+  // A log without pixels per degree keeps what is given for whoever completes it.
+  GazeReadOptions options;
+  options.display = DisplayGeometry{.width_px = 1000, .height_px = 500, .distance_cm = 57};
+  EXPECT_THAT(read("b.csv", "t[ms],x[px],y[px]\n0,500,250\n2,510,250\n", options).warnings, IsEmpty());
 }
 
 }  // namespace
