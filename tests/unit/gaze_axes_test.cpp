@@ -134,6 +134,23 @@ TEST_F(GazeAxisFindings, AWitnessOfOneEyeLeavesTheOtherUntested) {
   }
 }
 
+// However often a file tells of a fixation: its samples are one account of it.
+TEST_F(GazeAxisFindings, FixationsToldAgainAreOneAccount) {
+  const std::string text = two_eyes(std::nullopt, true);
+  std::string again;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at) + 1;
+    const std::string line = text.substr(at, end - at);
+    again += line.starts_with("EFIX") ? line + line + line : line;
+    at = end;
+  }
+  for (const std::string& told : {text, again}) {
+    const GazeInspection report = inspect("a.asc", told);
+    EXPECT_EQ(report.axes[1].verdict, AxisVerdict::confirmed);
+    EXPECT_THAT(report.axes[1].evidence, HasSubstr("40 values"));  // 20 of each eye
+  }
+}
+
 TEST_F(GazeAxisFindings, WithoutAWitnessItCannotBeToldWhich) {
   const std::string text = two_eyes(Eye::left, false);
   const GazeInspection report = inspect("a.asc", text);

@@ -108,6 +108,7 @@ class AscReader {
       block_start_ = time(word(1));
       in_block_ = true;
       last_stamp_.clear();
+      compared_.fill(log_.samples.size());  // the clock may start anew
       block_.has_left = has_word("LEFT") || !has_word("RIGHT");
       block_.has_right = has_word("RIGHT");
     } else if (key == "END") {
@@ -234,7 +235,8 @@ class AscReader {
   }
 
   // The tracker's own mean of a fixation, behind the duration, or behind HREF's where both are written, against that of
-  // its samples, which stand above it.
+  // its samples, which stand above it. Fixations of one eye follow each other, so each sample is looked at for one
+  // only.
   void compare_fixation(Eye eye, std::int64_t begin_ns, std::int64_t end_ns) {
     const std::size_t column = words_.size() == 8 || words_.size() == 10 ? 5 : 8;
     if (words_.size() < column + 2) {
@@ -243,13 +245,19 @@ class AscReader {
     double x = 0;
     double y = 0;
     double count = 0;
-    for (auto sample = log_.samples.rbegin(); sample != log_.samples.rend() && sample->t_ns >= begin_ns; ++sample) {
-      if (sample->eye == eye && sample->t_ns <= end_ns && !std::isnan(sample->u)) {
-        x += sample->u;
-        y += sample->v;
+    std::size_t& compared = compared_[eye == Eye::right ? 1 : 0];
+    const auto first = log_.samples.begin() + static_cast<std::ptrdiff_t>(compared);
+    const auto behind = std::partition_point(first, log_.samples.end(),
+                                             [&](const GazeSample& sample) { return sample.t_ns <= end_ns; });
+    for (auto sample = behind; sample != first && (sample - 1)->t_ns >= begin_ns; --sample) {
+      const GazeSample& s = *(sample - 1);
+      if (s.eye == eye && !std::isnan(s.u)) {
+        x += s.u;
+        y += s.v;
         ++count;
       }
     }
+    compared = static_cast<std::size_t>(behind - log_.samples.begin());
     if (count > 0) {
       const Vec2d mean{number(column) - left_px_, number(column + 1) - top_px_};
       fixations_.add(x / count, y / count, mean.x, mean.y);
@@ -414,6 +422,7 @@ class AscReader {
   std::array<std::vector<Span>, 2> blinks_, saccades_;
   WitnessTally fixations_;
   std::array<WitnessTally, 2> fixations_of_eye_;
+  std::array<std::size_t, 2> compared_{};  // of each eye: the first sample behind its last fixation in the block
 };
 
 }  // namespace
