@@ -252,6 +252,16 @@ TEST_F(GazeMissingValues, WhereGazeIsAPlaceIsAPlace) {
   }
   EXPECT_EQ(finding(inspect("a.csv", whole, full_hd()), "missing-value"), nullptr);
   EXPECT_EQ(finding(inspect("b.csv", exact, full_hd()), "missing-value"), nullptr);
+  // A cross between trials is where gaze is most often, and in four of five rows to the pixel.
+  std::string cross = "t[ms],x[px],y[px]\n";
+  for (int i = 0; i < 4000; ++i) {
+    const int trial = i / 40;
+    const bool at_cross = trial % 2 == 0;
+    cross += at_cross ? fmt::format("{},{},540\n", 2 * i, i % 5 == 2 ? 959 + i % 3 : 960)
+                      : fmt::format("{},{:.2f},{:.2f}\n", 2 * i, 960 + 700 * std::sin(trial * 2.3) + std::sin(i * 1.9),
+                                    540 + 400 * std::cos(trial * 3.7) + std::cos(i * 1.3));
+  }
+  EXPECT_EQ(finding(inspect("c.csv", cross, full_hd()), "missing-value"), nullptr);
 }
 
 }  // namespace
