@@ -9,16 +9,21 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <new>
 #include <string_view>
 #include <utility>
 
+#include "core/png_file.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
 
 constexpr int kMaxSidePx = 65536;
+constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30U;        // 4 GiB of bytes, 16 of floats
+constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;  // whatever its size
 
 // OpenImageIO multiplies PNG colour by alpha unless told not to; colour under alpha 0 would be lost.
 OIIO::ImageSpec keep_alpha_unassociated() {
@@ -31,15 +36,52 @@ std::string reason(const std::string& message) {
   return message.empty() ? std::string("not a readable picture") : message;
 }
 
-const OIIO::ImageSpec& check_size(const OIIO::ImageInput& input, const std::string& place) {
-  const OIIO::ImageSpec& spec = input.spec();
+// A picture that is being read, with the bytes that its reader reads.
+struct OpenPicture {
+  std::vector<std::uint8_t> bytes;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> reader;
+  std::unique_ptr<OIIO::ImageInput> input;
+  std::uint64_t file_size = 0;
+};
+
+// How many pixels a byte of a file can stand for, by OpenImageIO's name of the format: for PNG deflate's 1032 bytes of
+// 8 pixels, rounded up, and more than any picture has that is worth keeping for others. Formats that are not named hold
+// any number of equal pixels.
+std::uint64_t most_pixels_a_byte(std::string_view format) {
+  constexpr std::array<std::string_view, 4> kOthers{"jpeg", "hdr", "bmp", "openexr"};
+  return format == "png" ? 8448 : std::find(kOthers.begin(), kOthers.end(), format) != kOthers.end() ? 65536 : 0;
+}
+
+// Before any memory is asked for: the sizes are what a header of a few bytes says.
+const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string& place) {
+  const OIIO::ImageSpec& spec = picture.input->spec();
+  const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kMaxSidePx || spec.height > kMaxSidePx ||
       spec.depth > 1) {
     throw Error(ErrorKind::input, place,
-                "a picture of " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels and " +
-                    std::to_string(spec.nchannels) + " channels cannot be used");
+                "a picture of " + size + " pixels and " + std::to_string(spec.nchannels) + " channels cannot be used");
+  }
+  const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  if (pixels > kMaxPixels) {
+    throw Error(ErrorKind::input, place,
+                "a picture of " + size + " pixels is too large; " + std::to_string(kMaxPixels) + " are the most",
+                "make it smaller");
+  }
+  const std::uint64_t a_byte = most_pixels_a_byte(picture.input->format_name());
+  if (a_byte > 0 && pixels > kPixelsOfAnyFile + a_byte * picture.file_size) {
+    throw Error(ErrorKind::input, place,
+                "the picture is damaged: a file of " + std::to_string(picture.file_size) + " bytes cannot hold " +
+                    size + " pixels",
+                "export it again");
   }
   return spec;
+}
+
+[[noreturn]] void fail_for_memory(const OIIO::ImageSpec& spec, const std::string& place) {
+  throw Error(ErrorKind::runtime, place,
+              "there is no memory for a picture of " + std::to_string(spec.width) + " x " +
+                  std::to_string(spec.height) + " pixels",
+              "make it smaller");
 }
 
 // Spreads `channels` (1 to 4) of each pixel over R, G, B, A in place of a second buffer where there are 4 already.
@@ -78,16 +120,21 @@ std::vector<T> read_channels(OIIO::ImageInput& input, OIIO::TypeDesc type, int c
                              const std::string& place) {
   const OIIO::ImageSpec& spec = input.spec();
   const auto count = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height);
-  std::vector<T> pixels(count * static_cast<std::size_t>(channels));
-  if (!input.read_image(0, 0, 0, channels, type, pixels.data())) {
-    const std::string message = reason(input.geterror());
-    throw Error(ErrorKind::input, place, "the picture is damaged: " + message, "export it again");
+  try {
+    std::vector<T> pixels(count * static_cast<std::size_t>(channels));
+    if (!input.read_image(0, 0, 0, channels, type, pixels.data())) {
+      const std::string message = reason(input.geterror());
+      throw Error(ErrorKind::input, place, "the picture is damaged: " + message, "export it again");
+    }
+    return to_rgba(std::move(pixels), count, channels, opaque);
+  } catch (const std::bad_alloc&) {
+    fail_for_memory(spec, place);
   }
-  return to_rgba(std::move(pixels), count, channels, opaque);
 }
 
-ImageRgba read_rgba(OIIO::ImageInput& input, const std::string& place) {
-  const OIIO::ImageSpec& spec = check_size(input, place);
+ImageRgba read_rgba(const OpenPicture& picture, const std::string& place) {
+  const OIIO::ImageSpec& spec = check_size(picture, place);
+  OIIO::ImageInput& input = *picture.input;
   input.threads(1);  // callers decode many pictures side by side
   ImageRgba image;
   image.width_px = spec.width;
@@ -110,6 +157,22 @@ ImageRgba read_rgba(OIIO::ImageInput& input, const std::string& place) {
     }
   }
   image.has_alpha = channels % 2 == 0 && any_transparent(image.floats, 1.0F);
+  return image;
+}
+
+ImageRgb read_rgb_float(OIIO::ImageInput& input, const std::string& place) {
+  const OIIO::ImageSpec& spec = input.spec();
+  const int channels = spec.nchannels >= 3 ? 3 : 1;
+  ImageRgb image(spec.width, spec.height);
+  const std::size_t count = image.pixels.size();
+  std::vector<float> values(count * static_cast<std::size_t>(channels));
+  if (!input.read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
+    throw Error(ErrorKind::input, place, "the picture is damaged: " + reason(input.geterror()), "export it again");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    image.pixels[i] = channels == 3 ? Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]}
+                                    : Vec3f{values[i], values[i], values[i]};
+  }
   return image;
 }
 
@@ -136,6 +199,44 @@ const char* name_by_content(std::span<const std::uint8_t> bytes) {
   return nullptr;
 }
 
+// `name` tells the format. The reader's bytes are the picture's own, or outlive it.
+void open_memory(OpenPicture& picture, std::span<const std::uint8_t> bytes, const char* name, OIIO::ImageSpec config) {
+  picture.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(
+      OIIO::cspan<unsigned char>(bytes.data(), static_cast<std::ptrdiff_t>(bytes.size())));
+  // As an attribute: 2.4 loses a proxy that is handed to open() beside a config.
+  void* proxy = picture.reader.get();
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
+  picture.input = OIIO::ImageInput::open(name, &config, picture.reader.get());
+}
+
+void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, const OIIO::ImageSpec& config,
+              const std::string& place) {
+  picture.bytes = essential_png(file_bytes, place);
+  open_memory(picture, picture.bytes, "memory.png", config);
+}
+
+// Error(input) where the file begins as PNG does and is not; an empty `input` where there is no reader for it.
+OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, const std::string& place) {
+  OpenPicture picture;
+  std::error_code ignored;
+  picture.file_size = std::filesystem::file_size(path, ignored);
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes(8);
+  const auto read = [&](std::size_t from) {
+    return static_cast<bool>(
+        stream.read(reinterpret_cast<char*>(bytes.data() + from), static_cast<std::streamsize>(bytes.size() - from)));
+  };
+  if (read(0) && is_png(bytes)) {
+    bytes.resize(std::max<std::uint64_t>(picture.file_size, 8));
+    if (read(8)) {
+      open_png(picture, bytes, config, place);
+      return picture;
+    }
+  }
+  picture.input = OIIO::ImageInput::open(path, &config);
+  return picture;
+}
+
 }  // namespace
 
 ImageRgba read_image_rgba(const std::string& path, const std::string& place) {
@@ -143,12 +244,12 @@ ImageRgba read_image_rgba(const std::string& path, const std::string& place) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
   }
-  const OIIO::ImageSpec config = keep_alpha_unassociated();
-  const auto input = OIIO::ImageInput::open(path, &config);
-  if (!input) {
+  const std::string full_place = place + " ('" + path + "')";
+  const OpenPicture picture = open_file(path, keep_alpha_unassociated(), full_place);
+  if (!picture.input) {
     throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(OIIO::geterror()));
   }
-  return read_rgba(*input, place + " ('" + path + "')");
+  return read_rgba(picture, full_place);
 }
 
 ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place) {
@@ -156,16 +257,17 @@ ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::s
   if (name == nullptr) {
     throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
   }
-  OIIO::ImageSpec config = keep_alpha_unassociated();
-  OIIO::Filesystem::IOMemReader reader(OIIO::cspan<unsigned char>(file_bytes.data(), file_bytes.size()));
-  // As an attribute: 2.4 loses a proxy that is handed to open() beside a config.
-  void* proxy = &reader;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
-  const auto input = OIIO::ImageInput::open(name, &config, &reader);
-  if (!input) {
+  OpenPicture picture;
+  picture.file_size = file_bytes.size();
+  if (is_png(file_bytes)) {
+    open_png(picture, file_bytes, keep_alpha_unassociated(), place);
+  } else {
+    open_memory(picture, file_bytes, name, keep_alpha_unassociated());
+  }
+  if (!picture.input) {
     throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(OIIO::geterror()));
   }
-  return read_rgba(*input, place);
+  return read_rgba(picture, place);
 }
 
 ImageRgb read_image_rgb_float(const std::string& path) {
@@ -173,23 +275,16 @@ ImageRgb read_image_rgb_float(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw Error(ErrorKind::input, path, "there is no such file");
   }
-  const auto input = OIIO::ImageInput::open(path);
-  if (!input) {
+  const OpenPicture picture = open_file(path, OIIO::ImageSpec(), path);
+  if (!picture.input) {
     throw Error(ErrorKind::input, path, "cannot be read: " + reason(OIIO::geterror()));
   }
-  const OIIO::ImageSpec& spec = check_size(*input, path);
-  const int channels = spec.nchannels >= 3 ? 3 : 1;
-  ImageRgb image(spec.width, spec.height);
-  const std::size_t count = image.pixels.size();
-  std::vector<float> values(count * static_cast<std::size_t>(channels));
-  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::FLOAT, values.data())) {
-    throw Error(ErrorKind::input, path, "the picture is damaged: " + reason(input->geterror()), "export it again");
+  const OIIO::ImageSpec& spec = check_size(picture, path);
+  try {
+    return read_rgb_float(*picture.input, path);
+  } catch (const std::bad_alloc&) {
+    fail_for_memory(spec, path);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    image.pixels[i] = channels == 3 ? Vec3f{values[3 * i], values[3 * i + 1], values[3 * i + 2]}
-                                    : Vec3f{values[i], values[i], values[i]};
-  }
-  return image;
 }
 
 std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, int height_px, int bits,
