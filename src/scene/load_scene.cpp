@@ -15,6 +15,7 @@
 #include "scene/gltf_mesh.hpp"
 #include "scene/gltf_node.hpp"
 #include "scene/parallel_errors.hpp"
+#include "scene/smooth_glass.hpp"
 
 namespace gazetrace {
 namespace {
@@ -161,6 +162,7 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   scene.motions = std::move(placed.motions);
   scene.deformations = std::move(placed.deformations);
   scene.lights = make_lights(document, nodes, scene.warnings);
+  warn_of_lights_behind_glass(scene, scene.warnings);
   scene.cameras = make_cameras(document, nodes, parents, scene.warnings);
   list_unshown_motion(document, nodes, parents, scene.ignored, scene.warnings);
   for (std::size_t i = 0; i < document.animations.size(); ++i) {
