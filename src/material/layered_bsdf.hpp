@@ -10,10 +10,11 @@
 // All facets are the same (lobes/ggx.hpp). An iridescent film changes their Fresnel (lobes/thin_film.hpp). Every part
 // has its repeated scattering, so that each is white by itself where its colours are; lobes/layering.hpp says how a
 // layer takes from what is below. Reciprocal: f / (index on o's side)^2 is symmetric.
-// Energy: layered_bsdf_test states the bounds. Anisotropic facets read the tables at the roughness that masks alike
-// towards each direction; their diffuse light is Lambertian.
-// Left out: light that a clearcoat throws back to the base, coats' own absorption, sheen on the inside of bodies, the
-// change of a film's colours under repeated scattering.
+// Energy: layered_bsdf_test states the bounds. Anisotropic facets have tables of their own
+// (lobes/anisotropic_albedo.hpp); their diffuse light is Lambertian. Left isotropic: a body's repeated scattering
+// (lobes/dielectric_albedo.hpp) at their mean roughness. White glass of any strength returns 0.98 to 1.01 as a sheet,
+// but 0.64 to 1.27 as a body near its horizon. Left out: light that a clearcoat throws back to the base, coats' own
+// absorption, sheen on the inside of bodies, the change of a film's colours under repeated scattering.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +40,7 @@ class LayeredBsdf {
       : s_(surface),
         wo_(wo),
         facets_(surface),
-        terms_(facets_.mean_roughness()),
+        terms_(facets_.terms()),
         at_o_(terms_at(wo)),
         coat_frame_(surface.clearcoat_normal),
         coat_wo_(coat_frame_.to_local(wo)),
@@ -56,7 +57,8 @@ class LayeredBsdf {
       under_sheen_ = {s_.inside ? 0.0F : sheen * sheen_o_.kept,
                       sheen * interpolate_average(kAlbedoTables.sheen_average, sheen_row_)};
     }
-    plain_ = s_.f0 == Vec3f{kDielectricF0, kDielectricF0, kDielectricF0} && s_.f90 == 1.0F && !(s_.film > 0);
+    plain_ = s_.f0 == Vec3f{kDielectricF0, kDielectricF0, kDielectricF0} && s_.f90 == 1.0F && !(s_.film > 0) &&
+             !facets_.anisotropic();
     film_f0_ = s_.film > 0 ? film_f0(kMiddle) : 0.0F;
     diffuse_o_ = diffuse_scale(wo.z, at_o_);
     if (is_bent()) {
@@ -195,12 +197,7 @@ class LayeredBsdf {
 
   // Burley's shape belongs to one roughness.
   [[nodiscard]] bool lambertian() const noexcept { return kDiffuse != DiffuseModel::burley || facets_.anisotropic(); }
-  [[nodiscard]] AlbedoTerms terms_at(const Vec3f& v) const noexcept {
-    if (facets_.anisotropic()) {
-      return albedo_terms(albedo_row(facets_.roughness_towards(v)), std::clamp(v.z, 0.0F, 1.0F));
-    }
-    return terms_.at(v.z);
-  }
+  [[nodiscard]] AlbedoTerms terms_at(const Vec3f& v) const noexcept { return facets_.terms_at(terms_, v); }
 
   // The normal reflectance of Schlick's formula that shows what the film does under one angle; strongest channel.
   [[nodiscard]] float film_f0(float cosine) const noexcept {

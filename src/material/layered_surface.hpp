@@ -4,6 +4,7 @@
 #pragma once
 
 #include "material/bsdf.hpp"
+#include "material/lobes/anisotropic_albedo.hpp"
 #include "material/lobes/dielectric_albedo.hpp"
 
 namespace gazetrace {
@@ -11,6 +12,7 @@ namespace gazetrace {
 struct LayeredSurface {
   Surface base;
   float anisotropy = 0;
+  const AnisotropicAlbedo* anisotropic = nullptr;  // there if anisotropy > 0
   // Schlick's reflectances of the dielectric part, KHR_materials_ior and KHR_materials_specular applied.
   Vec3f f0{kDielectricF0, kDielectricF0, kDielectricF0};
   float f90 = 1;

@@ -94,6 +94,7 @@ LayeredHit read_layered_hit(const RenderScene& scene, const ChunkHits& chunk, st
     const float c = std::cos(from.anisotropy.rotation_rad);
     const float n = std::sin(from.anisotropy.rotation_rad);
     s.anisotropy = from.anisotropy.strength * texel.z;
+    s.anisotropic = material.anisotropic;
     const LocalFrame tangent = LocalFrame::along(shading, chunk.tangent.get(i));
     const Vec3f across = cross(shading * chunk.side[i], tangent.s) * chunk.bitangent_sign[i];
     hit.frame = LocalFrame::along(shading, tangent.s * (c * x - n * y) + across * (n * x + c * y));

@@ -83,6 +83,12 @@ LayeredMaterials make_layered_materials(const Scene& scene) {
         to.albedo[c] = known;
       }
     }
+    if (layers.anisotropy) {
+      if (out.anisotropic == nullptr) {
+        out.anisotropic = std::make_unique<AnisotropicAlbedo>(make_anisotropic_albedo());
+      }
+      to.anisotropic = out.anisotropic.get();
+    }
     const TextureRef* shared = shared_coordinates(from);
     const auto read = [&](const TextureRef& ref) { return shading_texture(scene, ref, shared); };
     to.clearcoat = read(from.clearcoat.texture);

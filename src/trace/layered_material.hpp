@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gazetrace/scene.hpp"
+#include "material/lobes/anisotropic_albedo.hpp"
 #include "material/lobes/dielectric_albedo.hpp"
 #include "trace/texture.hpp"
 
@@ -23,6 +24,7 @@ struct LayeredMaterial {
   float f0 = 0.04F;                                 // of the index of refraction, not yet tinted
   std::array<float, 3> ior{1.5F, 1.5F, 1.5F};       // of red, green and blue; all the same without dispersion
   std::array<const DielectricAlbedo*, 3> albedo{};  // of those; there if solid and transmissive
+  const AnisotropicAlbedo* anisotropic = nullptr;   // there if anisotropic
 
   ShadingTexture clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness, specular,
       specular_color, transmission, anisotropy, film, film_thickness, diffuse_transmission, diffuse_transmission_color;
@@ -34,6 +36,7 @@ struct LayeredMaterials {
   std::vector<LayeredMaterial> materials;
   std::vector<std::uint32_t> index;  // of each of the scene's materials into `materials`; kNoLayers: none
   std::vector<std::unique_ptr<DielectricAlbedo>> albedos;
+  std::unique_ptr<AnisotropicAlbedo> anisotropic;
 
   static constexpr std::uint32_t kNoLayers = 0xffffffffU;
   [[nodiscard]] const LayeredMaterial* of(std::uint32_t material) const {

@@ -19,9 +19,15 @@ inline const DielectricAlbedo& glass_albedo() {
   return table;
 }
 
+inline const AnisotropicAlbedo& anisotropic_albedo() {
+  static const AnisotropicAlbedo table = make_anisotropic_albedo();
+  return table;
+}
+
 inline LayeredSurface layered(float metallic, float roughness, const Vec3f& color = {1, 1, 1}) {
   LayeredSurface s;
   s.base = {color, metallic, roughness};
+  s.anisotropic = &anisotropic_albedo();
   return s;
 }
 

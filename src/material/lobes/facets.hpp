@@ -33,17 +33,21 @@ class Facets {
   [[nodiscard]] float opaque() const noexcept { return opaque_; }
   [[nodiscard]] float clear() const noexcept { return clear_; }
   [[nodiscard]] float eta() const noexcept { return eta_; }  // index beyond the surface over that on the viewer's side
-  // Roughness of the isotropic surface that masks alike: over all directions, and towards v (Smith's masking knows the
-  // slopes along v only; near the normal, where they all count, their mean square).
+  // Of the isotropic surface whose slopes have the same mean square.
   [[nodiscard]] float mean_roughness() const noexcept {
-    return s_.anisotropy > 0 ? std::sqrt(std::sqrt(mean_square())) : s_.base.roughness;
-  }
-  [[nodiscard]] float roughness_towards(const Vec3f& v) const noexcept {
-    const float x = alpha_.x * v.x;
-    const float y = alpha_.y * v.y;
-    return std::sqrt(std::sqrt(std::min(x * x + y * y + v.z * v.z * mean_square(), 1.0F)));
+    return anisotropic() ? std::sqrt(std::sqrt(0.5F * (alpha_.x * alpha_.x + alpha_.y * alpha_.y))) : s_.base.roughness;
   }
   [[nodiscard]] bool anisotropic() const noexcept { return s_.anisotropy > 0; }
+  [[nodiscard]] FacetTerms terms() const noexcept {
+    if (!anisotropic()) {
+      return FacetTerms(s_.base.roughness);
+    }
+    const AnisotropicTerms::Averages average = AnisotropicTerms(*s_.anisotropic, alpha_).averages();
+    return {mean_roughness(), average.e, average.b};
+  }
+  [[nodiscard]] AlbedoTerms terms_at(const FacetTerms& terms, const Vec3f& v) const noexcept {
+    return anisotropic() ? AnisotropicTerms(*s_.anisotropic, alpha_).at(v) : terms.at(v.z);
+  }
 
   // Reflectances of the three parts under the angle `cosine` >= 0 to the facet.
   [[nodiscard]] Vec3f metal_fresnel(float cosine) const noexcept {
@@ -139,7 +143,6 @@ class Facets {
   }
 
  private:
-  [[nodiscard]] float mean_square() const noexcept { return 0.5F * (alpha_.x * alpha_.x + alpha_.y * alpha_.y); }
   [[nodiscard]] static Vec3f schlick(const Vec3f& f0, float f90, float cosine) noexcept {
     return f0 + (Vec3f{f90, f90, f90} - f0) * schlick_weight(cosine);
   }

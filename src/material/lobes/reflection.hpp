@@ -20,6 +20,12 @@ struct FacetTerms {
         e_average(albedo_average(row)),
         b_average(interpolate_average(kAlbedoTables.b_average, row)),
         kept(e_average * repeated_share(1.0F - e_average)) {}
+  // Of facets that the rows do not hold: `at` is not theirs.
+  FacetTerms(float roughness, float e_average_of, float b_average_of) noexcept
+      : row(albedo_row(std::clamp(roughness, 0.0F, 1.0F))),
+        e_average(e_average_of),
+        b_average(b_average_of),
+        kept(e_average * repeated_share(1.0F - e_average)) {}
 
   [[nodiscard]] AlbedoTerms at(float cosine) const noexcept {
     return albedo_terms(row, std::clamp(cosine, 0.0F, 1.0F));
