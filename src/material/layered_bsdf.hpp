@@ -10,11 +10,12 @@
 // All facets are the same (lobes/ggx.hpp). An iridescent film changes their Fresnel (lobes/thin_film.hpp). Every part
 // has its repeated scattering, so that each is white by itself where its colours are; lobes/layering.hpp says how a
 // layer takes from what is below. Reciprocal: f / (index on o's side)^2 is symmetric.
-// Energy: layered_bsdf_test states the bounds. Anisotropic facets have tables of their own
-// (lobes/anisotropic_albedo.hpp); their diffuse light is Lambertian. Left isotropic: a body's repeated scattering
-// (lobes/dielectric_albedo.hpp) at their mean roughness. White glass of any strength returns 0.98 to 1.01 as a sheet,
-// but 0.64 to 1.27 as a body near its horizon. Left out: light that a clearcoat throws back to the base, coats' own
-// absorption, sheen on the inside of bodies, the change of a film's colours under repeated scattering.
+// Energy: layered_bsdf_test and layered_furnace_test state the bounds, and what films of high index lose. Anisotropic
+// facets have tables of their own (lobes/anisotropic_albedo.hpp); their diffuse light is Lambertian. Left isotropic: a
+// body's repeated scattering (lobes/dielectric_albedo.hpp) at their mean roughness. White glass of any strength returns
+// 0.98 to 1.01 as a sheet, but 0.64 to 1.27 as a body near its horizon. Left out: light that a clearcoat throws back to
+// the base, coats' own absorption, sheen on the inside of bodies, the change of a film's colours under repeated
+// scattering.
 #pragma once
 
 #include <algorithm>

@@ -6,6 +6,8 @@
 //   narrow lobes (facets, refraction)                   1 - max(A(o), A(i))
 //       exact for mirrors, where both are equal; KHR_materials_sheen states this form. Elsewhere it loses light, a few
 //       percent under a clearcoat, and never makes any.
+// The broad form over a base that is not quite Lambertian makes some: 1.3 % under a smooth clearcoat, 1.6 % under
+// sheen, 3.3 % under a clearcoat over sheen, at roughness 0 seen from above (layered_furnace_test).
 #pragma once
 
 #include <algorithm>
