@@ -2,9 +2,9 @@
 // Furnace and reciprocity tables of every kind of material: what a white surface returns of even light from all around,
 // and how far f(a, b) and f(b, a) differ.
 //   gazetrace_bsdf_tables [--samples N]
-// Furnace: directional albedo from N samples (weights f cos / pdf), the least and the most over cosines 0.02 .. 1 and
-// over metalness 0, 0.5, 1, of the red channel (every kind is white there); power, where light passes into a body.
-// Reciprocity: largest |f(a, b) - f(b, a)| / (f(a, b) + f(b, a) + 1e-3) over 2000 pairs of
+// Furnace: directional albedo from N samples (weights f cos / pdf), the least and the most over cosines 0.02 .. 1,
+// azimuths 0 .. 90 deg and over metalness 0, 0.5, 1, of the red channel (every kind is white there); power, where light
+// passes into a body. Reciprocity: largest |f(a, b) - f(b, a)| / (f(a, b) + f(b, a) + 1e-3) over 2000 pairs of
 // directions a cell, radiance over squared index where light passes into a body.
 #include <fmt/core.h>
 
@@ -30,6 +30,7 @@ using Model = LayeredBsdf<DiffuseModel::burley>;
 constexpr std::array kRoughness{0.0F, 1e-4F, 0.01F, 0.1F, 0.3F, 0.6F, 1.0F};
 constexpr std::array kMetalness{0.0F, 0.5F, 1.0F};
 constexpr std::array kCosines{0.02F, 0.1F, 0.3F, 0.6F, 1.0F};
+constexpr std::array kTurns{0.0F, 0.1F, 0.2F, 0.25F};  // of the view about the normal
 constexpr SampleKey kKey = make_sample_key(12, 0, 0);
 
 Vec3f direction(float mu, float turns) {
@@ -38,8 +39,8 @@ Vec3f direction(float mu, float turns) {
   return {sine * circle.x, sine * circle.y, mu};
 }
 
-double furnace(const LayeredSurface& surface, float mu, std::uint32_t samples) {
-  const Model model(surface, direction(mu, 0.1F));
+double furnace(const LayeredSurface& surface, float mu, float turns, std::uint32_t samples) {
+  const Model model(surface, direction(mu, turns));
   double sum = 0;
   for (std::uint32_t i = 0; i < samples; ++i) {
     const BsdfSample chosen = model.sample(sample_2d(kKey, i, 0), sample_2d(kKey, i, 1).x);
@@ -98,9 +99,11 @@ int main(int argc, char** argv) {
       double most = 0;
       for (const float metallic : kMetalness) {
         for (const float mu : kCosines) {
-          const double albedo = furnace(test::layered_kinds(roughness, metallic)[kind].surface, mu, samples);
-          least = std::min(least, albedo);
-          most = std::max(most, albedo);
+          for (const float turns : kTurns) {
+            const double albedo = furnace(test::layered_kinds(roughness, metallic)[kind].surface, mu, turns, samples);
+            least = std::min(least, albedo);
+            most = std::max(most, albedo);
+          }
         }
       }
       fmt::print("{:>16}", fmt::format("{:.3f} {:.3f}", least, most));
