@@ -39,14 +39,16 @@ struct Extremes {
   double least = 9, most = 0;
   std::string least_at, most_at;
 
-  void sweep(const std::string& name, const std::function<void(LayeredSurface&)>& dress) {
+  // Seen from the side (x, y), of length 1.
+  void sweep(const std::string& name, const std::function<void(LayeredSurface&)>& dress, float x = 0.8F,
+             float y = 0.6F) {
     for (const float metallic : {0.0F, 1.0F}) {
       for (const float roughness : kRoughness) {
         LayeredSurface s = layered(metallic, roughness);
         dress(s);
         for (const float cosine : kCosines) {
           const float sine = std::sqrt(1 - cosine * cosine);
-          const Model bsdf(s, {0.8F * sine, 0.6F * sine, cosine});
+          const Model bsdf(s, {x * sine, y * sine, cosine});
           Vec3d albedo = mean_weight(bsdf, 1U << 11U);
           if (std::max({albedo.x, albedo.y, albedo.z}) > 1.008) {  // rare heavy weights, or true?
             albedo = mean_weight(bsdf, 1U << 14U);
@@ -121,6 +123,28 @@ TEST(LayeredFurnaces, SheenOfEveryRoughness) {
     }
   }
   found.expect(0.92, 1.018);
+}
+
+// Their repeated scattering reads the isotropic table at the mean of both slopes: near the horizon it returns too little
+// along one of them and too much along the other.
+TEST(LayeredFurnaces, AnisotropicBodies) {
+  for (const bool inside : {false, true}) {
+    Extremes found;
+    for (const float anisotropy : {0.3F, 0.8F, 1.0F}) {
+      for (const float azimuth : {0.0F, 0.7F, 1.571F}) {
+        const auto dress = [&](LayeredSurface& s) {
+          s.transmission = 1;
+          s.solid = true;
+          s.inside = inside;
+          s.dielectric = &test::glass_albedo();
+          s.anisotropy = anisotropy;
+        };
+        found.sweep(std::to_string(anisotropy) + " from " + std::to_string(azimuth), dress, std::cos(azimuth),
+                    std::sin(azimuth));
+      }
+    }
+    found.expect(inside ? 0.70 : 0.62, inside ? 1.30 : 1.06);
+  }
 }
 
 struct Dress {
