@@ -25,11 +25,15 @@ constexpr SampleKey kKey = make_sample_key(13, 0, 0);
 constexpr std::array kRoughness{0.0F, 0.1F, 0.3F, 0.5F, 1.0F};
 constexpr std::array kCosines{0.02F, 0.1F, 0.3F, 1.0F};
 
-Vec3d mean_weight(const Model& bsdf, std::uint32_t count) {
+// Share of flux that a surface returns or lets through: radiance behind a denser surface stands for eta^2 as much.
+Vec3d mean_weight(const LayeredSurface& s, const Model& bsdf, std::uint32_t count) {
+  const double eta = s.solid ? (s.inside ? 1 / double{s.ior} : double{s.ior}) : 1;
   Vec3d sum;
   for (std::uint32_t i = 0; i < count; ++i) {
     const BsdfSample chosen = bsdf.sample(sample_2d(kKey, i, 8), sample_1d(kKey, i, 9));
-    sum += chosen.valid ? to_double(chosen.weight) : Vec3d{};
+    if (chosen.valid) {
+      sum += to_double(chosen.weight) * (chosen.direction.z < 0 ? eta * eta : 1);
+    }
   }
   return sum / static_cast<double>(count);
 }
@@ -49,9 +53,9 @@ struct Extremes {
         for (const float cosine : kCosines) {
           const float sine = std::sqrt(1 - cosine * cosine);
           const Model bsdf(s, {x * sine, y * sine, cosine});
-          Vec3d albedo = mean_weight(bsdf, 1U << 11U);
+          Vec3d albedo = mean_weight(s, bsdf, 1U << 11U);
           if (std::max({albedo.x, albedo.y, albedo.z}) > 1.008) {  // rare heavy weights, or true?
-            albedo = mean_weight(bsdf, 1U << 14U);
+            albedo = mean_weight(s, bsdf, 1U << 14U);
           }
           std::string at = name + " roughness " + std::to_string(roughness);
           at += " metallic " + std::to_string(metallic) + " cosine " + std::to_string(cosine);
@@ -125,8 +129,8 @@ TEST(LayeredFurnaces, SheenOfEveryRoughness) {
   found.expect(0.92, 1.018);
 }
 
-// Their repeated scattering reads the isotropic table at the mean of both slopes: near the horizon it returns too little
-// along one of them and too much along the other.
+// Their repeated scattering reads the isotropic table at the mean of both slopes: near the horizon it returns too
+// little along one of them and too much along the other.
 TEST(LayeredFurnaces, AnisotropicBodies) {
   for (const bool inside : {false, true}) {
     Extremes found;
@@ -143,7 +147,7 @@ TEST(LayeredFurnaces, AnisotropicBodies) {
                     std::sin(azimuth));
       }
     }
-    found.expect(inside ? 0.70 : 0.62, inside ? 1.30 : 1.06);
+    found.expect(inside ? 0.70 : 0.62, inside ? 1.20 : 1.07);
   }
 }
 
