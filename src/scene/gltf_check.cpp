@@ -2,12 +2,12 @@
 #include "scene/gltf_check.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "gazetrace/error.hpp"
+#include "scene/gltf_json.hpp"
 #include "scene/gltf_walker.hpp"
 #include "scene/material_extension.hpp"
 
@@ -15,63 +15,6 @@ namespace gazetrace {
 namespace {
 
 constexpr std::uint64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
-
-// Deeper JSON than any exporter writes would overflow the stack of parsers that recurse.
-constexpr int kMaxJsonDepth = 200;
-
-bool is_nested_too_deep(std::string_view text) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') {
-        ++i;
-      } else if (c == '"') {
-        in_string = false;
-      }
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) {
-        return true;
-      }
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return false;
-}
-
-// "Integers may be stored as decimals with a zero fractional part" (glTF 2.0 section 3.2), which the parser refuses. In
-// extensions it cuts integers to 32 bits, but not decimals: larger numbers are integers only where sizes stand.
-void tidy_numbers(Json& value, bool sizes) {
-  constexpr double kLargestInt = std::numeric_limits<std::int32_t>::max();
-  constexpr double kLargestExact = 9007199254740992.0;  // 2^53
-  if (value.is_number()) {
-    const auto number = value.get<double>();
-    if (value.is_number_float() && std::trunc(number) == number &&
-        std::abs(number) <= (sizes ? kLargestExact : kLargestInt)) {
-      if (number >= 0) {
-        value = static_cast<std::uint64_t>(number);
-      } else {
-        value = static_cast<std::int64_t>(number);
-      }
-    } else if (value.is_number_integer() && !sizes && std::abs(number) > kLargestInt) {
-      value = number;
-    }
-  } else if (value.is_structured()) {
-    for (Json& item : value) {
-      tidy_numbers(item, sizes);
-    }
-  }
-}
-
-void tidy_numbers(Json& root) {
-  for (const auto& [key, value] : root.items()) {
-    tidy_numbers(value, key == "buffers" || key == "bufferViews" || key == "accessors");
-  }
-}
 
 using Step = Walker::Step;
 

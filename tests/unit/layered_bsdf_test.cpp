@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include "support/layered_furnace.hpp"
 #include "support/layered_kinds.hpp"
 #include "trace/sampler.hpp"
 
@@ -128,18 +129,8 @@ TEST(LayeredBsdf, SampleWeightIsValueOverDensity) {
   }
 }
 
-// Share of flux that a surface returns or lets through: radiance behind a denser surface stands for eta^2 as much.
 Vec3d albedo_of(const LayeredSurface& s, float mu, std::uint32_t count) {
-  const Model bsdf(s, direction(mu, 0.1F));
-  const double eta = s.solid ? (s.inside ? 1 / double{s.ior} : double{s.ior}) : 1;
-  Vec3d sum;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const BsdfSample chosen = bsdf.sample(sample_2d(kKey, i, 8), sample_1d(kKey, i, 9));
-    if (chosen.valid) {
-      sum += to_double(chosen.weight) * (chosen.direction.z < 0 ? eta * eta : 1);
-    }
-  }
-  return sum / static_cast<double>(count);
+  return test::layered_albedo(s, direction(mu, 0.1F), count, kKey);
 }
 
 struct Range {

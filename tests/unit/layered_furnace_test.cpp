@@ -11,32 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "support/layered_furnace.hpp"
 #include "support/layered_kinds.hpp"
-#include "trace/sampler.hpp"
 
 namespace gazetrace {
 namespace {
 
 using test::layered;
+using test::layered_albedo;
 
-using Model = LayeredBsdf<DiffuseModel::burley>;
-
-constexpr SampleKey kKey = make_sample_key(13, 0, 0);
 constexpr std::array kRoughness{0.0F, 0.1F, 0.3F, 0.5F, 1.0F};
 constexpr std::array kCosines{0.02F, 0.1F, 0.3F, 1.0F};
-
-// Share of flux that a surface returns or lets through: radiance behind a denser surface stands for eta^2 as much.
-Vec3d mean_weight(const LayeredSurface& s, const Model& bsdf, std::uint32_t count) {
-  const double eta = s.solid ? (s.inside ? 1 / double{s.ior} : double{s.ior}) : 1;
-  Vec3d sum;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const BsdfSample chosen = bsdf.sample(sample_2d(kKey, i, 8), sample_1d(kKey, i, 9));
-    if (chosen.valid) {
-      sum += to_double(chosen.weight) * (chosen.direction.z < 0 ? eta * eta : 1);
-    }
-  }
-  return sum / static_cast<double>(count);
-}
 
 // The least and the most of three channels, over dielectric and metal, roughness and cosine.
 struct Extremes {
@@ -52,10 +37,10 @@ struct Extremes {
         dress(s);
         for (const float cosine : kCosines) {
           const float sine = std::sqrt(1 - cosine * cosine);
-          const Model bsdf(s, {x * sine, y * sine, cosine});
-          Vec3d albedo = mean_weight(s, bsdf, 1U << 11U);
+          const Vec3f wo{x * sine, y * sine, cosine};
+          Vec3d albedo = layered_albedo(s, wo, 1U << 11U);
           if (std::max({albedo.x, albedo.y, albedo.z}) > 1.008) {  // rare heavy weights, or true?
-            albedo = mean_weight(s, bsdf, 1U << 14U);
+            albedo = layered_albedo(s, wo, 1U << 14U);
           }
           std::string at = name + " roughness " + std::to_string(roughness);
           at += " metallic " + std::to_string(metallic) + " cosine " + std::to_string(cosine);
