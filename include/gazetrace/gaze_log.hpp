@@ -113,9 +113,9 @@ struct GazeCalibration {
 
 // What reading for inspection mended where it stops otherwise.
 struct GazeFault {
-  std::string code;     // "unordered", "duplicates", "decimal-commas"
+  std::string code;     // "unordered", "duplicates", "decimal-commas"; "position-unit": doubted, not mended
   std::string problem;  // with file and line
-  std::string flag;     // the option under which reading does the same; empty: there is none
+  std::string flag;     // the option under which reading does the same, or better; empty: there is none
 };
 
 // Rows of the file against the clock, before anything was sorted or dropped; each eye's rows count for themselves.
