@@ -145,7 +145,7 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
                 "--gaze-x-column 2 --gaze-y-column 3");
   }
   DelimitedTable table = open_headerless(file.text, '\t', names);
-  const BidsColumns c = find_columns(table, options, file.path);
+  BidsColumns c = find_columns(table, options, file.path);
   std::vector<std::string_view> first;
   LineReader lines(file.text);
   std::string_view line;
