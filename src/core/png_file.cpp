@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/png_file.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -18,42 +20,9 @@ constexpr std::uint32_t kMaxLength = 0x7FFFFFFF;  // of a chunk
 constexpr std::uint32_t kMaxSidePx = 1000000;     // of libpng, unless it is told otherwise
 constexpr std::uint8_t kPalette = 3;
 
-// ISO/IEC 15948 annex D: the polynomial 0xEDB88320, reflected. Row k holds the effect of a byte k places further on, so
-// that eight bytes are taken at once.
-using CrcTables = std::array<std::array<std::uint32_t, 256>, 8>;
-constexpr CrcTables make_crc_tables() {
-  CrcTables tables{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t crc = i;
-    for (int k = 0; k < 8; ++k) {
-      crc = (crc & 1U) != 0 ? 0xEDB88320U ^ (crc >> 1U) : crc >> 1U;
-    }
-    tables[0][i] = crc;
-  }
-  for (std::size_t row = 1; row < tables.size(); ++row) {
-    for (std::size_t i = 0; i < 256; ++i) {
-      const std::uint32_t before = tables[row - 1][i];
-      tables[row][i] = tables[0][before & 0xFFU] ^ (before >> 8U);
-    }
-  }
-  return tables;
-}
-
+// `bytes`: of a chunk, whose length fits zlib's.
 std::uint32_t crc_of(Bytes bytes) {
-  static constexpr CrcTables kTables = make_crc_tables();
-  std::uint32_t crc = 0xFFFFFFFFU;
-  for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
-    std::uint32_t next = 0;
-    for (unsigned k = 0; k < 8; ++k) {
-      const std::uint32_t with = k < 4 ? bytes[k] ^ (crc >> (8 * k) & 0xFFU) : bytes[k];
-      next ^= kTables[7 - k][with];
-    }
-    crc = next;
-  }
-  for (const std::uint8_t byte : bytes) {
-    crc = kTables[0][(crc ^ byte) & 0xFFU] ^ (crc >> 8U);
-  }
-  return ~crc;
+  return static_cast<std::uint32_t>(::crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
 }
 
 std::uint32_t big_endian_u32(Bytes p) {

@@ -63,7 +63,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf_walker\.hpp))"},
     {R"(pugixml)", R"(src/gaze/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
-    {R"(zlib\.h)", R"(src/gaze/gzip\.cpp)"},
+    {R"(zlib\.h)", R"(src/(gaze/gzip|core/png_file)\.cpp)"},
 };
 
 std::vector<fs::path> sources(const std::vector<std::string>& folders) {

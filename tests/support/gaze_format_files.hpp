@@ -18,8 +18,11 @@ class GazeFormats : public ::testing::Test {
     return load_gaze_log(files_.write(name, text), options);
   }
   std::string refusal(std::string_view name, std::string_view text, const GazeReadOptions& options = {}) {
+    return refusal_of(files_.write(name, text), options);
+  }
+  static std::string refusal_of(const std::string& path, const GazeReadOptions& options = {}) {
     try {
-      read(name, text, options);
+      load_gaze_log(path, options);
     } catch (const Error& error) {
       return error.what();
     }

@@ -32,14 +32,6 @@ class GazeBidsRecordings : public GazeFormats {
                     which, unit, rest));
     return files_.write(fmt::format("task-x_recording-{}_physio.tsv", label), rows);
   }
-  static std::string refusal_of(const std::string& path, const GazeReadOptions& options = {}) {
-    try {
-      load_gaze_log(path, options);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "accepted";
-  }
 };
 
 TEST_F(GazeBidsRecordings, EyesOfOneUnitAreJoined) {

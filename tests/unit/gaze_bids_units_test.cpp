@@ -32,14 +32,6 @@ class GazeBidsUnits : public GazeFormats {
   static std::string units(const std::string& x, const std::string& y) {
     return fmt::format(R"("x_coordinate": {{"Units": "{}"}}, "y_coordinate": {{"Units": "{}"}},)", x, y);
   }
-  static std::string refusal_of(const std::string& path, const GazeReadOptions& options = {}) {
-    try {
-      load_gaze_log(path, options);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "accepted";
-  }
 };
 
 TEST_F(GazeBidsUnits, RadiansAreAngles) {

@@ -9,14 +9,8 @@
 
 #include "gazetrace/scene.hpp"
 #include "support/gltf_builder.hpp"
+#include "support/picture_leaks.hpp"
 #include "support/png_bytes.hpp"
-
-#ifdef __SANITIZE_ADDRESS__
-// OpenImageIO 2.4 loses the text of its own message when a PNG ends early.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-  return "leak:libOpenImageIO";
-}
-#endif
 
 namespace gazetrace {
 namespace {

@@ -10,15 +10,9 @@
 
 #include "core/image_io.hpp"
 #include "gazetrace/error.hpp"
+#include "support/picture_leaks.hpp"
 #include "support/png_bytes.hpp"
 #include "support/temporary_folder.hpp"
-
-#ifdef __SANITIZE_ADDRESS__
-// OpenImageIO 2.4 loses the text of its own message when a PNG ends early.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-  return "leak:libOpenImageIO";
-}
-#endif
 
 namespace gazetrace {
 namespace {
