@@ -19,12 +19,12 @@
 //   low resolution  uniform with as many samples in all in a frame of half the width and height, enlarged bilinearly
 //   in blocks       uniform with as many samples in all in blocks of 8 samples and more, as models have them in the
 //                   periphery: what a filter does to a single pixel with a sample is not what it does to a block
-// Rivals share no seeds with the model. The reference is the mean of the files, each of a seed of its own; --ev, by
-// default what brings its log-average luminance to 0.18, is the exposure. relMSE (the library's) is that of linear
-// light at the exposure; FLIP and FovVideoVDP see the plain sRGB view in 8 bits. The floor is the score of one half of
-// the files against the other: nothing beneath it is claimed (*). Tables take off relMSE what the reference's own noise
-// adds: the error of one half against the mean of both.
-// "paper" is 32 / 16 / 8 with its own count, "foveal rate" uniform with 32: the fovea of both must score the same.
+// Models and rivals share no samples, nor do gazes. The reference is the mean of the files, each of a seed of its own;
+// --ev, by default what brings its log-average luminance to 0.18, is the exposure. relMSE (the library's) is that of
+// linear light at the exposure; FLIP and FovVideoVDP see the plain sRGB view in 8 bits. The floor is the score of one
+// half of the files against the other: nothing beneath it is claimed (*). Tables take off relMSE what the reference's
+// own noise adds: the error of one half against the mean of both. "paper" is 32 / 16 / 8 with its own count, "foveal
+// rate" uniform with 32: the fovea of both must score the same.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -15,7 +15,9 @@
 namespace gazetrace::gain {
 namespace {
 
-constexpr int kEdgeRays = 4;  // as the program's own frames
+// As the program's own frames have it: an arm is what `gazetrace render` makes with its seed.
+constexpr std::int32_t kFrame = 1;
+constexpr int kEdgeRays = 4;
 constexpr double kNoDifferenceJod = 10;
 
 ColorSettings plain_view() {
@@ -77,6 +79,7 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
   }
   MapContext context;
   context.seed = static_cast<std::uint64_t>(seed);
+  context.frame = kFrame;
   TraceSettings trace;
   trace.seed = context.seed;
   trace.surfaces = surfaces;
@@ -85,7 +88,7 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
   traced.map = make_sampling_map(settings, view_, direction, context);
   traced.plan_ms = plan.elapsed_ms();
   const Stopwatch rays;
-  traced.sparse = tracer_.trace(camera_, 0, traced.map, trace);
+  traced.sparse = tracer_.trace(camera_, kFrame, traced.map, trace);
   traced.trace_ms = rays.elapsed_ms();
   return traced;
 }

@@ -65,9 +65,13 @@ std::string verdict(const Comparison& comparison, Metric metric) {
   if (comparison.beneath_floor) {
     return "floor";
   }
+  if (comparison.gazes < kFewestGazes) {
+    return "few";
+  }
   const double nothing = metric == Metric::relmse ? 1 : 0;
-  const bool above = comparison.effect.low > nothing;
-  const bool below = comparison.effect.high < nothing;
+  constexpr double kRounding = 1e-7;  // of the rows' numbers
+  const bool above = comparison.effect.low > nothing + kRounding;
+  const bool below = comparison.effect.high < nothing - kRounding;
   return !above && !below ? "even" : above == (metric == Metric::jod) ? "wins" : "loses";
 }
 
@@ -150,6 +154,7 @@ Comparison Results::compare_pairs(Metric metric, std::size_t column, const std::
   }
   all.prune();
   result.leaves = all.leaves();
+  result.gazes = all.gazes();
   if (all.empty()) {
     return result;
   }

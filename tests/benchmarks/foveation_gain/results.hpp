@@ -24,10 +24,12 @@ struct Comparison {
   double own = 0, other = 0;  // means of the errors
   Interval effect;            // relMSE: geometric mean of own / other; FLIP, JOD: mean of own - other
   bool beneath_floor = false;
-  std::size_t leaves = 0;
+  std::size_t leaves = 0, gazes = 0;
   std::size_t continued = 0;  // of them, beyond the measured times
 };
-// "wins", "loses", "even": the interval lies on one side or not; "floor": beneath it nothing is claimed.
+// "wins", "loses", "even": the interval lies on one side or not; "floor": beneath it nothing is claimed; "few": of less
+// than kFewestGazes no interval is to be trusted.
+inline constexpr std::size_t kFewestGazes = 4;
 std::string verdict(const Comparison& comparison, Metric metric);
 
 class Results {

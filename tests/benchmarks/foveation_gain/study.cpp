@@ -17,8 +17,13 @@
 namespace gazetrace::gain {
 namespace {
 
-// Added to an arm's seed, so that rivals share no samples.
-constexpr int kUniformSeeds = 100, kLowResolutionSeeds = 200, kFovealRateSeeds = 300, kInBlocksSeeds = 400;
+// Of an arm's samples: rivals share none, and neither do gazes, nor references with any (theirs are low numbers). Were
+// there one uniform picture for all gazes, its noise would not show in how the gazes differ, and intervals would be too
+// narrow. Models share theirs at a gaze.
+enum class Seeds : int { models = 1, uniform, low_resolution, in_blocks, foveal_rate };
+int seed_of(Seeds whose, int seed, std::size_t gaze) {
+  return 1'000'000 * static_cast<int>(whose) + 1000 * seed + static_cast<int>(gaze);
+}
 
 class Study {
  public:
@@ -66,6 +71,7 @@ class Study {
   // which of the gazes is scored.
   void arm(Judge& judge, Renderer& renderer, const std::string& name, int seed, const std::vector<std::size_t>& gazes,
            const std::function<Traced()>& trace);
+  void errors_at(Judge& judge, int seed, std::size_t gaze);
   void errors_of_seed(Judge& judge, int seed);
   void times_of_round(int round, const std::vector<Gaze>& gazes);
   void time_arm(const std::string& name, const Gaze& gaze, const FoveationSettings& settings, int round);
@@ -127,38 +133,44 @@ void Study::arm(Judge& judge, Renderer& renderer, const std::string& name, int s
   }
 }
 
+void Study::errors_at(Judge& judge, int seed, std::size_t g) {
+  const Gaze& gaze = settings_.gazes[g];
+  const Gaze ahead{"", {0.5, 0.5}};
+  const double budget = settings_.budget_spp;
+  const double pixels = static_cast<double>(settings_.size.width_px) * settings_.size.height_px;
+  const double small_pixels = static_cast<double>(small_.view().width_px) * small_.view().height_px;
+  for (const double rate : kUniformRates) {
+    arm(judge, renderer_, uniform_arm(rate), seed, {g}, [&] {
+      return renderer_.trace(uniform_settings(rate * budget), std::nullopt, seed_of(Seeds::uniform, seed, g),
+                             surfaces_);
+    });
+  }
+  arm(judge, small_, kLowResolution, seed, {g}, [&] {
+    return small_.trace(uniform_settings(budget * pixels / small_pixels), std::nullopt,
+                        seed_of(Seeds::low_resolution, seed, g), surfaces_);
+  });
+  arm(judge, renderer_, kInBlocks, seed, {g}, [&] {  // the same wherever one looks
+    return renderer_.trace(blocks_settings(budget), ahead, seed_of(Seeds::in_blocks, seed, g), surfaces_);
+  });
+  for (const std::string& model : models_) {
+    arm(judge, renderer_, model, seed, {g}, [&] {
+      return renderer_.trace(model_settings(model, budget), gaze, seed_of(Seeds::models, seed, g), surfaces_);
+    });
+  }
+  arm(judge, renderer_, kPaper, seed, {g},
+      [&] { return renderer_.trace(paper_settings(), gaze, seed_of(Seeds::models, seed, g), surfaces_); });
+}
+
 void Study::errors_of_seed(Judge& judge, int seed) {
   std::vector<std::size_t> all(settings_.gazes.size());
   for (std::size_t g = 0; g < all.size(); ++g) {
     all[g] = g;
+    errors_at(judge, seed, g);
   }
-  const auto budget = settings_.budget_spp;
-  for (const double rate : kUniformRates) {
-    arm(judge, renderer_, uniform_arm(rate), seed, all, [&] {
-      return renderer_.trace(uniform_settings(rate * budget), std::nullopt, kUniformSeeds + seed, surfaces_);
-    });
-  }
-  arm(judge, small_, kLowResolution, seed, all, [&] {
-    const double pixels = static_cast<double>(settings_.size.width_px) * settings_.size.height_px;
-    const double small_pixels = static_cast<double>(small_.view().width_px) * small_.view().height_px;
-    return small_.trace(uniform_settings(budget * pixels / small_pixels), std::nullopt, kLowResolutionSeeds + seed,
-                        surfaces_);
-  });
-  arm(judge, renderer_, kInBlocks, seed, all, [&] {
-    const Gaze ahead{"", {0.5, 0.5}};  // the same wherever one looks
-    return renderer_.trace(blocks_settings(budget), ahead, kInBlocksSeeds + seed, surfaces_);
-  });
-  for (const std::size_t g : all) {
-    const Gaze& gaze = settings_.gazes[g];
-    for (const std::string& model : models_) {
-      arm(judge, renderer_, model, seed, {g},
-          [&] { return renderer_.trace(model_settings(model, budget), gaze, seed, surfaces_); });
-    }
-    arm(judge, renderer_, kPaper, seed, {g}, [&] { return renderer_.trace(paper_settings(), gaze, seed, surfaces_); });
-  }
+  // One for all gazes: only foveae are looked at, which hardly ever share a pixel.
   arm(judge, renderer_, kFovealRate, seed, all, [&] {
-    return renderer_.trace(uniform_settings(paper_settings().region_samples[0]), std::nullopt, kFovealRateSeeds + seed,
-                           surfaces_);
+    return renderer_.trace(uniform_settings(paper_settings().region_samples[0]), std::nullopt,
+                           seed_of(Seeds::foveal_rate, seed, 0), surfaces_);
   });
 }
 
