@@ -14,7 +14,7 @@
 // cut-off frequencies count relative to the fovea. Its rivals go through the same filter:
 //   equal samples   uniform with as many samples in all (fractional counts)
 //   equal time      what uniform would reach in the time of the model's plan, guides, trace and reconstruction: the
-//                   logarithm of its errors (JOD as they are), between rates of 0.7 to 2.8 budgets, linear in the
+//                   logarithm of its errors (JOD as they are), between rates of 0.25 to 2.8 budgets, linear in the
 //                   logarithm of their times
 //   low resolution  uniform with as many samples in all in a frame of half the width and height, enlarged bilinearly
 //   in blocks       uniform with as many samples in all in blocks of 8 samples and more, as models have them in the

@@ -241,9 +241,8 @@ void print_tables(const std::vector<std::string>& files, const std::string& full
   fmt::print(
       "\nFor each filter, models against uniform through the same filter, the best first. relMSE: ratio, under 1 is "
       "better;\nFLIP: difference, under 0 is better; JOD: difference, over 0 is better. wins, loses: the 95 % interval "
-      "over scenes, gazes\nand seeds lies on one side; even: it does not; few: under {} gazes; *: beneath the "
-      "reference's floor. \"As "
-      "uniform at\": times the budget.\nBands of degrees: at {}.\n",
+      "over scenes,\ngazes and seeds lies on one side; even: it does not; few: under {} gazes; *: beneath the "
+      "reference's floor.\n\"As uniform at\": times the budget. Bands of degrees: at {}.\n",
       kFewestGazes, results.has_times() ? "equal time" : "equal samples");
   for (const std::string& filter : results.filters()) {
     fmt::print("{}", summary(results, filter));
