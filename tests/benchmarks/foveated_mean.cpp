@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Is a foveated frame unbiased? Before reconstruction, and averaged over seeds, every fall-off model must have the same
 // mean as uniform sampling in every band of eccentricity.
-//   gazetrace_foveated_mean SCENE.gltf[=SKY.hdr] ... [--seeds 256] [--size 160x90] [--spp 4] [--foveal-spp 32]
+//   gazetrace_foveated_mean SCENE.gltf[=SKY.hdr|=constant:R,G,B] ... [--seeds 256] [--size 160x90] [--spp 4]
+//   [--foveal-spp 32]
 //       [--uniform-seeds 256] [--uniform-samples 30000] [--margin 0.5] [--gaze U,V] [--models a,b,c] [--eye X,Y,Z
 //       --target X,Y,Z --fov DEG]
 // A scene is looked at by its first camera or, where it has none, from --eye; the frame is seen as one of 70.848 cm at
@@ -252,6 +253,10 @@ void compare_model(const PathTracer& tracer, const World& world, const Options& 
     }
     const Estimate a = estimate_of(foveated.at(b));
     const Estimate u = estimate_of(reference);
+    if (!(u.mean > 0)) {
+      throw Error(ErrorKind::input, world.name, fmt::format("band {} is black: no share of its mean can be told", b),
+                  "look from another place");
+    }
     Comparison c;
     c.scene = world.name;
     c.model = model;

@@ -12,6 +12,7 @@
 #include "gazetrace/camera.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
+#include "pixel_statistics.hpp"
 
 namespace gazetrace::benchmark {
 
@@ -33,14 +34,23 @@ struct World {
   Camera camera;
 };
 
-// "SCENE.gltf" or "SCENE.gltf=SKY.hdr", seen by the scene's first camera or, where it has none, from the viewpoint.
+// "SCENE.gltf", "SCENE.gltf=SKY.hdr" or "SCENE.gltf=constant:R,G,B", seen by the scene's first camera or, where it has
+// none, from the viewpoint.
 inline World load_world(const std::string& text, const std::optional<Viewpoint>& from) {
   World world;
   const std::size_t equals = text.find('=');
   world.name = text.substr(0, equals);
   world.scene = load_scene(world.name);
   if (equals != std::string::npos) {
-    world.scene.environment = load_environment(text.substr(equals + 1));
+    constexpr std::string_view kConstant = "constant:";
+    const std::string sky = text.substr(equals + 1);
+    if (sky.starts_with(kConstant)) {
+      const Vec3d radiance = parse_point(sky.c_str() + kConstant.size());
+      world.scene.environment = constant_environment(
+          {static_cast<float>(radiance.x), static_cast<float>(radiance.y), static_cast<float>(radiance.z)});
+    } else {
+      world.scene.environment = load_environment(sky);
+    }
   }
   world.name = world.name.substr(world.name.find_last_of('/') + 1);
   world.name = world.name.substr(0, world.name.find_last_of('.'));
