@@ -40,10 +40,16 @@ struct GuideCamera {
   }
 };
 
-// What one more ray through a pixel sees; members as in Guides.
+// One more ray through a pixel that an edge may cross.
 struct EdgeRay {
-  std::uint32_t pixel = 0;  // index into Guides' images
-  float x = 0, y = 0;       // continuous pixel coordinates from the frame's centre
+  std::uint32_t pixel = 0;    // index into Guides' images
+  std::uint32_t seen_by = 0;  // the pixel, this one or one of the eight about it, whose centre sees the same surface
+  bool own_surface = false;   // none does: seen_by is an index into Guides::edge_surfaces
+};
+
+// What no pixel's centre near by sees; members as in Guides.
+struct EdgeSurface {
+  float x = 0, y = 0;  // continuous pixel coordinates from the frame's centre
   Vec3f albedo, normal, emission;
   float depth_m = 0;
   SurfaceKind kind = SurfaceKind::miss;
@@ -66,8 +72,10 @@ struct Guides {
   Image<std::uint32_t> material;  // 1 + index into Scene::materials; 0: miss
   Image<SurfaceKind> kind;
   // GuideSettings::edge_rays for each pixel that differs from one of its four neighbours in object, material or kind,
-  // in normal by more than 25 degrees, or leaves their plane; in the order of the pixels. The images do not hold them.
+  // in normal (bumps left out) by more than 25 degrees, or leaves their plane, unless all of them see what its centre
+  // sees; in the order of the pixels. The images do not hold them.
   std::vector<EdgeRay> edge_rays;
+  std::vector<EdgeSurface> edge_surfaces;
 };
 
 // Albedos are divided by.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reconstruct/surface_smoothing.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "core/instruction_sets.hpp"
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
 
@@ -36,6 +38,108 @@ struct TileTies {
   std::vector<std::uint32_t> end;  // of each cell's
 };
 
+// The part of a SurfaceCell that says how it lies: half a cache line.
+struct alignas(32) Orientation {
+  Vec3f normal, place_m;
+  float footprint_m = 0;
+  SurfaceKind kind = SurfaceKind::diffuse;
+};
+
+// The cells at the middle of each block of a region and around it.
+class BlockCells {
+ public:
+  BlockCells(const SurfaceCells& lattice, const SamplingMap& map, std::size_t region, int reach)
+      : x_(65536), y_(65536) {
+    int x_end = 0;
+    int y_end = 0;
+    for (const Site& site : map.sites) {
+      if (site.region == region) {
+        x_ = std::min<int>(x_, site.block_x);
+        y_ = std::min<int>(y_, site.block_y);
+        x_end = std::max(x_end, site.block_x + 1);
+        y_end = std::max(y_end, site.block_y + 1);
+      }
+    }
+    x_ -= reach;
+    y_ -= reach;
+    width_ = std::max(x_end + reach - x_, 0);
+    const int height = std::max(y_end + reach - y_, 0);
+    codes_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height), 0);
+    const int block = map.regions[region].block_px;
+    for (int by = std::max(y_, 0); by < y_ + height; ++by) {
+      const int py = by * block + block / 2;
+      for (int bx = std::max(x_, 0); bx < x_ + width_; ++bx) {
+        const int px = bx * block + block / 2;
+        if (px >= map.width_px || py >= map.height_px) {
+          break;
+        }
+        const std::uint32_t site = lattice.site_of_pixel(px, py);
+        codes_[index(bx, by)] = lattice.first[site] << 2U | (lattice.first[site + 1] - lattice.first[site]);
+      }
+    }
+  }
+
+  // The first of them, shifted left by two bits, and their number.
+  [[nodiscard]] std::uint32_t at(int bx, int by) const { return codes_[index(bx, by)]; }
+
+ private:
+  static_assert(kMostSurfaces < 4);
+  [[nodiscard]] std::size_t index(int bx, int by) const {
+    return static_cast<std::size_t>(by - y_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(bx - x_);
+  }
+
+  int x_, y_, width_ = 0;
+  std::vector<std::uint32_t> codes_;
+};
+
+// Surfaces that a tie may lead to, side by side; lanes past `count` hold what was there before.
+struct Candidates {
+  static constexpr std::size_t kLanes = 16;
+  static constexpr std::size_t kMost = (9 * kMostSurfaces + kLanes) / kLanes * kLanes;
+  template <class T>
+  struct alignas(64) Lanes {
+    T data[kMost] = {};
+    T& operator[](std::size_t i) { return data[i]; }
+    const T& operator[](std::size_t i) const { return data[i]; }
+  };
+  Lanes<float> normal_x, normal_y, normal_z, place_x, place_y, place_z, footprint, like;
+  Lanes<std::uint32_t> cell;
+  std::size_t count = 0;
+
+  // Keeps what was written there where `taken`. `kernel`: what it counts by its place among the nine blocks.
+  void add(const Orientation& surface, std::uint32_t index, float kernel, bool taken) {
+    const std::size_t k = count;
+    normal_x[k] = surface.normal.x;
+    normal_y[k] = surface.normal.y;
+    normal_z[k] = surface.normal.z;
+    place_x[k] = surface.place_m.x;
+    place_y[k] = surface.place_m.y;
+    place_z[k] = surface.place_m.z;
+    footprint[k] = surface.footprint_m;
+    like[k] = kernel;
+    cell[k] = index;
+    count += taken ? 1U : 0U;
+  }
+};
+
+// Multiplies `like` by surface_likeness, on lanes.
+GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& settings, Candidates& near) {
+  const Vec3f n = own.normal;
+  const Vec3f p = own.place_m;
+  const std::size_t lanes = (near.count + Candidates::kLanes - 1) / Candidates::kLanes * Candidates::kLanes;
+  for (std::size_t first = 0; first < lanes; first += Candidates::kLanes) {
+    for (std::size_t i = first; i < first + Candidates::kLanes; ++i) {
+      const Vec3f normal{near.normal_x[i], near.normal_y[i], near.normal_z[i]};
+      const Vec3f way{near.place_x[i] - p.x, near.place_y[i] - p.y, near.place_z[i] - p.z};
+      const float off = std::max(std::fabs(dot(n, way)), std::fabs(dot(normal, way)));
+      const float slack = 0.5F * std::min(own.footprint_m, near.footprint[i]);
+      const float like =
+          facing_power(dot(n, normal)) * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack));
+      near.like[i] = like >= kLeastLikeness ? near.like[i] * like : 0.0F;
+    }
+  }
+}
+
 class Smoother {
  public:
   Smoother(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads)
@@ -45,28 +149,37 @@ class Smoother {
         threads_(threads),
         lights_(cells.cells.size()),
         next_(cells.cells.size()),
+        samples_(cells.cells.size()),
         total_(cells.cells.size()),
+        orientations_(cells.cells.size()),
         flows_(map.tiles.size()) {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       const SurfaceCell& cell = cells.cells[i];
       lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance};
+      samples_[i] = cell.samples;
+      orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
+    }
+    for (std::size_t r = 0; r < map.regions.size(); ++r) {
+      blocks_.emplace_back(cells, map, r, 1 << (settings.levels - 1));
     }
   }
 
-  // The surfaces of blocks that lie `step` blocks apart, eight of them and the own.
-  [[nodiscard]] std::vector<TileTies> find_ties(int step) const {
-    std::vector<TileTies> found(map_.tiles.size());
+  // The surfaces of blocks that lie `step` blocks apart, eight of them and the own. `found`: what it holds is lost.
+  void find_ties(int step, std::vector<TileTies>& found) const {
+    found.resize(map_.tiles.size());
     for_each_tile([&](std::size_t t) {
       const MapTile& tile = map_.tiles[t];
       TileTies& out = found[t];
+      out.ties.clear();
+      out.end.clear();
+      Candidates near;
       for (std::size_t site = tile.first_site; site < tile.first_site + tile.site_count; ++site) {
         for (std::size_t i = lattice_.first[site]; i < lattice_.first[site + 1]; ++i) {
-          find_ties_of(site, i, step, out.ties);
+          find_ties_of(site, i, step, near, out.ties);
           out.end.push_back(static_cast<std::uint32_t>(out.ties.size()));
         }
       }
     });
-    return found;
   }
 
   // Noise from the spread of all samples of the nearest blocks: a site's own few say little about it.
@@ -102,7 +215,7 @@ class Smoother {
         float taken = 0;
         for (const Tie* tie = begin; tie != end; ++tie, ++at) {
           const CellLight& other = lights_[tie->other];
-          const float w = flows_[t][at] * lattice_.cells[tie->other].samples / std::max(total_[i], total_[tie->other]);
+          const float w = flows_[t][at] * samples_[tie->other] / std::max(total_[i], total_[tie->other]);
           taken += w;
           sum.reflected += w * other.reflected;
           sum.albedo += w * other.albedo;
@@ -135,7 +248,7 @@ class Smoother {
     flows_[t].resize(ties[t].ties.size());
     for_each_cell(ties, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t at) {
       const CellLight& own = lights_[i];
-      float total = kOwnShare * lattice_.cells[i].samples;
+      float total = kOwnShare * samples_[i];
       for (const Tie* tie = begin; tie != end; ++tie, ++at) {
         const CellLight& other = lights_[tie->other];
         // Of the difference, so that both sides judge alike.
@@ -143,46 +256,40 @@ class Smoother {
                             1e-6F * std::max(std::fabs(own.light), std::fabs(other.light)) + 1e-30F;
         const float w = tie->like * falling(std::fabs(other.light - own.light) / noise);
         flows_[t][at] = w;
-        total += w * lattice_.cells[tie->other].samples;
+        total += w * samples_[tie->other];
       }
       total_[i] = total;
     });
   }
 
-  void find_ties_of(std::size_t site, std::size_t i, int step, std::vector<Tie>& out) const {
-    const int block = map_.regions[map_.sites[site].region].block_px;
-    const int x = map_.sites[site].block_x * block + block / 2;
-    const int y = map_.sites[site].block_y * block + block / 2;
+  void find_ties_of(std::size_t site, std::size_t i, int step, Candidates& near, std::vector<Tie>& out) const {
+    const Site& place = map_.sites[site];
+    const BlockCells& blocks = blocks_[place.region];
+    const Orientation& own = orientations_[i];
+    near.count = 0;
     for (int dy = -1; dy <= 1; ++dy) {
-      const int py = y + dy * step * block;
-      if (py < 0 || py >= map_.height_px) {
-        continue;
-      }
       for (int dx = -1; dx <= 1; ++dx) {
-        const int px = x + dx * step * block;
-        if (px < 0 || px >= map_.width_px) {
-          continue;
-        }
         // A block may be cut by a border between regions: its own site is this one, whatever pixel is in the middle.
-        const std::size_t other = dx == 0 && dy == 0 ? site : lattice_.site_of_pixel(px, py);
+        const bool here = dx == 0 && dy == 0;
+        const std::uint32_t code = here ? lattice_.first[site] << 2U | (lattice_.first[site + 1] - lattice_.first[site])
+                                        : blocks.at(place.block_x + dx * step, place.block_y + dy * step);
         const float kernel =
             kBinomial[static_cast<std::size_t>(std::abs(dx))] * kBinomial[static_cast<std::size_t>(std::abs(dy))];
-        for (std::size_t k = lattice_.first[other]; k < lattice_.first[other + 1]; ++k) {
-          const float like = k == i ? 0.0F : kernel * likeness(lattice_.cells[i], lattice_.cells[k]);
-          if (like > 0) {
-            out.push_back({static_cast<std::uint32_t>(k), like});
-          }
+        const std::uint32_t end = (code >> 2U) + (code & 3U);
+        for (std::uint32_t k = code >> 2U; k < end; ++k) {
+          const Orientation& other = orientations_[k];
+          near.add(other, k, kernel, (static_cast<int>(other.kind == own.kind) & static_cast<int>(k != i)) != 0);
         }
       }
     }
-  }
-
-  [[nodiscard]] float likeness(const SurfaceCell& a, const SurfaceCell& b) const {
-    if (a.kind != b.kind) {
-      return 0;
+    compare(own, settings_, near);
+    std::size_t end = out.size();
+    out.resize(end + near.count);
+    for (std::size_t k = 0; k < near.count; ++k) {
+      out[end] = {near.cell[k], near.like[k]};
+      end += near.like[k] > 0 ? 1U : 0U;
     }
-    return surface_likeness(a.normal, a.place_m, b.normal, b.place_m, 0.5F * std::min(a.footprint_m, b.footprint_m),
-                            settings_);
+    out.resize(end);
   }
 
   template <class Visit>
@@ -207,7 +314,9 @@ class Smoother {
   const SmoothingSettings& settings_;
   int threads_;
   std::vector<CellLight> lights_, next_;
-  std::vector<float> total_;               // of each cell
+  std::vector<float> samples_, total_;  // of each cell
+  std::vector<Orientation> orientations_;
+  std::vector<BlockCells> blocks_;         // of each region
   std::vector<std::vector<float>> flows_;  // of each tile's ties
 };
 
@@ -215,11 +324,14 @@ class Smoother {
 
 void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads) {
   Smoother smoother(cells, map, settings, threads);
-  const std::vector<TileTies> near = smoother.find_ties(1);
+  std::vector<TileTies> near;
+  smoother.find_ties(1, near);
   smoother.estimate_variance(near);
   smoother.exchange(near);
+  std::vector<TileTies> wide;
   for (int level = 1; level < settings.levels; ++level) {
-    smoother.exchange(smoother.find_ties(1 << level));
+    smoother.find_ties(1 << level, wide);
+    smoother.exchange(wide);
   }
   // What wide steps leave is dots as far apart as the first of them.
   smoother.exchange(near);

@@ -12,9 +12,8 @@
 namespace gazetrace {
 
 struct SmoothingSettings {
-  int levels = 5;          // steps of 1, 2, 4 ... blocks, and at last of 1 once more
+  int levels = 3;          // steps of 1, 2, 4 ... blocks, and at last of 1 once more
   float light_sigmas = 6;  // differences of light up to so many standard deviations are taken for noise
-  int normal_power = 16;   // of the cosine between normals
   float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance
 };
 
@@ -27,20 +26,19 @@ inline float falling(float x) {
   return t * t * t;
 }
 
-inline float cosine_power(float cosine, int power) {
-  float result = 1;
-  float base = std::max(cosine, 0.0F);
-  for (int bits = power; bits > 0; bits >>= 1) {
-    result *= (bits & 1) != 0 ? base : 1.0F;
-    base *= base;
-  }
-  return result;
+// Of the cosine between normals: its 16th power.
+inline float facing_power(float cosine) {
+  const float c = std::max(cosine, 0.0F);
+  const float c2 = c * c;
+  const float c4 = c2 * c2;
+  const float c8 = c4 * c4;
+  return c8 * c8;
 }
 
 // How alike two places are: 1 on one plane with one normal, 0 across an edge. `slack_m`: as much apart is nothing.
 inline float surface_likeness(const Vec3f& normal_a, const Vec3f& place_a, const Vec3f& normal_b, const Vec3f& place_b,
                               float slack_m, const SmoothingSettings& settings) {
-  const float facing = cosine_power(dot(normal_a, normal_b), settings.normal_power);
+  const float facing = facing_power(dot(normal_a, normal_b));
   if (facing < kLeastLikeness) {
     return 0;
   }

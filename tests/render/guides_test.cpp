@@ -150,6 +150,46 @@ TEST(Guides, AgreeWithTracedFirstHits) {
   }
 }
 
+// What the rays through an edge see, by their own or by a pixel near by, is what many rays through the pixel see.
+TEST(Guides, EdgeRaysSeeWhatManyRaysSee) {
+  const Scene scene = scene_of_kinds();
+  constexpr int kRays = 63;
+  const Guides guides = guides_of(scene, {.edge_rays = kRays}, 2);
+  const Guides many = guides_of(scene, {.spp = 64}, 2);
+  std::size_t pixels = 0;
+  std::size_t own = 0;
+  for (std::size_t k = 0; k < guides.edge_rays.size(); k += kRays) {
+    const std::size_t pixel = guides.edge_rays[k].pixel;
+    Vec3f emission = guides.emission.pixels[pixel];
+    Vec3f normal = guides.normal.pixels[pixel];
+    for (std::size_t r = k; r < k + kRays; ++r) {
+      const EdgeRay& ray = guides.edge_rays[r];
+      ASSERT_EQ(ray.pixel, pixel);
+      own += ray.own_surface ? 1 : 0;
+      emission += ray.own_surface ? guides.edge_surfaces[ray.seen_by].emission : guides.emission.pixels[ray.seen_by];
+      normal += ray.own_surface ? guides.edge_surfaces[ray.seen_by].normal : guides.normal.pixels[ray.seen_by];
+    }
+    ++pixels;
+    // As far as two nets of 64 points differ across an edge (above), of light that is 6 at most.
+    EXPECT_NEAR(emission.z / 64, many.emission.pixels[pixel].z, 6 * 0.1F) << pixel;
+    const Vec3f off = normal / 64 - many.normal.pixels[pixel];
+    EXPECT_LT(dot(off, off), 0.15F * 0.15F) << pixel;
+  }
+  EXPECT_GT(pixels, 100U);
+  EXPECT_LT(own, guides.edge_rays.size() / 2);
+  EXPECT_EQ(guides.edge_surfaces.size(), own);
+  // Pixels without: most of what their rays see is on no edge.
+  std::vector<bool> has(guides.kind.pixels.size());
+  for (const EdgeRay& ray : guides.edge_rays) {
+    has[ray.pixel] = true;
+  }
+  for (std::size_t i = 0; i < has.size(); ++i) {
+    if (!has[i]) {
+      EXPECT_NEAR(guides.emission.pixels[i].z, many.emission.pixels[i].z, 0.3F) << i;
+    }
+  }
+}
+
 TEST(Guides, RaysOutOfRangeAreRefused) {
   const Scene scene = scene_of_kinds();
   EXPECT_THROW(guides_of(scene, {.spp = 0}), Error);

@@ -326,6 +326,64 @@ TEST(ReconstructGuided, FiniteVarianceOfSurfacesSeenEdgeOn) {
   }
 }
 
+// Two pixels whose rays see each other's surfaces both become the mean of what each had alone; a third takes a share of
+// a lamp that no pixel's centre sees.
+TEST(ReconstructGuided, EdgesAreTheMeanOfWhatTheirRaysSee) {
+  const SamplingMap map = block_map();
+  Guides guides = wall();
+  guides.albedo(20, 9) = {0.9F, 0.1F, 0.2F};
+  const SparseFrame sparse = trace_planted(map, guides, [](int, int) { return 2; });
+  const Frame alone = guided(sparse, map, guides);
+  const auto a = static_cast<std::uint32_t>(guides.albedo.index(20, 9));
+  const auto b = static_cast<std::uint32_t>(guides.albedo.index(21, 9));
+  const auto c = static_cast<std::uint32_t>(guides.albedo.index(40, 40));
+  guides.edge_rays = {{a, a}, {a, b}, {b, a}, {b, a}, {b, a}, {c, 0, true}, {c, c}};
+  guides.edge_surfaces.push_back({0, 0, {1, 1, 1}, {}, {30, 60, 90}, kInfinity, SurfaceKind::unlit});
+  const Frame frame = guided(sparse, map, guides);
+  const Vec3f first = alone.radiance.pixels[a];
+  const Vec3f second = alone.radiance.pixels[b];
+  const Vec3f third = alone.radiance.pixels[c];
+  const auto expect = [&](std::uint32_t pixel, const Vec3f& expected) {
+    EXPECT_NEAR(frame.radiance.pixels[pixel].x, expected.x, 1e-5F);
+    EXPECT_NEAR(frame.radiance.pixels[pixel].y, expected.y, 1e-5F);
+    EXPECT_NEAR(frame.radiance.pixels[pixel].z, expected.z, 1e-5F);
+  };
+  EXPECT_NEAR(first.x, 1.8F, 0.01F);
+  expect(a, (first * 2.0F + second) / 3.0F);
+  expect(b, (second + first * 3.0F) / 4.0F);
+  expect(c, (third * 2.0F + Vec3f{30, 60, 90}) / 3.0F);
+  for (std::uint32_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    if (i != a && i != b && i != c) {
+      EXPECT_EQ(frame.radiance.pixels[i], alone.radiance.pixels[i]);
+    }
+  }
+}
+
+// Regions of single pixels, of 2x2, 3x3 and of 8x8 blocks about each other: every pixel is filled, whichever square
+// between blocks it lies in.
+TEST(ReconstructGuided, EveryPixelIsFilledForBlocksOfAnySize) {
+  Layout layout;
+  layout.regions = {{"a", 1, 1, SampleUnit::per_block},
+                    {"b", 2, 4, SampleUnit::per_block},
+                    {"c", 3, 5, SampleUnit::per_block},
+                    {"d", 8, 8, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kSize, kSize, 3);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const int away = std::max(std::abs(x - 17), std::abs(y - 40));
+      layout.region(x, y) = static_cast<std::uint8_t>(away < 6 ? 0 : away < 13 ? 1 : away < 23 ? 2 : 3);
+    }
+  }
+  const SamplingMap map = map_from_layout(std::move(layout));
+  const Guides guides = wall();
+  const Frame frame = guided(trace_planted(map, guides, [](int, int) { return 5; }), map, guides);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      ASSERT_NEAR(frame.radiance(x, y).x, 2.5F, 1e-5F) << x << ',' << y;
+    }
+  }
+}
+
 TEST(ReconstructGuided, SameBitsForAnyNumberOfThreads) {
   const SamplingMap map = block_map(true);
   const Guides guides = wall();

@@ -4,11 +4,15 @@
 // that are like the one it sees, multiplies it by its own albedo and adds what it sees shining:
 //   radiance(p) = emission(p) + albedo(p) * sum_c w(p, c) reflected(c) / sum_c w(p, c) albedo(c)
 // Emission, misses and texture thus come from the first hits at full resolution, and no edge of theirs is smoothed.
-// Sites that needs_filtering leaves out keep their own mean, bit by bit.
+// Sites that needs_filtering leaves out keep their own mean, bit by bit. Pixels that lie between the same four blocks
+// are computed together (surface_gather.hpp); those that an edge crosses are then the mean of what their rays see, which
+// most often is what a pixel beside them has (guides.hpp: EdgeRay).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/luminance.hpp"
@@ -16,6 +20,7 @@
 #include "foveation/sites.hpp"
 #include "reconstruct/filter.hpp"
 #include "reconstruct/surface_cells.hpp"
+#include "reconstruct/surface_gather.hpp"
 #include "reconstruct/surface_smoothing.hpp"
 
 namespace gazetrace {
@@ -38,6 +43,18 @@ struct Light {
   }
 };
 
+bool enough(const Light& light) {
+  return light.weight > kEnoughLike * light.all && light.weight > 0;
+}
+
+Light light_of(const LightLanes& sums, std::size_t i) {
+  return {{sums.reflected_r[i], sums.reflected_g[i], sums.reflected_b[i]},
+          {sums.albedo_r[i], sums.albedo_g[i], sums.albedo_b[i]},
+          sums.variance[i],
+          sums.weight[i],
+          sums.all[i]};
+}
+
 struct PixelSurface {
   Vec3f normal, place_m;
   SurfaceKind kind = SurfaceKind::diffuse;
@@ -50,11 +67,12 @@ class Gather {
 
   // What falls on a surface that pixel (x, y) sees; nothing (weight 0) where no sample is near.
   [[nodiscard]] Light light_at(int x, int y, int block, const PixelSurface& pixel) const {
-    Light light = nearest_four(x, y, block, pixel);
-    if (light.weight > kEnoughLike * light.all && light.weight > 0) {
-      return light;
-    }
-    light = square(x, y, block, pixel, true);
+    const Light light = nearest_four(x, y, block, pixel);
+    return enough(light) ? light : farther(x, y, block, pixel);
+  }
+  // Where the nearest four blocks have not enough.
+  [[nodiscard]] Light farther(int x, int y, int block, const PixelSurface& pixel) const {
+    const Light light = square(x, y, block, pixel, true);
     return light.weight > 0 ? light : square(x, y, block, pixel, false);
   }
 
@@ -66,8 +84,8 @@ class Gather {
                                  guides_.depth_m(x, y)),
             guides_.kind(x, y)};
   }
-  [[nodiscard]] PixelSurface surface_of(const EdgeRay& ray) const {
-    return {ray.normal, guides_.camera.place(ray.x, ray.y, ray.depth_m), ray.kind};
+  [[nodiscard]] PixelSurface surface_of(const EdgeSurface& seen) const {
+    return {seen.normal, guides_.camera.place(seen.x, seen.y, seen.depth_m), seen.kind};
   }
 
  private:
@@ -142,15 +160,12 @@ struct PixelValue {
   float variance = 0;
 };
 
-// What one ray sees. `unknown`: for a surface that no sample is near to.
-PixelValue shade(const Gather& gather, int x, int y, int block, const PixelSurface& surface, const Vec3f& albedo,
-                 const Vec3f& emission, const SiteValue& unknown) {
-  if (only_shines(surface.kind)) {
-    return {emission};
-  }
-  const Light light = gather.light_at(x, y, block, surface);
+// Of a surface that reflects. `unknown`: says what is there instead where no sample is near.
+template <class Unknown>
+PixelValue shade(const Light& light, const Vec3f& albedo, const Vec3f& emission, const Unknown& unknown) {
   if (!(light.weight > 0)) {
-    return {unknown.radiance, unknown.variance};
+    const SiteValue value = unknown();
+    return {value.radiance, value.variance};
   }
   const float least = kLeastAlbedo * light.weight;
   const float scale = luminance(albedo) / light.weight;
@@ -160,12 +175,184 @@ PixelValue shade(const Gather& gather, int x, int y, int block, const PixelSurfa
           scale * scale * light.variance};
 }
 
-// Pixels that edges cross are the mean of all their rays.
+// The pixels of a region between four blocks of its own size: [x, x_end) x [y, y_end), cut by the frame.
+struct Square {
+  int column, row;  // the upper left of the blocks
+  int x, y, x_end, y_end;
+};
+
+// Fills the pixels of one region that need filtering, square by square.
+class SquareFiller {
+ public:
+  SquareFiller(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings,
+               const Gather& gather, std::size_t region, Frame& frame)
+      : input_(input),
+        map_(input.map),
+        guides_(*input.guides),
+        lattice_(lattice),
+        settings_(settings),
+        gather_(gather),
+        region_(region),
+        block_(input.map.regions[region].block_px),
+        frame_(frame) {}
+
+  void fill(const Square& square) {
+    for (int y = square.y; y < square.y_end; ++y) {
+      for (int x = square.x; x < square.x_end; ++x) {
+        if (map_.region(x, y) == region_ &&
+            (block_ > 1 || needs_filtering(map_, map_.sites[lattice_.site_of_pixel(x, y)]))) {
+          put(square, x, y);
+          if (pixels_.count == kGatherLanes) {
+            flush(square);
+          }
+        }
+      }
+    }
+    if (pixels_.count > 0) {
+      flush(square);
+    }
+  }
+
+ private:
+  void put(const Square& square, int x, int y) {
+    const std::size_t i = pixels_.count++;
+    at_[i] = {x, y};
+    const PixelSurface surface = gather_.surface_of(x, y);
+    pixels_.normal_x[i] = surface.normal.x;
+    pixels_.normal_y[i] = surface.normal.y;
+    pixels_.normal_z[i] = surface.normal.z;
+    pixels_.place_x[i] = surface.place_m.x;
+    pixels_.place_y[i] = surface.place_m.y;
+    pixels_.place_z[i] = surface.place_m.z;
+    pixels_.kind[i] = static_cast<std::int32_t>(surface.kind);
+    const auto size = static_cast<float>(block_);
+    const float fx = (static_cast<float>(x) + 0.5F) / size - 0.5F - static_cast<float>(square.column);
+    const float fy = (static_cast<float>(y) + 0.5F) / size - 0.5F - static_cast<float>(square.row);
+    pixels_.tent[0][i] = (1.0F - fx) * (1.0F - fy);
+    pixels_.tent[1][i] = fx * (1.0F - fy);
+    pixels_.tent[2][i] = (1.0F - fx) * fy;
+    pixels_.tent[3][i] = fx * fy;
+  }
+
+  void flush(const Square& square) {
+    LightLanes sums;
+    for (int k = 0; k < (block_ > 1 ? 4 : 1); ++k) {  // a single pixel is its own block's centre
+      const int px = (square.column + (k & 1)) * block_ + block_ / 2;
+      const int py = (square.row + (k >> 1)) * block_ + block_ / 2;
+      if (px < 0 || py < 0 || px >= map_.width_px || py >= map_.height_px) {
+        continue;
+      }
+      const std::uint32_t site = lattice_.site_of_pixel(px, py);
+      for (std::size_t c = lattice_.first[site]; c < lattice_.first[site + 1]; ++c) {
+        add_cell(lattice_.cells[c], static_cast<std::size_t>(k), pixels_, settings_, sums);
+      }
+    }
+    for (std::size_t i = 0; i < pixels_.count; ++i) {
+      store(at_[i].x, at_[i].y, light_of(sums, i));
+    }
+    pixels_.count = 0;
+  }
+
+  void store(int x, int y, const Light& nearest) {
+    const std::size_t p = frame_.radiance.index(x, y);
+    PixelValue value{guides_.emission.pixels[p]};
+    if (!only_shines(guides_.kind.pixels[p])) {
+      const Light light = enough(nearest) ? nearest : gather_.farther(x, y, block_, gather_.surface_of(x, y));
+      value = shade(light, guides_.albedo.pixels[p], value.radiance,
+                    [&] { return input_.values.value(lattice_.site_of_pixel(x, y)); });
+    }
+    frame_.radiance.pixels[p] = value.radiance;
+    frame_.variance.pixels[p] = value.variance;
+  }
+
+  const FilterInput& input_;
+  const SamplingMap& map_;
+  const Guides& guides_;
+  const SurfaceCells& lattice_;
+  const SmoothingSettings& settings_;
+  const Gather& gather_;
+  std::size_t region_;
+  int block_;
+  Frame& frame_;
+  SurfaceLanes pixels_;
+  struct Place {
+    int x, y;
+  };
+  std::array<Place, kGatherLanes> at_{};
+};
+
+// Rows of squares that hold pixels of a region.
+struct SquareRow {
+  std::size_t region;
+  int row, first_column, end_column;
+};
+
+std::vector<SquareRow> rows_of_squares(const SamplingMap& map) {
+  struct Bounds {
+    int x0 = std::numeric_limits<int>::max(), y0 = std::numeric_limits<int>::max(), x1 = -1, y1 = -1;
+  };
+  std::vector<Bounds> bounds(map.regions.size());
+  for (const Site& site : map.sites) {
+    Bounds& b = bounds[site.region];
+    b.x0 = std::min<int>(b.x0, site.block_x);
+    b.y0 = std::min<int>(b.y0, site.block_y);
+    b.x1 = std::max<int>(b.x1, site.block_x);
+    b.y1 = std::max<int>(b.y1, site.block_y);
+  }
+  std::vector<SquareRow> rows;
+  for (std::size_t r = 0; r < bounds.size(); ++r) {
+    // A block's pixels lie in the squares before and after its middle.
+    const int before = map.regions[r].block_px > 1 ? 1 : 0;
+    for (int row = bounds[r].y0 - before; row <= bounds[r].y1; ++row) {
+      rows.push_back({r, row, bounds[r].x0 - before, bounds[r].x1 + 1});
+    }
+  }
+  return rows;
+}
+
+void fill_squares(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings,
+                  const Gather& gather, Frame& frame) {
+  const SamplingMap& map = input.map;
+  const std::vector<SquareRow> rows = rows_of_squares(map);
+  parallel_for(rows.size(), input.threads, [&](std::size_t k) {
+    const SquareRow& row = rows[k];
+    const int block = map.regions[row.region].block_px;
+    const auto begin = [&](int at) { return at * block + block / 2; };
+    SquareFiller filler(input, lattice, settings, gather, row.region, frame);
+    for (int column = row.first_column; column < row.end_column; ++column) {
+      filler.fill({column, row.row, std::max(begin(column), 0), std::max(begin(row.row), 0),
+                   std::min(begin(column + 1), map.width_px), std::min(begin(row.row + 1), map.height_px)});
+    }
+  });
+}
+
+// Pixels that edges cross are the mean of all their rays. Before any is changed, all are computed.
 void blend_edges(const FilterInput& input, const Gather& gather, const Image<std::uint32_t>& site_of_pixel,
                  Frame& frame) {
-  const std::vector<EdgeRay>& rays = input.guides->edge_rays;
+  const Guides& guides = *input.guides;
+  const std::vector<EdgeRay>& rays = guides.edge_rays;
   constexpr std::size_t kRaysPerTask = 4096;
-  parallel_for((rays.size() + kRaysPerTask - 1) / kRaysPerTask, input.threads, [&](std::size_t task) {
+  struct Blended {
+    std::uint32_t pixel;
+    PixelValue value;
+  };
+  std::vector<std::vector<Blended>> blended((rays.size() + kRaysPerTask - 1) / kRaysPerTask);
+  const auto value_of = [&](const EdgeRay& ray) -> PixelValue {
+    if (!ray.own_surface) {
+      return {frame.radiance.pixels[ray.seen_by], frame.variance.pixels[ray.seen_by]};
+    }
+    const EdgeSurface& surface = guides.edge_surfaces[ray.seen_by];
+    if (only_shines(surface.kind)) {
+      return {surface.emission};
+    }
+    const std::uint32_t site = site_of_pixel.pixels[ray.pixel];
+    const int x = static_cast<int>(ray.pixel) % input.map.width_px;
+    const int y = static_cast<int>(ray.pixel) / input.map.width_px;
+    const int block = input.map.regions[input.map.sites[site].region].block_px;
+    return shade(gather.light_at(x, y, block, gather.surface_of(surface)), surface.albedo, surface.emission,
+                 [&] { return input.values.value(site); });
+  };
+  parallel_for(blended.size(), input.threads, [&](std::size_t task) {
     // A pixel belongs to the task in which its first ray is.
     std::size_t k = task * kRaysPerTask;
     while (k > 0 && k < rays.size() && rays[k].pixel == rays[k - 1].pixel) {
@@ -173,27 +360,27 @@ void blend_edges(const FilterInput& input, const Gather& gather, const Image<std
     }
     while (k < std::min((task + 1) * kRaysPerTask, rays.size())) {
       const std::uint32_t pixel = rays[k].pixel;
-      const std::uint32_t index = site_of_pixel.pixels[pixel];
-      const Site& site = input.map.sites[index];
-      const bool changed = needs_filtering(input.map, site);
-      const int x = static_cast<int>(pixel) % input.map.width_px;
-      const int y = static_cast<int>(pixel) / input.map.width_px;
-      const int block = input.map.regions[site.region].block_px;
+      const bool changed = needs_filtering(input.map, input.map.sites[site_of_pixel.pixels[pixel]]);
       PixelValue sum{frame.radiance.pixels[pixel], frame.variance.pixels[pixel]};
       float count = 1;
       for (; k < rays.size() && rays[k].pixel == pixel; ++k) {
         if (changed) {
-          const PixelValue value = shade(gather, x, y, block, gather.surface_of(rays[k]), rays[k].albedo,
-                                         rays[k].emission, input.values.value(index));
+          const PixelValue value = value_of(rays[k]);
           sum.radiance += value.radiance;
           sum.variance += value.variance;
           ++count;
         }
       }
       if (changed) {
-        frame.radiance.pixels[pixel] = sum.radiance / count;
-        frame.variance.pixels[pixel] = sum.variance / count;  // at most: they may share their samples
+        // Variance at most: they may share their samples.
+        blended[task].push_back({pixel, {sum.radiance / count, sum.variance / count}});
       }
+    }
+  });
+  parallel_for(blended.size(), input.threads, [&](std::size_t task) {
+    for (const Blended& b : blended[task]) {
+      frame.radiance.pixels[b.pixel] = b.value.radiance;
+      frame.variance.pixels[b.pixel] = b.value.variance;
     }
   });
 }
@@ -202,14 +389,12 @@ void blend_edges(const FilterInput& input, const Gather& gather, const Image<std
 
 Frame filter_guided(const FilterInput& input) {
   const SamplingMap& map = input.map;
-  const Guides& guides = *input.guides;
   const SmoothingSettings settings;
-  SurfaceCells lattice = make_surface_cells(input.sparse, map, guides.camera, input.threads);
+  SurfaceCells lattice = make_surface_cells(input.sparse, map, input.guides->camera, input.threads);
   smooth_surfaces(lattice, map, settings, input.threads);
 
   // AOVs are those of the linear filter.
   Frame frame = input.values.has_guides() ? filter_linear(input) : make_frame(map, false);
-  const Gather gather(input, lattice, settings);
   parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
     for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
@@ -218,19 +403,12 @@ Frame filter_guided(const FilterInput& input) {
         paint_site(frame, map, input.values, i);
         continue;
       }
-      const int block = map.regions[site.region].block_px;
       const float density = static_cast<float>(input.values.count(i)) / static_cast<float>(site.pixels);
-      const SiteValue unknown = input.values.value(i);
-      for_each_pixel(map, site, [&](int x, int y) {
-        const std::size_t p = frame.radiance.index(x, y);
-        const PixelValue value = shade(gather, x, y, block, gather.surface_of(x, y), guides.albedo.pixels[p],
-                                       guides.emission.pixels[p], unknown);
-        frame.radiance.pixels[p] = value.radiance;
-        frame.variance.pixels[p] = value.variance;
-        frame.sample_count.pixels[p] = density;
-      });
+      for_each_pixel(map, site, [&](int x, int y) { frame.sample_count(x, y) = density; });
     }
   });
+  const Gather gather(input, lattice, settings);
+  fill_squares(input, lattice, settings, gather, frame);
   blend_edges(input, gather, lattice.site_of_pixel, frame);
   return frame;
 }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// How pixels take up the light on the surfaces of the blocks about them: those that lie between the same four blocks
+// together, one a lane.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "gazetrace/guides.hpp"
+#include "reconstruct/surface_cells.hpp"
+#include "reconstruct/surface_smoothing.hpp"
+
+namespace gazetrace {
+
+inline constexpr std::size_t kGatherLanes = 16;  // blocks of 4x4 pixels
+
+struct alignas(64) GatherLane {
+  std::array<float, kGatherLanes> data{};
+  float& operator[](std::size_t i) { return data[i]; }
+  const float& operator[](std::size_t i) const { return data[i]; }
+};
+
+// What pixels see; lanes past `count` hold anything.
+struct SurfaceLanes {
+  GatherLane normal_x, normal_y, normal_z, place_x, place_y, place_z;
+  alignas(64) std::array<std::int32_t, kGatherLanes> kind{};
+  std::array<GatherLane, 4> tent;  // bilinear weight of each of the four blocks
+  std::size_t count = 0;
+};
+
+// Weighted sums over cells.
+struct LightLanes {
+  GatherLane reflected_r, reflected_g, reflected_b, albedo_r, albedo_g, albedo_b;
+  GatherLane variance, weight;
+  GatherLane all;  // weight without regard to likeness
+};
+
+// Adds a cell of block `k` to all lanes, to each as far as it is like what the pixel sees.
+void add_cell(const SurfaceCell& cell, std::size_t k, const SurfaceLanes& pixels, const SmoothingSettings& settings,
+              LightLanes& sums);
+
+}  // namespace gazetrace
