@@ -27,6 +27,7 @@
 // rate" uniform with 32: the fovea of both must score the same.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -46,6 +47,23 @@ constexpr const char* kAdvice = "read the head of foveation_gain.cpp";
 
 bool is_option(const char* text) {
   return std::string_view(text).substr(0, 2) == "--";
+}
+
+template <class Info>
+std::vector<std::string> names_of(const std::vector<Info>& family) {
+  std::vector<std::string> names;
+  for (const Info& info : family) {
+    names.push_back(info.name);
+  }
+  return names;
+}
+
+void check_names(const char* option, const std::vector<std::string>& given, const std::vector<std::string>& known) {
+  for (const std::string& name : given) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw Error(ErrorKind::usage, option, unknown_name_message("name", name, known));
+    }
+  }
 }
 
 struct Arguments {
@@ -119,6 +137,9 @@ Arguments parse(int argc, char** argv) {
   if (eye && target) {
     study.viewpoint = {*eye, *target, fov_deg};
   }
+  check_names("--models", study.models, names_of(falloffs()));
+  check_names("--filters", study.filters, names_of(reconstruction_filters()));
+  check_names("--metrics", study.metrics, {gain::kMetricNames.begin(), gain::kMetricNames.end()});
   if (study.gazes.empty()) {
     study.gazes = gain::gaze_grid();
   }

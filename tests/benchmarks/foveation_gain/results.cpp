@@ -77,8 +77,8 @@ std::string verdict(const Comparison& comparison, Metric metric) {
 
 Results::Results(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
-    if (row.kind == "setup") {
-      setups_.push_back(row.scene + ": " + row.arm);
+    if (row.kind == "setup" || row.kind == "timed") {
+      setups_.push_back(row.scene + (row.kind == "timed" ? ", times: " : ": ") + row.arm);
     } else if (row.kind == "time") {
       times_[joined(row.scene, row.arm, row.filter, row.gaze)].push_back(row);
       add_once(timed_gazes_[joined(row.scene, row.arm, row.filter, "")], row.gaze);

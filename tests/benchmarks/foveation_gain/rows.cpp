@@ -130,7 +130,7 @@ std::vector<Row> read_rows(const std::string& path) {
 RowFile::RowFile(std::string path) : path_(std::move(path)) {
   for (const Row& row : read_rows(path_)) {
     keys_.insert(row.key());
-    if (row.kind == "setup") {
+    if (row.kind == "setup" || row.kind == "timed") {
       setups_.push_back(row);
     }
   }
@@ -144,9 +144,9 @@ RowFile::RowFile(std::string path) : path_(std::move(path)) {
   }
 }
 
-void RowFile::claim(const std::string& scene, const std::string& setup) {
+void RowFile::claim(const std::string& kind, const std::string& scene, const std::string& setup) {
   for (const Row& row : setups_) {
-    if (row.scene == scene) {
+    if (row.kind == kind && row.scene == scene) {
       if (row.arm != setup) {
         throw Error(ErrorKind::usage, path_, fmt::format("{} is in it with '{}', not '{}'", scene, row.arm, setup),
                     "take another file");
@@ -155,7 +155,7 @@ void RowFile::claim(const std::string& scene, const std::string& setup) {
     }
   }
   Row row;
-  row.kind = "setup";
+  row.kind = kind;
   row.scene = scene;
   row.arm = setup;
   setups_.push_back(row);

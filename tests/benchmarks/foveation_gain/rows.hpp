@@ -34,7 +34,8 @@ struct StageTimes {
   [[nodiscard]] double sum_ms() const { return plan_ms + guides_ms + trace_ms + reconstruct_ms; }
 };
 
-// kind   setup: `arm` says how the scene's rows came about; rows of other settings never share a file
+// kind   setup: `arm` says how the scene's errors came about, "timed" how its times did; rows of other settings never
+//        share a file
 //        floor: of the reference. `arm` "halves": one half of its files against the other; "own": the relative MSE that
 //               its own noise adds to every picture's
 //        score: an arm's errors at a gaze
@@ -62,7 +63,7 @@ class RowFile {
   explicit RowFile(std::string path);
   [[nodiscard]] bool has(const Row& row) const { return keys_.contains(row.key()); }
   // Error(usage) where the file holds rows of the scene that were made otherwise.
-  void claim(const std::string& scene, const std::string& setup);
+  void claim(const std::string& kind, const std::string& scene, const std::string& setup);
   void add(const Row& row);
 
  private:

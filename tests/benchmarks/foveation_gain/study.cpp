@@ -180,7 +180,7 @@ void Study::measure_errors() {
       fmt::format("{}x{} budget {} ev {} references {}", settings_.size.width_px, settings_.size.height_px,
                   settings_.budget_spp, judge.ev(), settings_.reference.size());
   fmt::print("{}: {}, {:.2f} pixels per degree\n", world_.name, setup, judge.pixels_per_degree());
-  rows_.claim(world_.name, setup);
+  rows_.claim("setup", world_.name, setup);
   for (Row& row : judge.floor()) {
     row.scene = world_.name;
     if (!rows_.has(row)) {
@@ -240,6 +240,8 @@ void Study::measure_times() {
   if (gazes.empty()) {
     gazes.push_back(settings_.gazes.front());
   }
+  rows_.claim("timed", world_.name,
+              fmt::format("{}x{} budget {}", settings_.size.width_px, settings_.size.height_px, settings_.budget_spp));
   // Memory that the first frame asks the system for is there afterwards.
   renderer_.filtered(renderer_.trace(uniform_settings(settings_.budget_spp), std::nullopt, 0, surfaces_),
                      settings_.filters.back());
