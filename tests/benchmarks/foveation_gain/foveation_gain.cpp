@@ -51,10 +51,8 @@ bool is_option(const char* text) {
 
 template <class Info>
 std::vector<std::string> names_of(const std::vector<Info>& family) {
-  std::vector<std::string> names;
-  for (const Info& info : family) {
-    names.push_back(info.name);
-  }
+  std::vector<std::string> names(family.size());
+  std::transform(family.begin(), family.end(), names.begin(), [](const Info& info) { return info.name; });
   return names;
 }
 
