@@ -21,6 +21,10 @@ inline Vec3f directional_albedo(const Surface& surface, float f0, float cosine) 
   };
   const float dielectric = specular(f0);
   const Vec3f& c = surface.base_color;
+  if (surface.metallic == 0) {  // most are, and it is the same for less
+    const float left = 1.0F - dielectric;
+    return {dielectric + c.x * left, dielectric + c.y * left, dielectric + c.z * left};
+  }
   const auto mixed = [&](float base) {
     return surface.metallic * specular(base) + (1.0F - surface.metallic) * (dielectric + base * (1.0F - dielectric));
   };

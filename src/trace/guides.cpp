@@ -54,8 +54,11 @@ void trace_tile(const GuideFrame& frame, TraceRays trace, int x0, int y0, std::u
     if (x >= frame.width_px || y >= frame.height_px) {
       continue;
     }
-    const SampleKey key{hash64(kGuideKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x)))};
-    const Vec2f inside = spp == 1 ? Vec2f{0.5F, 0.5F} : sample_2d(key, sample, dimension_of(PathDimension::pixel));
+    Vec2f inside{0.5F, 0.5F};
+    if (spp > 1) {
+      const SampleKey key{hash64(kGuideKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x)))};
+      inside = sample_2d(key, sample, dimension_of(PathDimension::pixel));
+    }
     add_ray(frame, from_center(frame, x, y, inside), x, y, sample,
             static_cast<std::size_t>(at.y * kTilePx + at.x) * spp + sample, work);
   }

@@ -5,8 +5,8 @@
 //   radiance(p) = emission(p) + albedo(p) * sum_c w(p, c) reflected(c) / sum_c w(p, c) albedo(c)
 // Emission, misses and texture thus come from the first hits at full resolution, and no edge of theirs is smoothed.
 // Sites that needs_filtering leaves out keep their own mean, bit by bit. Pixels that lie between the same four blocks
-// are computed together (surface_gather.hpp); those that an edge crosses are then the mean of what their rays see, which
-// most often is what a pixel beside them has (guides.hpp: EdgeRay).
+// are computed together (surface_gather.hpp); those that an edge crosses are then the mean of what their rays see,
+// which most often is what a pixel beside them has (guides.hpp: EdgeRay).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,16 +43,8 @@ struct Light {
   }
 };
 
-bool enough(const Light& light) {
-  return light.weight > kEnoughLike * light.all && light.weight > 0;
-}
-
-Light light_of(const LightLanes& sums, std::size_t i) {
-  return {{sums.reflected_r[i], sums.reflected_g[i], sums.reflected_b[i]},
-          {sums.albedo_r[i], sums.albedo_g[i], sums.albedo_b[i]},
-          sums.variance[i],
-          sums.weight[i],
-          sums.all[i]};
+bool enough(float weight, float all) {
+  return weight > kEnoughLike * all && weight > 0;
 }
 
 struct PixelSurface {
@@ -68,7 +60,7 @@ class Gather {
   // What falls on a surface that pixel (x, y) sees; nothing (weight 0) where no sample is near.
   [[nodiscard]] Light light_at(int x, int y, int block, const PixelSurface& pixel) const {
     const Light light = nearest_four(x, y, block, pixel);
-    return enough(light) ? light : farther(x, y, block, pixel);
+    return enough(light.weight, light.all) ? light : farther(x, y, block, pixel);
   }
   // Where the nearest four blocks have not enough.
   [[nodiscard]] Light farther(int x, int y, int block, const PixelSurface& pixel) const {
@@ -201,7 +193,7 @@ class SquareFiller {
       for (int x = square.x; x < square.x_end; ++x) {
         if (map_.region(x, y) == region_ &&
             (block_ > 1 || needs_filtering(map_, map_.sites[lattice_.site_of_pixel(x, y)]))) {
-          put(square, x, y);
+          put(x, y);
           if (pixels_.count == kGatherLanes) {
             flush(square);
           }
@@ -214,27 +206,25 @@ class SquareFiller {
   }
 
  private:
-  void put(const Square& square, int x, int y) {
+  void put(int x, int y) {
     const std::size_t i = pixels_.count++;
+    const std::size_t p = frame_.radiance.index(x, y);
     at_[i] = {x, y};
-    const PixelSurface surface = gather_.surface_of(x, y);
-    pixels_.normal_x[i] = surface.normal.x;
-    pixels_.normal_y[i] = surface.normal.y;
-    pixels_.normal_z[i] = surface.normal.z;
-    pixels_.place_x[i] = surface.place_m.x;
-    pixels_.place_y[i] = surface.place_m.y;
-    pixels_.place_z[i] = surface.place_m.z;
-    pixels_.kind[i] = static_cast<std::int32_t>(surface.kind);
-    const auto size = static_cast<float>(block_);
-    const float fx = (static_cast<float>(x) + 0.5F) / size - 0.5F - static_cast<float>(square.column);
-    const float fy = (static_cast<float>(y) + 0.5F) / size - 0.5F - static_cast<float>(square.row);
-    pixels_.tent[0][i] = (1.0F - fx) * (1.0F - fy);
-    pixels_.tent[1][i] = fx * (1.0F - fy);
-    pixels_.tent[2][i] = (1.0F - fx) * fy;
-    pixels_.tent[3][i] = fx * fy;
+    pixels_.x_px[i] = static_cast<float>(x) + 0.5F - 0.5F * static_cast<float>(map_.width_px);
+    pixels_.y_px[i] = static_cast<float>(y) + 0.5F - 0.5F * static_cast<float>(map_.height_px);
+    pixels_.depth_m[i] = guides_.depth_m.pixels[p];
+    const Vec3f& normal = guides_.normal.pixels[p];
+    pixels_.normal_x[i] = normal.x;
+    pixels_.normal_y[i] = normal.y;
+    pixels_.normal_z[i] = normal.z;
+    pixels_.kind[i] = static_cast<std::int32_t>(guides_.kind.pixels[p]);
   }
 
   void flush(const Square& square) {
+    const auto size = static_cast<float>(block_);
+    locate_lanes(
+        guides_.camera, (static_cast<float>(square.column) + 0.5F) * size - 0.5F * static_cast<float>(map_.width_px),
+        (static_cast<float>(square.row) + 0.5F) * size - 0.5F * static_cast<float>(map_.height_px), size, pixels_);
     LightLanes sums;
     for (int k = 0; k < (block_ > 1 ? 4 : 1); ++k) {  // a single pixel is its own block's centre
       const int px = (square.column + (k & 1)) * block_ + block_ / 2;
@@ -247,18 +237,24 @@ class SquareFiller {
         add_cell(lattice_.cells[c], static_cast<std::size_t>(k), pixels_, settings_, sums);
       }
     }
+    divide_light(sums);
     for (std::size_t i = 0; i < pixels_.count; ++i) {
-      store(at_[i].x, at_[i].y, light_of(sums, i));
+      store(at_[i].x, at_[i].y, sums, i);
     }
     pixels_.count = 0;
   }
 
-  void store(int x, int y, const Light& nearest) {
+  void store(int x, int y, const LightLanes& sums, std::size_t i) {
     const std::size_t p = frame_.radiance.index(x, y);
+    const Vec3f& albedo = guides_.albedo.pixels[p];
     PixelValue value{guides_.emission.pixels[p]};
-    if (!only_shines(guides_.kind.pixels[p])) {
-      const Light light = enough(nearest) ? nearest : gather_.farther(x, y, block_, gather_.surface_of(x, y));
-      value = shade(light, guides_.albedo.pixels[p], value.radiance,
+    const bool shaded = !only_shines(guides_.kind.pixels[p]);
+    if (shaded && enough(sums.weight[i], sums.all[i])) {
+      value.radiance += albedo * Vec3f{sums.reflected_r[i], sums.reflected_g[i], sums.reflected_b[i]};
+      const float shade_of = luminance(albedo);
+      value.variance = shade_of * shade_of * sums.variance[i];
+    } else if (shaded) {
+      value = shade(gather_.farther(x, y, block_, gather_.surface_of(x, y)), albedo, value.radiance,
                     [&] { return input_.values.value(lattice_.site_of_pixel(x, y)); });
     }
     frame_.radiance.pixels[p] = value.radiance;
