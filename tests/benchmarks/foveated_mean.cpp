@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Is a foveated frame unbiased? Before reconstruction, and averaged over seeds, every fall-off model must have the same
 // mean as uniform sampling in every band of eccentricity.
-//   gazetrace_foveated_mean SCENE.gltf[=SKY.hdr] ... [--seeds 256] [--size 160x90] [--spp 4] [--foveal-spp 32]
+//   gazetrace_foveated_mean SCENE.gltf[=SKY.hdr|=constant:R,G,B] ... [--seeds 256] [--size 160x90] [--spp 4]
+//   [--foveal-spp 32]
 //       [--uniform-seeds 256] [--uniform-samples 30000] [--margin 0.5] [--gaze U,V] [--models a,b,c] [--eye X,Y,Z
 //       --target X,Y,Z --fov DEG]
 // A scene is looked at by its first camera or, where it has none, from --eye; the frame is seen as one of 70.848 cm at
@@ -35,12 +36,14 @@
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
 #include "pixel_statistics.hpp"
+#include "world.hpp"
 
 namespace {
 
 using namespace gazetrace;
 using benchmark::parse_numbers;
 using benchmark::parse_point;
+using benchmark::World;
 
 constexpr std::array<double, 6> kBandEnds{2.6, 5.2, 8.5, 17, 30, 60};
 
@@ -55,6 +58,10 @@ struct Options {
   Vec2d gaze{0.5, 0.5};
   std::optional<Vec3d> eye, target;
   double fov_deg = 50;
+
+  [[nodiscard]] std::optional<benchmark::Viewpoint> viewpoint() const {
+    return eye && target ? std::optional(benchmark::Viewpoint{*eye, *target, fov_deg}) : std::nullopt;
+  }
 };
 
 struct Estimate {
@@ -160,35 +167,6 @@ struct Comparison {
   bool equivalent = false;
 };
 
-struct World {
-  std::string name;
-  Scene scene;
-  Camera camera;
-};
-
-World load_world(const std::string& text, const Options& options) {
-  World world;
-  const std::size_t equals = text.find('=');
-  world.name = text.substr(0, equals);
-  world.scene = load_scene(world.name);
-  if (equals != std::string::npos) {
-    world.scene.environment = load_environment(text.substr(equals + 1));
-  }
-  world.name = world.name.substr(world.name.find_last_of('/') + 1);
-  world.name = world.name.substr(0, world.name.find_last_of('.'));
-  if (!world.scene.cameras.empty()) {
-    const CameraPath& path = world.scene.cameras.front().path;
-    world.camera.pose = path.pose_at(path.begin_ns);
-    world.camera.projection = path.projection;
-  } else if (options.eye && options.target) {
-    world.camera.pose = look_at(*options.eye, *options.target, {0, 1, 0});
-    world.camera.projection.yfov_rad = options.fov_deg * kRadPerDeg;
-  } else {
-    throw Error(ErrorKind::usage, world.name, "the scene has no camera", "give --eye and --target");
-  }
-  return world;
-}
-
 // Luminance of each pixel for each uniform seed, kept in single precision: every model's bands are sums over them.
 std::vector<std::vector<float>> uniform_frames(const PathTracer& tracer, const World& world, const Options& options) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, options.width_px, options.height_px);
@@ -275,6 +253,10 @@ void compare_model(const PathTracer& tracer, const World& world, const Options& 
     }
     const Estimate a = estimate_of(foveated.at(b));
     const Estimate u = estimate_of(reference);
+    if (!(u.mean > 0)) {
+      throw Error(ErrorKind::input, world.name, fmt::format("band {} is black: no share of its mean can be told", b),
+                  "look from another place");
+    }
     Comparison c;
     c.scene = world.name;
     c.model = model;
@@ -380,19 +362,14 @@ Options parse(int argc, char** argv) {
     } else if (name == "--margin") {
       options.margin = 0.01 * std::strtod(value, nullptr);
     } else if (name == "--size") {
-      char* rest = nullptr;
-      options.width_px = static_cast<int>(std::strtol(value, &rest, 10));
-      options.height_px = static_cast<int>(std::strtol(rest + 1, nullptr, 10));
+      const benchmark::FrameSize size = benchmark::parse_size(value);
+      options.width_px = size.width_px;
+      options.height_px = size.height_px;
     } else if (name == "--gaze") {
       const std::vector<double> list = parse_numbers(value);
       options.gaze = {list.at(0), list.at(1)};
     } else if (name == "--models") {
-      std::string_view rest = value;
-      while (!rest.empty()) {
-        const std::size_t comma = std::min(rest.find(','), rest.size());
-        options.models.emplace_back(rest.substr(0, comma));
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
-      }
+      options.models = benchmark::parse_names(value);
     } else if (name == "--eye") {
       options.eye = parse_point(value);
     } else if (name == "--target") {
@@ -413,7 +390,7 @@ int run(int argc, char** argv) {
   }
   std::vector<Comparison> all;
   for (const std::string& text : options.scenes) {
-    const World world = load_world(text, options);
+    const World world = benchmark::load_world(text, options.viewpoint());
     const PathTracer tracer(world.scene, {});
     const auto uniform = uniform_frames(tracer, world, options);
     for (const FalloffInfo& info : falloffs()) {

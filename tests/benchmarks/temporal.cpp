@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What accumulation over time gives and costs, on a scene under a sky, at equal samples.
-//   gazetrace_temporal scene.gltf sky.hdr gaze.csv [--frames N] [--height PX] [--reference-spp N] [--only TEXT]
+//   gazetrace_temporal scene.gltf sky.hdr gaze.csv [--frames N] [--height PX] [--reference-spp N] [--filter NAME]
+//   [--only TEXT]
 // Two sequences at 24 frames a second, both with the recorded gaze (replay, not viewing): a camera that glides and
 // turns, and one that stands still while the gaze moves. References are uniform, of two halves with other seeds, whose
 // difference gives the floor below which nothing is claimed.
@@ -10,6 +11,8 @@
 //            out; noise of x and reference is in it
 //   flicker  standard deviation over time between 1 Hz and half the frame rate, in excess of the reference's, root mean
 //            square over pixels, by the mean of ref
+//   seen     the same as an eye sees it: FlickerMeter's excess, in multiples of what is just visible where it is (0.18
+//            of a display of 200 cd/m2 shows the mean of ref); beside it that of the pixels beyond 8.5 degrees
 // Then: how long a light that goes out (a tenth of the sky) and a body that is gone (its shadow too) are still seen,
 // and what a run that begins with frames rendered before its first differs from the whole one.
 #include <fmt/core.h>
@@ -27,16 +30,21 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "sequence_measures.hpp"
 
 namespace {
 
 using namespace gazetrace;
+using benchmark::kFps;
+using benchmark::Luminances;
+using benchmark::Reference;
+using benchmark::SeenFlicker;
 
-constexpr double kFps = 24;
 constexpr std::array kAfter{0, 1, 2, 4, 8, 16};
 
 struct Options {
   std::string scene, sky, gaze, only;
+  std::string filter = "linear";
   int frames = 120, height_px = 90;
   std::uint32_t reference_spp = 128;
 };
@@ -44,9 +52,8 @@ struct Options {
 struct Variant {
   std::string name;
   AccumulateSettings accumulate;
+  bool orders = false;  // one of two that differ in their order alone
 };
-
-using Luminances = std::vector<std::vector<float>>;  // frame by frame, pixel by pixel
 
 Options parse(int argc, char** argv) {
   Options options;
@@ -64,6 +71,8 @@ Options parse(int argc, char** argv) {
       options.height_px = std::atoi(value);
     } else if (name == "--reference-spp") {
       options.reference_spp = static_cast<std::uint32_t>(std::atoi(value));
+    } else if (name == "--filter") {
+      options.filter = value;
     } else if (name == "--only") {
       options.only = value;
     } else {
@@ -80,7 +89,7 @@ Options parse(int argc, char** argv) {
 }
 
 std::vector<Variant> make_variants() {
-  std::vector<Variant> variants{{"off", {}}};
+  std::vector<Variant> variants{{"off", {}, false}};
   const auto add = [&](std::string name, double frames, double clip, double blend, AccumulateOrder order) {
     AccumulateSettings settings;
     settings.mode = AccumulateMode::reproject;
@@ -88,13 +97,14 @@ std::vector<Variant> make_variants() {
     settings.clip_sigmas = clip;
     settings.blend = blend;
     settings.order = order;
-    variants.push_back({std::move(name), settings});
+    variants.push_back({std::move(name), settings, false});
   };
   const AccumulateSettings standard;
   constexpr auto kLater = AccumulateOrder::after;
   add("reproject (the defaults)", standard.frames, standard.clip_sigmas, 0, standard.order);
   add("before the filter", standard.frames, standard.clip_sigmas, 0, AccumulateOrder::before);
   add("after the filter", standard.frames, standard.clip_sigmas, 0, kLater);
+  variants[2].orders = variants[3].orders = true;
   add("memory 8", 8, standard.clip_sigmas, 0, kLater);
   add("memory 32", 32, standard.clip_sigmas, 0, kLater);
   add("clip 0", standard.frames, 0, 0, kLater);
@@ -134,8 +144,9 @@ class Bench {
     return plan_frames(path, &log_, settings);
   }
 
-  [[nodiscard]] static PipelineSettings settings_of(const AccumulateSettings& accumulate) {
+  [[nodiscard]] PipelineSettings settings_of(const AccumulateSettings& accumulate) const {
     PipelineSettings settings;
+    settings.filter = options_.filter;
     settings.accumulate = accumulate;
     settings.history_digest = "none";
     settings.trace.seed = 1;
@@ -178,11 +189,6 @@ Luminances render(PathTracer& tracer, const FramePlan& plan, const PipelineSetti
   return frames;
 }
 
-struct Reference {
-  Luminances a, b, mean;
-  double level = 0;  // mean luminance
-};
-
 Reference make_reference(PathTracer& tracer, const Bench& bench, const FramePlan& plan, bool still) {
   const FramePlan& all = plan;
   FramePlan one = plan;
@@ -207,37 +213,8 @@ Reference make_reference(PathTracer& tracer, const Bench& bench, const FramePlan
   return reference;
 }
 
-// Variance over time of what lies between 1 Hz and half the frame rate, mean over the pixels.
-double variance_above_1_hz(const std::function<double(std::size_t frame, std::size_t pixel)>& value, std::size_t frames,
-                           std::size_t pixels) {
-  const auto n = static_cast<double>(frames);
-  double sum = 0;
-  std::vector<double> series(frames);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    double mean = 0;
-    double square = 0;
-    for (std::size_t f = 0; f < frames; ++f) {
-      series[f] = value(f, i);
-      mean += series[f] / n;
-      square += series[f] * series[f] / n;
-    }
-    double variance = square - mean * mean;
-    for (std::size_t k = 1; static_cast<double>(k) * kFps / n < 1; ++k) {
-      double re = 0;
-      double im = 0;
-      for (std::size_t f = 0; f < frames; ++f) {
-        const double phase = 2 * kPi * static_cast<double>(k * f) / n;
-        re += series[f] * std::cos(phase) / n;
-        im += series[f] * std::sin(phase) / n;
-      }
-      variance -= 2 * (re * re + im * im);
-    }
-    sum += variance;
-  }
-  return sum / static_cast<double>(pixels);
-}
-
-void print_row(const std::string& name, const Luminances& frames, const Reference& reference, double temporal_ms) {
+void print_row(const std::string& name, const FramePlan& plan, const Luminances& frames, const Reference& reference,
+               double temporal_ms) {
   const std::size_t count = frames.size();
   const std::size_t pixels = frames[0].size();
   double relative = 0;
@@ -264,19 +241,21 @@ void print_row(const std::string& name, const Luminances& frames, const Referenc
   const auto of = [](const Luminances& from) {
     return [&from](std::size_t f, std::size_t i) { return static_cast<double>(from[f][i]); };
   };
-  const double own = variance_above_1_hz(of(frames), count, pixels);
-  const double noise = variance_above_1_hz(
+  const double own = benchmark::variance_above_1_hz(of(frames), count, pixels);
+  const double noise = benchmark::variance_above_1_hz(
       [&](std::size_t f, std::size_t i) { return 0.5 * static_cast<double>(reference.a[f][i] - reference.b[f][i]); },
       count, pixels);
-  const double wanted = variance_above_1_hz(of(reference.mean), count, pixels) - noise;
+  const double wanted = benchmark::variance_above_1_hz(of(reference.mean), count, pixels) - noise;
   const double excess = own - wanted;
-  fmt::print("| {} | {:.4f} | {:+.2f} % | {:.2f} % | {}{:.2f} % | {:.2f} |\n", name, (relative - floor) / n,
-             100 * bias / n / reference.level, 100 * std::sqrt(local_square) / reference.level, excess < 0 ? "-" : "",
-             100 * std::sqrt(std::fabs(excess)) / reference.level, temporal_ms / static_cast<double>(count));
+  const SeenFlicker seen = benchmark::seen_flicker(plan, reference.mean, frames, reference.level);
+  fmt::print("| {} | {:.4f} | {:+.2f} % | {:.2f} % | {}{:.2f} % | {:.2f} | {:.2f} | {:.2f} |\n", name,
+             (relative - floor) / n, 100 * bias / n / reference.level, 100 * std::sqrt(local_square) / reference.level,
+             excess < 0 ? "-" : "", 100 * std::sqrt(std::fabs(excess)) / reference.level, seen.all, seen.periphery,
+             temporal_ms / static_cast<double>(count));
   std::fflush(stdout);
 }
 
-void print_floor(const Reference& reference) {
+void print_floor(const FramePlan& plan, const Reference& reference) {
   double floor = 0;
   for (std::size_t f = 0; f < reference.a.size(); ++f) {
     for (std::size_t i = 0; i < reference.a[f].size(); ++i) {
@@ -285,25 +264,32 @@ void print_floor(const Reference& reference) {
       floor += halves * halves / (ref * ref + 0.01 * reference.level * reference.level);
     }
   }
-  fmt::print("The reference's own relmse: {:.5f}.\n\n",
-             floor / static_cast<double>(reference.a.size() * reference.a[0].size()));
+  const SeenFlicker seen = benchmark::seen_flicker(plan, reference.a, reference.b, reference.level);
+  fmt::print("The reference's own relmse: {:.5f}; flicker seen of one half against the other: {:.2f} ({:.2f}).\n\n",
+             floor / static_cast<double>(reference.a.size() * reference.a[0].size()), seen.all, seen.periphery);
 }
 
 void compare_sequences(PathTracer& tracer, const Bench& bench, const Options& options) {
+  const bool has_orders = !filter_needs_guides(options.filter);
   for (const bool glides : {true, false}) {
     const FramePlan plan = bench.plan(glides, 1, options.frames);
     const Reference reference = make_reference(tracer, bench, plan, !glides);
-    fmt::print("\n{}, {} frames of {}x{}, references of {} spp\n\n",
+    fmt::print("\n{}, {} frames of {}x{}, filter {}, references of {} spp\n\n",
                glides ? "The camera glides" : "The camera stands still", options.frames, bench.width_px(),
-               options.height_px, options.reference_spp);
+               options.height_px, options.filter, options.reference_spp);
     fmt::print(
-        "| accumulation | relmse | bias | local | flicker | ms a frame |\n| --- | --- | --- | --- | --- | --- |\n");
+        "| accumulation | relmse | bias | local | flicker | seen | seen beyond {} deg | ms a frame |\n"
+        "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+        benchmark::kPeriphery_deg);
     for (const Variant& variant : make_variants()) {
+      if (!has_orders && variant.orders) {
+        continue;
+      }
       double temporal_ms = 0;
-      const Luminances frames = render(tracer, plan, Bench::settings_of(variant.accumulate), &temporal_ms);
-      print_row(variant.name, frames, reference, temporal_ms);
+      const Luminances frames = render(tracer, plan, bench.settings_of(variant.accumulate), &temporal_ms);
+      print_row(variant.name, plan, frames, reference, temporal_ms);
     }
-    print_floor(reference);
+    print_floor(plan, reference);
   }
 }
 
@@ -318,7 +304,7 @@ double mean_of(const std::vector<float>& values) {
 // Two scenes, the history handed over by a checkpoint: from the next frame on everything is the second one's.
 Luminances across_a_change(PathTracer& before, PathTracer& after, const Bench& bench, const Variant& variant,
                            bool glides, int first_after) {
-  PipelineSettings settings = Bench::settings_of(variant.accumulate);
+  PipelineSettings settings = bench.settings_of(variant.accumulate);
   settings.checkpoint = (std::string(std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp") +
                          "/gazetrace_temporal_benchmark.bin");
   (void)render(before, bench.plan(glides, 1, first_after - 1), settings);
@@ -345,7 +331,7 @@ void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench) 
   for (const Variant& variant : make_variants()) {
     const Luminances frames = across_a_change(tracer, dark_tracer, bench, variant, false, kFirst);
     const Luminances alone =
-        render(dark_tracer, bench.plan(false, kFirst, kFirst + kAfter.back()), Bench::settings_of({}));
+        render(dark_tracer, bench.plan(false, kFirst, kFirst + kAfter.back()), bench.settings_of({}));
     double level = 0;
     for (const auto& frame : alone) {
       level += mean_of(frame) / static_cast<double>(alone.size());
@@ -431,7 +417,7 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
 void seams(PathTracer& tracer, const Bench& bench) {
   constexpr int kLast = 60;
   const Variant variant = make_variants()[1];
-  const Luminances whole = render(tracer, bench.plan(true, 1, kLast), Bench::settings_of(variant.accumulate));
+  const Luminances whole = render(tracer, bench.plan(true, 1, kLast), bench.settings_of(variant.accumulate));
   fmt::print(
       "\nA run that begins at frame {}, with frames rendered before it for their history\n\n"
       "| before | root mean square of the difference to one run, by the mean | the same of a frame's own noise |\n"
@@ -444,11 +430,11 @@ void seams(PathTracer& tracer, const Bench& bench) {
     }
     return 100 * std::sqrt(square) / mean_of(whole.back());
   };
-  PipelineSettings other = Bench::settings_of(variant.accumulate);
+  PipelineSettings other = bench.settings_of(variant.accumulate);
   other.trace.seed = 77;
   const Luminances other_seed = render(tracer, bench.plan(true, 1, kLast), other);
   for (const int preroll : {0, 8, 16, 32, 48}) {
-    PipelineSettings settings = Bench::settings_of(variant.accumulate);
+    PipelineSettings settings = bench.settings_of(variant.accumulate);
     settings.preroll = preroll;
     const Luminances some = render(tracer, bench.plan(true, kLast - preroll, kLast), settings);
     fmt::print("| {} | {:.3f} % | {:.3f} % |\n", preroll, difference(some.back(), whole.back()),
