@@ -23,6 +23,9 @@ struct FilterInput {
 #include "reconstruct/filters.def"
 #undef FILTER
 
+// What "guided" does, with its smoothing or without: light on surfaces, taken up by every pixel.
+Frame frame_from_surfaces(const FilterInput& input, bool smooth);
+
 // A frame of the map's size; guide images only where `guides` is set.
 Frame make_frame(const SamplingMap& map, bool guides);
 

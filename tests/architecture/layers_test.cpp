@@ -54,6 +54,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(tiny_gltf\.h)", R"(src/scene/gltf\.cpp)"},
     {R"(meshoptimizer\.h)", R"(src/scene/gltf_meshopt\.cpp)"},
     {R"(draco/)", R"(src/scene/gltf_draco\.cpp)"},
+    {R"(OpenImageDenoise/)", R"(src/reconstruct/open_image_denoise\.cpp)"},
     {R"(OpenImageIO/)", R"(src/core/image_io\.cpp)"},
     {R"(OpenColorIO/)", R"(src/color/ocio\.cpp)"},
     {R"((OpenEXR/|Imf|Imath|Iex))", R"(src/output/exr\.cpp)"},
