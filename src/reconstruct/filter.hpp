@@ -7,6 +7,8 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "reconstruct/site_values.hpp"
+#include "reconstruct/surface_cells.hpp"
+#include "reconstruct/surface_smoothing.hpp"
 
 namespace gazetrace {
 
@@ -23,8 +25,10 @@ struct FilterInput {
 #include "reconstruct/filters.def"
 #undef FILTER
 
-// What "guided" does, with its smoothing or without: light on surfaces, taken up by every pixel.
-Frame frame_from_surfaces(const FilterInput& input, bool smooth);
+// What "guided" does, with its own smoothing (smooth_surfaces) or another: light on surfaces, taken up by every pixel.
+using SmoothSurfaces = void (*)(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings,
+                                int threads);
+Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth);
 
 // A frame of the map's size; guide images only where `guides` is set.
 Frame make_frame(const SamplingMap& map, bool guides);

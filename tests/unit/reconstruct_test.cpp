@@ -425,8 +425,10 @@ TEST(Reconstruct, RefusesUnknownFiltersAndForeignMaps) {
   EXPECT_THROW((void)reconstruct(sparse, map, "linear", 1), Error);
   std::vector<std::string> names;
   for (const FilterInfo& info : reconstruction_filters()) {
-    names.push_back(info.name);
     EXPECT_FALSE(info.description.empty());
+    if (info.name != "oidn") {  // of builds that found the library
+      names.push_back(info.name);
+    }
   }
   EXPECT_THAT(names, testing::ElementsAre("none", "linear", "tent", "push-pull", "guided"));
 }

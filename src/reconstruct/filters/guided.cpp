@@ -384,16 +384,14 @@ void blend_edges(const FilterInput& input, const Gather& gather, const Image<std
 }  // namespace
 
 Frame filter_guided(const FilterInput& input) {
-  return frame_from_surfaces(input, true);
+  return frame_from_surfaces(input, smooth_surfaces);
 }
 
-Frame frame_from_surfaces(const FilterInput& input, bool smooth) {
+Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
   const SamplingMap& map = input.map;
   const SmoothingSettings settings;
   SurfaceCells lattice = make_surface_cells(input.sparse, map, input.guides->camera, input.threads);
-  if (smooth) {
-    smooth_surfaces(lattice, map, settings, input.threads);
-  }
+  smooth(lattice, map, settings, input.threads);
 
   // AOVs are those of the linear filter.
   Frame frame = input.values.has_guides() ? filter_linear(input) : make_frame(map, false);

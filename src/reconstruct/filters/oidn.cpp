@@ -1,30 +1,122 @@
 // SPDX-License-Identifier: Apache-2.0
-// Intel Open Image Denoise in the place of guided's smoothing: pixels take up the light of the surfaces about them as
-// in guided, and the network smooths the picture by what the first hits say of albedo and normal. Pixels that guided
-// leaves alone keep their own mean, bit by bit. Built where the library is found.
+// Intel Open Image Denoise in the place of guided's smoothing. The network expects noise that is independent from pixel
+// to pixel, so it sees the light on surfaces without their texture (surface_cells.hpp), a pixel a block: a picture for
+// each size of blocks. Blocks across an edge, with light of several surfaces, are smoothed as in guided. Built where
+// the library is found.
 #include "reconstruct/filter.hpp"
 
 #ifdef GAZETRACE_WITH_OIDN
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
 #include "core/parallel.hpp"
-#include "foveation/sites.hpp"
 #include "reconstruct/open_image_denoise.hpp"
 
 namespace gazetrace {
+namespace {
 
-Frame filter_oidn(const FilterInput& input) {
-  const SamplingMap& map = input.map;
-  Frame frame = frame_from_surfaces(input, false);
-  const ImageRgb smooth = open_image_denoise(frame.radiance, input.guides->albedo, input.guides->normal, input.threads);
-  parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
-    const MapTile& tile = map.tiles[t];
-    for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-      if (needs_filtering(map, map.sites[i])) {
-        for_each_pixel(map, map.sites[i], [&](int x, int y) { frame.radiance(x, y) = smooth(x, y); });
+// More than this share of a block's samples on one surface: the block shows its light.
+constexpr float kOneSurface = 0.9F;
+
+const SurfaceCell* main_surface(const SurfaceCells& cells, std::size_t site) {
+  const SurfaceCell* most = nullptr;
+  float samples = 0;
+  for (std::size_t k = cells.first[site]; k < cells.first[site + 1]; ++k) {
+    const SurfaceCell& cell = cells.cells[k];
+    samples += cell.samples;
+    if (most == nullptr || cell.samples > most->samples) {
+      most = &cell;
+    }
+  }
+  return most != nullptr && most->samples > kOneSurface * samples ? most : nullptr;
+}
+
+// All that a site's samples saw.
+struct SiteLight {
+  Vec3f light, normal;
+  bool is_surface = false;
+};
+
+SiteLight light_of(const SurfaceCells& cells, std::size_t site) {
+  Vec3f reflected;
+  Vec3f albedo;
+  Vec3f normal;
+  float samples = 0;
+  for (std::size_t k = cells.first[site]; k < cells.first[site + 1]; ++k) {
+    const SurfaceCell& cell = cells.cells[k];
+    reflected += cell.samples * cell.reflected;
+    albedo += cell.samples * cell.albedo;
+    normal += cell.samples * cell.normal;
+    samples += cell.samples;
+  }
+  if (!(samples > 0)) {
+    return {};
+  }
+  const float least = kLeastAlbedo * samples;
+  const float length = std::sqrt(dot(normal, normal));
+  return {{reflected.x / std::max(albedo.x, least), reflected.y / std::max(albedo.y, least),
+           reflected.z / std::max(albedo.z, least)},
+          length > 0 ? normal * (1.0F / length) : normal,
+          true};
+}
+
+// A pixel a block of a region's size, over the whole frame: where other regions are, the site in the block's middle,
+// and of it what is smooth already, since one block's noise over many pixels would pass for what is there.
+struct BlockPicture {
+  BlockPicture(const SurfaceCells& traced, const SurfaceCells& smooth, const SamplingMap& map, std::size_t region,
+               int block_px)
+      : width((map.width_px + block_px - 1) / block_px),
+        height((map.height_px + block_px - 1) / block_px),
+        light(width, height),
+        white(width, height),
+        normal(width, height),
+        site(width, height) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        site(x, y) = traced.site_of_pixel(std::min(x * block_px + block_px / 2, map.width_px - 1),
+                                          std::min(y * block_px + block_px / 2, map.height_px - 1));
+        const SiteLight seen = light_of(map.sites[site(x, y)].region == region ? traced : smooth, site(x, y));
+        light(x, y) = seen.light;
+        normal(x, y) = seen.normal;
+        white(x, y) = seen.is_surface ? Vec3f{1, 1, 1} : Vec3f{};
       }
     }
-  });
-  return frame;
+  }
+
+  int width, height;
+  ImageRgb light, white, normal;  // white: the albedo of what has no texture; 0 where nothing reflects
+  Image<std::uint32_t> site;
+};
+
+void denoise_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads) {
+  const SurfaceCells traced = cells;
+  smooth_surfaces(cells, map, settings, threads);
+  for (std::size_t region = 0; region < map.regions.size(); ++region) {
+    const BlockPicture blocks(traced, cells, map, region, map.regions[region].block_px);
+    const ImageRgb smooth = open_image_denoise(blocks.light, blocks.white, blocks.normal, threads);
+    parallel_for(static_cast<std::size_t>(blocks.height), threads, [&](std::size_t row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < blocks.width; ++x) {
+        const std::uint32_t site = blocks.site(x, y);
+        const SurfaceCell* from = map.sites[site].region == region ? main_surface(traced, site) : nullptr;
+        if (from != nullptr) {
+          SurfaceCell& cell = cells.cells[static_cast<std::size_t>(from - traced.cells.data())];
+          const Vec3f light = smooth(x, y);
+          cell.albedo = from->albedo;
+          cell.reflected = {light.x * cell.albedo.x, light.y * cell.albedo.y, light.z * cell.albedo.z};
+        }
+      }
+    });
+  }
+}
+
+}  // namespace
+
+Frame filter_oidn(const FilterInput& input) {
+  return frame_from_surfaces(input, denoise_surfaces);
 }
 
 }  // namespace gazetrace
