@@ -140,6 +140,16 @@ GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& s
   }
 }
 
+int levels_of(const MapRegion& region, const SmoothingSettings& settings) {
+  const double samples =
+      static_cast<double>(region.samples) / static_cast<double>(std::max<std::uint64_t>(region.sites, 1));
+  int levels = settings.fewest_levels;
+  while (levels < settings.levels && std::ldexp(samples, 2 * levels) < settings.samples) {
+    ++levels;
+  }
+  return levels;
+}
+
 class Smoother {
  public:
   Smoother(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads)
@@ -167,6 +177,10 @@ class Smoother {
   // The surfaces of blocks that lie `step` blocks apart, eight of them and the own. `found`: what it holds is lost.
   void find_ties(int step, std::vector<TileTies>& found) const {
     found.resize(map_.tiles.size());
+    std::vector<bool> takes_part;
+    for (const MapRegion& region : map_.regions) {
+      takes_part.push_back(step < 1 << levels_of(region, settings_));
+    }
     for_each_tile([&](std::size_t t) {
       const MapTile& tile = map_.tiles[t];
       TileTies& out = found[t];
@@ -175,7 +189,9 @@ class Smoother {
       Candidates near;
       for (std::size_t site = tile.first_site; site < tile.first_site + tile.site_count; ++site) {
         for (std::size_t i = lattice_.first[site]; i < lattice_.first[site + 1]; ++i) {
-          find_ties_of(site, i, step, near, out.ties);
+          if (takes_part[map_.sites[site].region]) {
+            find_ties_of(site, i, step, near, out.ties);
+          }
           out.end.push_back(static_cast<std::uint32_t>(out.ties.size()));
         }
       }

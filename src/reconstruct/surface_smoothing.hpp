@@ -12,7 +12,9 @@
 namespace gazetrace {
 
 struct SmoothingSettings {
-  int levels = 3;          // steps of 1, 2, 4 ... blocks, and at last of 1 once more
+  int levels = 5;  // steps of 1, 2, 4 ... blocks, at most so many, and at last of 1 once more
+  int fewest_levels = 3;
+  double samples = 512;    // wider steps are left out where the squares of 4, 16, 64 ... blocks have as many
   float light_sigmas = 6;  // differences of light up to so many standard deviations are taken for noise
   float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance
 };
