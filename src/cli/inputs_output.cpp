@@ -155,7 +155,7 @@ void check_history_options(const JobSettings& job) {
     }
   }
   if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
-      filter_needs_guides(job.filter)) {
+      filter_needs_guides(filter_of(job))) {
     throw Error(ErrorKind::usage, "--accumulate-order",
                 fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
                 "give after, or another --filter");
@@ -174,7 +174,7 @@ void check_sample_range(const JobSettings& job) {
   }
   PipelineSettings settings;
   settings.foveation = job.foveation;
-  settings.filter = job.filter;
+  settings.filter = filter_of(job);
   settings.accumulate = job.accumulate;
   settings.exposure = job.exposure;
   settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
@@ -197,7 +197,7 @@ void check_sample_range(const JobSettings& job) {
 void check_settings(const JobSettings& job) {
   check_registry_name("--falloff", "falloff", job.foveation.falloff, falloffs());
   check_foveation(job.foveation);
-  check_registry_name("--filter", "filter", job.filter, reconstruction_filters());
+  check_registry_name("--filter", "filter", filter_of(job), reconstruction_filters());
   if (!(job.enhance_contrast >= 0 && job.enhance_contrast <= 1)) {
     throw Error(ErrorKind::usage, "--enhance-contrast", fmt::format("{} is outside 0..1", job.enhance_contrast));
   }
@@ -265,12 +265,25 @@ void check_settings(const JobSettings& job) {
   }
 }
 
+std::string filter_of(const JobSettings& job) {
+  if (job.filter != "auto") {
+    return job.filter;
+  }
+  const bool blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs();
+  const bool accumulates_sites =
+      job.accumulate.mode == AccumulateMode::reproject && job.accumulate.order == AccumulateOrder::before;
+  return job.foveation.falloff == "uniform" || blurs || accumulates_sites || job.enhance_contrast > 0 ||
+                 job.trace.samples
+             ? "linear"
+             : "guided";
+}
+
 PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames) {
   PipelineSettings settings;
   settings.foveation = job.foveation;
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
-  settings.filter = job.filter;
+  settings.filter = filter_of(job);
   settings.enhance_contrast = job.enhance_contrast;
   settings.accumulate = job.accumulate;
   settings.checkpoint = job.checkpoint;

@@ -58,7 +58,7 @@ const std::vector<Preset>& presets() {
         {"angle-reading", "full-angle"},
         {"sample-unit", "block"},
         {"border-blend-deg", "0"},
-        {"filter", "linear"},
+        {"filter", "auto"},
         {"accumulate", "off"}}},
       {"reference",
        "what others are compared with: uniform at a high rate, every pixel by itself",

@@ -148,7 +148,12 @@ void add_frame_options(OptionTable& table, JobSettings& job) {
 
 void add_reconstruction_options(OptionTable& table, JobSettings& job) {
   table.group("Between the samples");
-  table.value("--filter", job.filter, "NAME", "Fills pixels between samples ('gazetrace list filters')", kPixels);
+  table.value(
+      "--filter", job.filter, "NAME",
+      "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which passes "
+      "single pixels through, for uniform ones, with --aperture or --shutter, --sample-range, --enhance-contrast "
+      "and --accumulate-order before",
+      kPixels);
   table.value(
       "--enhance-contrast", job.enhance_contrast, "0..1",
       "An enhancement, no estimate: raises what contrast blocks have left, as the eye's periphery misses contrast "

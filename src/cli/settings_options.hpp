@@ -93,7 +93,7 @@ struct JobSettings {
   FoveationSettings foveation;
   TraceSettings trace;
   BvhQuality bvh = BvhQuality::high;
-  std::string filter = "linear";
+  std::string filter = "auto";  // filter_of() says which
   double enhance_contrast = 0;
   AccumulateSettings accumulate;
   std::string checkpoint, resume_from;

@@ -143,6 +143,8 @@ class JobMaker {
       job->assign(gaze->options);
     }
     job->assign(setting.options);
+    // Its baselines go through the same one.
+    job->settings.filter = filter_of(job->settings);
     return job;
   }
 

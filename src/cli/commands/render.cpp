@@ -183,6 +183,8 @@ Command add_render_command(CLI::App& app, const Invocation& invocation) {
       print_result(settings_as_toml(arguments->table, "gazetrace render"));
       return static_cast<int>(exit_done);
     }
+    // The record says what was done.
+    arguments->job.filter = filter_of(arguments->job);
     return run_render(*arguments, invocation);
   };
   return {run, std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
