@@ -73,7 +73,13 @@ struct FoveationSettings {
   int max_block_px = 16;
   double density_floor = 1.0 / 512;  // no place has less of the full rate, so that none is out of reach
 
-  // What multiplies the density of any model but the layout of hard regions; the product is kept in [floor, 1].
+  // What multiplies the density of any model but the layout of hard regions, in this order:
+  //   1  e      less the gaze's uncertainty, not below 0
+  //   2  p      = (f(e) / f_disp)^2 cos^3 t, or the model's density; times retinal_velocity; at most 1
+  //   3  p      times saccade_density in flight, times contrast: parts of what 2 leaves, also at the gaze itself
+  //   4  p      at least density_floor
+  //   5  count  = p times uniform_spp, or times what meets the budget. A budget is met whatever 1 to 4 take: they then
+  //             only say where its samples go.
   bool retinal_velocity = false;  // the square of what the speed of the image on the retina leaves of acuity
   double saccade_density = 1;     // while the eye is in flight
   // 0: off; 1: where a first look at the frame shows no contrast, a quarter of the density is left.

@@ -57,10 +57,10 @@ DensityField::DensityField(const FoveationSettings& settings, const PlanarView& 
       shrinks_(model_.quantity == DensityModel::Quantity::cutoff_cpd &&
                settings.parameters.normalization == FalloffNormalization::display) {
   if (settings.retinal_velocity) {
-    factor_ *= retinal_velocity_factor(context.gaze_speed_deg_s);
+    velocity_ = retinal_velocity_factor(context.gaze_speed_deg_s);
   }
   if (context.in_saccade) {
-    factor_ *= settings.saccade_density;
+    flight_ = settings.saccade_density;
   }
 }
 
@@ -89,12 +89,13 @@ DensityField::Seen DensityField::seen(double x_px, double y_px) const {
 }
 
 double DensityField::density(const FalloffPlace& place, double cos_off_axis) const {
-  const double value = model_.value(place);
-  if (model_.quantity == DensityModel::Quantity::density) {
-    return value * factor_;
+  double value = model_.value(place);
+  if (model_.quantity == DensityModel::Quantity::cutoff_cpd) {
+    const double solid_angle = shrinks_ ? cos_off_axis * cos_off_axis * cos_off_axis : 1.0;
+    value *= value * per_cpd2_ * solid_angle;
   }
-  const double solid_angle = shrinks_ ? cos_off_axis * cos_off_axis * cos_off_axis : 1.0;
-  return value * value * per_cpd2_ * solid_angle * factor_;
+  // An infinite cut-off must not meet a factor of zero.
+  return std::min(1.0, value * velocity_) * flight_;
 }
 
 double DensityField::limited(double density) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A density model on a frame: its normalization, the terms that multiply it, and what it can be at most within a square
-// of pixels, which blocks are chosen by.
+// A density model on a frame: its normalization, the terms that multiply it (in the order that FoveationSettings
+// states), and what it can be at most within a square of pixels, which blocks are chosen by.
 #pragma once
 
 #include "foveation/falloff.hpp"
@@ -31,7 +31,7 @@ class DensityField {
   };
   [[nodiscard]] Seen seen(double x_px, double y_px) const;
   [[nodiscard]] Vec2d meridian(const Vec3d& direction) const;
-  // Before the limits, with the cosine of the angle off the view's axis.
+  // Before contrast and floor, with the cosine of the angle off the view's axis.
   [[nodiscard]] double density(const FalloffPlace& place, double cos_off_axis) const;
   [[nodiscard]] double limited(double density) const;
 
@@ -44,7 +44,8 @@ class DensityField {
   double step_deg_;    // most degrees that a pixel's side spans
   double per_cpd2_;    // density for a cut-off of 1 cpd where the view's axis meets it
   bool shrinks_;       // with the cosine: normalized to the display
-  double factor_ = 1;  // of the terms that are the same everywhere
+  // Terms that are the same everywhere: on what the model asks for, and on what is left of that at the full rate.
+  double velocity_ = 1, flight_ = 1;
 };
 
 }  // namespace gazetrace

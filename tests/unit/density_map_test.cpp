@@ -339,6 +339,61 @@ TEST(DensityMap, TermsMultiply) {
   EXPECT_NEAR(dulled(239, 50) / still(239, 50), 0.75, 2e-3);  // between the two texels' centres
 }
 
+// A model that asks for more than the display shows has no more than a full rate for a term to take from: what is left
+// is the factor's part everywhere, and of the whole frame.
+TEST(DensityMap, ContrastAndFlightTakeTheirPartOfWhatIsLimitedToTheFullRate) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(240, 135);
+  ImageGray contrast(1, 1);
+  for (const FalloffInfo& info : falloffs()) {
+    if (info.name == "uniform" || info.name == "regions") {
+      continue;
+    }
+    SCOPED_TRACE(info.name);
+    FoveationSettings settings = model(info.name);
+    settings.density_floor = 1e-12;
+    const ImageGray plain = *falloff_density(settings, view, gaze);
+    const double samples = expected_sum(make_sampling_map(settings, view, gaze));
+    for (const double left : {0.5, 0.1, 0.0}) {
+      settings.saccade_density = left;
+      MapContext flight;
+      flight.in_saccade = true;
+      const ImageGray flying = *falloff_density(settings, view, gaze, flight);
+      contrast(0, 0) = static_cast<float>(left);
+      MapContext dull;
+      dull.contrast = &contrast;
+      const ImageGray dulled = *falloff_density(settings, view, gaze, dull);
+      for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
+        const double expected = std::max(left * static_cast<double>(plain.pixels[i]), 1e-12);
+        ASSERT_NEAR(static_cast<double>(flying.pixels[i]) / expected, 1, 1e-6) << "pixel " << i;
+        ASSERT_NEAR(static_cast<double>(dulled.pixels[i]) / expected, 1, 1e-6) << "pixel " << i;
+      }
+      if (left == 0.5) {
+        // Larger blocks take the density at their middle: the sum is the same to a percent or two.
+        EXPECT_NEAR(expected_sum(make_sampling_map(settings, view, gaze, flight)) / samples, left, 0.02);
+      }
+    }
+  }
+}
+
+// An infinite cut-off times a factor of zero is no number; the floor holds there, too.
+TEST(DensityMap, AnInfiniteCutoffKeepsItsFloorInFlight) {
+  const PlanarView view = view_of_display(display_by_name("paper"), {}, 160, 90);
+  FoveationSettings settings = model("mar");
+  settings.parameters.mar_foveal_deg = 0;
+  settings.saccade_density = 0;
+  MapContext context;
+  context.in_saccade = true;
+  context.uncertainty_deg = 3;
+  const SamplingMap map = make_sampling_map(settings, view, view.direction(80, 45), context);
+  expect_consistent(map);
+  EXPECT_EQ(map.samples(), 160U * 90 * 32 / 512);
+  const ImageGray density = *falloff_density(settings, view, view.direction(80, 45), context);
+  for (const float p : density.pixels) {
+    ASSERT_EQ(p, 1.0F / 512);
+  }
+}
+
 // Away from the rims the blended regions are the paper's: the same blocks with the same counts.
 TEST(BorderBlend, EqualsHardRegionsAwayFromTheRims) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, 1920, 1080);
