@@ -339,6 +339,43 @@ TEST(Reconstruct, ConstantsStayConstantInFiltersThatDivideByWeights) {
   }
 }
 
+// Blocks that are no power of two lie across the pyramid's cells: what they say must be neither lost nor moved.
+TEST(ReconstructPushPull, BlocksOfAnySizeKeepTheMeanAndThePlace) {
+  constexpr int kSide = 168;
+  for (const int block : {2, 3, 4, 5, 6, 7, 8, 12, 14}) {
+    SCOPED_TRACE(block);
+    Layout layout;
+    layout.regions = {{"all", block, 8, SampleUnit::per_block}};
+    layout.region = Image<std::uint8_t>(kSide / block * block, kSide / block * block, 0);
+    const SamplingMap map = map_from_layout(std::move(layout));
+    std::mt19937 random{17};
+    std::uniform_real_distribution<double> level(0, 1);
+    const SparseFrame sparse = sample(map, [&](double, double) { return level(random); });
+    double traced = 0;
+    for (std::size_t i = 0; i < map.sites.size(); ++i) {
+      traced += static_cast<double>(sparse.sum[i].x) / 8 * map.sites[i].pixels;
+    }
+    double shown = 0;
+    const Frame frame = reconstruct(sparse, map, "push-pull", 1);
+    for (const Vec3f& value : frame.radiance.pixels) {
+      shown += static_cast<double>(value.x);
+    }
+    // Cells that the frame's edge cuts count for more than their area.
+    EXPECT_NEAR(shown / traced, 1, 0.004);
+
+    const Frame ramp = reconstruct(sample(map, [](double x, double y) { return x + 2 * y; }), map, "push-pull", 1);
+    double moved = 0;
+    for (int y = 2 * block; y < map.height_px - 2 * block; ++y) {
+      for (int x = 2 * block; x < map.width_px - 2 * block; ++x) {
+        const double off = static_cast<double>(ramp.radiance(x, y).x) - (x + 0.5 + 2 * (y + 0.5));
+        EXPECT_LE(std::abs(off), 1.5 * block + 1e-3) << x << ',' << y;  // half a block across and down
+        moved += off / ((map.width_px - 4.0 * block) * (map.height_px - 4.0 * block));
+      }
+    }
+    EXPECT_NEAR(moved, 0, 0.05 * block);
+  }
+}
+
 TEST(Reconstruct, SinglePixelSitesAreTheSameBitsInEveryFilterAndNothingLeavesTheSamplesRange) {
   std::mt19937 random{11};
   int compared = 0;

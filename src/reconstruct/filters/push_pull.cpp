@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pyramid (Gortler et al., "The Lumigraph", SIGGRAPH 1996, section 3.4; Grossman and Dally 1998). A site enters at
-// the level of its block's size with weight min(1, samples / kFullSamples).
+// the level of its block's size, or the next finer one, with weight min(1, samples / kFullSamples); one whose block is
+// no power of two enters every cell that it covers, in proportion to the covered area.
 //   push: a coarser cell is the weighted mean of its four children and of the sites that enter there, its weight the
 //   sum
 //         of theirs, at most 1
@@ -86,6 +87,33 @@ void pull(const PyramidLevel& coarse, PyramidLevel& fine, int threads) {
   });
 }
 
+// Parts of a site's pixels in the cells of a level.
+class CellShares {
+ public:
+  struct Share {
+    int x, y;
+    int pixels;
+  };
+  const std::vector<Share>& of(const SamplingMap& map, const Site& site, std::size_t level) {
+    shares_.clear();
+    for_each_pixel(map, site, [&](int px, int py) {
+      const int x = px >> level;
+      const int y = py >> level;
+      const auto found = std::find_if(shares_.begin(), shares_.end(),
+                                      [&](const Share& share) { return share.x == x && share.y == y; });
+      if (found == shares_.end()) {
+        shares_.push_back({x, y, 1});
+      } else {
+        ++found->pixels;
+      }
+    });
+    return shares_;
+  }
+
+ private:
+  std::vector<Share> shares_;
+};
+
 }  // namespace
 
 Frame filter_push_pull(const FilterInput& input) {
@@ -93,6 +121,7 @@ Frame filter_push_pull(const FilterInput& input) {
   // AOVs, variances and counts are those of the linear filter; the light is put in its place.
   Frame frame = filter_linear(input);
   std::vector<PyramidLevel> levels = empty_pyramid(map.width_px, map.height_px);
+  CellShares shares;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
     const Site& site = map.sites[i];
     const auto block = static_cast<unsigned>(map.regions[site.region].block_px);
@@ -100,10 +129,23 @@ Frame filter_push_pull(const FilterInput& input) {
         std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(block)) - 1, levels.size() - 1);
     const auto count = static_cast<float>(input.values.count(i));
     const float weight = std::min(count / kFullSamples, 1.0F);
-    const int x = site.block_x * static_cast<int>(block) >> level;
-    const int y = site.block_y * static_cast<int>(block) >> level;
-    levels[level](x, y).radiance += weight * input.values.value(i).radiance;
-    levels[level](x, y).weight += weight;
+    const Vec3f radiance = input.values.value(i).radiance;
+    const auto enter = [&](int x, int y, float part) {
+      levels[level](x, y).radiance += part * radiance;
+      levels[level](x, y).weight += part;
+    };
+    if (std::has_single_bit(block)) {
+      const int side = static_cast<int>(block);
+      enter(site.block_x * side >> level, site.block_y * side >> level, weight);
+      continue;
+    }
+    // What a block has at a border stands for all of it, as it does for a power of two.
+    const auto side = static_cast<float>(block);
+    const float cells = side * side / static_cast<float>(std::size_t{1} << (2 * level));
+    for (const CellShares::Share& share : shares.of(map, site, level)) {
+      const float covered = cells * static_cast<float>(share.pixels) / static_cast<float>(site.pixels);
+      enter(share.x, share.y, weight * std::min(covered, 1.0F));
+    }
   }
   for (std::size_t k = 0; k < levels.size(); ++k) {
     normalize(levels[k]);
