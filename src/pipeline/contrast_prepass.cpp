@@ -4,6 +4,8 @@
 // The multiplier's shape and constants are choices made here: their models need the picture at full resolution.
 #include "pipeline/contrast_prepass.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +13,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
+#include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
@@ -34,6 +37,15 @@ Luminance luminance_of(const SparseFrame& sparse, std::size_t site) {
   const double mean = (0.2126 * sum.x + 0.7152 * sum.y + 0.0722 * sum.z) / n;
   const double square = static_cast<double>(sparse.sum_square_luminance[site]) / n;
   return {mean, n > 1 ? std::max(0.0, square - mean * mean) / (n - 1) : 0.0};
+}
+
+// What is pictured is the same: a frame's rays follow from its height and the camera's field of view.
+PlanarView small_view(const FrameRequest& request) {
+  PlanarView view = request.view;
+  view.height_px = (request.height_px + kReduction - 1) / kReduction;
+  const double aspect = static_cast<double>(request.width_px) / request.height_px;
+  view.width_px = std::max(1, static_cast<int>(std::lround(view.height_px * aspect)));
+  return view;
 }
 
 }  // namespace
@@ -77,16 +89,37 @@ ImageGray contrast_multiplier(const ImageGray& contrast, double strength) {
   return multiplier;
 }
 
+FoveationSettings less_first_look(const FoveationSettings& settings, const FrameRequest& request) {
+  const bool in_all = settings.budget_samples.has_value();
+  if (!in_all && !settings.budget_spp) {
+    return settings;
+  }
+  const PlanarView view = small_view(request);
+  const std::uint64_t taken =
+      std::uint64_t{kSpp} * static_cast<std::uint64_t>(view.width_px) * static_cast<std::uint64_t>(view.height_px);
+  const double pixels = static_cast<double>(request.width_px) * request.height_px;
+  const double budget = in_all ? static_cast<double>(*settings.budget_samples) : *settings.budget_spp * pixels;
+  if (!(budget > static_cast<double>(taken))) {
+    throw Error(ErrorKind::usage, in_all ? "--budget-samples" : "--budget-spp",
+                fmt::format("the first look of --contrast-strength takes {} samples of a frame of {} x {} pixels, the "
+                            "budget is {:.0f}",
+                            taken, request.width_px, request.height_px, budget),
+                "give more, or leave out --contrast-strength");
+  }
+  FoveationSettings rest = settings;
+  if (in_all) {
+    *rest.budget_samples -= taken;
+  } else {
+    rest.budget_spp = (budget - static_cast<double>(taken)) / pixels;
+  }
+  return rest;
+}
+
 ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
                                double strength) {
   FoveationSettings uniform;
   uniform.uniform_spp = kSpp;
-  // What is pictured is the same: a frame's rays follow from its height and the camera's field of view.
-  PlanarView view = request.view;
-  view.height_px = (request.height_px + kReduction - 1) / kReduction;
-  const double aspect = static_cast<double>(request.width_px) / request.height_px;
-  view.width_px = std::max(1, static_cast<int>(std::lround(view.height_px * aspect)));
-  const SamplingMap map = make_sampling_map(uniform, view, std::nullopt);
+  const SamplingMap map = make_sampling_map(uniform, small_view(request), std::nullopt);
   TraceSettings own = settings;
   own.seed = hash_combine(settings.seed, kSeedTag);
   own.guides = false;

@@ -21,6 +21,10 @@ struct ContrastPrepass {
 ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
                                double strength);
 
+// The settings for the frame itself: a budget less the samples of the first look, which count among the frame's. Others
+// stay as they are. Error(usage) for a budget that leaves nothing.
+FoveationSettings less_first_look(const FoveationSettings& settings, const FrameRequest& request);
+
 // Root mean square contrast of the luminance in the 3 x 3 pixels about each pixel, the part of its square that the
 // samples' own noise explains taken off.
 ImageGray local_contrast(const SparseFrame& sparse, const SamplingMap& map);

@@ -93,16 +93,17 @@ TracedFrame trace_frame(PathTracer& tracer, const FrameRequest& request, const P
   TracedFrame traced;
   MapContext context = map_context(request, settings.trace.seed, settings.threads);
   ContrastPrepass first_look;
+  FoveationSettings foveation = settings.foveation;
   if (settings.foveation.contrast_strength > 0 && request.gaze_direction_render) {
+    foveation = less_first_look(foveation, request);
     first_look = timed(row.trace_ms, [&] {
       tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
       return trace_contrast(tracer, request, settings.trace, settings.foveation.contrast_strength);
     });
     context.contrast = &first_look.multiplier;
   }
-  traced.map = timed(row.plan_ms, [&] {
-    return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render, context);
-  });
+  traced.map = timed(
+      row.plan_ms, [&] { return make_sampling_map(foveation, request.view, request.gaze_direction_render, context); });
   TraceSettings trace = settings.trace;
   trace.surfaces = filter_needs_guides(settings.filter);
   traced.sparse = timed(row.trace_ms, [&] {

@@ -78,6 +78,22 @@ class Foveation(harness.CliTest):
                 rows.append(next(csv.DictReader(file)))
         self.assertLess(int(rows[1]["samples"]), int(rows[0]["samples"]))
 
+    def test_a_budget_counts_the_first_look(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        common = ["render", "box.gltf", *GAZE, "--falloff", "geisler-perry", "--contrast-strength", "1", "--quiet"]
+        for name, budget in (("spp", ("--budget-spp", "0.5")), ("all", ("--budget-samples", "3001"))):
+            self.run_ok(*common, *budget, "-o", f"{name}/f.exr")
+            with open(self.folder / name / "timing.csv", newline="") as file:
+                row = next(csv.DictReader(file))
+            wanted = int(row["pixels"]) // 2 if name == "spp" else 3001
+            self.assertLessEqual(abs(int(row["samples"]) - wanted), 1)
+        for option, budget in (("--budget-spp", "0.06"), ("--budget-samples", "64")):
+            result = self.run_program(*common, option, budget, "-o", "x/f.exr")
+            self.assertEqual(result.returncode, 2)
+            self.assertIn(option, result.stderr)
+            self.assertIn("first look", result.stderr)
+            self.assertEqual(result.stderr.count("\n"), 1)
+
     def test_enhanced_pictures_say_so(self):
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for strength in ("0", "0.5"):
