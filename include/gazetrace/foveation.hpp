@@ -48,6 +48,9 @@ struct FalloffParameters {
   FalloffTable table;                                   // table
 };
 
+constexpr int kDefaultMaxBlockPx = 16;
+constexpr double kDefaultDensityFloor = 1.0 / 512;
+
 struct FoveationSettings {
   std::string falloff = "regions";  // a name of `falloffs()`
   // Falloff "uniform", frames without gaze, and what a density model gives to a place where its density is 1.
@@ -59,7 +62,9 @@ struct FoveationSettings {
   SampleUnit unit = SampleUnit::per_block;
   RegionShape shape = RegionShape::cone;
   // Over a rim of this many degrees about each border of `regions` the logarithm of the density goes smoothly from one
-  // region's to the other's; blocks then follow from the density. 0: the paper's hard border.
+  // region's to the other's; blocks then follow from the density. 0: the paper's hard border. Regions keep their own
+  // rates and blocks: a density_floor of the default or less does not raise a region's rate, and the default of
+  // max_block_px does not keep blocks below the largest region's (up to the next power of two).
   double border_blend_deg = 0;
 
   FalloffParameters parameters;
@@ -70,8 +75,8 @@ struct FoveationSettings {
   // Blocks of density models, 1 to max_block_px pixels a side in powers of two: the smallest that expects this many
   // samples. 8 is what the paper gives a peripheral block. Where the density is 1, a block is a pixel.
   double block_samples = 8;
-  int max_block_px = 16;
-  double density_floor = 1.0 / 512;  // no place has less of the full rate, so that none is out of reach
+  int max_block_px = kDefaultMaxBlockPx;
+  double density_floor = kDefaultDensityFloor;  // no place has less of the full rate, so that none is out of reach
 
   // What multiplies the density of any model but the layout of hard regions, in this order:
   //   1  e      less the gaze's uncertainty, not below 0
@@ -111,7 +116,7 @@ FoveationSettings widened(const FoveationSettings& settings, double by_deg);
 // term at 0 degrees; empty for models that are given by a density.
 std::optional<double> falloff_cutoff_cpd(const FoveationSettings& settings, double eccentricity_deg,
                                          double meridian_deg = 0);
-// Density at each pixel's centre in [density_floor, 1], of 1 = the full rate. Empty for layouts: "uniform", and
+// Density at each pixel's centre in [floor, 1], of 1 = the full rate. Empty for layouts: "uniform", and
 // "regions" with hard borders.
 std::optional<ImageGray> falloff_density(const FoveationSettings& settings, const PlanarView& view,
                                          const Vec3d& gaze_direction, const MapContext& context = {});
@@ -162,6 +167,9 @@ struct SamplingMap {
   // estimate divides a site's sum by it. Empty where every count is certain.
   std::vector<float> expected_samples;
   double full_rate_spp = 0;  // samples a pixel where the density is 1; 0 for layouts
+  // Sites of one pixel with at least so many samples keep their own mean in every filter; others may be smoothed. Fewer
+  // for a fovea whose full rate is below 16, down to 8: a map about a gaze leaves its fovea as it was traced.
+  std::uint32_t enough_samples = 16;
   [[nodiscard]] double expected(std::size_t site) const {
     return expected_samples.empty() ? sites[site].samples : static_cast<double>(expected_samples[site]);
   }

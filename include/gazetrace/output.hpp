@@ -87,7 +87,7 @@ ImageRgb read_exr_rgb(const std::string& path);
 // The digest stored in an EXR or display image of ours; empty: not ours, unreadable or incomplete.
 std::string read_settings_digest(const std::string& path);
 
-constexpr std::size_t kTimingRegions = 9;
+constexpr std::size_t kTimingRegions = 11;
 
 struct TimingRow {
   std::int32_t frame = 0;

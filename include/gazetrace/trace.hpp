@@ -133,8 +133,9 @@ void add_sums(const SampleSums& from, SampleSums& to);
 // sums of another map.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
-// Whether a guided filter changes a site. Sites of several pixels are, and single pixels with fewer than 16 samples, as
-// a fall-off on a small budget has them even where one looks. All others keep their own mean, bit by bit.
+// Whether a guided filter changes a site. Sites of several pixels are, and single pixels with fewer samples than the
+// map's enough_samples: uniform frames of few samples, and what a small budget leaves even where one looks. All others
+// keep their own mean, bit by bit.
 bool needs_filtering(const SamplingMap& map, const Site& site);
 
 // When the shutter opens and closes, video time; equal: an instant.

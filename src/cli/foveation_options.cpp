@@ -19,10 +19,11 @@ void add_region_options(OptionTable& table, FoveationSettings& fov) {
               kPixels);
   table.value("--region-shape", fov.shape, choices<RegionShape>(),
               "cone: by the angle between rays; disc: the paper's circle in pixels", kPixels);
-  table.value("--border-blend-deg", fov.border_blend_deg, "DEG",
-              "Width of the rim about a region's border over which the density goes smoothly from one to the other; "
-              "0: a hard border",
-              kPixels);
+  table.value(
+      "--border-blend-deg", fov.border_blend_deg, "DEG",
+      "Width of the rim about a region's border over which the density goes smoothly from one to the other, between "
+      "the regions' own rates and blocks; 0: a hard border",
+      kPixels);
 }
 
 void add_budget_options(OptionTable& table, FoveationSettings& fov) {
@@ -33,8 +34,11 @@ void add_budget_options(OptionTable& table, FoveationSettings& fov) {
               "Density models: the smallest block is taken that expects so many samples", kPixels);
   table.value("--max-block", fov.max_block_px, "1|2|4|8|16", "Density models: largest side of a block, pixels",
               kPixels);
-  table.value("--density-floor", fov.density_floor, "DENSITY",
-              "Density models: least part of the full rate, above 0, that a place gets", kPixels);
+  table.value(
+      "--density-floor", fov.density_floor, "DENSITY",
+      "Density models: least part of the full rate, above 0, that a place gets; blended regions go below 1/512 where "
+      "their own rates do",
+      kPixels);
 }
 
 void add_model_options(OptionTable& table, FalloffParameters& p) {
@@ -60,13 +64,13 @@ void add_term_options(OptionTable& table, FoveationSettings& fov) {
   table.value(
       "--contrast-strength", fov.contrast_strength, "0..1",
       "Density models: fewer samples where a first look at the frame, at an eighth of its size, shows no contrast; "
-      "1: down to a quarter",
+      "1: down to a quarter of what there is without. A budget counts that look's samples",
       kPixels);
   table.flag("--retinal-velocity", fov.retinal_velocity,
              "Density models: fewer samples while the gaze is moving, by what that takes of acuity", kPixels);
   table.value("--saccade-density", fov.saccade_density, "FACTOR",
-              "Density models: part of the density that is left during a saccade (see also --gaze-process "
-              "snap-to-landing)",
+              "Density models: part of the density that is left during a saccade, at the gaze, too (see also "
+              "--gaze-process snap-to-landing); a budget is met all the same",
               kPixels);
 }
 

@@ -132,14 +132,23 @@ DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const
     }
   }
   Bounds bounds{std::numeric_limits<double>::infinity(), 0};
+  const auto look = [&](const FalloffPlace& place) {
+    bounds.most = std::max(bounds.most, density(place, most_cos));
+    bounds.least = std::min(bounds.least, density(place, least_cos));
+  };
   for (std::size_t d = 0; d < directions; ++d) {
+    FalloffPlace place = center.place;
+    place.meridian = meridians.at(d);
     for (const double step : {-1.0, 0.0, 1.0}) {
-      FalloffPlace place = center.place;
-      place.eccentricity_deg = std::clamp(place.eccentricity_deg + step * reach_deg, 0.0, 180.0);
-      place.radius_px = std::max(0.0, place.radius_px + step * reach_px);
-      place.meridian = meridians.at(d);
-      bounds.most = std::max(bounds.most, density(place, most_cos));
-      bounds.least = std::min(bounds.least, density(place, least_cos));
+      place.eccentricity_deg = std::clamp(center.place.eccentricity_deg + step * reach_deg, 0.0, 180.0);
+      place.radius_px = std::max(0.0, center.place.radius_px + step * reach_px);
+      look(place);
+    }
+    for (const double turn_deg : model_.turns_deg) {
+      if (std::abs(turn_deg - center.place.eccentricity_deg) < reach_deg) {
+        place.eccentricity_deg = turn_deg;
+        look(place);
+      }
     }
   }
   if (contrast_ != nullptr) {

@@ -16,9 +16,9 @@ class DensityField {
   // At a point in continuous pixel coordinates, in [floor, 1].
   [[nodiscard]] double at(double x_px, double y_px) const;
 
-  // Bounds of the density within a square of pixels: exact bounds for models that fall with eccentricity alone (by the
-  // triangle inequality no point of the square is farther from its centre, in degrees, than its half diagonal in the
-  // plane); for others the extremes over a few points, which smooth models hardly leave.
+  // Bounds of the density within a square of pixels: exact bounds for models of eccentricity alone that fall, or whose
+  // turns are known (by the triangle inequality no point of the square is farther from its centre, in degrees, than its
+  // half diagonal in the plane); for others the extremes over a few points, which smooth models hardly leave.
   struct Bounds {
     double least, most;
   };
@@ -41,9 +41,9 @@ class DensityField {
   Vec3d gaze_, right_, up_;  // of unit length
   Vec2d gaze_px_;
   double uncertainty_deg_, floor_;
-  double step_deg_;    // most degrees that a pixel's side spans
-  double per_cpd2_;    // density for a cut-off of 1 cpd where the view's axis meets it
-  bool shrinks_;       // with the cosine: normalized to the display
+  double step_deg_;  // most degrees that a pixel's side spans
+  double per_cpd2_;  // density for a cut-off of 1 cpd where the view's axis meets it
+  bool shrinks_;     // with the cosine: normalized to the display
   // Terms that are the same everywhere: on what the model asks for, and on what is left of that at the full rate.
   double velocity_ = 1, flight_ = 1;
 };

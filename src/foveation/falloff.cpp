@@ -2,6 +2,8 @@
 // The list of fall-offs as a table of functions.
 #include "foveation/falloff.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace gazetrace {
@@ -22,6 +24,18 @@ Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, 
 #include "foveation/falloffs.def"
 #undef FALLOFF
   return {};  // not reached: check_foveation knows the same list
+}
+
+FoveationSettings with_limits_of(const DensityModel& model, const FoveationSettings& settings) {
+  FoveationSettings own = settings;
+  if (settings.density_floor <= kDefaultDensityFloor) {
+    own.density_floor = std::min(settings.density_floor, model.own_floor);
+  }
+  if (settings.max_block_px == kDefaultMaxBlockPx) {
+    const auto largest = std::bit_ceil(static_cast<unsigned>(model.own_block_px));
+    own.max_block_px = std::max(settings.max_block_px, static_cast<int>(largest));
+  }
+  return own;
 }
 
 std::optional<double> falloff_cutoff_cpd(const FoveationSettings& settings, double eccentricity_deg,

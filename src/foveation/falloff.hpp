@@ -42,6 +42,12 @@ struct DensityModel {
   std::function<double(const FalloffPlace&)> value;
   bool uses_meridian = false, uses_radius = false;
   std::optional<double> full_rate_spp;  // default: the settings' uniform_spp
+  // Of a model made from regions: the least of their densities and the side of their largest block, which the default
+  // floor and the default limit of blocks make way for.
+  double own_floor = 1;
+  int own_block_px = 1;
+  // Eccentricities at which the value may turn from falling to rising or back.
+  std::vector<double> turns_deg;
 };
 
 using Falloff = std::variant<Layout, DensityModel>;
@@ -51,6 +57,9 @@ using Falloff = std::variant<Layout, DensityModel>;
   Falloff falloff_##file(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction);
 #include "foveation/falloffs.def"
 #undef FALLOFF
+
+// The settings with the floor and the largest block that hold for this model.
+FoveationSettings with_limits_of(const DensityModel& model, const FoveationSettings& settings);
 
 // The one that the settings name, which check_foveation has accepted.
 Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction);

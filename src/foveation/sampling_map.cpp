@@ -47,23 +47,37 @@ std::optional<double> budget_of(const FoveationSettings& settings, const PlanarV
   return std::nullopt;
 }
 
+// For a map about a gaze. Below 8 samples a pixel smoothing is worth more than a fovea as it was traced.
+std::uint32_t enough_samples(double full_rate_spp) {
+  constexpr double kLeast = 8;
+  constexpr std::uint32_t kAlways = 16;
+  return full_rate_spp >= kLeast && full_rate_spp < kAlways ? static_cast<std::uint32_t>(full_rate_spp) : kAlways;
+}
+
 SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, const MapContext& context) {
+  const bool about_gaze = layout.regions.size() > 1;
+  const double fovea_spp = layout.regions.front().tau;
   SamplingMap map = map_from_layout(std::move(layout));
+  double scale = 1;
   if (budget) {
     std::vector<double> weights(map.sites.size());
     for (std::size_t i = 0; i < weights.size(); ++i) {
       weights[i] = map.sites[i].samples;
     }
-    const double rate = rate_of_budget(map, weights, *budget, kMaxSpp);
-    set_whole_counts(map, weights, rate, kMaxSpp, context.seed, context.frame);
+    scale = rate_of_budget(map, weights, *budget, kMaxSpp);
+    set_whole_counts(map, weights, scale, kMaxSpp, context.seed, context.frame);
+  }
+  if (about_gaze) {
+    map.enough_samples = enough_samples(fovea_spp * scale);
   }
   return map;
 }
 
-SamplingMap map_of_density(DensityModel model, const FoveationSettings& settings, const PlanarView& view,
+SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, const PlanarView& view,
                            const Vec3d& gaze_direction, const std::optional<double>& budget,
                            const MapContext& context) {
-  double rate = model.full_rate_spp.value_or(settings.uniform_spp);
+  double rate = model.full_rate_spp.value_or(asked.uniform_spp);
+  const FoveationSettings settings = with_limits_of(model, asked);
   const DensityField field(settings, view, gaze_direction, context, std::move(model));
   if (budget) {
     rate = std::min(*budget / sum_of_density(field, view.width_px, view.height_px, context.threads), kMaxSpp);
@@ -73,6 +87,7 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& settings
     rate = rate_of_budget(blocks.map, blocks.weights, *budget, kMaxSpp);
   }
   blocks.map.full_rate_spp = std::min(rate, kMaxSpp);
+  blocks.map.enough_samples = enough_samples(rate);
   set_whole_counts(blocks.map, blocks.weights, rate, kMaxSpp, context.seed, context.frame);
   return std::move(blocks.map);
 }
@@ -116,7 +131,7 @@ std::optional<ImageGray> falloff_density(const FoveationSettings& settings, cons
   if (model == nullptr) {
     return std::nullopt;
   }
-  const DensityField field(settings, view, gaze_direction, context, std::move(*model));
+  const DensityField field(with_limits_of(*model, settings), view, gaze_direction, context, std::move(*model));
   ImageGray image(view.width_px, view.height_px);
   parallel_for(static_cast<std::size_t>(view.height_px), context.threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);

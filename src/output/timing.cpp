@@ -12,8 +12,9 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::array<const char*, kTimingRegions> kRegions{"fovea",   "intermediate", "periphery", "uniform", "block_1",
-                                                           "block_2", "block_4",      "block_8",   "block_16"};
+constexpr std::array<const char*, kTimingRegions> kRegions{"fovea",    "intermediate", "periphery", "uniform",
+                                                           "block_1",  "block_2",      "block_4",   "block_8",
+                                                           "block_16", "block_32",     "block_64"};
 
 // Calls visit(name, field) for every column, in order. Row is TimingRow or const TimingRow.
 template <class Row, class Visit>

@@ -69,8 +69,7 @@ void SurfaceSorter::finish_site(std::vector<SurfaceSums>& out) {
 }
 
 bool needs_filtering(const SamplingMap& map, const Site& site) {
-  constexpr std::uint32_t kFewSamples = 16;
-  return map.regions[site.region].block_px > 1 || site.samples < kFewSamples;
+  return map.regions[site.region].block_px > 1 || site.samples < map.enough_samples;
 }
 
 }  // namespace gazetrace

@@ -436,6 +436,106 @@ TEST(BorderBlend, EqualsHardRegionsAwayFromTheRims) {
   }
 }
 
+// Regions whose least rate is below the default floor and whose blocks are larger than the default limit stay what they
+// are beside their rims; a floor or a limit that is asked for holds.
+TEST(BorderBlend, RegionsKeepTheirOwnRatesAndBlocks) {
+  const PlanarView view = view_of_display(display_by_name("paper"), {}, 960, 540);
+  const Vec3d gaze = view.direction(480, 270);
+  FoveationSettings settings;
+  settings.region_blocks_px = {2, 32};  // 8 samples for 1024 pixels: a density of 1/4096
+  settings.border_blend_deg = 1;
+  const SamplingMap map = make_sampling_map(settings, view, gaze);
+  expect_consistent(map);
+  const ImageGray density = *falloff_density(settings, view, gaze);
+  int compared = 0;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    double nearest_deg = 180;
+    for_each_pixel(map, map.sites[i], [&](int x, int y) {
+      const double e = eccentricity_deg(view, gaze, x + 0.5, y + 0.5);
+      nearest_deg = std::min(nearest_deg, e);
+      if (e > 9.001) {
+        ASSERT_FLOAT_EQ(density(x, y), 1.0F / 4096);
+      }
+    });
+    if (nearest_deg > 13) {  // beyond the rim by more than a block's diagonal
+      ++compared;
+      ASSERT_EQ(map.regions[map.sites[i].region].block_px, 32);
+      ASSERT_NEAR(map.expected(i), 8.0 * map.sites[i].pixels / 1024, 1e-5);
+    }
+  }
+  EXPECT_GT(compared, 200);
+  // With the default floor, 1/512 of 32 samples a pixel would be 32400 in all.
+  settings.border_blend_deg = 0;
+  const auto hard = static_cast<double>(make_sampling_map(settings, view, gaze).samples());
+  EXPECT_LT(static_cast<double>(map.samples()), 1.3 * hard);
+
+  settings.border_blend_deg = 1;
+  settings.density_floor = 1.0 / 256;
+  settings.max_block_px = 4;
+  const SamplingMap asked = make_sampling_map(settings, view, gaze);
+  EXPECT_EQ(asked.regions.back().block_px, 4);
+  EXPECT_FLOAT_EQ((*falloff_density(settings, view, gaze))(3, 3), 1.0F / 256);
+}
+
+// The bump of a table may lie within one block.
+TEST(DensityMap, BlocksSeeTheBumpOfATable) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(240, 135);
+  FoveationSettings settings = model("table");
+  settings.parameters.table.points = {{0, 0.01}, {9.8, 0.01}, {10, 1}, {10.2, 0.01}, {60, 0.01}};
+  const SamplingMap map = make_sampling_map(settings, view, gaze);
+  expect_consistent(map);
+  const ImageGray density = *falloff_density(settings, view, gaze);
+  for (int y = 0; y < view.height_px; ++y) {
+    for (int x = 0; x < view.width_px; ++x) {
+      const double side = map.regions[map.region(x, y)].block_px;
+      if (side > 1) {
+        ASSERT_LT(static_cast<double>(density(x, y)) * 32 * side * side / 4, 8) << x << ',' << y;
+      }
+    }
+  }
+}
+
+// What a filter that smooths single pixels with few samples must leave alone.
+TEST(SamplingMap, AFoveaAtItsFullRateHasEnoughSamples) {
+  const PlanarView view = small_view();
+  const Vec3d gaze = view.direction(240, 135);
+  const auto enough = [&](const FoveationSettings& settings, const std::optional<Vec3d>& at) {
+    return make_sampling_map(settings, view, at).enough_samples;
+  };
+  FoveationSettings regions;
+  EXPECT_EQ(enough(regions, gaze), 16U);
+  EXPECT_EQ(enough(regions, std::nullopt), 16U);
+  regions.region_samples = {15, 8, 4};
+  EXPECT_EQ(enough(regions, gaze), 15U);
+  regions.uniform_spp = 12;
+  EXPECT_EQ(enough(regions, std::nullopt), 16U);  // nowhere more than elsewhere
+  regions.region_samples = {7, 4, 2};
+  EXPECT_EQ(enough(regions, gaze), 16U);
+  for (const FalloffInfo& info : falloffs()) {
+    if (info.name != "regions") {
+      FoveationSettings settings = model(info.name);
+      settings.uniform_spp = 9;
+      EXPECT_EQ(enough(settings, gaze), info.name == "uniform" ? 16U : 9U) << info.name;
+    }
+  }
+  // On a budget the full rate is what the budget makes of it.
+  for (const std::string name : {"regions", "acuity"}) {
+    FoveationSettings settings = model(name);
+    for (const double spp : {0.3, 0.6, 1.2, 2.4, 4.8}) {
+      settings.budget_spp = spp;
+      const SamplingMap map = make_sampling_map(settings, view, gaze);
+      const float most = samples_per_pixel(map)(240, 135);
+      if (most >= 9 && most < 16) {
+        EXPECT_NEAR(static_cast<float>(map.enough_samples), most, 1) << name;
+        EXPECT_GE(most, static_cast<float>(map.enough_samples)) << name;
+      } else if (most < 7 || most > 16) {
+        EXPECT_EQ(map.enough_samples, 16U) << name;
+      }
+    }
+  }
+}
+
 TEST(DensityMap, ExtremesGiveMaps) {
   const PlanarView plain = view_of_perspective(1.0, 61, 37);
   for (const FalloffInfo& info : falloffs()) {

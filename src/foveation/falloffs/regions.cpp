@@ -113,6 +113,13 @@ DensityModel blended_regions(const FoveationSettings& settings, const PlanarView
   model.quantity = DensityModel::Quantity::density;
   model.full_rate_spp = full;
   model.uses_radius = disc;
+  model.own_floor = *std::min_element(rates.begin(), rates.end()) / full;
+  model.own_block_px = std::max(settings.region_blocks_px[0], settings.region_blocks_px[1]);
+  for (const double angle : settings.region_angles_deg) {
+    for (const double side : {-0.5, 0.0, 0.5}) {
+      model.turns_deg.push_back(part * angle + side * settings.border_blend_deg);
+    }
+  }
   model.value = [=, angles = settings.region_angles_deg, width = settings.border_blend_deg,
                  step = view.step_x](const FalloffPlace& place) {
     // Eq. (1) solved for the angle, as an eccentricity.

@@ -10,7 +10,11 @@ namespace gazetrace {
 
 Falloff falloff_table(const FoveationSettings& settings, const PlanarView& /*view*/, const Vec3d& /*gaze_direction*/) {
   const auto curve = std::make_shared<const MonotoneCubic>(settings.parameters.table.points);
-  return isotropic_density([curve](double e) { return (*curve)(e); });
+  DensityModel model = isotropic_density([curve](double e) { return (*curve)(e); });
+  for (const Vec2d& point : settings.parameters.table.points) {
+    model.turns_deg.push_back(point.x);  // monotone in between
+  }
+  return model;
 }
 
 }  // namespace gazetrace
