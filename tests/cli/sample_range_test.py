@@ -17,6 +17,7 @@ size = "160x90"
 frame-rect = [0, 0, 64, 36]
 frames = "1-3"
 region-samples = [64, 32, 20]
+filter = "linear"
 aov = ["albedo", "normal", "depth", "samples", "variance", "eccentricity"]
 exposure = "auto"
 quiet = true
