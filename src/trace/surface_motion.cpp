@@ -60,6 +60,14 @@ struct Corners {
   std::array<Vec3d, 3> now, before;
 };
 
+// Without perspective all rays have one direction. What they meet infinitely far away is the same at every pixel, and
+// was so while both cameras look the same way: each pixel has its own history.
+bool one_sky(const Camera& a, const Camera& b) {
+  const auto forward = [](const Camera& camera) { return rotate(camera.pose.orientation, {0, 0, -1}); };
+  return a.projection.kind == ProjectionKind::orthographic && b.projection.kind == ProjectionKind::orthographic &&
+         length(forward(a) - forward(b)) < 1e-9;
+}
+
 class MotionTracer {
  public:
   MotionTracer(const Scene& scene, const RenderScene& render_scene, const Camera& camera, int width_px, int height_px,
@@ -70,6 +78,7 @@ class MotionTracer {
         view_(camera, width_px, height_px),
         earlier_view_(earlier.camera, width_px, height_px),
         same_view_(camera.pose == earlier.camera.pose && camera.projection == earlier.camera.projection),
+        misses_stay_(same_view_ || one_sky(camera, earlier.camera)),
         width_px_(width_px),
         height_px_(height_px) {
     for (const ShadingInstance& instance : render_scene.instances) {
@@ -121,7 +130,7 @@ class MotionTracer {
   void store_miss(const Workspace& work, std::size_t k, SurfaceMotion& out) const {
     const std::size_t pixel = work.pixel[k];
     out.earlier_px.pixels[pixel] =
-        same_view_ ? center_of(pixel) : earlier_view_.direction({work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]});
+        misses_stay_ ? center_of(pixel) : earlier_view_.direction({work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]});
   }
 
   void store_hit(const Workspace& work, std::size_t k, SurfaceMotion& out) const {
@@ -188,7 +197,7 @@ class MotionTracer {
   const RenderScene& render_scene_;
   CameraRays rays_;
   PixelProjection view_, earlier_view_;
-  bool same_view_;
+  bool same_view_, misses_stay_;
   int width_px_, height_px_;
   std::vector<InstancePast> pasts_;
 };

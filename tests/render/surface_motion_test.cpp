@@ -66,6 +66,30 @@ TEST(SurfaceMotion, ATurningCameraMovesWallAndSkyAlike) {
   }
 }
 
+// A camera without perspective sees one place of the sky, at every pixel, as long as it does not turn.
+TEST(SurfaceMotion, TheSkyOfAShiftedOrthographicCameraStays) {
+  Scene scene = wall_scene();
+  scene.meshes[0].geometries[0].positions = {{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}};  // the left half
+  const PathTracer tracer(scene, threads(2));
+  const auto camera = [](const Vec3d& position, double yaw_rad = 0) {
+    Camera plain = camera_in(position, yaw_rad);
+    plain.projection.kind = ProjectionKind::orthographic;
+    plain.projection.ymag_m = 2;
+    return plain;
+  };
+  const SurfaceMotion shifted = tracer.surface_motion(camera({0.3, 0.1, 5}), kWidth, kHeight, {camera({0, 0, 5}), 0});
+  const SurfaceMotion turned = tracer.surface_motion(camera({0, 0, 5}), kWidth, kHeight, {camera({0, 0, 5}, 0.1), 0});
+  int misses = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = kWidth - 10; x < kWidth; ++x) {
+      misses += shifted.object(x, y) == 0 ? 1 : 0;
+      EXPECT_EQ(shifted.earlier_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
+      EXPECT_TRUE(std::isnan(turned.earlier_px(x, y).x));
+    }
+  }
+  EXPECT_EQ(misses, 10 * kHeight);
+}
+
 TEST(SurfaceMotion, WhatStandsStillStaysToTheBit) {
   const Scene scene = wall_scene();
   const PathTracer tracer(scene, threads(2));
