@@ -83,6 +83,9 @@ struct FrameRequest {
   // Of the eye by the clean log, at the time whose gaze steers: known without foresight. Speed only if asked for.
   double eye_speed_deg_s = 0;
   bool eye_in_saccade = false;
+  // By the clean log as well: whether the eye was in a saccade, or closed, at any time since the gaze that steered the
+  // frame before. Both are shorter than most frames last.
+  bool saccade_since_last_frame = false, blink_since_last_frame = false;
   // In the eye's frame; empty: no gaze, render uniformly.
   std::optional<Vec3d> gaze_direction_render, gaze_direction_true;
 };

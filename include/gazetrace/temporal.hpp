@@ -17,6 +17,8 @@ struct HistorySurfaces {
   ImageRgb normal;              // as SurfaceMotion
   Image<std::uint32_t> object;  // as SurfaceMotion
   ImageGray footprint_px;       // side of the square that the sums of a pixel were spread over, count-weighted
+  ImageGray residual;           // luminance of a past looked up between pixels minus that of the frame it then joined;
+                                // 0: there was none
 };
 
 // All state that outlives a frame and reaches into pictures. Passed in the open; never global.
@@ -41,6 +43,9 @@ enum class AccumulateMode : std::uint8_t { off, running, reproject };
 // which an accumulated site no longer holds: theirs is `after`.
 enum class AccumulateOrder : std::uint8_t { before, after };
 
+// Below, the past's share is 1 in all digits that pictures have, and its counts leave what numbers can hold.
+inline constexpr double kLeastBlend = 1e-6;
+
 struct AccumulateSettings {
   AccumulateMode mode = AccumulateMode::off;
 
@@ -49,13 +54,14 @@ struct AccumulateSettings {
   // Memory in frames: with each one the counts of the past shrink by 1 - 1/frames, so that a pixel gathers this many
   // times a frame's samples. 0: nothing is forgotten.
   double frames = 16;
-  // Share of the current frame where there is history (the classic exponential average), whatever the counts say.
-  // 0: weights follow the counts.
+  // Share of the current frame where there is history (the classic exponential average), whatever the counts say;
+  // at least kLeastBlend. 0: weights follow the counts.
   double blend = 0;
   // History is brought to within this many standard deviations of the current frame's neighborhood, and keeps
   // the inverse fourth power of what it was off by, in limits, of its count. 0: never.
   double clip_sigmas = 3;
-  // Nothing of the past is used in frames during which the eye makes a saccade or is closed.
+  // Nothing of the past is used in frames since whose predecessor the eye made a saccade or was closed
+  // (FrameRequest::saccade_since_last_frame, blink_since_last_frame).
   bool reset_at_saccades = false, reset_at_blinks = false;
 };
 
@@ -73,9 +79,11 @@ bool is_cut(const TemporalHistory& history, const Camera& camera, int width_px, 
 
 // reproject. Each pixel looks up the sums where its surface was (`motion`, from the history's camera and time), in up
 // to four pixels by bilinear weights; of those that showed the same object, on the plane of the surface and with its
-// normal. Their counts are the history's worth; it shrinks with age, where the history was coarser than this frame's
-// site (by the ratio of areas), and where clipping moves it. The result is the mean weighted by counts: never worth
-// less than the frame alone, and equal to it to the bit where there is no history.
+// normal. Where sixteen around the place did, each a pixel of its own, Catmull-Rom weights blur texture less. Their
+// counts are the history's worth; it shrinks with age, where the history was coarser than this frame's site (by the
+// ratio of areas), where resampling has blurred it by more than noise explains, and where clipping moves it. The result
+// is the mean weighted by counts: never worth less than the frame alone, and equal to it to the bit where there is no
+// history.
 Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion, const FrameRequest& request,
                 const AccumulateSettings& settings, TemporalHistory& history, int threads);
 

@@ -139,6 +139,11 @@ void check_history_options(const JobSettings& job) {
   };
   within("--accumulate-frames", accumulate.frames, 1e9);
   within("--accumulate-blend", accumulate.blend, 1);
+  if (accumulate.blend > 0 && accumulate.blend < kLeastBlend) {
+    throw Error(ErrorKind::usage, "--accumulate-blend",
+                fmt::format("a share of {} leaves nothing of the current frame", accumulate.blend),
+                fmt::format("give {} or more, or 0 for weights by samples", kLeastBlend));
+  }
   within("--accumulate-clip", accumulate.clip_sigmas, 1e6);
   within("--preroll", job.preroll, 1e6);
   within("--checkpoint-every", job.checkpoint_every, 1e9);

@@ -173,14 +173,14 @@ void add_accumulate_options(OptionTable& table, JobSettings& job) {
   table.value("--accumulate-frames", accumulate.frames, "N",
               "reproject: memory in frames; a pixel gathers N times a frame's samples; 0 forgets nothing", kPixels);
   table.value("--accumulate-blend", accumulate.blend, "SHARE",
-              "reproject: a fixed share of the current frame where there is history; 0: by samples", kPixels);
+              "reproject: a fixed share of the current frame where there is history, 1e-6..1; 0: by samples", kPixels);
   table.value("--accumulate-clip", accumulate.clip_sigmas, "SIGMAS",
               "reproject: history stays within so many standard deviations of the current neighborhood; 0: anywhere",
               kPixels);
   table.flag("--accumulate-reset-saccades", accumulate.reset_at_saccades,
-             "reproject: nothing of the past in frames during which the eye jumps", kPixels);
+             "reproject: nothing of the past in frames since whose predecessor the eye has jumped", kPixels);
   table.flag("--accumulate-reset-blinks", accumulate.reset_at_blinks,
-             "reproject: nothing of the past in frames during which the eye is closed", kPixels);
+             "reproject: nothing of the past in frames since whose predecessor the eye was closed", kPixels);
   table.value("--checkpoint", job.checkpoint, "FILE",
               "What is accumulated and the smoothed exposure, to the bit, after the last frame");
   table.value("--checkpoint-every", job.checkpoint_every, "N", "Also after every N frames; 0: only at the end");

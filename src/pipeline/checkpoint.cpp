@@ -8,7 +8,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr SealedKind kCheckpoint{"gazetrace history 1", "checkpoint", "give the file that --checkpoint wrote",
+constexpr SealedKind kCheckpoint{"gazetrace history 2", "checkpoint", "give the file that --checkpoint wrote",
                                  "render from the beginning, or with --preroll",
                                  "render with the same options, or with --preroll"};
 
@@ -21,6 +21,7 @@ void each_field(History& history, bool& has_camera, bool& has_ev, auto& camera, 
   visit(history.surfaces.normal);
   visit(history.surfaces.object);
   visit(history.surfaces.footprint_px);
+  visit(history.surfaces.residual);
   visit(history.t_video_ns);
   visit(history.frames);
   visit(history.last_frame);

@@ -51,6 +51,16 @@ bool GazeMotion::in_saccade(std::int64_t t_log_ns) const {
   return !movements_.empty() && movements_[row_at(t_log_ns)] == EyeMovement::saccade;
 }
 
+bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64_t t_log_ns) const {
+  if (movements_.empty()) {
+    return false;
+  }
+  const auto first = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(std::min(after_log_ns, t_log_ns)));
+  const auto last = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(t_log_ns));
+  // The row before the time after which it begins was the frame before's; alone it is this frame's, too.
+  return std::find(first == last ? first : first + 1, last + 1, movement) != last + 1;
+}
+
 double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
   const auto age_ns = effective_age_ns(request);
   if (!uncertainty_ || !age_ns) {

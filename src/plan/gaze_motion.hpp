@@ -25,6 +25,8 @@ class GazeMotion {
   // eye is in a saccade.
   [[nodiscard]] double speed_deg_s(std::int64_t t_log_ns) const;
   [[nodiscard]] bool in_saccade(std::int64_t t_log_ns) const;
+  // Whether the eye did this at any time after the first and up to the second.
+  [[nodiscard]] bool did(EyeMovement movement, std::int64_t after_log_ns, std::int64_t t_log_ns) const;
 
  private:
   // The last sample that is not after the time; the first, where all are.

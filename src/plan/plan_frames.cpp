@@ -99,6 +99,17 @@ std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
   return __builtin_sub_overflow(t_ns, by_ns, &result) ? std::numeric_limits<std::int64_t>::min() : result;
 }
 
+// On the log's clock, the time whose gaze steered the frame before this one; of the first frame, as if those before it
+// came as far apart as those after it.
+std::int64_t gaze_time_before_ns(const GazeLog& log, const PlanSettings& settings, std::size_t index) {
+  const std::vector<std::int32_t>& frames = settings.frames;
+  const std::int32_t frame = frames[index];
+  const std::size_t next = std::max<std::size_t>(index, 1);
+  const std::int32_t step = next < frames.size() ? frames[next] - frames[next - 1] : 1;
+  const std::int64_t t_ns = frame > step ? frame_time_ns(settings, frame - step) : frame_time_ns(settings, frame);
+  return log_time_ns(log, settings.gaze, earlier(t_ns, settings.gaze_latency_ns));
+}
+
 }  // namespace
 
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& given,
@@ -149,6 +160,9 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
       request.gaze_uncertainty_deg = steering_motion.uncertainty_deg(request);
       request.eye_speed_deg_s = motion.speed_deg_s(request.gaze_render.t_log_ns);
       request.eye_in_saccade = motion.in_saccade(request.gaze_render.t_log_ns);
+      const std::int64_t since_ns = gaze_time_before_ns(*log, settings, plan.frames.size());
+      request.saccade_since_last_frame = motion.did(EyeMovement::saccade, since_ns, request.gaze_render.t_log_ns);
+      request.blink_since_last_frame = motion.did(EyeMovement::blink, since_ns, request.gaze_render.t_log_ns);
       geometry.settle(request.gaze_render);
       geometry.settle(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);

@@ -50,6 +50,8 @@ void steer_by(const FrameRequest& from, FrameRequest& to) {
   to.gaze_uncertainty_deg = from.gaze_uncertainty_deg;
   to.eye_speed_deg_s = from.eye_speed_deg_s;
   to.eye_in_saccade = from.eye_in_saccade;
+  to.saccade_since_last_frame = from.saccade_since_last_frame;
+  to.blink_since_last_frame = from.blink_since_last_frame;
 }
 
 void steer_to(const Vec2d& pixel, FrameRequest& request) {

@@ -14,6 +14,8 @@ struct PastSums {
   double count = 0;     // 0: nothing is known
   double variance = 0;  // count^2 * variance
   double footprint_px = 0;
+  double residual = 0;     // as HistorySurfaces, of the frame before
+  bool resampled = false;  // from between pixels
 };
 
 // `pixel` of the current frame.

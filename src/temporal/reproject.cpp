@@ -16,7 +16,15 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kReach = 2;           // the neighborhood is 5x5 sites
+constexpr int kReach = 2;  // the neighborhood is 5x5 sites
+constexpr float kFullRate_px = 1.5F;
+constexpr float kKnowsNoise = 2;  // samples
+// Of residuals: the correlation that chance makes of noise, how often the stated variance noise may hold, and how much
+// more a bias counts than its mean over the neighborhood, since pixels differ. Measured: smaller ones keep texture
+// sharper, larger ones more of what takes noise away.
+constexpr double kChance = 0;
+constexpr double kStated = 1;
+constexpr double kCaution = 4;
 constexpr double kRounding = 1e-3;  // of a flat surface without noise: floats, and what bilinear weights blur
 
 ImageGray footprints_of(const SamplingMap& map) {
@@ -29,9 +37,8 @@ ImageGray footprints_of(const SamplingMap& map) {
 }
 
 bool eye_forbids(const FrameRequest& request, const AccumulateSettings& settings) {
-  const auto movement = request.gaze_render.movement;
-  return (settings.reset_at_saccades && movement == EyeMovement::saccade) ||
-         (settings.reset_at_blinks && movement == EyeMovement::blink);
+  return (settings.reset_at_saccades && request.saccade_since_last_frame) ||
+         (settings.reset_at_blinks && request.blink_since_last_frame);
 }
 
 // Mean and variance of a channel over the neighborhood.
@@ -110,6 +117,56 @@ void scale_worth(PastSums& past, double factor) {
   past.variance *= factor * factor;
 }
 
+// How far the past was off from two frames running, at full rate: noise differs from one to the other, the blur of
+// resampled texture does not.
+struct Residuals {
+  const ImageGray& now;
+  const ImageGray& before;  // luminance of past - frame; 0: not known
+  const ImageGray& noise;   // variance of the frame, as its samples tell; in truth well-spread samples have less
+
+  // A squared bias b^2, beside a variance v of one sample, makes n samples worth n / (1 + n b^2 / v); less where the
+  // bias is far above the noise.
+  [[nodiscard]] double share_kept(const SurfaceMotion& motion, double count, double past_count, int x, int y) const {
+    const std::uint32_t object = motion.object(x, y);
+    double squares = 0;
+    double squares_before = 0;
+    double products = 0;
+    double variance = 0;
+    for (int j = std::max(y - kReach, 0); j <= std::min(y + kReach, now.height_px - 1); ++j) {
+      for (int i = std::max(x - kReach, 0); i <= std::min(x + kReach, now.width_px - 1); ++i) {
+        if (motion.object(i, j) == object) {
+          const auto a = static_cast<double>(now(i, j));
+          const auto b = static_cast<double>(before(i, j));
+          squares += a * a;
+          squares_before += b * b;
+          products += a * b;
+          variance += static_cast<double>(noise(i, j));
+        }
+      }
+    }
+    const double stated = variance * (1 + count / past_count);
+    const double bias = std::max(products - kChance * std::sqrt(squares * squares_before), squares - kStated * stated);
+    if (!(bias > 0)) {
+      return 1;
+    }
+    const double ratio = bias / std::max(std::min(variance, squares - products), 1e-12 * bias);
+    return 1 / (1 + kCaution * past_count / count * ratio * (1 + ratio));
+  }
+};
+
+// Between the two passes over a frame, the next history holds the past alone.
+void put(const PastSums& past, std::size_t i, TemporalHistory& next) {
+  next.radiance_sum.pixels[i] = past.radiance;
+  next.count_sum.pixels[i] = past.count;
+  next.variance_weight_sum.pixels[i] = past.variance;
+  next.surfaces.footprint_px.pixels[i] = static_cast<float>(past.footprint_px);
+}
+
+PastSums past_at(const TemporalHistory& next, std::size_t i) {
+  return {next.radiance_sum.pixels[i], next.count_sum.pixels[i], next.variance_weight_sum.pixels[i],
+          static_cast<double>(next.surfaces.footprint_px.pixels[i])};
+}
+
 double median_depth_m(const ImageGray& depth_m) {
   std::vector<float> depths;
   const std::size_t step = std::max<std::size_t>(1, depth_m.pixels.size() / 4096);
@@ -158,7 +215,30 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
   next.radiance_sum = Image<Vec3d>(width, height);
   next.count_sum = Image<double>(width, height);
   next.variance_weight_sum = Image<double>(width, height);
-  next.surfaces = {motion.depth_m, motion.normal, motion.object, footprint};
+  next.surfaces = {motion.depth_m, motion.normal, motion.object, footprint, ImageGray(width, height)};
+  ImageGray before(width, height);
+  if (!alone) {
+    parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t row) {
+      const auto across = static_cast<std::size_t>(width);
+      for (std::size_t i = row * across; i < (row + 1) * across; ++i) {
+        PastSums past = look_up(history, earlier_view, motion, i);
+        if (!(past.count > 0)) {
+          continue;
+        }
+        const double coarseness = past.footprint_px / static_cast<double>(footprint.pixels[i]);
+        scale_worth(past, kept / std::max(1.0, coarseness * coarseness));
+        if (past.resampled && footprint.pixels[i] < kFullRate_px && frame.sample_count.pixels[i] >= kKnowsNoise) {
+          const double seen = luminance(to_double(frame.radiance.pixels[i]));
+          const double difference = luminance(past.radiance / past.count) - seen;
+          const double off = std::abs(difference) > kRounding * seen ? difference : 0;
+          next.surfaces.residual.pixels[i] = static_cast<float>(off);
+          before.pixels[i] = static_cast<float>(past.residual);
+        }
+        put(past, i, next);
+      }
+    });
+  }
+  const Residuals residuals{next.surfaces.residual, before, frame.variance};
   ImageRgb radiance = frame.radiance;
   ImageGray counts = frame.sample_count;
   ImageGray variances = frame.variance;
@@ -171,10 +251,11 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
       Vec3d sum = count * to_double(frame.radiance.pixels[i]);
       double total = count;
       double variance = count * count * static_cast<double>(frame.variance.pixels[i]);
-      PastSums past = alone ? PastSums{} : look_up(history, earlier_view, motion, i);
+      PastSums past = past_at(next, i);
       if (past.count > 0) {
-        const double coarseness = past.footprint_px / own_footprint;
-        scale_worth(past, kept / std::max(1.0, coarseness * coarseness));
+        if (residuals.before.pixels[i] != 0) {
+          scale_worth(past, residuals.share_kept(motion, count, past.count, x, y));
+        }
         if (settings.clip_sigmas > 0) {
           clip(spread_around(frame, motion, x, y, footprint.pixels[i]), settings.clip_sigmas, past);
         }
@@ -186,12 +267,13 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
         sum += past.radiance;
         total += past.count;
         variance += past.variance;
-        next.surfaces.footprint_px.pixels[i] =
-            static_cast<float>((count * own_footprint + past.count * past.footprint_px) / total);
         radiance.pixels[i] = to_float(sum / total);
         counts.pixels[i] = static_cast<float>(total);
         variances.pixels[i] = static_cast<float>(variance / (total * total));
       }
+      next.surfaces.footprint_px.pixels[i] =
+          past.count > 0 ? static_cast<float>((count * own_footprint + past.count * past.footprint_px) / total)
+                         : footprint.pixels[i];
       next.radiance_sum.pixels[i] = sum;
       next.count_sum.pixels[i] = total;
       next.variance_weight_sum.pixels[i] = variance;

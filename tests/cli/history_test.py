@@ -68,6 +68,7 @@ class Histories(harness.CliTest):
             (["--frames", "4-5", "--preroll", "2", "--resume-from", "history.bin"], "--preroll"),
             (["--frames", "4-5", "--checkpoint-every", "2"], "--checkpoint"),
             (["--frames", "4-5", "--accumulate-blend", "1.5"], "outside 0..1"),
+            (["--frames", "4-5", "--accumulate-blend", "1e-160"], "give 1e-06 or more"),
             (["--accumulate-order", "before", "--filter", "guided"], "--accumulate-order"),
             (["--animation", "walk"], "walk"),
         ]

@@ -163,6 +163,7 @@ TemporalHistory some_history() {
   history.surfaces.normal = ImageRgb(3, 2, {0, 0, 1});
   history.surfaces.object = Image<std::uint32_t>(3, 2, 7);
   history.surfaces.footprint_px = ImageGray(3, 2, 4);
+  history.surfaces.residual = ImageGray(3, 2, 0.75F);
   history.camera = camera_at({1, 2, 3}, {0, 0, 0});
   history.camera->shutter_poses = {history.camera->pose, history.camera->pose};
   history.camera->lens.radius_m = 0.01;
@@ -184,6 +185,7 @@ TEST(Checkpoint, EveryBitComesBack) {
   EXPECT_EQ(back.t_video_ns, 9'007'199'254'740'993);
   EXPECT_TRUE(std::isnan(back.radiance_sum(2, 1).z));
   EXPECT_EQ(back.surfaces.footprint_px(1, 1), 4.0F);
+  EXPECT_EQ(back.surfaces.residual(2, 1), 0.75F);
   EXPECT_EQ(back.smoothed_ev, -1.5);
   save_checkpoint(b, back, "d");
   EXPECT_EQ(file_bytes(a), file_bytes(b));

@@ -119,6 +119,55 @@ TEST(PlanFrames, LatencyChangesTheSteeringGazeOnly) {
   EXPECT_THAT(plan_as_table(plan), HasSubstr("true gaze"));
 }
 
+// Two fixations at 500 Hz, 4 degrees apart, and a saccade of 16 ms between them.
+GazeLog jump(std::int64_t begins_ns) {
+  GazeLog log = screen_log();
+  log.recording_geometry = display_by_name("paper");
+  log.samples.clear();
+  for (int i = 0; i < 1000; ++i) {
+    GazeSample sample;
+    sample.t_ns = i * 2 * kMs;
+    const double part = std::clamp(static_cast<double>(sample.t_ns - begins_ns) / 16e6, 0.0, 1.0);
+    sample.u = 0.4 + 0.07 * (0.5 - 0.5 * std::cos(kPi * part));
+    sample.v = 0.5;
+    sample.row = i + 2;
+    log.samples.push_back(sample);
+  }
+  return log;
+}
+
+TEST(PlanFrames, NoSaccadeFallsBetweenTwoFrames) {
+  // Wherever it begins: the frame after it says so, by the log itself, whatever steers.
+  PlanSettings settings = paper_settings();
+  settings.frames.clear();
+  for (int frame = 1; frame <= 40; ++frame) {
+    settings.frames.push_back(frame);
+  }
+  int between = 0;
+  for (int k = 0; k < 21; ++k) {
+    const std::int64_t begins_ns = 600 * kMs + k * 2 * kMs;
+    const GazeLog log = jump(begins_ns);
+    const ProcessedGaze still_gaze{jump(10'000 * kMs), {}};
+    const FramePlan plan = plan_frames(still(), &log, settings, k % 2 == 0 ? &still_gaze : nullptr);
+    int flagged = 0;
+    int seen = 0;
+    for (const FrameRequest& request : plan.frames) {
+      flagged += request.saccade_since_last_frame ? 1 : 0;
+      seen += request.eye_in_saccade ? 1 : 0;
+      if (request.saccade_since_last_frame) {
+        // A frame of 41.7 ms, and what the labels of a saccade may be off by.
+        EXPECT_GT(request.t_video_ns, begins_ns - 20 * kMs);
+        EXPECT_LT(request.t_video_ns, begins_ns + 16 * kMs + 42 * kMs + 20 * kMs);
+      }
+      EXPECT_FALSE(request.blink_since_last_frame);
+    }
+    EXPECT_GE(flagged, 1) << k;
+    EXPECT_LE(flagged, 3) << k;
+    between += seen == 0 ? 1 : 0;
+  }
+  EXPECT_GT(between, 0) << "none of them fell between";
+}
+
 TEST(PlanFrames, CameraMustCoverTheFrames) {
   PlanSettings settings = paper_settings();
   EXPECT_EQ(
