@@ -71,10 +71,10 @@ std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) 
       }
       known.emplace_back("--config");
     }
-    text = unknown_name_message(commands.empty() ? "option" : "command", word.substr(0, word.find('=')), known);
-    if (commands.empty() || command == nullptr) {
-      text.resize(std::min(text.size(), text.find(" Known:")));
-    }
+    const std::string name = word.substr(0, word.find('='));
+    text = commands.empty()     ? unknown_among_many("option", name, known)
+           : command == nullptr ? unknown_among_many("command", name, known)
+                                : unknown_name_message("command", name, known);
     break;
   }
   return text + "; see '" + words + " --help'";

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "gazetrace/error.hpp"
+
 namespace gazetrace {
 
 OptionEntry OptionTable::start(const std::string& flags, const std::string& unit, const std::string& help,
@@ -42,6 +44,15 @@ std::vector<std::string> OptionTable::names() const {
     names.push_back(entry.name);
   }
   return names;
+}
+
+std::string unknown_among_many(const std::string& what, const std::string& given,
+                               const std::vector<std::string>& known) {
+  std::string text = unknown_name_message(what, given, known);
+  for (const char* list : {"; Known:", " Known:"}) {
+    text.resize(std::min(text.size(), text.find(list)));
+  }
+  return text;
 }
 
 }  // namespace gazetrace

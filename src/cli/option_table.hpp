@@ -122,4 +122,8 @@ class OptionTable {
   std::vector<OptionEntry> entries_;
 };
 
+// unknown_name_message() without the list of all that is known, where that would be a hundred: the nearest is enough.
+std::string unknown_among_many(const std::string& what, const std::string& given,
+                               const std::vector<std::string>& known);
+
 }  // namespace gazetrace

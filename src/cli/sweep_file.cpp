@@ -36,13 +36,6 @@ bool is_among(const std::vector<std::string>& names, const std::string& name) {
   throw Error(ErrorKind::input, place, problem, remedy);
 }
 
-// Without the list of all that is known: the nearest one is enough.
-std::string unknown_key(const std::string& key, const std::vector<std::string>& known) {
-  std::string text = unknown_name_message("key", key, known);
-  text.resize(std::min(text.size(), text.find(" Known:")));
-  return text;
-}
-
 // The options of `render` that a plan may give.
 class RenderOptions {
  public:
@@ -58,7 +51,7 @@ class RenderOptions {
     }
     const OptionEntry* entry = table_.find(key);
     if (entry == nullptr) {
-      refuse(place, unknown_key(key, known), "'gazetrace render --print-config' lists every option");
+      refuse(place, unknown_among_many("key", key, known), "'gazetrace render --print-config' lists every option");
     }
     if (!is_allowed(*entry)) {
       refuse(place, fmt::format("'{}' has no place in a sweep", key), "leave it out");
@@ -98,7 +91,7 @@ void read_table(const OptionTable& table, const TomlNode& node, const std::strin
     const std::string place = toml_place(path, value);
     const OptionEntry* entry = is_among(wanted, key) ? table.find(key) : nullptr;
     if (entry == nullptr) {
-      refuse(place, unknown_key(key, wanted));
+      refuse(place, unknown_among_many("key", key, wanted));
     }
     try {
       entry->assign(toml_values(value, *entry, path), key);

@@ -121,10 +121,7 @@ CLI::ConfigItem item_of(const TomlConfig::Target& target, const std::string& key
   const std::string place = toml_place(target.path, node);
   const OptionEntry* entry = target.table->find(key);
   if (entry == nullptr) {
-    // All known keys would be a hundred: the nearest one is enough.
-    std::string text = unknown_name_message("key", key, target.table->names());
-    text.resize(std::min(text.size(), text.find(" Known:")));
-    throw Error(ErrorKind::input, place, text,
+    throw Error(ErrorKind::input, place, unknown_among_many("key", key, target.table->names()),
                 fmt::format("'gazetrace {} --print-config' lists every key", target.command));
   }
   CLI::ConfigItem item;

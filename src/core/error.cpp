@@ -48,9 +48,10 @@ std::string unknown_name_message(std::string_view what, std::string_view given, 
     return edit_distance(given, a) < edit_distance(given, b);
   });
   if (nearest != known.end() && edit_distance(given, *nearest) <= 1 + given.size() / 4) {
-    text += "; did you mean '" + *nearest + "'?";
+    text += "; did you mean '" + *nearest + "'? Known:";
+  } else {
+    text += "; Known:";
   }
-  text += " Known:";
   for (std::size_t i = 0; i < known.size(); ++i) {
     text += (i == 0 ? " " : ", ") + known[i];
   }

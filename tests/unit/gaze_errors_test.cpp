@@ -78,7 +78,7 @@ TEST(GazeErrors, Columns) {
                 options);
   options.columns.time = "7";
   expect_errors({{"number.csv", "timestamp,gaze_x,gaze_y\n1,2,3\n",
-                  "number.csv:1: unknown column '7' Known: timestamp, gaze_x, gaze_y"}},
+                  "number.csv:1: unknown column '7'; Known: timestamp, gaze_x, gaze_y"}},
                 options);
 }
 
