@@ -174,6 +174,20 @@ void hide_times_of_day(GazeLog& log, JobSettings& job) {
   }
 }
 
+// Of first hits, which filters with guides see through a pinhole in the middle of the frame's time.
+std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
+  if (!filter_needs_guides(filter_of(job))) {
+    return {};
+  }
+  const bool moves =
+      !camera.is_static || (scene != nullptr && !(scene->motions.empty() && scene->deformations.empty()));
+  const bool motion = job.shutter.blurs() && moves;
+  if (camera.lens.radius_m > 0) {
+    return motion ? "blur of lens and shutter" : "blur of the lens";
+  }
+  return motion ? "blur of the shutter" : "";
+}
+
 }  // namespace
 
 bool camera_needs_scene(const JobSettings& job) {
@@ -349,8 +363,10 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
   std::vector<std::int32_t> planned = frames_before(inputs.frames, job.preroll);
   planned.insert(planned.end(), inputs.frames.begin(), inputs.frames.end());
   PlanSettings settings = plan_settings(job, planned, log, inputs.decisions);
-  if (log != nullptr && !job.gaze_at) {
+  if (log != nullptr) {
     settings.uncertainty = gaze_uncertainty(job, *log);
+  }
+  if (log != nullptr && !job.gaze_at) {
     settings.find_speed = job.foveation.retinal_velocity;
     if (!job.gaze_process.empty()) {
       inputs.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
@@ -367,6 +383,12 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
   }
 
   append(inputs.warnings, camera.warnings);
+  if (const std::string lost = blur_lost_by_filter(job, camera, scene); !lost.empty()) {
+    inputs.warnings.push_back(fmt::format(
+        "--filter {} takes edges, texture, what shines and the background from a pinhole at one instant: {} "
+        "is missing there, --filter linear or tent keep it",
+        job.filter, lost));
+  }
   if (log != nullptr) {
     append(inputs.warnings, log->warnings);
   }

@@ -152,7 +152,7 @@ void add_reconstruction_options(OptionTable& table, JobSettings& job) {
       "--filter", job.filter, "NAME",
       "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which passes "
       "single pixels through, for uniform ones, with --aperture or --shutter, --sample-range, --enhance-contrast "
-      "and --accumulate-order before",
+      "and --accumulate-order before. What guided takes from first hits shows no blur of lens and shutter",
       kPixels);
   table.value(
       "--enhance-contrast", job.enhance_contrast, "0..1",

@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/idle_options.hpp"
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
@@ -101,6 +102,7 @@ int run_plan(const PlanArguments& arguments) {
                 "name a scene, or give --camera-path or --eye and --target");
   }
   const Inputs inputs = load_inputs(job, InputScope::plan_only);
+  print_warnings(idle_option_warnings(arguments.table, job));
   print_warnings(inputs.warnings);
   if (!arguments.save_camera.empty()) {
     std::vector<FramePose> frames;

@@ -10,6 +10,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/idle_options.hpp"
 #include "cli/inputs.hpp"
 #include "cli/progress.hpp"
 #include "cli/summary.hpp"
@@ -103,6 +104,8 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, job.quiet));
   Inputs inputs = load_inputs(job, InputScope::render,
                               [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); });
+  const Warnings idle = idle_option_warnings(arguments.table, job);
+  inputs.warnings.insert(inputs.warnings.begin(), idle.begin(), idle.end());
   PipelineSettings settings = pipeline_settings(job, inputs.frames);
   const std::map<std::string, std::string> digests = digest_job_files(job);
   settings.preroll = static_cast<std::int32_t>(inputs.plan.frames.size() - inputs.frames.size());
