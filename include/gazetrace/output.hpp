@@ -86,6 +86,12 @@ void write_display_image(const std::string& path, const DisplayImage& image, con
 ImageRgb read_exr_rgb(const std::string& path);
 // The digest stored in an EXR or display image of ours; empty: not ours, unreadable or incomplete.
 std::string read_settings_digest(const std::string& path);
+// One digest for everything that reaches into pixels: (name, value) pairs in a fixed order.
+std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings);
+// The same for frames that depend on those before them: of all else (`settings_digest`), of the frames there are, and
+// of where the history comes from: a number of frames rendered before, or the content of a checkpoint.
+std::string digest_of_sequence(const std::string& settings_digest, const std::string& frames, std::int32_t preroll,
+                               const std::string& checkpoint);
 
 constexpr std::size_t kTimingRegions = 11;
 
@@ -118,12 +124,23 @@ std::string timing_csv_text(const std::vector<TimingRow>& rows);  // header and 
 // Error(input) with file:line. A last line without its end is what a killed run leaves behind: it is passed over.
 std::vector<TimingRow> read_timing_csv(const std::string& path);
 
+// Where frames depend on those before them: what a run found, for parts that are to be joined.
+struct RecordedHistory {
+  std::string settings_digest;  // as the run's, but for its frames and history; empty: no frame depends on another
+  std::string frames;           // list of those whose history its first written frame found; empty: of none
+  std::string checkpoint;       // the file that it came from; empty: none
+
+  friend bool operator==(const RecordedHistory&, const RecordedHistory&) = default;
+};
+
 // Enough to repeat the run. Serialised as JSON.
 struct RunRecord {
   std::string version, build, instruction_set, ray_library;
   std::vector<std::string> command_line;
   std::string config_toml;  // every option with its effective value
   std::string settings_digest;
+  std::vector<std::string> part_digests;  // of a whole: its parts', which its pictures carry, where they differ
+  RecordedHistory history;
   std::map<std::string, std::string> input_digests;  // path -> content hash
   std::string frames;                                // frame list text
   bool is_part = false;                              // a part of a longer sequence
@@ -156,7 +173,9 @@ std::vector<RunPart> read_run_parts(const std::string& directory);
 bool are_parts_of_samples(const std::vector<RunPart>& parts);
 
 // Joins the parts found in a directory into timing.csv and run.json. Error(input) where parts disagree in settings
-// digest or overlap, or frames are missing (unless allowed).
+// digest or overlap, or frames are missing (unless allowed). Where frames depend on those before them, each part must
+// have found the history of all before it, as from the checkpoint of another; of the last few alone, as after
+// --preroll, is warned of.
 struct MergeResult {
   std::vector<std::string> parts;
   std::string frames;

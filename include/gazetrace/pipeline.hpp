@@ -58,11 +58,12 @@ struct SequenceResult {
 };
 
 // What PipelineSettings::resume_from holds, or nothing. Error(usage) unless it comes before the plan's first frame; a
-// warning where frames are missing between.
+// warning where frames are missing between, and where a part of a sequence begins with no history of those before.
 TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings);
 
 // Renders the frames of a plan in order. With OutputSettings::resume, frames whose files carry this settings digest are
-// skipped; where history (accumulation, exposure smoothing) needs them they are rendered again, but not written.
+// skipped; where history (accumulation, exposure smoothing) needs them they are rendered again, but not written, and so
+// are all where a checkpoint is asked for that is not there.
 // The tracer is moved from frame to frame. timing.csv grows by a row with each finished frame, so that a killed run
 // keeps what it measured. `history`: of the frames before, see starting_history().
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
@@ -74,6 +75,9 @@ MapContext map_context(const FrameRequest& request, std::uint64_t seed, int thre
 
 // A frame depends on those before it.
 bool uses_history(const PipelineSettings& settings);
+// For the run record; `history`: what the plan's first frame finds.
+RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
+                                 const TemporalHistory& history);
 
 // The history after a frame, to the bit, with the digest of the settings it was made under. Appears under its name when
 // it is complete. Error(runtime) where it cannot be written.
@@ -99,8 +103,6 @@ SampleSums load_samples(const std::string& path, const std::string& settings_dig
 std::vector<std::string> scene_files(const std::string& path);
 // Content hash of each file. Error(input) for one that cannot be read.
 std::map<std::string, std::string> digest_files(const std::vector<std::string>& paths, int threads = 0);
-// One digest for everything that reaches into pixels: (name, value) pairs in a fixed order.
-std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings);
 
 double peak_memory_mib();         // of this process so far
 std::string build_description();  // compiler and build type

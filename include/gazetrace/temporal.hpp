@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "gazetrace/motion.hpp"
 #include "gazetrace/plan.hpp"
@@ -31,7 +32,7 @@ struct TemporalHistory {
   std::optional<Camera> camera;       // of the last frame in the sums
   std::int64_t t_video_ns = 0;        // of the last frame in the sums
   std::int32_t frames = 0;            // since the last reset
-  std::int32_t last_frame = 0;        // number of the last frame that passed through; 0: none
+  std::vector<std::int32_t> passed;   // numbers of the frames that passed through, as they came
   std::optional<double> smoothed_ev;  // exposure smoothing
   std::int64_t smoothed_ev_t_ns = 0;
 };

@@ -23,7 +23,9 @@ std::optional<JobSettings> settings_of_run(const std::string& pattern, const Fra
     return std::nullopt;
   }
   const RunRecord record = read_run_record(path);
-  if (record.settings_digest != facts.settings_digest) {
+  const auto& parts = record.part_digests;
+  if (record.settings_digest != facts.settings_digest &&
+      std::find(parts.begin(), parts.end(), facts.settings_digest) == parts.end()) {
     return std::nullopt;
   }
   const auto found = record.facts.find("view");

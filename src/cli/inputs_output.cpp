@@ -90,9 +90,9 @@ void prove_writable(const fs::path& folder) {
   unlink(probe.c_str());
 }
 
-std::set<fs::path> output_folders(const OutputSettings& output) {
+std::set<fs::path> output_folders(const OutputSettings& output, const std::string& checkpoint) {
   std::set<fs::path> folders;
-  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern, checkpoint}) {
     if (!pattern.empty()) {
       const fs::path parent = fs::path(pattern).parent_path();
       folders.insert(parent.empty() ? fs::path(".") : parent);
@@ -170,6 +170,10 @@ void check_history_options(const JobSettings& job) {
   }
   if (job.checkpoint_every > 0 && job.checkpoint.empty()) {
     throw Error(ErrorKind::usage, "--checkpoint-every", "there is no file for it", "give --checkpoint");
+  }
+  std::error_code ignored;
+  if (fs::is_directory(job.checkpoint, ignored)) {
+    throw Error(ErrorKind::usage, "--checkpoint", fmt::format("'{}' is a folder", job.checkpoint), "name a file");
   }
 }
 
@@ -265,7 +269,7 @@ void check_settings(const JobSettings& job) {
   if (job.overwrite && job.resume) {
     throw Error(ErrorKind::usage, "--resume", "--overwrite starts over and --resume goes on", "give one of them");
   }
-  for (const fs::path& folder : output_folders(output)) {
+  for (const fs::path& folder : output_folders(output, job.checkpoint)) {
     check_folder(folder);
   }
 }
@@ -311,7 +315,12 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
 namespace {
 
 // No output may take the place of another or of what is read.
-void check_names_differ(std::vector<std::string> outputs, const std::map<std::string, std::string>& inputs) {
+void check_names_differ(const PipelineSettings& settings, std::vector<std::string> outputs,
+                        std::map<std::string, std::string> inputs) {
+  if (!settings.checkpoint.empty()) {
+    outputs.push_back(settings.checkpoint);
+    inputs.erase(settings.resume_from);  // one file may hand the history on from run to run
+  }
   std::error_code ignored;
   for (const std::string& output : outputs) {
     if (!fs::exists(output, ignored)) {
@@ -361,7 +370,7 @@ void check_earlier_run(const PipelineSettings& settings, const std::vector<std::
 
 void prepare_outputs(const PipelineSettings& settings, const std::vector<std::int32_t>& frames,
                      const std::map<std::string, std::string>& input_digests) {
-  check_names_differ(output_files(settings, frames), input_digests);
+  check_names_differ(settings, output_files(settings, frames), input_digests);
   if (settings.output.resume) {
     check_earlier_run(settings, frames);
   }
@@ -376,7 +385,7 @@ void prepare_outputs(const PipelineSettings& settings, const std::vector<std::in
       }
     }
   }
-  for (const fs::path& folder : output_folders(settings.output)) {
+  for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
     prove_writable(folder);
   }
 }
@@ -416,12 +425,10 @@ void digest_job(const OptionTable& table, const JobSettings& job, const std::vec
   }
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
   settings.history_digest = digest_settings(parts);
-  if (uses_history(settings)) {
-    parts.emplace_back("frames", format_frame_list(frames));
-    parts.emplace_back("preroll", std::to_string(job.preroll));
-    parts.emplace_back("history", job.resume_from.empty() ? "" : digest_of(job.resume_from));
-  }
-  settings.settings_digest = digest_settings(parts);
+  settings.settings_digest = uses_history(settings)
+                                 ? digest_of_sequence(settings.history_digest, format_frame_list(frames), job.preroll,
+                                                      job.resume_from.empty() ? "" : digest_of(job.resume_from))
+                                 : settings.history_digest;
 }
 
 }  // namespace gazetrace

@@ -138,7 +138,8 @@ void add_frame_options(OptionTable& table, JobSettings& job) {
   table.value("--start", job.start, "DURATION", "Video time at which frame 1 begins", kPixels);
   table.flag("--part", job.part,
              "The frames are a part of a sequence that other runs share: timing and run record carry the range in "
-             "their names, 'gazetrace merge' joins them");
+             "their names, 'gazetrace merge' joins them; frames that depend on those before need --resume-from, or "
+             "--preroll");
   table.value("--sample-range", job.trace.samples, "A:B",
               "Only samples A to B - 1 of every pixel or block: keeps their sums in place of pictures, and 'gazetrace "
               "merge' makes the pictures once all parts are there, to the bit those of one run");
@@ -181,8 +182,10 @@ void add_accumulate_options(OptionTable& table, JobSettings& job) {
              "reproject: nothing of the past in frames since whose predecessor the eye has jumped", kPixels);
   table.flag("--accumulate-reset-blinks", accumulate.reset_at_blinks,
              "reproject: nothing of the past in frames since whose predecessor the eye was closed", kPixels);
-  table.value("--checkpoint", job.checkpoint, "FILE",
-              "What is accumulated and the smoothed exposure, to the bit, after the last frame");
+  table.value(
+      "--checkpoint", job.checkpoint, "FILE",
+      "What is accumulated and the smoothed exposure, to the bit, after the last frame; --resume makes it where it "
+      "is missing");
   table.value("--checkpoint-every", job.checkpoint_every, "N", "Also after every N frames; 0: only at the end");
   table.value("--resume-from", job.resume_from, "FILE",
               "Begins with a checkpoint, which must be of the same settings: as if in one run with the frames before");

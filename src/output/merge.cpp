@@ -9,11 +9,12 @@
 #include <set>
 
 #include "gazetrace/output.hpp"
+#include "output/history_chain.hpp"
 
 namespace gazetrace {
 namespace {
 
-std::vector<std::int32_t> frames_of(const std::map<std::int32_t, const RunPart*>& owners) {
+std::vector<std::int32_t> frames_of(const FrameOwners& owners) {
   std::vector<std::int32_t> frames;
   for (const auto& [frame, part] : owners) {
     frames.push_back(frame);
@@ -23,8 +24,7 @@ std::vector<std::int32_t> frames_of(const std::map<std::int32_t, const RunPart*>
 
 // Frames that a part promised and did not deliver, and holes between the frames of all parts: the step of the whole is
 // the smallest distance between neighbours.
-std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts,
-                                         const std::map<std::int32_t, const RunPart*>& owners) {
+std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, const FrameOwners& owners) {
   std::set<std::int32_t> missing;
   for (const RunPart& part : parts) {
     for (const std::int32_t frame : parse_frame_list(part.record.frames)) {
@@ -50,6 +50,39 @@ std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts,
   return {missing.begin(), missing.end()};
 }
 
+bool have_history(const std::vector<RunPart>& parts) {
+  return std::all_of(parts.begin(), parts.end(),
+                     [](const RunPart& part) { return !part.record.history.settings_digest.empty(); });
+}
+
+// The frames that are there and those that are missing, which may still have gone into the history of others.
+FrameOwners all_frames(const std::vector<RunPart>& parts, FrameOwners owners,
+                       const std::vector<std::int32_t>& missing) {
+  for (const std::int32_t frame : missing) {
+    owners.emplace(frame, nullptr);
+  }
+  for (const RunPart& part : parts) {
+    for (const std::int32_t frame : parse_frame_list(part.record.frames)) {
+      if (const auto found = owners.find(frame); found != owners.end() && found->second == nullptr) {
+        found->second = &part;
+      }
+    }
+  }
+  return owners;
+}
+
+// As if one run had made all frames, beginning as the first part did.
+void continue_history(RunRecord& whole, const RunPart& first) {
+  whole.history = first.record.history;
+  const auto checkpoint = first.record.input_digests.find(whole.history.checkpoint);
+  if (checkpoint != first.record.input_digests.end()) {
+    whole.input_digests.insert(*checkpoint);
+  }
+  whole.settings_digest = whole.history.frames.empty()
+                              ? digest_of_sequence(whole.history.settings_digest, whole.frames, 0, "")
+                              : digest_settings({{"parts", fmt::format("{}", fmt::join(whole.part_digests, " "))}});
+}
+
 }  // namespace
 
 MergeResult merge_runs(const std::string& directory, bool allow_missing, bool overwrite) {
@@ -62,7 +95,7 @@ MergeResult merge_runs(const std::string& directory, bool allow_missing, bool ov
   }
   const std::vector<RunPart> parts = read_run_parts(directory);
 
-  std::map<std::int32_t, const RunPart*> owners;
+  FrameOwners owners;
   std::vector<TimingRow> rows;
   for (const RunPart& part : parts) {
     for (const auto& [frame, row] : part.rows) {
@@ -86,11 +119,17 @@ MergeResult merge_runs(const std::string& directory, bool allow_missing, bool ov
     }
     result.warnings.push_back(problem);
   }
+  if (have_history(parts)) {
+    check_histories(all_frames(parts, owners, missing), result.warnings);
+  }
   for (const RunPart& part : parts) {
     result.parts.push_back(part.timing_path);
   }
   result.frames = format_frame_list(frames_of(owners));
-  const RunRecord record = join_records(parts, result.frames, result.warnings);
+  RunRecord record = join_records(parts, result.frames, result.warnings);
+  if (have_history(parts)) {
+    continue_history(record, *owners.begin()->second);
+  }
   write_text_atomically(timing_path, timing_csv_text(rows));
   write_text_atomically(record_path, run_record_json(record));
   return result;

@@ -34,15 +34,24 @@ RunPart read_part(const std::filesystem::path& timing) {
   return part;
 }
 
+// Parts whose frames depend on those before them have digests of their own, and share that of all else.
+bool of_one_job(const RunRecord& a, const RunRecord& b) {
+  const bool shared = !a.history.settings_digest.empty() && !b.history.settings_digest.empty();
+  return shared ? a.history.settings_digest == b.history.settings_digest : a.settings_digest == b.settings_digest;
+}
+
 void check_same_settings(const std::vector<RunPart>& parts) {
   const RunPart& first = parts.front();
   for (const RunPart& part : parts) {
-    if (part.record.settings_digest != first.record.settings_digest) {
+    if (!of_one_job(part.record, first.record)) {
       throw Error(ErrorKind::input, part.timing_path, "was rendered with other settings than " + first.timing_path,
                   "keep parts of one job in a folder");
     }
     for (const auto& [path, digest] : part.record.input_digests) {
       const auto other = first.record.input_digests.find(path);
+      if (path == part.record.history.checkpoint || path == first.record.history.checkpoint) {
+        continue;  // runs may hand the history on in one file
+      }
       if (other != first.record.input_digests.end() && other->second != digest) {
         throw Error(ErrorKind::input, part.timing_path,
                     "was rendered from another version of " + path + " than " + first.timing_path,
@@ -111,11 +120,18 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
   whole.facts.clear();
   whole.warnings.clear();
   whole.bad_samples.clear();
+  whole.part_digests.clear();
+  whole.input_digests.clear();
   for (const RunPart& part : parts) {
     const RunRecord& record = part.record;
     append_new(whole.warnings, record.warnings);
+    whole.part_digests.push_back(record.settings_digest);
     whole.bad_samples.insert(whole.bad_samples.end(), record.bad_samples.begin(), record.bad_samples.end());
-    whole.input_digests.insert(record.input_digests.begin(), record.input_digests.end());
+    for (const auto& [path, digest] : record.input_digests) {
+      if (path != record.history.checkpoint) {
+        whole.input_digests.emplace(path, digest);
+      }
+    }
     const auto same = [&](const char* what, const std::string& a, const std::string& b) {
       if (a != b) {
         append_new(warnings, {fmt::format("parts differ in {}: '{}' and '{}'", what, a, b)});
@@ -134,6 +150,10 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
     }
   }
   append_new(whole.warnings, warnings);
+  const std::vector<std::string>& digests = whole.part_digests;
+  if (std::all_of(digests.begin(), digests.end(), [&](const std::string& d) { return d == digests.front(); })) {
+    whole.part_digests.clear();
+  }
   std::stable_sort(whole.bad_samples.begin(), whole.bad_samples.end(),
                    [](const BadSample& a, const BadSample& b) { return a.frame < b.frame; });
   return whole;

@@ -62,6 +62,11 @@ std::string run_record_json(const RunRecord& record) {
                   {"ray_library", record.ray_library},
                   {"command_line", record.command_line},
                   {"settings_digest", record.settings_digest},
+                  {"part_digests", record.part_digests},
+                  {"history",
+                   {{"settings_digest", record.history.settings_digest},
+                    {"frames", record.history.frames},
+                    {"checkpoint", record.history.checkpoint}}},
                   {"frames", record.frames},
                   {"is_part", record.is_part},
                   {"samples", record.samples},
@@ -90,7 +95,14 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    record.samples = json.value("samples", "");  // not in records of earlier versions
+    // Not in records of earlier versions: samples, parts and history.
+    record.samples = json.value("samples", "");
+    record.part_digests = json.value("part_digests", record.part_digests);
+    if (const auto history = json.find("history"); history != json.end()) {
+      history->at("settings_digest").get_to(record.history.settings_digest);
+      history->at("frames").get_to(record.history.frames);
+      history->at("checkpoint").get_to(record.history.checkpoint);
+    }
     json.at("input_digests").get_to(record.input_digests);
     json.at("facts").get_to(record.facts);
     json.at("warnings").get_to(record.warnings);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string_view>
 
+#include "core/hash.hpp"
 #include "core/image_io.hpp"
 #include "gazetrace/output.hpp"
 #include "output/exr.hpp"
@@ -19,6 +20,23 @@ std::string read_settings_digest(const std::string& path) {
   }
   const std::size_t begin = key + kKey.size();
   return text.substr(begin, text.find(' ', begin) - begin);
+}
+
+std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings) {
+  Digest digest;
+  for (const auto& [name, value] : settings) {
+    // Lengths keep ("ab", "c") and ("a", "bc") apart.
+    digest.add(std::to_string(name.size()) + ":" + name + std::to_string(value.size()) + ":" + value);
+  }
+  return digest.hex();
+}
+
+std::string digest_of_sequence(const std::string& settings_digest, const std::string& frames, std::int32_t preroll,
+                               const std::string& checkpoint) {
+  return digest_settings({{"settings", settings_digest},
+                          {"frames", frames},
+                          {"preroll", std::to_string(preroll)},
+                          {"history", checkpoint}});
 }
 
 }  // namespace gazetrace

@@ -24,7 +24,7 @@ void each_field(History& history, bool& has_camera, bool& has_ev, auto& camera, 
   visit(history.surfaces.residual);
   visit(history.t_video_ns);
   visit(history.frames);
-  visit(history.last_frame);
+  visit(history.passed);
   visit(has_camera);
   visit(camera.pose);
   visit(camera.projection.kind);

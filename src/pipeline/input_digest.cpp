@@ -159,13 +159,4 @@ std::map<std::string, std::string> digest_files(const std::vector<std::string>& 
   return result;
 }
 
-std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings) {
-  Digest digest;
-  for (const auto& [name, value] : settings) {
-    // Lengths keep ("ab", "c") and ("a", "bc") apart.
-    digest.add(std::to_string(name.size()) + ":" + name + std::to_string(value.size()) + ":" + value);
-  }
-  return digest.hex();
-}
-
 }  // namespace gazetrace

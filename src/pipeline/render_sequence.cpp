@@ -134,7 +134,7 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
           ? reprojected_frame(tracer, traced.sparse, traced.map, of_filter, request, settings, history, row)
           : plain_frame(traced.sparse, traced.map, of_filter, request, settings, history, row);
   rendered.map = std::move(traced.map);
-  history.last_frame = request.frame;
+  history.passed.push_back(request.frame);
   expose(request, settings, history, rendered, row);
   return rendered;
 }
@@ -159,9 +159,6 @@ std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settin
 }
 
 bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
-  if (settings.checkpoint.empty()) {
-    return false;
-  }
   return done == total ||
          (settings.checkpoint_every > 0 && done % static_cast<std::size_t>(settings.checkpoint_every) == 0);
 }
@@ -169,22 +166,32 @@ bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::
 }  // namespace
 
 TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings) {
-  if (settings.resume_from.empty() || plan.frames.empty()) {
+  if (plan.frames.empty()) {
+    return {};
+  }
+  const std::int32_t first = plan.frames.front().frame;
+  if (settings.resume_from.empty()) {
+    if (settings.is_part && first > 1 && settings.preroll == 0 && uses_history(settings)) {
+      warnings.push_back(
+          fmt::format("--part: frame {} begins without the history of those before it; where the sequence begins "
+                      "earlier, this part differs from one run: give --resume-from, or --preroll",
+                      first));
+    }
     return {};
   }
   TemporalHistory history = load_checkpoint(settings.resume_from, settings.history_digest);
-  const std::int32_t first = plan.frames.front().frame;
-  if (history.last_frame >= first) {
+  const std::int32_t last = history.passed.empty() ? 0 : history.passed.back();
+  if (last >= first) {
     throw Error(ErrorKind::usage, "--resume-from",
                 fmt::format("{} holds the history after frame {}, the run begins with frame {}", settings.resume_from,
-                            history.last_frame, first),
-                fmt::format("begin with frame {}", history.last_frame + 1));
+                            last, first),
+                fmt::format("begin with frame {}", last + 1));
   }
-  if (history.last_frame + 1 != first) {
+  if (last + 1 != first) {
     warnings.push_back(
         fmt::format("{} holds the history after frame {}, the run begins with frame {}: those between "
                     "are missing in it",
-                    settings.resume_from, history.last_frame, first));
+                    settings.resume_from, last, first));
   }
   return history;
 }
@@ -194,7 +201,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                TemporalHistory history) {
   SequenceResult result;
   const std::string timing_path = timing_path_of(plan, settings);
-  const ResumePlan resume = plan_resume(plan, settings, timing_path);
+  const ResumePlan resume = plan_resume(plan, settings, timing_path, history);
   result.warnings = resume.warnings;
   TimingLog timing(timing_path, resume.kept_rows);
   if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
@@ -231,7 +238,8 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         result.rows.push_back(row);
       }
     }
-    if (resume.work[i] != FrameWork::skip && checkpoint_is_due(settings, i + 1, plan.frames.size())) {
+    if (resume.writes_checkpoint && resume.work[i] != FrameWork::skip &&
+        checkpoint_is_due(settings, i + 1, plan.frames.size())) {
       save_checkpoint(settings.checkpoint, history, settings.history_digest);
     }
     const bool skipped = resume.work[i] != FrameWork::render;

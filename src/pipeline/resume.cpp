@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "pipeline/sample_sums_file.hpp"
 #include "pipeline/timing_log.hpp"
@@ -32,6 +33,22 @@ bool files_are_complete(const PipelineSettings& settings, std::int32_t frame) {
   return output.map_pattern.empty() || fs::exists(frame_file_name(output.map_pattern, frame));
 }
 
+// The checkpoint that is asked for holds the history after the plan's last frame, of the same settings.
+bool checkpoint_is_there(const FramePlan& plan, const PipelineSettings& settings, const TemporalHistory& history) {
+  if (!fs::exists(settings.checkpoint)) {
+    return false;
+  }
+  std::vector<std::int32_t> passed = history.passed;
+  for (const FrameRequest& request : plan.frames) {
+    passed.push_back(request.frame);
+  }
+  try {
+    return load_checkpoint(settings.checkpoint, settings.history_digest).passed == passed;
+  } catch (const Error&) {
+    return false;  // damaged, or of other settings: it is to be replaced
+  }
+}
+
 }  // namespace
 
 bool uses_history(const PipelineSettings& settings) {
@@ -39,8 +56,26 @@ bool uses_history(const PipelineSettings& settings) {
          (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
 }
 
-ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path) {
+RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
+                                 const TemporalHistory& history) {
+  RecordedHistory recorded;
+  if (!uses_history(settings)) {
+    return recorded;
+  }
+  std::vector<std::int32_t> passed = history.passed;
+  for (std::size_t i = 0; i < std::min(static_cast<std::size_t>(settings.preroll), plan.frames.size()); ++i) {
+    passed.push_back(plan.frames[i].frame);
+  }
+  recorded.settings_digest = settings.history_digest;
+  recorded.frames = passed.empty() ? std::string() : format_frame_list(passed);
+  recorded.checkpoint = settings.resume_from;
+  return recorded;
+}
+
+ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path,
+                       const TemporalHistory& history) {
   ResumePlan resume;
+  resume.writes_checkpoint = !settings.checkpoint.empty();
   resume.work.assign(plan.frames.size(), FrameWork::render);
   const auto first_wanted = std::min(static_cast<std::size_t>(settings.preroll), plan.frames.size());
   std::fill(resume.work.begin(), resume.work.begin() + static_cast<std::ptrdiff_t>(first_wanted), FrameWork::replay);
@@ -64,11 +99,15 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
       last_to_render = i;
     }
   }
-  if (last_to_render == plan.frames.size()) {
+  resume.writes_checkpoint = resume.writes_checkpoint && !checkpoint_is_there(plan, settings, history);
+  const std::size_t end = resume.writes_checkpoint               ? plan.frames.size()
+                          : last_to_render == plan.frames.size() ? 0
+                                                                 : last_to_render + 1;
+  if (end == 0) {
     std::fill(resume.work.begin(), resume.work.begin() + static_cast<std::ptrdiff_t>(first_wanted), FrameWork::skip);
   }
-  if (uses_history(settings) && last_to_render != plan.frames.size()) {
-    for (std::size_t i = 0; i < last_to_render; ++i) {
+  if (uses_history(settings) || resume.writes_checkpoint) {
+    for (std::size_t i = 0; i < end; ++i) {
       if (resume.work[i] == FrameWork::skip) {
         resume.work[i] = FrameWork::replay;
       }

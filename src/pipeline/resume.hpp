@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "gazetrace/pipeline.hpp"
@@ -12,16 +13,20 @@ namespace gazetrace {
 
 enum class FrameWork : std::uint8_t {
   render,  // trace and write
-  replay,  // complete, but later frames need its history: trace, write nothing
+  replay,  // complete, but later frames or a checkpoint need its history: trace, write nothing
   skip,
 };
 
 struct ResumePlan {
   std::vector<FrameWork> work;                  // one entry a frame of the plan
   std::map<std::int32_t, TimingRow> kept_rows;  // of frames that are not rendered again
+  bool writes_checkpoint = false;               // one is asked for, and what is there is not it
   Warnings warnings;
 };
 
-ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path);
+// `history`: what the plan's first frame finds. A checkpoint that is asked for and not there, or not that of these
+// frames, needs every frame anew.
+ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path,
+                       const TemporalHistory& history);
 
 }  // namespace gazetrace

@@ -16,7 +16,7 @@ namespace gazetrace {
 
 // What a file holds, for its first line and for messages.
 struct SealedKind {
-  const char* title;         // "gazetrace history 1": begins the file
+  const char* title;         // "gazetrace history 2": begins the file
   const char* name;          // "checkpoint"
   const char* wanted;        // what to give in place of a file of another kind
   const char* when_damaged;  // what to do then

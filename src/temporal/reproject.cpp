@@ -285,7 +285,7 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
   next.camera = request.camera;
   next.t_video_ns = request.t_video_ns;
   next.frames = history.frames + 1;
-  next.last_frame = history.last_frame;
+  next.passed = std::move(history.passed);
   next.smoothed_ev = history.smoothed_ev;
   next.smoothed_ev_t_ns = history.smoothed_ev_t_ns;
   history = std::move(next);

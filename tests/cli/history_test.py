@@ -17,6 +17,7 @@ accumulate = "reproject"
 quiet = true
 """
 JOB = ["--config", "job.toml"]
+SMALL = ["--size", "64x36"]
 
 
 def png_pixels(path):
@@ -51,6 +52,98 @@ class Histories(harness.CliTest):
             name = f"f.{frame:04d}.png"
             folder = "parts" if frame <= 5 else "rest"
             self.assertEqual(png_pixels(self.folder / folder / name), png_pixels(self.folder / "whole" / name))
+
+    def record(self, path):
+        return json.loads((self.folder / path).read_text())
+
+    def part(self, folder, frames, *more):
+        return self.run_ok("render", *JOB, *SMALL, "-o", f"{folder}/f.####.png", "--frames", frames, "--part", *more)
+
+    def test_parts_joined_by_a_checkpoint_merge(self):
+        self.run_ok("render", *JOB, *SMALL, "-o", "whole/f.####.png", "--frames", "1-5")
+        # One file hands the history on from part to part.
+        self.part("parts", "1-2", "--checkpoint", "history.bin")
+        self.part("parts", "3-4", "--resume-from", "history.bin", "--checkpoint", "history.bin")
+        self.part("parts", "5", "--resume-from", "history.bin")
+        merged = self.run_ok("merge", "parts")
+        self.assertIn("3 parts joined, frames 1-5", merged.stdout)
+        self.assertEqual(merged.stderr, "")
+        for frame in range(1, 6):
+            name = f"f.{frame:04d}.png"
+            self.assertEqual(png_pixels(self.folder / "parts" / name), png_pixels(self.folder / "whole" / name))
+        whole, parts = self.record("whole/run.json"), self.record("parts/run.json")
+        for key in ("settings_digest", "frames", "is_part", "history", "input_digests"):
+            self.assertEqual(parts[key], whole[key], key)
+        self.assertEqual(len(set(parts["part_digests"])), 3)
+
+    def test_broken_chains_of_parts_are_said(self):
+        self.part("parts", "1-3", "--checkpoint", "after3.bin")
+        alone = self.part("parts", "4")
+        self.assertIn("--part: frame 4 begins without the history of those before it", alone.stderr)
+        self.assert_refused(["merge", "parts"], ["timing.4.csv", "frame 4 was made without history",
+                                                 "in one run it would have been with the history of frames 1-3",
+                                                 "--resume-from and a checkpoint made after frame 3"])
+        # The checkpoint of a part that lacks a frame.
+        self.part("short", "1-2", "--checkpoint", "after2.bin")
+        gap = self.part("parts", "4", "--resume-from", "after2.bin", "--overwrite")
+        self.assertIn("those between are missing", gap.stderr)
+        self.assert_refused(["merge", "parts"], ["timing.4.csv", "made with the history of frames 1-2"])
+        # Rendered anew: joined, and the seam is said.
+        prerolled = self.part("parts", "4", "--preroll", "2", "--overwrite")
+        self.assertEqual(prerolled.stderr, "")
+        merged = self.run_ok("merge", "parts")
+        self.assertIn("timing.4.csv: frame 4 was made with the history of frames 2-3", merged.stderr)
+        self.part("parts", "4", "--resume-from", "after3.bin", "--overwrite")
+        self.assertEqual(self.run_ok("merge", "parts", "--overwrite").stderr, "")
+        # Other settings stay other settings.
+        self.part("parts", "5", "--preroll", "4", "--bounces", "2")
+        self.assert_refused(["merge", "parts", "--overwrite"], ["timing.5.csv", "other settings"])
+
+    def test_resume_writes_the_checkpoint_that_is_asked_for(self):
+        def run(*more):
+            return self.run_ok("render", *JOB, *SMALL, "-o", "out/f.####.png", "--frames", "1-3", *more)
+
+        def state():
+            return (self.folder / "history.bin").read_bytes()
+
+        run("--checkpoint", "history.bin")
+        wanted, pictures = state(), self.pictures("out")
+        ask = ["--resume", "--checkpoint", "history.bin"]
+        # Not there; not there and a frame to be rendered; older; damaged; of other settings.
+        for damage in ("none", "frame", "old", "cut", "other"):
+            with self.subTest(damage=damage):
+                (self.folder / "history.bin").unlink(missing_ok=True)
+                if damage == "frame":
+                    (self.folder / "out/f.0002.png").unlink()
+                elif damage == "old":
+                    self.run_ok("render", *JOB, *SMALL, "-o", "old/f.####.png", "--frames", "1-2", "--checkpoint", "history.bin")
+                elif damage == "cut":
+                    self.write("history.bin", wanted[:-9])
+                elif damage == "other":
+                    self.run_ok("render", *JOB, *SMALL, "-o", "other/f.####.png", "--frames", "1-3", "--bounces", "2",
+                                "--checkpoint", "history.bin")
+                run(*ask)
+                self.assertEqual(state(), wanted)
+                self.assertEqual(self.pictures("out"), pictures)
+        # What is there is left alone, and the frames are not rendered for it.
+        before = (self.folder / "history.bin").stat().st_mtime_ns
+        (self.folder / "out/f.0002.png").unlink()
+        run(*ask, "--checkpoint-every", "1")
+        self.assertEqual(self.pictures("out"), pictures)
+        self.assertEqual(state(), wanted)
+        self.assertEqual((self.folder / "history.bin").stat().st_mtime_ns, before)
+
+    def test_the_checkpoint_has_a_place(self):
+        self.run_ok("render", *JOB, *SMALL, "-o", "out/f.####.png", "--frames", "1", "--checkpoint", "new/folder/h.bin")
+        self.assertEqual(self.files("new"), ["folder/h.bin"])
+        self.write("file", "")
+        (self.folder / "folder").mkdir()
+        scene = (self.folder / "glide.gltf").read_bytes()
+        for place, words in (("file/h.bin", "is not a folder"), ("folder", "is a folder"), ("glide.gltf", "would replace an input"),
+                             ("bad/f.0001.png", "two outputs")):
+            with self.subTest(place=place):
+                self.assert_refused(["render", *JOB, *SMALL, "-o", "bad/f.####.png", "--frames", "1", "--checkpoint", place], [words])
+        self.assertEqual((self.folder / "glide.gltf").read_bytes(), scene)
 
     def test_preroll_is_not_written(self):
         pictures = self.render("some", "--frames", "6-7", "--preroll", "3")

@@ -115,15 +115,15 @@ TEST(History, CheckpointsComeAsOftenAsAskedAndTheLastOneStays) {
   settings.checkpoint_every = 2;
   PathTracer tracer(scene, threads(2));
   const ColorPipeline color(ColorSettings{});
-  std::vector<std::int32_t> held;
+  std::vector<std::size_t> held;
   PipelineObserver observer;
   observer.frame_done = [&](const TimingRow&, bool) {
     held.push_back(std::filesystem::exists(settings.checkpoint)
-                       ? load_checkpoint(settings.checkpoint, settings.history_digest).last_frame
+                       ? load_checkpoint(settings.checkpoint, settings.history_digest).passed.size()
                        : 0);
   };
   (void)render_sequence(tracer, plan_of(1, 5), color, settings, observer);
-  EXPECT_EQ(held, (std::vector<std::int32_t>{0, 2, 2, 4, 5}));
+  EXPECT_EQ(held, (std::vector<std::size_t>{0, 2, 2, 4, 5}));
 }
 
 TEST(History, PrerollComesNearer) {
@@ -169,7 +169,7 @@ TemporalHistory some_history() {
   history.camera->lens.radius_m = 0.01;
   history.t_video_ns = 9'007'199'254'740'993;
   history.frames = 12;
-  history.last_frame = 30;
+  history.passed = {19, 20, 30};
   history.smoothed_ev = -1.5;
   history.smoothed_ev_t_ns = 77;
   return history;
@@ -187,6 +187,7 @@ TEST(Checkpoint, EveryBitComesBack) {
   EXPECT_EQ(back.surfaces.footprint_px(1, 1), 4.0F);
   EXPECT_EQ(back.surfaces.residual(2, 1), 0.75F);
   EXPECT_EQ(back.smoothed_ev, -1.5);
+  EXPECT_EQ(back.passed, (std::vector<std::int32_t>{19, 20, 30}));
   save_checkpoint(b, back, "d");
   EXPECT_EQ(file_bytes(a), file_bytes(b));
   save_checkpoint(a, TemporalHistory{}, "d");
@@ -233,7 +234,7 @@ TEST(Checkpoint, ARunMustBeginAfterIt) {
   PipelineSettings settings = settings_of();
   settings.resume_from = folder / "history.bin";
   TemporalHistory history;
-  history.last_frame = 5;
+  history.passed = {5};
   save_checkpoint(settings.resume_from, history, settings.history_digest);
   EXPECT_THROW((void)render(scene, plan_of(5, 6), settings), Error);
   Warnings warnings;

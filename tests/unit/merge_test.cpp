@@ -132,6 +132,94 @@ TEST_F(Merge, DifferentBuildsAreSaid) {
               testing::ElementsAre(testing::HasSubstr("parts differ in instruction set")));
 }
 
+// A part whose frames depend on those before them; `found`: the frames whose history it began with.
+class MergeWithHistory : public Merge {
+ protected:
+  void write_part(const std::string& frames, const std::string& found, const std::string& checkpoint = "") {
+    RunRecord record = part(frames, "of " + frames);
+    record.history = {"shared", found, checkpoint};
+    if (!checkpoint.empty()) {
+      record.input_digests[checkpoint] = "after " + found;
+    }
+    write(record, parse_frame_list(frames));
+  }
+  Warnings merged() {
+    const MergeResult result = merge_runs(folder_.path(), true, true);
+    record_ = read_run_record(folder_ / "run.json");
+    return result.warnings;
+  }
+  RunRecord record_;
+};
+
+TEST_F(MergeWithHistory, AChainOfCheckpointsIsOneRun) {
+  write_part("1-4", "");
+  write_part("5-8", "1-4", "h.bin");
+  write_part("9-12", "1-8", "h.bin");  // the same file, with another content by then
+  EXPECT_TRUE(merged().empty());
+  EXPECT_EQ(record_.settings_digest, digest_of_sequence("shared", "1-12", 0, ""));
+  EXPECT_THAT(record_.part_digests, testing::UnorderedElementsAre("of 1-4", "of 5-8", "of 9-12"));
+  EXPECT_EQ(record_.history, (RecordedHistory{"shared", "", ""}));
+  EXPECT_EQ(record_.input_digests.size(), 1U);
+}
+
+TEST_F(MergeWithHistory, TheWholeMayBeginWithHistory) {
+  write_part("5-8", "1-4", "a.bin");
+  write_part("9-10", "1-8", "b.bin");
+  EXPECT_TRUE(merged().empty());
+  EXPECT_EQ(record_.history, (RecordedHistory{"shared", "1-4", "a.bin"}));
+  EXPECT_EQ(record_.input_digests.at("a.bin"), "after 1-4");
+  EXPECT_FALSE(record_.input_digests.contains("b.bin"));
+}
+
+TEST_F(MergeWithHistory, BrokenChains) {
+  write_part("1-4", "");
+  for (const auto& [found, words] : {std::pair("", "frame 5 was made without history"),
+                                     std::pair("1-3", "with the history of frames 1-3, in one run"),
+                                     std::pair("1,2,4", "with the history of frames 1-2,4, in one run")}) {
+    write_part("5-6", found);
+    expect_error({"timing.5-6.csv", words, "of frames 1-4", "after frame 4"});
+  }
+  // Of the last frames alone: joined, with a warning.
+  write_part("5-6", "3-4");
+  EXPECT_THAT(merged(), testing::ElementsAre(testing::HasSubstr("frames 3-4, in one run it would have been with the "
+                                                                "history of frames 1-4: a seam")));
+  // What --preroll reached to the very beginning is no seam.
+  write_part("5-6", "1-4");
+  EXPECT_TRUE(merged().empty());
+}
+
+TEST_F(MergeWithHistory, InterleavedPartsAreNoChain) {
+  write_part("1-5x2", "");
+  write_part("2-4x2", "");
+  expect_error({"timing.2-4x2.csv", "frame 2 was made without history", "of frames 1;"});
+  // The second goes on where the first was, and the first does not know of it.
+  write_part("2-4x2", "1");
+  expect_error({"timing.1-5x2.csv", "frame 3 was made with the history of frames 1,", "of frames 1-2;"});
+}
+
+TEST_F(MergeWithHistory, FramesThatAreMissing) {
+  write_part("1-4", "");
+  write_part("7-8", "1-6");
+  EXPECT_THAT(merged(), testing::ElementsAre("frames are missing: 5-6"));  // 7 and 8 are those of one run
+  write_part("7-8", "1-4");
+  EXPECT_THROW(merged(), Error);
+  // Killed, and taken up from a checkpoint on the way.
+  std::filesystem::remove(folder_ / "timing.7-8.csv");
+  RunRecord killed = part("1-4");
+  killed.history = {"shared", "", ""};
+  write(killed, {1, 2});
+  write_part("3-8", "1-2");
+  EXPECT_THAT(merged(), testing::IsEmpty());
+}
+
+TEST_F(MergeWithHistory, OtherSettingsAreNoChain) {
+  write_part("1-4", "");
+  RunRecord other = part("5-6", "d2");
+  other.history = {"others", "1-4", ""};
+  write(other, {5, 6});
+  expect_error({"timing.5-6.csv", "other settings"});
+}
+
 TEST_F(Merge, NothingToMerge) {
   expect_error({"holds no parts"});
   write(part("1-2"), {1, 2});

@@ -19,6 +19,8 @@ TEST(RunRecord, RoundTrip) {
   record.command_line = {"gazetrace", "render", "a b.gltf", "--key=\\\n"};
   record.config_toml = "a = 1\n# comment\n";
   record.settings_digest = "00ff";
+  record.part_digests = {"01", "02"};
+  record.history = {"0102", "1-9", "h.bin"};
   record.input_digests = {{"a.gltf", "12"}, {"ä.csv", "34"}};
   record.frames = "1-100x2";
   record.is_part = true;
@@ -29,6 +31,8 @@ TEST(RunRecord, RoundTrip) {
   const std::string path = folder / "run.json";
   write_text_atomically(path, run_record_json(record));
   EXPECT_EQ(run_record_json(read_run_record(path)), run_record_json(record));
+  EXPECT_EQ(read_run_record(path).history, record.history);
+  EXPECT_EQ(read_run_record(path).part_digests, record.part_digests);
   const auto json = nlohmann::json::parse(file_bytes(path));
   EXPECT_EQ(json["command_line"][3], "--key=\\\n");
   EXPECT_EQ(json["input_digests"]["a.gltf"], "12");

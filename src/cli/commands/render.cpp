@@ -38,7 +38,8 @@ void check_asked_for_something(const JobSettings& job) {
 }
 
 RunRecord start_record(const RenderArguments& arguments, const Invocation& invocation, const Inputs& inputs,
-                       const PipelineSettings& settings, const PathTracer& tracer, const ColorPipeline& color) {
+                       const PipelineSettings& settings, const TemporalHistory& history, const PathTracer& tracer,
+                       const ColorPipeline& color) {
   RunRecord record;
   record.version = kVersion;
   record.build = build_description();
@@ -47,6 +48,7 @@ RunRecord start_record(const RenderArguments& arguments, const Invocation& invoc
   record.command_line = invocation.arguments;
   record.config_toml = settings_as_toml(arguments.table, "gazetrace render");
   record.settings_digest = settings.settings_digest;
+  record.history = recorded_history(inputs.plan, settings, history);
   record.frames = format_frame_list(inputs.frames);
   record.is_part = settings.is_part || settings.trace.samples.has_value();
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
@@ -119,7 +121,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   loading->building_tree();
   PathTracer tracer(*inputs.scene, options);
   loading.reset();
-  RunRecord record = start_record(arguments, invocation, inputs, settings, tracer, color);
+  RunRecord record = start_record(arguments, invocation, inputs, settings, history, tracer, color);
   record.input_digests = digests;
   const std::vector<std::string> files = output_files(settings, inputs.frames);
   if (!files.empty()) {
