@@ -63,11 +63,13 @@ bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64
 
 double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
   const auto age_ns = effective_age_ns(request);
-  if (!uncertainty_ || !age_ns) {
+  // A fixed gaze has no rows and no age: it does not move, and may be off all the same.
+  const bool is_fixed = !age_ns && request.gaze_render.state == GazeState::measured;
+  if (!uncertainty_ || (!age_ns && !is_fixed)) {
     return 0;
   }
   const double moved_deg =
-      speed_deg_s(request.gaze_true.t_log_ns - *age_ns) * std::abs(static_cast<double>(*age_ns)) * 1e-9;
+      is_fixed ? 0 : speed_deg_s(request.gaze_true.t_log_ns - *age_ns) * std::abs(static_cast<double>(*age_ns)) * 1e-9;
   return uncertainty_->accuracy_deg + uncertainty_->precision_deg + moved_deg;
 }
 
