@@ -88,7 +88,7 @@ class Foveation(harness.CliTest):
             wanted = int(row["pixels"]) // 2 if name == "spp" else 3001
             self.assertLessEqual(abs(int(row["samples"]) - wanted), 1)
         for option, budget in (("--budget-spp", "0.06"), ("--budget-samples", "64")):
-            result = self.run_program(*common, option, budget, "-o", "x/f.exr")
+            result = self.run_program(*common, option, budget, "-o", f"x{option}/f.exr")
             self.assertEqual(result.returncode, 2)
             self.assertIn(option, result.stderr)
             self.assertIn("first look", result.stderr)
