@@ -5,7 +5,7 @@
   presets_side_by_side.py GAZETRACE SCENE OUT.png --exposure EV --gaze U,V --crop NAME=U,V [--crop ...]
                           [--reference-spp 512] [--size 960x540] [options of `gazetrace render` ...]
 
-Columns: uniform (as many samples in all as `paper` takes), `paper`, `default`, `default` with the guided filter, `reference`.
+Columns: uniform (as many samples in all as `paper` takes), `paper`, `default`, `reference`.
 All are shown at one exposure through one view. Cut-outs are 1/8 of the frame wide about their place and enlarged without
 smoothing; the first line under a column says how many samples a pixel it took. Needs Pillow.
 """
@@ -65,7 +65,6 @@ def main():
         columns.insert(0, ("uniform", *render(arguments, extra, folder, "uniform",
                                               ["--falloff", "uniform", "--budget-spp", budget, "--filter", "none"])))
         for label, options in (("default", ["--preset", "default"]),
-                               ("default, guided", ["--preset", "default", "--filter", "guided"]),
                                ("reference", ["--preset", "reference", "--spp", arguments.reference_spp])):
             columns.append((label, *render(arguments, extra, folder, label, options)))
 
