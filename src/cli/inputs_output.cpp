@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 template <class Infos>
 void check_registry_name(const char* option, const char* what, const std::string& name, const Infos& infos) {
   std::vector<std::string> known;
+  known.reserve(infos.size());
   for (const auto& info : infos) {
     known.push_back(info.name);
   }

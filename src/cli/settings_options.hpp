@@ -31,7 +31,8 @@ struct GazeFileSettings {
   bool sort = false;
 };
 
-struct JobSettings {
+// In the order of the options.
+struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::string preset;
 
   // Scene and light

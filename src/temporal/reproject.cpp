@@ -17,7 +17,7 @@ namespace gazetrace {
 namespace {
 
 constexpr int kReach = 2;  // the neighborhood is 5x5 sites
-constexpr float kFullRate_px = 1.5F;
+constexpr float kFullRatePx = 1.5F;
 constexpr float kKnowsNoise = 2;  // samples
 // Of residuals: the correlation that chance makes of noise, how often the stated variance noise may hold, and how much
 // more a bias counts than its mean over the neighborhood, since pixels differ. Measured: smaller ones keep texture
@@ -227,7 +227,7 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
         }
         const double coarseness = past.footprint_px / static_cast<double>(footprint.pixels[i]);
         scale_worth(past, kept / std::max(1.0, coarseness * coarseness));
-        if (past.resampled && footprint.pixels[i] < kFullRate_px && frame.sample_count.pixels[i] >= kKnowsNoise) {
+        if (past.resampled && footprint.pixels[i] < kFullRatePx && frame.sample_count.pixels[i] >= kKnowsNoise) {
           const double seen = luminance(to_double(frame.radiance.pixels[i]));
           const double difference = luminance(past.radiance / past.count) - seen;
           const double off = std::abs(difference) > kRounding * seen ? difference : 0;
