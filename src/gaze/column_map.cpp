@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <type_traits>
 #include <utility>
 
+#include "core/atomic_file.hpp"
 #include "core/text.hpp"
 #include "gaze/json.hpp"
 #include "gaze/read_support.hpp"
 #include "gaze/units.hpp"
-#include "gaze/write_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -203,7 +204,8 @@ GazeColumns load_gaze_columns(const std::string& path) {
 void save_gaze_columns(const GazeColumns& columns, const std::string& path) {
   Saver saver;
   visit(columns, saver);
-  write_whole_file(path, json_text(saver.values));
+  const std::string text = json_text(saver.values);
+  write_bytes_atomically(path, std::as_bytes(std::span(text)));
 }
 
 GazeColumns merge_gaze_columns(const GazeColumns& base, const GazeColumns& over) {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 
+#include "core/atomic_file.hpp"
 #include "gaze/eyes.hpp"
 #include "gaze/facts.hpp"
-#include "gaze/write_file.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -231,7 +232,7 @@ void write_gaze_csv(const GazeLog& log, const std::string& path) {
     rows.write(eye_row(sample, log.eyes[i].right, Eye::right, log.kind),
                origins == nullptr ? nullptr : &origins->right_mm, nullptr, text);
   }
-  write_whole_file(path, text);
+  write_bytes_atomically(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace gazetrace

@@ -13,14 +13,15 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
+#include "core/atomic_file.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/bids_sidecars.hpp"
 #include "gaze/eyes.hpp"
 #include "gaze/facts.hpp"
 #include "gaze/gzip.hpp"
 #include "gaze/inspect/inspect.hpp"
-#include "gaze/write_file.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -400,7 +401,7 @@ std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& 
 
 void write_gaze_bids(const GazeLog& log, const std::string& path) {
   for (const File& file : files_of(log, path)) {
-    write_whole_file(file.path, file.bytes);
+    write_bytes_atomically(file.path, std::as_bytes(std::span(file.bytes)));
   }
 }
 

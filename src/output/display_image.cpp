@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/atomic_file.hpp"
 #include "core/image_io.hpp"
 #include "gazetrace/output.hpp"
-#include "output/atomic_file.hpp"
 #include "output/gaze_text.hpp"
 
 namespace gazetrace {

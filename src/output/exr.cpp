@@ -28,9 +28,9 @@
 #include <limits>
 #include <mutex>
 
+#include "core/atomic_file.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/output.hpp"
-#include "output/atomic_file.hpp"
 #include "output/gaze_text.hpp"
 
 namespace gazetrace {

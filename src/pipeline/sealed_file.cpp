@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
+#include "core/atomic_file.hpp"
 #include "core/hash.hpp"
 #include "gazetrace/error.hpp"
-#include "output/atomic_file.hpp"
 
 namespace gazetrace {
 namespace {

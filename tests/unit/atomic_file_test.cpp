@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several that write the same file at once: two renders into one folder both write run.json.
-#include "output/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstddef>
 #include <string>
 #include <thread>
@@ -72,6 +75,28 @@ TEST(AtomicFile, ProcessesMayWriteTheSameFile) {
     EXPECT_EQ(status, 0);
   }
   expect_one_writers_file(folder);
+}
+
+TEST(AtomicFile, AProcessThatIsKilledWhileItWritesLeavesNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run.json";
+  const int unnamed = ::open(path.substr(0, path.rfind('/')).c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0600);
+  if (unnamed < 0) {
+    GTEST_SKIP() << "this file system has no files without names";
+  }
+  ::close(unnamed);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_DFL);
+    const rlimit few{4096, 4096};  // the system kills who writes more
+    ::setrlimit(RLIMIT_FSIZE, &few);
+    ::_exit(write_often(path, 1));
+  }
+  int status = -1;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(WTERMSIG(status), SIGXFSZ);
+  EXPECT_EQ(folder.names(), std::vector<std::string>());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "output/atomic_file.hpp"
+#include "core/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,14 +11,13 @@
 #include <system_error>
 
 #include "gazetrace/error.hpp"
-#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* what, int error) {
   throw Error(ErrorKind::runtime, path, std::string(what) + ": " + std::generic_category().message(error),
-              error == ENOSPC ? "free some space and run again with --resume" : "check the output folder");
+              error == ENOSPC ? "free some space and run again (a render: with --resume)" : "check the folder");
 }
 
 constexpr int kMaxAttempts = 1000;
@@ -29,25 +28,28 @@ std::filesystem::path temporary_name(const std::filesystem::path& path, int atte
   return name.replace_filename("." + path.stem().string() + "." + number + ".part" + path.extension().string());
 }
 
-// Removes the temporary file unless it was renamed, and closes the descriptor in any case.
+// Bytes on their way to a file. Where the file system can hold a file without a name, they have none until they are all
+// there, and a process that is killed leaves nothing behind; elsewhere they stand under a temporary name.
 class TemporaryFile {
  public:
-  // The first name that nobody has: not another thread's, another process's, or one of the same number on another
-  // machine that shares the folder.
   explicit TemporaryFile(const std::string& final_path) : final_path_(final_path) {
-    for (int attempt = 0; descriptor_ < 0; ++attempt) {
-      temporary_ = temporary_name(final_path, attempt);
-      descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && (errno != EEXIST || attempt == kMaxAttempts)) {
-        fail(final_path_, "cannot create the file", errno);
-      }
+    const std::string folder = std::filesystem::path(final_path).parent_path().string();
+    if (::access("/proc/self/fd", X_OK) == 0) {
+      descriptor_ = ::open(folder.empty() ? "." : folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+    }
+    if (descriptor_ < 0) {
+      take_name([&](const char* name) {
+        descriptor_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        return descriptor_ >= 0;
+      });
     }
   }
+  // Removes what is not in its place.
   ~TemporaryFile() {
     if (descriptor_ >= 0) {
       ::close(descriptor_);
     }
-    if (!renamed_) {
+    if (!temporary_.empty()) {
       ::unlink(temporary_.c_str());
     }
   }
@@ -67,7 +69,20 @@ class TemporaryFile {
     }
   }
 
-  void rename() {
+  void put_in_place() {
+    if (temporary_.empty()) {
+      const std::string unnamed = "/proc/self/fd/" + std::to_string(descriptor_);
+      const auto link_to = [&](const char* name) {
+        return ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+      };
+      if (link_to(final_path_.c_str())) {
+        return;
+      }
+      if (errno != EEXIST) {
+        fail(final_path_, "cannot put the finished file in place", errno);
+      }
+      take_name(link_to);  // there is no link that replaces a file, but a rename does
+    }
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) {  // network file systems report a full disk here
@@ -76,14 +91,27 @@ class TemporaryFile {
     if (::rename(temporary_.c_str(), final_path_.c_str()) != 0) {
       fail(final_path_, "cannot put the finished file in place", errno);
     }
-    renamed_ = true;
+    temporary_.clear();
   }
 
  private:
+  // The first name that nobody has: not another thread's, another process's, or one of the same number on another
+  // machine that shares the folder.
+  template <class Make>
+  void take_name(const Make& make) {
+    for (int attempt = 0; temporary_.empty(); ++attempt) {
+      const std::string name = temporary_name(final_path_, attempt).string();
+      if (make(name.c_str())) {
+        temporary_ = name;
+      } else if (errno != EEXIST || attempt == kMaxAttempts) {
+        fail(final_path_, "cannot create the file", errno);
+      }
+    }
+  }
+
   std::string final_path_;
-  std::filesystem::path temporary_;
+  std::string temporary_;  // empty: there is nothing under another name
   int descriptor_ = -1;
-  bool renamed_ = false;
 };
 
 }  // namespace
@@ -91,11 +119,7 @@ class TemporaryFile {
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes) {
   TemporaryFile file(path);
   file.write(bytes);
-  file.rename();
-}
-
-void write_text_atomically(const std::string& path, const std::string& text) {
-  write_bytes_atomically(path, std::as_bytes(std::span(text)));
+  file.put_in_place();
 }
 
 }  // namespace gazetrace
