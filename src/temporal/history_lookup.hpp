@@ -18,6 +18,14 @@ struct PastSums {
   bool resampled = false;  // from between pixels
 };
 
+inline constexpr double kRounding = 1e-3;  // of a flat surface without noise: floats, and what bilinear weights blur
+
+inline void scale_worth(PastSums& past, double factor) {
+  past.radiance = past.radiance * factor;
+  past.count *= factor;
+  past.variance *= factor * factor;
+}
+
 // `pixel` of the current frame.
 PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_view, const SurfaceMotion& motion,
                  std::size_t pixel);

@@ -8,83 +8,12 @@
 #include <limits>
 
 #include "gazetrace/temporal.hpp"
+#include "support/reproject_wall.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr int kWidth = 16, kHeight = 12;
-
-// A wall at 2 m that fills the view, seen where it was `shift` pixels to the right before.
-SurfaceMotion wall(const Vec2d& shift = {0, 0}) {
-  SurfaceMotion motion;
-  motion.depth_m = ImageGray(kWidth, kHeight, 2.0F);
-  motion.normal = ImageRgb(kWidth, kHeight, {0, 0, 1});
-  motion.object = Image<std::uint32_t>(kWidth, kHeight, 1);
-  motion.earlier_px = Image<Vec2d>(kWidth, kHeight);
-  motion.earlier_depth_m = motion.depth_m;
-  motion.earlier_normal = motion.normal;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      motion.earlier_px(x, y) = {x + 0.5 + shift.x, y + 0.5 + shift.y};
-    }
-  }
-  return motion;
-}
-
-Frame frame_of(const std::function<double(int x, int y)>& radiance, float count, float variance = 0) {
-  Frame frame;
-  frame.radiance = ImageRgb(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const auto value = static_cast<float>(radiance(x, y));
-      frame.radiance(x, y) = {value, value / 2, value / 4};
-    }
-  }
-  frame.sample_count = ImageGray(kWidth, kHeight, count);
-  frame.variance = ImageGray(kWidth, kHeight, variance);
-  return frame;
-}
-Frame even_frame(double radiance, float count, float variance = 0) {
-  return frame_of([=](int, int) { return radiance; }, count, variance);
-}
-
-// One site a pixel, or a block.
-SamplingMap map_of(int block_px = 1) {
-  FoveationSettings settings;
-  settings.falloff = "regions";
-  settings.region_blocks_px = {block_px, block_px};
-  settings.region_angles_deg = {1e-3, 2e-3};
-  const PlanarView view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
-  // A gaze far aside: all is periphery.
-  return block_px == 1 ? make_sampling_map(FoveationSettings{}, view, {})
-                       : make_sampling_map(settings, view, view.direction(-1e4, -1e4));
-}
-
-AccumulateSettings all_kept() {
-  AccumulateSettings settings;
-  settings.mode = AccumulateMode::reproject;
-  settings.frames = 0;
-  settings.clip_sigmas = 0;
-  return settings;
-}
-
-FrameRequest request_of(std::int32_t frame) {
-  FrameRequest request;
-  request.frame = frame;
-  request.t_video_ns = std::int64_t{frame} * 41'666'666;
-  request.width_px = kWidth;
-  request.height_px = kHeight;
-  return request;
-}
-
-Frame pass(Frame frame, const SurfaceMotion& motion, const AccumulateSettings& settings, TemporalHistory& history,
-           std::int32_t number = 1, int block_px = 1) {
-  return reproject(std::move(frame), map_of(block_px), motion, request_of(number), settings, history, 2);
-}
-
-double value(const Frame& frame, int x, int y) {
-  return static_cast<double>(frame.radiance(x, y).x);
-}
+using namespace test;
 
 TEST(Reproject, TheFirstFramePassesThroughToTheBit) {
   TemporalHistory history;
@@ -279,6 +208,18 @@ TEST(Reproject, TextureThatGlidesIsNotBlurredBeyondTheNoise) {
   // What has no texture loses noise all the same.
   const Errors flat = gliding_errors([](double, double) { return 1.0; }, 0.1, {0.37, -0.21});
   EXPECT_LT(flat.accumulated, 0.3 * flat.alone);
+}
+
+TEST(Reproject, AHistoryThatGetsBetterIsNotDropped) {
+  // 0, then 1 and 1: off by 1, then by half of it, under a noise far above. What two frames differ by is noise as well.
+  AccumulateSettings settings = all_kept();
+  TemporalHistory history;
+  Frame out;
+  for (int k = 1; k <= 3; ++k) {
+    out = pass(even_frame(k == 1 ? 0 : 1, 8, 1), wall({0.5, 0.25}), settings, history, k);
+  }
+  EXPECT_GT(out.sample_count(7, 5), 8.2F);
+  EXPECT_LT(out.sample_count(7, 5), 24.0F);
 }
 
 TEST(Reproject, ALightThatGoesOutIsForgottenWithinThreeFrames) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "temporal/residuals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace gazetrace {
+namespace {
+
+constexpr int kReach = 2;  // the neighborhood is 5x5 pixels
+// Of residuals: by how many standard deviations of what noise does by chance they must tell of a bias, from frame to
+// frame and against the stated variance, and how much more a bias counts than its mean over the neighborhood, since
+// pixels differ. Measured: fewer deviations take away more of what is gathered (with none three quarters), more of them
+// and less caution blur texture.
+constexpr double kLasting = 1.5;
+constexpr double kBeyondStated = 2.5;
+constexpr double kCaution = 4;
+
+}  // namespace
+
+double Residuals::share_kept(const SurfaceMotion& motion, double count, double past_count, int x, int y) const {
+  const std::uint32_t object = motion.object(x, y);
+  double squares = 0;
+  double squares_before = 0;
+  double products = 0;
+  double variance = 0;
+  int taps = 0;
+  for (int j = std::max(y - kReach, 0); j <= std::min(y + kReach, now.height_px - 1); ++j) {
+    for (int i = std::max(x - kReach, 0); i <= std::min(x + kReach, now.width_px - 1); ++i) {
+      if ((i != x || j != y) && motion.object(i, j) == object) {
+        const auto a = static_cast<double>(now(i, j));
+        const auto b = static_cast<double>(before(i, j));
+        squares += a * a;
+        squares_before += b * b;
+        products += a * b;
+        variance += static_cast<double>(noise(i, j));
+        ++taps;
+      }
+    }
+  }
+  if (taps == 0) {
+    return 1;
+  }
+  // By chance, for normal noise: a sum of products has the first of these deviations. A sum of squares has the second
+  // by its mean, and so has, the fewer the samples the more, the variance that they state.
+  const double of_products = std::sqrt(squares * squares_before / taps);
+  const double of_squares = std::sqrt(2.0 / taps * count / (count - 1));
+  const double stated = variance * (1 + count / past_count);
+  const double bias = std::min(
+      std::max(products - kLasting * of_products, squares - stated * (1 + kBeyondStated * of_squares)), squares);
+  if (!(bias > 0)) {
+    return 1;
+  }
+  const double apart = 0.5 * (squares + squares_before) - products;  // half of what the two differ by, squared
+  const double ratio = bias / std::max(std::min(variance, apart), 1e-12 * bias);
+  return 1 / (1 + kCaution * past_count / count * ratio * (1 + ratio));
+}
+
+}  // namespace gazetrace
