@@ -89,6 +89,10 @@ struct FoveationSettings {
   double saccade_density = 1;     // while the eye is in flight
   // 0: off; 1: where a first look at the frame shows no contrast, a quarter of the density is left.
   double contrast_strength = 0;
+
+  // Pixels with at least so many samples of their own keep their mean in every filter; 0: none does. Empty: those of a
+  // fovea at its full rate, where that is 8 or more, and all from 16 on; none in uniform frames.
+  std::optional<std::uint64_t> pass_through_samples;
 };
 
 // What a map depends on beside settings, view and gaze.
@@ -167,8 +171,8 @@ struct SamplingMap {
   // estimate divides a site's sum by it. Empty where every count is certain.
   std::vector<float> expected_samples;
   double full_rate_spp = 0;  // samples a pixel where the density is 1; 0 for layouts
-  // Sites of one pixel with at least so many samples keep their own mean in every filter; others may be smoothed. Fewer
-  // for a fovea whose full rate is below 16, down to 8: a map about a gaze leaves its fovea as it was traced.
+  // Sites of one pixel with at least so many samples keep their own mean in every filter; others may be smoothed. See
+  // FoveationSettings::pass_through_samples.
   std::uint32_t enough_samples = 16;
   [[nodiscard]] double expected(std::size_t site) const {
     return expected_samples.empty() ? sites[site].samples : static_cast<double>(expected_samples[site]);

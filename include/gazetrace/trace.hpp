@@ -133,10 +133,11 @@ void add_sums(const SampleSums& from, SampleSums& to);
 // sums of another map.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
-// Whether a guided filter changes a site. Sites of several pixels are, and single pixels with fewer samples than the
-// map's enough_samples: uniform frames of few samples, and what a small budget leaves even where one looks. All others
-// keep their own mean, bit by bit.
-bool needs_filtering(const SamplingMap& map, const Site& site);
+// Whether a guided filter changes a site. Sites of several pixels are, and single pixels that expect fewer samples than
+// the map's enough_samples: uniform frames, and what a small budget leaves even where one looks. Not by whole counts:
+// of pixels that are to have 15.5 samples half have 16, others in every frame. All others keep their own mean, bit by
+// bit.
+bool needs_filtering(const SamplingMap& map, std::size_t site);
 
 // When the shutter opens and closes, video time; equal: an instant.
 struct ShutterTimes {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -47,6 +48,9 @@ std::optional<double> budget_of(const FoveationSettings& settings, const PlanarV
   return std::nullopt;
 }
 
+// A uniform frame has no fovea: who asks for a filter there wants all of it smoothed, however many samples there are.
+constexpr std::uint32_t kNoneIsEnough = std::numeric_limits<std::uint32_t>::max();
+
 // For a map about a gaze. Below 8 samples a pixel smoothing is worth more than a fovea as it was traced.
 std::uint32_t enough_samples(double full_rate_spp) {
   constexpr double kLeast = 8;
@@ -67,9 +71,7 @@ SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, co
     scale = rate_of_budget(map, weights, *budget, kMaxSpp);
     set_whole_counts(map, weights, scale, kMaxSpp, context.seed, context.frame);
   }
-  if (about_gaze) {
-    map.enough_samples = enough_samples(fovea_spp * scale);
-  }
+  map.enough_samples = about_gaze ? enough_samples(fovea_spp * scale) : kNoneIsEnough;
   return map;
 }
 
@@ -92,6 +94,23 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
   return std::move(blocks.map);
 }
 
+SamplingMap map_of_falloff(const FoveationSettings& settings, const PlanarView& view,
+                           const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
+  const std::optional<double> budget = budget_of(settings, view);
+  if (!gaze_direction) {
+    return map_of_layout(uniform_layout(settings.uniform_spp, view.width_px, view.height_px), budget, context);
+  }
+  check_gaze(*gaze_direction);
+  Falloff falloff = make_falloff(settings, view, *gaze_direction);
+  if (auto* model = std::get_if<DensityModel>(&falloff)) {
+    return map_of_density(std::move(*model), settings, view, *gaze_direction, budget, context);
+  }
+  if (context.uncertainty_deg > 0) {
+    falloff = make_falloff(widened(settings, context.uncertainty_deg), view, *gaze_direction);
+  }
+  return map_of_layout(std::get<Layout>(std::move(falloff)), budget, context);
+}
+
 }  // namespace
 
 std::uint64_t SamplingMap::samples() const {
@@ -106,19 +125,14 @@ SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarVie
                               const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
   check_foveation(settings);
   check_view(view);
-  const std::optional<double> budget = budget_of(settings, view);
-  if (!gaze_direction) {
-    return map_of_layout(uniform_layout(settings.uniform_spp, view.width_px, view.height_px), budget, context);
+  SamplingMap map = map_of_falloff(settings, view, gaze_direction, context);
+  if (settings.pass_through_samples) {
+    map.enough_samples =
+        *settings.pass_through_samples == 0
+            ? kNoneIsEnough
+            : static_cast<std::uint32_t>(std::min<std::uint64_t>(*settings.pass_through_samples, kNoneIsEnough));
   }
-  check_gaze(*gaze_direction);
-  Falloff falloff = make_falloff(settings, view, *gaze_direction);
-  if (auto* model = std::get_if<DensityModel>(&falloff)) {
-    return map_of_density(std::move(*model), settings, view, *gaze_direction, budget, context);
-  }
-  if (context.uncertainty_deg > 0) {
-    falloff = make_falloff(widened(settings, context.uncertainty_deg), view, *gaze_direction);
-  }
-  return map_of_layout(std::get<Layout>(std::move(falloff)), budget, context);
+  return map;
 }
 
 std::optional<ImageGray> falloff_density(const FoveationSettings& settings, const PlanarView& view,

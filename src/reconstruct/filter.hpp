@@ -7,8 +7,6 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "reconstruct/site_values.hpp"
-#include "reconstruct/surface_cells.hpp"
-#include "reconstruct/surface_smoothing.hpp"
 
 namespace gazetrace {
 
@@ -24,11 +22,6 @@ struct FilterInput {
 #define FILTER(name, needs_guides, description) Frame filter_##name(const FilterInput& input);
 #include "reconstruct/filters.def"
 #undef FILTER
-
-// What "guided" does, with its own smoothing (smooth_surfaces) or another: light on surfaces, taken up by every pixel.
-using SmoothSurfaces = void (*)(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings,
-                                int threads);
-Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth);
 
 // A frame of the map's size; guide images only where `guides` is set.
 Frame make_frame(const SamplingMap& map, bool guides);

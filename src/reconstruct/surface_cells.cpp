@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
@@ -28,7 +29,72 @@ SurfaceCell cell_of(const SurfaceSums& sums, float block_px, float pixel_m, bool
   return cell;
 }
 
+std::uint32_t code_of_site(const SurfaceCells& cells, std::size_t site) {
+  return cells.first[site] << 2U | (cells.first[site + 1] - cells.first[site]);
+}
+
+std::vector<BlockExtent> extents_of_blocks(const SamplingMap& map) {
+  constexpr int kFar = std::numeric_limits<std::uint16_t>::max() + 1;
+  std::vector<BlockExtent> extents(map.regions.size(), {kFar, kFar, 0, 0});
+  for (const Site& site : map.sites) {
+    BlockExtent& b = extents[site.region];
+    b.x = std::min<int>(b.x, site.block_x);
+    b.y = std::min<int>(b.y, site.block_y);
+    b.x_end = std::max(b.x_end, site.block_x + 1);
+    b.y_end = std::max(b.y_end, site.block_y + 1);
+  }
+  for (BlockExtent& b : extents) {
+    b = b.x < b.x_end ? b : BlockExtent{};
+  }
+  return extents;
+}
+
+void fill_from_middles(const SurfaceCells& cells, const SamplingMap& map, int block_px, int threads,
+                       BlockCells& blocks) {
+  const BlockExtent& own = blocks.own();
+  if (own.x == own.x_end) {
+    return;
+  }
+  const auto in_frame = [block_px](int end, int frame_px) {
+    return std::min(end + BlockCells::kReach, (frame_px + block_px - 1) / block_px);
+  };
+  const int x_end = in_frame(own.x_end, map.width_px);
+  const int y_end = in_frame(own.y_end, map.height_px);
+  const int y_begin = std::max(own.y - BlockCells::kReach, 0);
+  parallel_for(static_cast<std::size_t>(y_end - y_begin), threads, [&](std::size_t row) {
+    const int by = y_begin + static_cast<int>(row);
+    const int py = std::min(by * block_px + block_px / 2, map.height_px - 1);
+    for (int bx = std::max(own.x - BlockCells::kReach, 0); bx < x_end; ++bx) {
+      const int px = std::min(bx * block_px + block_px / 2, map.width_px - 1);
+      blocks.at(bx, by) = code_of_site(cells, cells.site_of_pixel(px, py));
+    }
+  });
+}
+
+std::vector<BlockCells> cells_of_blocks(const SurfaceCells& cells, const SamplingMap& map, int threads) {
+  std::vector<BlockCells> blocks;
+  for (const BlockExtent& own : extents_of_blocks(map)) {
+    const int block_px = map.regions[blocks.size()].block_px;
+    fill_from_middles(cells, map, block_px, threads, blocks.emplace_back(own));
+  }
+  parallel_for(map.tiles.size(), threads, [&](std::size_t t) {
+    const MapTile& tile = map.tiles[t];
+    for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
+      const Site& site = map.sites[i];
+      blocks[site.region].at(site.block_x, site.block_y) = code_of_site(cells, i);
+    }
+  });
+  return blocks;
+}
+
 }  // namespace
+
+BlockCells::BlockCells(const BlockExtent& own) : own_(own) {
+  if (own.x < own.x_end) {
+    width_ = own.x_end - own.x + 2 * kReach;
+    codes_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(own.y_end - own.y + 2 * kReach), 0);
+  }
+}
 
 SurfaceCells make_surface_cells(const SparseFrame& sparse, const SamplingMap& map, const GuideCamera& camera,
                                 int threads) {
@@ -47,6 +113,7 @@ SurfaceCells make_surface_cells(const SparseFrame& sparse, const SamplingMap& ma
       }
     }
   });
+  out.blocks = cells_of_blocks(out, map, threads);
   return out;
 }
 

@@ -26,11 +26,53 @@ struct SurfaceCell {
   SurfaceKind kind = SurfaceKind::diffuse;
 };
 
+// On a region's grid: [x, x_end) x [y, y_end).
+struct BlockExtent {
+  int x = 0, y = 0, x_end = 0, y_end = 0;
+};
+
+// Which cells stand for each block of a region's grid: those of the region's own site in it, also where borders or the
+// frame's edge cut the block; where the region has no pixel, those of the site in the block's middle.
+class BlockCells {
+ public:
+  static constexpr int kReach = 16;  // blocks around the region's own that may be asked for
+
+  // None yet. `own`: what holds all blocks of the region; empty for a region without pixels.
+  explicit BlockCells(const BlockExtent& own);
+
+  [[nodiscard]] const BlockExtent& own() const { return own_; }
+  // The first of the cells, shifted left by two bits, and their number; 0 where none are.
+  [[nodiscard]] std::uint32_t& at(int bx, int by) { return codes_[index(bx, by)]; }
+  [[nodiscard]] std::uint32_t at(int bx, int by) const { return codes_[index(bx, by)]; }
+
+ private:
+  static_assert(kMostSurfaces < 4);
+  [[nodiscard]] std::size_t index(int bx, int by) const {
+    return static_cast<std::size_t>(by - own_.y + kReach) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(bx - own_.x + kReach);
+  }
+
+  BlockExtent own_;
+  int width_ = 0;
+  std::vector<std::uint32_t> codes_;
+};
+
 struct SurfaceCells {
   std::vector<SurfaceCell> cells;
   std::vector<std::uint32_t> first;  // as SparseFrame::first_surface
   Image<std::uint32_t> site_of_pixel;
+  std::vector<BlockCells> blocks;  // of each region
 };
+
+// visit(cell) for the cells that stand for block (bx, by) of a region's grid.
+template <class Visit>
+void for_each_cell_of_block(const SurfaceCells& lattice, std::size_t region, int bx, int by, const Visit& visit) {
+  const std::uint32_t code = lattice.blocks[region].at(bx, by);
+  const std::uint32_t end = (code >> 2U) + (code & 3U);
+  for (std::uint32_t k = code >> 2U; k < end; ++k) {
+    visit(lattice.cells[k]);
+  }
+}
 
 SurfaceCells make_surface_cells(const SparseFrame& sparse, const SamplingMap& map, const GuideCamera& camera,
                                 int threads);

@@ -10,7 +10,7 @@
 namespace gazetrace {
 namespace {
 
-// As surface_likeness, on lanes; without branches, so that it becomes vectors.
+// Without branches, so that it becomes vectors.
 template <std::size_t kWidth>
 [[gnu::always_inline]] inline void add_to_lanes(const SurfaceCell& cell, const GatherLane& tent,
                                                 const SurfaceLanes& pixels, const SmoothingSettings& settings,
@@ -22,12 +22,9 @@ template <std::size_t kWidth>
   for (std::size_t i = 0; i < kWidth; ++i) {
     const Vec3f normal{pixels.normal_x[i], pixels.normal_y[i], pixels.normal_z[i]};
     const Vec3f way{p.x - pixels.place_x[i], p.y - pixels.place_y[i], p.z - pixels.place_z[i]};
-    const float facing = facing_power(dot(normal, n));
-    const float off = std::max(std::fabs(dot(normal, way)), std::fabs(dot(n, way)));
-    const float like = facing * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack));
-    const bool counts = (static_cast<int>(like >= kLeastLikeness) & static_cast<int>(pixels.kind[i] == kind)) != 0;
+    const float like = likeness(normal, n, way, slack, settings);
     const float nearness = tent[i] * cell.samples;
-    const float w = counts ? nearness * like : 0.0F;
+    const float w = pixels.kind[i] == kind ? nearness * like : 0.0F;
     sums.all[i] += nearness;
     sums.weight[i] += w;
     sums.variance[i] += w * w * cell.variance;

@@ -45,53 +45,6 @@ struct alignas(32) Orientation {
   SurfaceKind kind = SurfaceKind::diffuse;
 };
 
-// The cells at the middle of each block of a region and around it.
-class BlockCells {
- public:
-  BlockCells(const SurfaceCells& lattice, const SamplingMap& map, std::size_t region, int reach)
-      : x_(65536), y_(65536) {
-    int x_end = 0;
-    int y_end = 0;
-    for (const Site& site : map.sites) {
-      if (site.region == region) {
-        x_ = std::min<int>(x_, site.block_x);
-        y_ = std::min<int>(y_, site.block_y);
-        x_end = std::max(x_end, site.block_x + 1);
-        y_end = std::max(y_end, site.block_y + 1);
-      }
-    }
-    x_ -= reach;
-    y_ -= reach;
-    width_ = std::max(x_end + reach - x_, 0);
-    const int height = std::max(y_end + reach - y_, 0);
-    codes_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height), 0);
-    const int block = map.regions[region].block_px;
-    for (int by = std::max(y_, 0); by < y_ + height; ++by) {
-      const int py = by * block + block / 2;
-      for (int bx = std::max(x_, 0); bx < x_ + width_; ++bx) {
-        const int px = bx * block + block / 2;
-        if (px >= map.width_px || py >= map.height_px) {
-          break;
-        }
-        const std::uint32_t site = lattice.site_of_pixel(px, py);
-        codes_[index(bx, by)] = lattice.first[site] << 2U | (lattice.first[site + 1] - lattice.first[site]);
-      }
-    }
-  }
-
-  // The first of them, shifted left by two bits, and their number.
-  [[nodiscard]] std::uint32_t at(int bx, int by) const { return codes_[index(bx, by)]; }
-
- private:
-  static_assert(kMostSurfaces < 4);
-  [[nodiscard]] std::size_t index(int bx, int by) const {
-    return static_cast<std::size_t>(by - y_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(bx - x_);
-  }
-
-  int x_, y_, width_ = 0;
-  std::vector<std::uint32_t> codes_;
-};
-
 // Surfaces that a tie may lead to, side by side; lanes past `count` hold what was there before.
 struct Candidates {
   static constexpr std::size_t kLanes = 16;
@@ -122,7 +75,7 @@ struct Candidates {
   }
 };
 
-// Multiplies `like` by surface_likeness, on lanes.
+// Multiplies `like` by likeness(), on lanes.
 GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& settings, Candidates& near) {
   const Vec3f n = own.normal;
   const Vec3f p = own.place_m;
@@ -131,11 +84,7 @@ GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& s
     for (std::size_t i = first; i < first + Candidates::kLanes; ++i) {
       const Vec3f normal{near.normal_x[i], near.normal_y[i], near.normal_z[i]};
       const Vec3f way{near.place_x[i] - p.x, near.place_y[i] - p.y, near.place_z[i] - p.z};
-      const float off = std::max(std::fabs(dot(n, way)), std::fabs(dot(normal, way)));
-      const float slack = 0.5F * std::min(own.footprint_m, near.footprint[i]);
-      const float like =
-          facing_power(dot(n, normal)) * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack));
-      near.like[i] = like >= kLeastLikeness ? near.like[i] * like : 0.0F;
+      near.like[i] *= likeness(n, normal, way, 0.5F * std::min(own.footprint_m, near.footprint[i]), settings);
     }
   }
 }
@@ -149,6 +98,8 @@ int levels_of(const MapRegion& region, const SmoothingSettings& settings) {
   }
   return levels;
 }
+
+static_assert(1 << (SmoothingSettings{}.levels - 1) <= BlockCells::kReach);
 
 class Smoother {
  public:
@@ -168,9 +119,6 @@ class Smoother {
       lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance};
       samples_[i] = cell.samples;
       orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
-    }
-    for (std::size_t r = 0; r < map.regions.size(); ++r) {
-      blocks_.emplace_back(cells, map, r, 1 << (settings.levels - 1));
     }
   }
 
@@ -280,15 +228,12 @@ class Smoother {
 
   void find_ties_of(std::size_t site, std::size_t i, int step, Candidates& near, std::vector<Tie>& out) const {
     const Site& place = map_.sites[site];
-    const BlockCells& blocks = blocks_[place.region];
+    const BlockCells& blocks = lattice_.blocks[place.region];
     const Orientation& own = orientations_[i];
     near.count = 0;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
-        // A block may be cut by a border between regions: its own site is this one, whatever pixel is in the middle.
-        const bool here = dx == 0 && dy == 0;
-        const std::uint32_t code = here ? lattice_.first[site] << 2U | (lattice_.first[site + 1] - lattice_.first[site])
-                                        : blocks.at(place.block_x + dx * step, place.block_y + dy * step);
+        const std::uint32_t code = blocks.at(place.block_x + dx * step, place.block_y + dy * step);
         const float kernel =
             kBinomial[static_cast<std::size_t>(std::abs(dx))] * kBinomial[static_cast<std::size_t>(std::abs(dy))];
         const std::uint32_t end = (code >> 2U) + (code & 3U);
@@ -332,7 +277,6 @@ class Smoother {
   std::vector<CellLight> lights_, next_;
   std::vector<float> samples_, total_;  // of each cell
   std::vector<Orientation> orientations_;
-  std::vector<BlockCells> blocks_;         // of each region
   std::vector<std::vector<float>> flows_;  // of each tile's ties
 };
 

@@ -37,17 +37,14 @@ inline float facing_power(float cosine) {
   return c8 * c8;
 }
 
-// How alike two places are: 1 on one plane with one normal, 0 across an edge. `slack_m`: as much apart is nothing.
-inline float surface_likeness(const Vec3f& normal_a, const Vec3f& place_a, const Vec3f& normal_b, const Vec3f& place_b,
-                              float slack_m, const SmoothingSettings& settings) {
-  const float facing = facing_power(dot(normal_a, normal_b));
-  if (facing < kLeastLikeness) {
-    return 0;
-  }
-  const Vec3f way = place_b - place_a;
+// How alike two places are: 1 on one plane with one normal, 0 across an edge. `way`: from one to the other; `slack_m`:
+// as much apart is nothing. Without branches, so that loops over lanes become vectors.
+[[gnu::always_inline]] inline float likeness(const Vec3f& normal_a, const Vec3f& normal_b, const Vec3f& way,
+                                             float slack_m, const SmoothingSettings& settings) {
   const float off = std::max(std::fabs(dot(normal_a, way)), std::fabs(dot(normal_b, way)));
-  const float like = facing * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack_m));
-  return like < kLeastLikeness ? 0 : like;
+  const float like =
+      facing_power(dot(normal_a, normal_b)) * falling(off / (settings.plane * std::sqrt(dot(way, way)) + slack_m));
+  return like >= kLeastLikeness ? like : 0.0F;
 }
 
 // No light is lost: the sums over all cells of samples times reflected, and times albedo, stay what they are, where all

@@ -8,7 +8,6 @@
 #include "core/luminance.hpp"
 
 namespace gazetrace {
-namespace {}  // namespace
 
 SurfaceSorter::Surface& SurfaceSorter::surface_of(SurfaceKind kind, const Vec3f& normal, const Vec3f& place) {
   Surface* nearest = nullptr;
@@ -68,8 +67,8 @@ void SurfaceSorter::finish_site(std::vector<SurfaceSums>& out) {
   used_ = 0;
 }
 
-bool needs_filtering(const SamplingMap& map, const Site& site) {
-  return map.regions[site.region].block_px > 1 || site.samples < map.enough_samples;
+bool needs_filtering(const SamplingMap& map, std::size_t site) {
+  return map.regions[map.sites[site].region].block_px > 1 || map.expected(site) < map.enough_samples;
 }
 
 }  // namespace gazetrace

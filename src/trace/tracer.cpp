@@ -226,7 +226,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         continue;
       }
       add_light({r, g, b}, sum.light);
-      if (surfaces && needs_filtering(map, map.sites[current])) {
+      if (surfaces && needs_filtering(map, current)) {
         sorter.add(work.surfaces, i, {r, g, b});
       }
     }

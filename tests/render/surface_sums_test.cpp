@@ -91,6 +91,30 @@ TEST(SurfaceSums, ShiningAndReflectedLightAreTheWholeSum) {
   EXPECT_GT(several, 20U);  // edges of box, lamp and floor
 }
 
+// The tracer and the filters must agree on which single pixels are smoothed: by expectations, which are certain.
+TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
+  const Scene scene = lit_scene();
+  const PathTracer tracer(scene, threads(2));
+  FoveationSettings foveation;
+  foveation.falloff = "linear";
+  foveation.uniform_spp = 20;
+  const SamplingMap map =
+      make_sampling_map(foveation, view_of_perspective(50 * kRadPerDeg, kWidth, kHeight), Vec3d{0, 0, -1});
+  TraceSettings settings = with_surfaces();
+  settings.guides = true;
+  settings.max_bounces = 1;
+  const SparseFrame sparse = tracer.trace(kCamera, 0, map, settings);
+  int rounded_up = 0;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const bool has = sparse.first_surface[i] != sparse.first_surface[i + 1];
+    if (map.regions[map.sites[i].region].block_px == 1 && sparse.guides[i].hits > 0) {
+      ASSERT_EQ(has, map.expected(i) < 16) << i;
+      rounded_up += map.expected(i) < 16 && map.sites[i].samples >= 16 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(rounded_up, 10);
+}
+
 TEST(SurfaceSums, SameBitsForAnyThreadCount) {
   const Scene scene = lit_scene();
   const SamplingMap map = foveated_map();

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "foveation/sites.hpp"
@@ -431,19 +432,26 @@ TEST(SamplingMap, AFoveaAtItsFullRateHasEnoughSamples) {
   };
   FoveationSettings regions;
   EXPECT_EQ(enough(regions, gaze), 16U);
-  EXPECT_EQ(enough(regions, std::nullopt), 16U);
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  EXPECT_EQ(enough(regions, std::nullopt), kNone);
   regions.region_samples = {15, 8, 4};
   EXPECT_EQ(enough(regions, gaze), 15U);
   regions.uniform_spp = 12;
-  EXPECT_EQ(enough(regions, std::nullopt), 16U);  // nowhere more than elsewhere
+  EXPECT_EQ(enough(regions, std::nullopt), kNone);  // nowhere more than elsewhere
   regions.region_samples = {7, 4, 2};
   EXPECT_EQ(enough(regions, gaze), 16U);
   for (const FalloffInfo& info : falloffs()) {
     if (info.name != "regions") {
       FoveationSettings settings = model(info.name);
       settings.uniform_spp = 9;
-      EXPECT_EQ(enough(settings, gaze), info.name == "uniform" ? 16U : 9U) << info.name;
+      EXPECT_EQ(enough(settings, gaze), info.name == "uniform" ? kNone : 9U) << info.name;
     }
+  }
+  using Counts = std::pair<std::uint32_t, std::uint32_t>;
+  for (const auto& [asked, taken] : {Counts{0, kNone}, Counts{1, 1}, Counts{64, 64}}) {
+    regions.pass_through_samples = asked;
+    EXPECT_EQ(enough(regions, gaze), taken);
+    EXPECT_EQ(enough(regions, std::nullopt), taken);
   }
   // On a budget the full rate is what the budget makes of it.
   for (const std::string name : {"regions", "acuity"}) {

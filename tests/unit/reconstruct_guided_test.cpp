@@ -14,26 +14,13 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "reconstruct/surface_smoothing.hpp"
+#include "support/guides_wall.hpp"
 
 namespace gazetrace {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kSize = 64;
-
-// A wall 10 m ahead, seen by parallel rays, one millimetre a pixel.
-Guides wall() {
-  Guides guides;
-  guides.camera = {false, {0, 0, -1}, {0.001F, 0, 0}, {0, 0.001F, 0}};
-  guides.albedo = ImageRgb(kSize, kSize, {0.5F, 0.5F, 0.5F});
-  guides.normal = ImageRgb(kSize, kSize, {0, 0, 1});
-  guides.depth_m = ImageGray(kSize, kSize, 10);
-  guides.emission = ImageRgb(kSize, kSize);
-  guides.object = Image<std::uint32_t>(kSize, kSize, 1);
-  guides.material = Image<std::uint32_t>(kSize, kSize, 1);
-  guides.kind = Image<SurfaceKind>(kSize, kSize, SurfaceKind::diffuse);
-  return guides;
-}
+constexpr int kSize = kGuidesWallPx;
 
 // Blocks of 4 with 8 samples; with `fovea`, single pixels in the middle.
 SamplingMap block_map(bool fovea = false, std::uint32_t foveal_samples = 32) {

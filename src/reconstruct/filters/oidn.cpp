@@ -11,9 +11,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "core/parallel.hpp"
 #include "reconstruct/open_image_denoise.hpp"
+#include "reconstruct/surface_frame.hpp"
 
 namespace gazetrace {
 namespace {
@@ -94,7 +96,14 @@ struct BlockPicture {
 void denoise_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads) {
   const SurfaceCells traced = cells;
   smooth_surfaces(cells, map, settings, threads);
+  std::vector<bool> has_light(map.regions.size());
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    has_light[map.sites[i].region] = has_light[map.sites[i].region] || cells.first[i] != cells.first[i + 1];
+  }
   for (std::size_t region = 0; region < map.regions.size(); ++region) {
+    if (!has_light[region]) {
+      continue;
+    }
     const BlockPicture blocks(traced, cells, map, region, map.regions[region].block_px);
     const ImageRgb smooth = open_image_denoise(blocks.light, blocks.white, blocks.normal, threads);
     parallel_for(static_cast<std::size_t>(blocks.height), threads, [&](std::size_t row) {

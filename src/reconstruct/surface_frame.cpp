@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reconstruct/surface_frame.hpp"
+
+#include <cstddef>
+
+#include "core/parallel.hpp"
+#include "foveation/sites.hpp"
+#include "reconstruct/blend_edges.hpp"
+#include "reconstruct/fill_squares.hpp"
+#include "reconstruct/surface_lookup.hpp"
+
+namespace gazetrace {
+
+Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
+  const SamplingMap& map = input.map;
+  const SmoothingSettings settings;
+  SurfaceCells lattice = make_surface_cells(input.sparse, map, input.guides->camera, input.threads);
+  smooth(lattice, map, settings, input.threads);
+
+  // AOVs are those of the linear filter.
+  Frame frame = input.values.has_guides() ? filter_linear(input) : make_frame(map, false);
+  parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
+    const MapTile& tile = map.tiles[t];
+    for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
+      if (!needs_filtering(map, i)) {
+        paint_site(frame, map, input.values, i);
+        continue;
+      }
+      const Site& site = map.sites[i];
+      const float density = static_cast<float>(input.values.count(i)) / static_cast<float>(site.pixels);
+      for_each_pixel(map, site, [&](int x, int y) { frame.sample_count(x, y) = density; });
+    }
+  });
+  const SurfaceLookup lookup(input, lattice, settings);
+  fill_squares(input, lattice, settings, lookup, frame);
+  blend_edges(input, lookup, lattice.site_of_pixel, frame);
+  return frame;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// What "guided" does, with its own smoothing (smooth_surfaces) or another: light on surfaces, taken up by every pixel.
+#pragma once
+
+#include "reconstruct/filter.hpp"
+#include "reconstruct/surface_cells.hpp"
+#include "reconstruct/surface_smoothing.hpp"
+
+namespace gazetrace {
+
+using SmoothSurfaces = void (*)(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings,
+                                int threads);
+Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth);
+
+}  // namespace gazetrace

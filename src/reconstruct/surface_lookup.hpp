@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What falls on the surface that a pixel or a ray sees: light of like surfaces of the blocks near by, one pixel at a
+// time. Pixels that lie between the same blocks are computed together where those suffice: fill_squares.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/luminance.hpp"
+#include "gazetrace/guides.hpp"
+#include "reconstruct/filter.hpp"
+#include "reconstruct/surface_cells.hpp"
+#include "reconstruct/surface_smoothing.hpp"
+
+namespace gazetrace {
+
+struct GatheredLight {
+  Vec3f reflected, albedo;
+  float variance = 0;
+  float weight = 0;
+  float all = 0;  // weight without regard to likeness
+
+  void add(float w, const SurfaceCell& cell) {
+    reflected += w * cell.reflected;
+    albedo += w * cell.albedo;
+    variance += w * w * cell.variance;
+    weight += w;
+  }
+};
+
+// Where less than this share of the nearest samples is on a like surface, farther blocks are asked too.
+inline constexpr float kEnoughLike = 0.02F;
+inline bool enough_alike(float weight, float all) {
+  return weight > kEnoughLike * all && weight > 0;
+}
+
+struct PixelSurface {
+  Vec3f normal, place_m;
+  SurfaceKind kind = SurfaceKind::diffuse;
+};
+
+class SurfaceLookup {
+ public:
+  SurfaceLookup(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings)
+      : map_(input.map), guides_(*input.guides), lattice_(lattice), settings_(settings) {}
+
+  // What falls on a surface that pixel (x, y) sees; nothing (weight 0) where no sample is near.
+  [[nodiscard]] GatheredLight light_at(int x, int y, const PixelSurface& pixel) const;
+  // Where the nearest four blocks have not enough.
+  [[nodiscard]] GatheredLight farther(int x, int y, const PixelSurface& pixel) const;
+
+  [[nodiscard]] PixelSurface surface_of(int x, int y) const;
+  [[nodiscard]] PixelSurface surface_of(const EdgeSurface& seen) const;
+
+ private:
+  void add_block(std::size_t region, int bx, int by, float tent, const PixelSurface& pixel, bool alike,
+                 GatheredLight& light) const;
+  [[nodiscard]] GatheredLight nearest_four(int x, int y, const PixelSurface& pixel) const;
+  [[nodiscard]] GatheredLight square(int x, int y, const PixelSurface& pixel, bool alike) const;
+
+  const SamplingMap& map_;
+  const Guides& guides_;
+  const SurfaceCells& lattice_;
+  const SmoothingSettings& settings_;
+};
+
+// Guides of a miss or an unlit surface say all there is to know.
+inline bool only_shines(SurfaceKind kind) {
+  return kind == SurfaceKind::miss || kind == SurfaceKind::unlit;
+}
+
+struct PixelValue {
+  Vec3f radiance;
+  float variance = 0;
+};
+
+// Of a surface that reflects. `unknown`: says what is there instead where no sample is near.
+template <class Unknown>
+PixelValue shaded(const GatheredLight& light, const Vec3f& albedo, const Vec3f& emission, const Unknown& unknown) {
+  if (!(light.weight > 0)) {
+    const SiteValue value = unknown();
+    return {value.radiance, value.variance};
+  }
+  const float least = kLeastAlbedo * light.weight;
+  const float scale = luminance(albedo) / light.weight;
+  return {emission + Vec3f{albedo.x * light.reflected.x / std::max(light.albedo.x, least),
+                           albedo.y * light.reflected.y / std::max(light.albedo.y, least),
+                           albedo.z * light.reflected.z / std::max(light.albedo.z, least)},
+          scale * scale * light.variance};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guided filter where blocks are cut, by another region or by the frame's edge, and which single pixels it changes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
+
+#include "foveation/sites.hpp"
+#include "gazetrace/reconstruct.hpp"
+#include "reconstruct/surface_smoothing.hpp"
+#include "support/guides_wall.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kSize = kGuidesWallPx;
+
+// A square of single pixels with 32 samples within [begin, kSize - begin), blocks of 8 samples around.
+SamplingMap map_about_the_middle(int begin, int block_px) {
+  Layout layout;
+  layout.regions = {{"fovea", 1, 32, SampleUnit::per_block}, {"periphery", block_px, 8, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kSize, kSize, 1);
+  for (int y = begin; y < kSize - begin; ++y) {
+    for (int x = begin; x < kSize - begin; ++x) {
+      layout.region(x, y) = 0;
+    }
+  }
+  return map_from_layout(std::move(layout));
+}
+
+// All samples of a site at the middle of its pixels, under light_at(x, y) of its first pixel. As the tracer, no
+// surfaces for sites that keep their own mean.
+template <class LightAt>
+SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const LightAt& light_at) {
+  SparseFrame sparse;
+  sparse.width_px = map.width_px;
+  sparse.height_px = map.height_px;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const Site& site = map.sites[i];
+    Vec3f place;
+    float light = -1;
+    for_each_pixel(map, site, [&](int x, int y) {
+      place += guides.camera.place(static_cast<float>(x) + 0.5F - 0.5F * kSize,
+                                   static_cast<float>(y) + 0.5F - 0.5F * kSize, guides.depth_m(x, y));
+      light = light < 0 ? static_cast<float>(light_at(x, y)) : light;
+    });
+    const auto n = static_cast<float>(site.samples);
+    const Vec3f reflected = n * light * Vec3f{0.5F, 0.5F, 0.5F};
+    sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
+    if (map.regions[site.region].block_px > 1 || map.expected(i) < map.enough_samples) {
+      sparse.surfaces.push_back({reflected, n * Vec3f{0.5F, 0.5F, 0.5F}, n * Vec3f{0, 0, 1},
+                                 place * (n / static_cast<float>(site.pixels)), n * light * light, site.samples,
+                                 SurfaceKind::diffuse});
+    }
+    sparse.sum.push_back(reflected);
+    sparse.count.push_back(site.samples);
+    sparse.sum_square_luminance.push_back(0);
+  }
+  sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
+  return sparse;
+}
+
+Frame guided(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides) {
+  return reconstruct(sparse, map, "guided", 1, &guides);
+}
+
+// The same from the left and from the right, from above and from below: blocks are, where a side of the fovea cuts
+// them.
+TEST(ReconstructGuidedBorders, AMirroredFrameIsFilteredToItsMirrorImage) {
+  const Guides guides = wall();
+  for (const int begin : {20, 21}) {
+    const SamplingMap map = map_about_the_middle(begin, 2);
+    const SparseFrame sparse = trace_planted(map, guides, [](int x, int y) {
+      const int bx = std::min(x / 2, kSize / 2 - 1 - x / 2);
+      const int by = std::min(y / 2, kSize / 2 - 1 - y / 2);
+      return 1 + (bx * 7 + by * 13) % 5;
+    });
+    const Frame frame = guided(sparse, map, guides);
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        const float value = frame.radiance(x, y).x;
+        ASSERT_NEAR(value, frame.radiance(kSize - 1 - x, y).x, 1e-4F * value) << begin << ": " << x << ',' << y;
+        ASSERT_NEAR(value, frame.radiance(x, kSize - 1 - y).x, 1e-4F * value) << begin << ": " << x << ',' << y;
+      }
+    }
+  }
+}
+
+// Light falls on nothing but one block, of which the fovea, or the frame's edge, leaves the first column.
+TEST(ReconstructGuidedBorders, WhatIsLeftOfACutBlockCountsAndLosesNoLight) {
+  struct Cut {
+    int begin, block_px, x;
+  };
+  const Guides guides = wall();
+  for (const Cut& cut : {Cut{21, 2, 20}, Cut{21, 4, 20}, Cut{kSize / 2, 3, 63}}) {
+    SCOPED_TRACE(cut.block_px);
+    const SamplingMap map = map_about_the_middle(cut.begin, cut.block_px);
+    const int by = 30 / cut.block_px;
+    const SparseFrame sparse = trace_planted(map, guides, [&](int x, int y) {
+      return x / cut.block_px == cut.x / cut.block_px && y / cut.block_px == by && map.region(x, y) == 1 ? 100 : 0;
+    });
+    SurfaceCells cells = make_surface_cells(sparse, map, guides.camera, 1);
+    const auto light = [&] {
+      double sum = 0;
+      for (const SurfaceCell& cell : cells.cells) {
+        sum += static_cast<double>(cell.samples * cell.reflected.x);
+      }
+      return sum;
+    };
+    const double traced = light();
+    ASSERT_GT(traced, 0);
+    smooth_surfaces(cells, map, {}, 1);
+    EXPECT_NEAR(light() / traced, 1, 1e-5);
+    const Frame frame = guided(sparse, map, guides);
+    float most = 0;
+    for (const Vec3f& c : frame.radiance.pixels) {
+      most = std::max(most, c.x);
+    }
+    EXPECT_GT(frame.radiance(cut.x, by * cut.block_px).x, 0.5F * most);
+  }
+}
+
+// A rate of 15.5 (7.5) samples gives every other pixel 16 (8), which is enough; 16.5 (8.5) gives enough to all.
+TEST(ReconstructGuidedBorders, PixelsOfOneExpectationAreAllSmoothedOrAllKept) {
+  const Guides guides = wall();
+  std::mt19937 random(31);
+  std::exponential_distribution<float> noise(1);
+  for (const std::uint32_t enough : {16U, 8U}) {
+    for (const bool kept : {false, true}) {
+      SamplingMap map = map_about_the_middle(20, 4);
+      map.enough_samples = enough;
+      for (std::size_t i = 0; i < map.sites.size(); ++i) {
+        Site& site = map.sites[i];
+        const std::uint32_t fewest = kept ? enough : enough - 1;
+        site.samples = site.region == 0 ? fewest + static_cast<std::uint32_t>(random() % 2) : site.samples;
+        map.expected_samples.push_back(site.region == 0 ? static_cast<float>(fewest) + 0.5F
+                                                        : static_cast<float>(site.samples));
+      }
+      const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
+      const Frame none = reconstruct(sparse, map, "none", 1);
+      const Frame frame = guided(sparse, map, guides);
+      int same = 0;
+      for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+        same += map.region.pixels[i] == 0 && frame.radiance.pixels[i] == none.radiance.pixels[i] ? 1 : 0;
+      }
+      EXPECT_EQ(same, kept ? 24 * 24 : 0) << enough;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
