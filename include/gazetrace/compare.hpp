@@ -55,6 +55,13 @@ struct ComparisonSettings {
   std::optional<PlanarView> view;
   bool want_maps = false;
 };
+// Error(usage) with the option of `compare` whose value makes no scores: peak (above 0), contrast (above 1), ambient
+// light (0 or more), reflectivity (0..1), relmse's epsilon (above 0), none of them infinite; and where code values are
+// relative and the room's light makes black as bright as white.
+void check_comparison(const ComparisonSettings& settings);
+// One set of HDR-FLIP's exposures for all frames, from the first of them, or they would not compare. What is given
+// stays; without hdr_flip among the metrics nothing is done.
+void fix_flip_exposures(ComparisonSettings& settings, const ImageRgb& reference_light);
 
 struct FramePair {
   std::int32_t frame = 1;
@@ -98,12 +105,14 @@ const SequenceScores& headline(const std::vector<SequenceScores>& summary);
 
 class Comparison {
  public:
-  // Error(usage) for unknown metrics, and without a view for those that need gaze.
+  // Error(usage) for unknown metrics, for what check_comparison() refuses, and without a view for metrics that need
+  // gaze.
   Comparison(const ComparisonSettings& settings, int width_px, int height_px);
   ~Comparison();
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
-  FrameScores add(const FramePair& pair);                     // in the order of time
+  // In the order of time. Error(input) with frame and metric where a score is not a number.
+  FrameScores add(const FramePair& pair);
   [[nodiscard]] std::vector<SequenceScores> summary() const;  // "all" first, then the classes that have frames
 
  private:

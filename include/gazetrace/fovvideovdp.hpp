@@ -39,14 +39,17 @@ ImageGray linear_luminance(const ImageRgb& light, double scale, double most_cd_m
 
 // The metric's own geometry: a flat display that the picture FILLS, whatever the picture's size in pixels. Angles are
 // (azimuth, elevation) pairs and their Euclidean distance, not angles between rays: keep them inside the metric.
+// A picture that lies off the eye's perpendicular is one on a display of its own size, so far right and up of it.
 struct FovVideoVdpGeometry {
   int width_px = 3840, height_px = 2160;  // of the display
   double width_m = 0.66414056, height_m = 0.37357906, distance_m = 0.7472;
+  // Of the middle, from the foot of the eye's perpendicular. The authors' program has no more than 0.
+  double right_m = 0, up_m = 0;
 
-  [[nodiscard]] double pixels_per_degree() const;  // in the centre
+  [[nodiscard]] double pixels_per_degree() const;  // at the foot of the eye's perpendicular
   // Degrees right and up of a continuous position in a raster of this size.
   [[nodiscard]] Vec2d view_direction_deg(double x, double y, int raster_width, int raster_height) const;
-  // How much more pixels a degree has in this direction than in the centre.
+  // How much more pixels a degree has in this direction than there.
   [[nodiscard]] double magnification(const Vec2d& direction_deg) const;
 };
 FovVideoVdpGeometry fovvideovdp_geometry(const DisplayGeometry& display);

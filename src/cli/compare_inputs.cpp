@@ -68,10 +68,6 @@ std::vector<std::int32_t> frames_of_both(const CompareJob& job) {
   return both;
 }
 
-std::string path_of(const std::string& pattern, std::int32_t frame) {
-  return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
-}
-
 // Where the test was foveated by regions, those; else the reference's; else the source paper's.
 RetinalRegions regions_of(const CompareJob& job, const CompareInputs& inputs) {
   if (job.region_angles_deg) {
@@ -102,25 +98,56 @@ void read_gaze_log(const CompareJob& job, CompareInputs& inputs) {
   inputs.gaze_log = std::move(log);
 }
 
+// The screen of a run: as it was given, else that of its gaze log.
+std::optional<DisplayGeometry> screen_of(const JobSettings& run) {
+  if (std::optional<DisplayGeometry> screen = screen_geometry(run.screen)) {
+    return screen;
+  }
+  return fs::is_regular_file(run.gaze.path) ? read_gaze_file(run.gaze, run.screen).recording_geometry : std::nullopt;
+}
+
+double rate_of(const FrameRate& fps) {
+  return static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
+}
+
+std::optional<double> stated_fps(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
+                                 const FrameFacts& test) {
+  if (job.fps) {
+    return rate_of(*job.fps);
+  }
+  if (reference.frames_per_second || inputs.reference_run) {
+    return reference.frames_per_second ? *reference.frames_per_second : rate_of(inputs.reference_run->fps);
+  }
+  return test.frames_per_second ? test.frames_per_second
+         : inputs.test_run      ? std::optional(rate_of(inputs.test_run->fps))
+                                : std::nullopt;
+}
+
 [[noreturn]] void differ(const std::string& path, const std::string& problem, const std::string& remedy) {
   throw Error(ErrorKind::input, path, problem, remedy);
 }
 
 }  // namespace
 
+std::string picture_path(const std::string& pattern, std::int32_t frame) {
+  return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
+}
+
 CompareInputs load_compare_inputs(const CompareJob& job) {
   CompareInputs inputs;
   inputs.frames = frames_of_both(job);
-  const FrameFacts facts = read_frame_facts(path_of(job.reference, inputs.frames.front()));
-  const FrameFacts test_facts = read_frame_facts(path_of(job.test, inputs.frames.front()));
+  const FrameFacts facts = read_frame_facts(picture_path(job.reference, inputs.frames.front()));
+  const FrameFacts test_facts = read_frame_facts(picture_path(job.test, inputs.frames.front()));
   inputs.reference_run = settings_of_run(job.reference, facts, inputs.reference_view);
   inputs.test_run = settings_of_run(job.test, test_facts, inputs.test_view);
   inputs.screen = screen_geometry(job.shared.screen);
-  if (!inputs.screen && inputs.reference_run) {
-    inputs.screen = screen_geometry(inputs.reference_run->screen);
-  }
-  if (!inputs.screen && inputs.reference_run && fs::is_regular_file(inputs.reference_run->gaze.path)) {
-    inputs.screen = read_gaze_file(inputs.reference_run->gaze, inputs.reference_run->screen).recording_geometry;
+  // The reference's, or the test's where the reference knows of none.
+  const std::optional<JobSettings>* shown = &inputs.reference_run;
+  for (const std::optional<JobSettings>* const run : {&inputs.reference_run, &inputs.test_run}) {
+    if (!inputs.screen && *run) {
+      inputs.screen = screen_of(**run);
+      shown = inputs.screen ? run : shown;
+    }
   }
   if (!job.shared.gaze.path.empty()) {
     read_gaze_log(job, inputs);
@@ -131,19 +158,14 @@ CompareInputs load_compare_inputs(const CompareJob& job) {
   inputs.regions = regions_of(job, inputs);
   if (job.shared.frame_rect) {
     inputs.frame_rect = *job.shared.frame_rect;
-  } else if (inputs.reference_run && inputs.reference_run->frame_rect) {
-    inputs.frame_rect = *inputs.reference_run->frame_rect;
+  } else if (*shown && (*shown)->frame_rect) {
+    inputs.frame_rect = *(*shown)->frame_rect;
   }
+  inputs.stated_fps = stated_fps(job, inputs, facts, test_facts);
   if (inputs.frames.size() > 1) {
-    if (job.fps) {
-      inputs.frames_per_second = static_cast<double>(job.fps->numerator) / static_cast<double>(job.fps->denominator);
-    } else if (facts.frames_per_second) {
-      inputs.frames_per_second = *facts.frames_per_second;
-    } else if (inputs.reference_run) {
-      const FrameRate& fps = inputs.reference_run->fps;
-      inputs.frames_per_second = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
-    }
+    inputs.frames_per_second = inputs.stated_fps.value_or(0);
   }
+  inputs.gaze = compared_gaze_source(job, inputs);
   return inputs;
 }
 
@@ -189,52 +211,6 @@ std::optional<PlanarView> compare_view(const CompareInputs& inputs, int width_px
     return std::nullopt;
   }
   return view_of_display(*inputs.screen, inputs.frame_rect, width_px, height_px);
-}
-
-bool knows_gaze(const CompareJob& job, const CompareInputs& inputs) {
-  return job.shared.gaze_at || inputs.gaze_log ||
-         std::any_of(inputs.frames.begin(), inputs.frames.end(), [&](std::int32_t frame) {
-           const FrameFacts facts = read_frame_facts(path_of(job.reference, frame));
-           return facts.gaze_true && !facts.gaze_is_direction && gaze_class_of(*facts.gaze_true) != GazeClass::no_gaze;
-         });
-}
-
-ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& facts,
-                           std::int32_t frame, int width_px, int height_px) {
-  std::optional<GazeAtTime> gaze = facts.gaze_true;
-  if (job.shared.gaze_at) {
-    // An eye that rests there.
-    gaze.emplace();
-    gaze->state = GazeState::measured;
-    gaze->u = job.shared.gaze_at->x;
-    gaze->v = job.shared.gaze_at->y;
-    gaze->movement = EyeMovement::fixation;
-  } else if (inputs.gaze_log) {
-    const double middle_s = (frame - 0.5) / (inputs.frames_per_second > 0 ? inputs.frames_per_second : 24);
-    const std::int64_t t_ns =
-        facts.t_video_ns ? *facts.t_video_ns : static_cast<std::int64_t>(std::floor(middle_s * 1e9));
-    gaze = gaze_at(*inputs.gaze_log, gaze_mapping(job.shared, &*inputs.gaze_log), t_ns,
-                   inputs.movements.empty() ? nullptr : &inputs.movements);
-  }
-  if (!gaze) {
-    return {};
-  }
-  if (!gaze->movement && inputs.reference_run && inputs.reference_run->gaze_at) {
-    gaze->movement = EyeMovement::fixation;
-  }
-  const GazeClass gaze_class = gaze_class_of(*gaze);
-  if (gaze_class == GazeClass::no_gaze || gaze->kind == GazeKind::direction) {
-    return {std::nullopt, gaze_class};
-  }
-  // Of the screen to those of the frame, which may fill a part of it.
-  const FrameRect& rect = inputs.frame_rect;
-  const bool whole = !inputs.screen || rect.width_px == 0;
-  const double screen_x = whole ? 0 : gaze->u * inputs.screen->width_px;
-  const double screen_y = whole ? 0 : gaze->v * inputs.screen->height_px;
-  const Vec2d px = whole ? Vec2d{gaze->u * width_px, gaze->v * height_px}
-                         : Vec2d{(screen_x - rect.x_px) / rect.width_px * width_px,
-                                 (screen_y - rect.y_px) / rect.height_px * height_px};
-  return {px, gaze_class};
 }
 
 }  // namespace gazetrace

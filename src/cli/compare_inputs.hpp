@@ -29,6 +29,13 @@ struct CompareJob {
   std::vector<std::string> fail_above, fail_below;
   bool map_overlay = false;
   bool anyway = false;
+  bool overwrite = false;
+};
+
+// What the gaze of the frames is taken from.
+struct GazeSource {
+  std::string words;        // empty: no frame has a gaze on a screen
+  bool is_of_test = false;  // gaze_true of the test's pictures, as no frame of the reference has one
 };
 
 struct CompareInputs {
@@ -40,25 +47,35 @@ struct CompareInputs {
   RetinalRegions regions;
   std::optional<GazeLog> gaze_log;
   std::vector<EyeMovement> movements;  // of the log's samples, where it knows angles
-  double frames_per_second = 0;
+  std::optional<double> stated_fps;    // by option, pictures or run records, whatever the number of frames
+  double frames_per_second = 0;        // 0: a single picture, or not known
+  GazeSource gaze;
 };
 
 // The options of the command, but the two patterns. The table refers to `job`.
 void add_compare_options(OptionTable& table, CompareJob& job);
 
 CompareInputs load_compare_inputs(const CompareJob& job);
+std::string picture_path(const std::string& pattern, std::int32_t frame);
 // Error(input) where the two differ in what decides how they look, unless told --anyway.
 void check_comparable(const CompareJob& job, const CompareInputs& inputs, const ComparedPicture& reference,
                       const ComparedPicture& test, const std::string& reference_path, const std::string& test_path);
 std::optional<PlanarView> compare_view(const CompareInputs& inputs, int width_px, int height_px);
-// Whether any frame has one.
-bool knows_gaze(const CompareJob& job, const CompareInputs& inputs);
-// gaze_true in frame pixels, and its class.
+GazeSource compared_gaze_source(const CompareJob& job, const CompareInputs& inputs);
+// Error(input) where both have a gaze and look at different places, unless a gaze is given or told --anyway.
+void check_same_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
+                     const FrameFacts& test, const std::string& test_path);
+// The gaze in frame pixels, and its class.
 struct ComparedGaze {
   std::optional<Vec2d> px;
   GazeClass gaze_class = GazeClass::no_gaze;
 };
-ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& facts,
-                           std::int32_t frame, int width_px, int height_px);
+// Error(usage) with a log and pictures of which the time is not known.
+ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
+                           const FrameFacts& test, std::int32_t frame, int width_px, int height_px);
+// Error where an output would replace an input, another output or, unasked, what is there.
+void check_compare_outputs(const CompareJob& job, const CompareInputs& inputs, const std::vector<std::string>& metrics);
+// Of a metric's error maps.
+std::string map_pattern(const CompareJob& job, const std::string& metric);
 
 }  // namespace gazetrace

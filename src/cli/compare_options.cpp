@@ -63,9 +63,10 @@ void add_sequence_options(OptionTable& table, CompareJob& job) {
   table.group("Frames and gaze");
   table.value("--frames", job.frames, "LIST", "Which frames; default: those that are there");
   table.value("--fps", job.fps, "RATE", "Frames a second; default: what the pictures or their run record say");
-  table.flag("--anyway", job.anyway, "Scores sequences whose frames, views or exposures differ");
+  table.flag("--anyway", job.anyway, "Scores sequences whose frames, views, exposures or gaze differ");
   table.value("--gaze", job.shared.gaze.path, "FILE",
-              "Where the viewer looked; default: gaze_true in the reference's .exr files", Influence::file);
+              "Where the viewer looked; default: gaze_true of the reference's pictures, else of the test's",
+              Influence::file);
   table.value("--gaze-at", job.shared.gaze_at, "U,V", "A fixed gaze in fractions of the screen from its top left");
   table.value("--gaze-mode", job.shared.gaze_mode, "hold|nearest|linear", "Which samples of the log a frame gets");
   table.value("--gaze-offset", job.shared.gaze_offset, "DURATION", "t_video = scale (t_log - start) + offset");
@@ -90,6 +91,7 @@ void add_result_options(OptionTable& table, CompareJob& job) {
   table.value("--json", job.json, "FILE", "Everything as JSON");
   table.value("--maps", job.maps, "FOLDER", "Error maps as pictures, METRIC.####.png");
   table.flag("--map-overlay", job.map_overlay, "Draws gaze and borders of the retinal regions into them");
+  table.flag("--overwrite", job.overwrite, "Replaces outputs that are there");
   table.value("--threads", job.shared.threads, "N", "0: as many as the machine has; numbers do not depend on it");
 }
 

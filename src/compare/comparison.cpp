@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "compare/eccentricity_bands.hpp"
 #include "compare/score_series.hpp"
@@ -49,6 +52,7 @@ struct Comparison::Impl {
   std::array<FrameGroup, kGazeClasses.size()> classes;
 
   Impl(const ComparisonSettings& given, int width_px, int height_px) : settings(given) {
+    check_comparison(settings);
     for (const std::string& name : settings.metrics) {
       infos.push_back(known_metric(name));
       if (infos.back().needs_gaze && !settings.view) {
@@ -101,6 +105,10 @@ struct Comparison::Impl {
         sums = sum_by_band(*bands, map->values, map->margin_px, threads);
       }
       frame.scores.push_back(scores_of(name, kPrinted, map->mean, sums));
+      if (std::isnan(*frame.scores.back().value)) {
+        throw Error(ErrorKind::input, name, fmt::format("its score of frame {} is not a number", pair.frame),
+                    "check the pictures of that frame and the display's light");
+      }
       frame.statistics.push_back(map->values.empty() ? MapStatistics{} : map_statistics(map->values, map->margin_px));
       for (ScoreSeries* series : {&all.series[m], &group.series[m]}) {
         series->sum += map->mean;

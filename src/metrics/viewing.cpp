@@ -74,8 +74,8 @@ double FovVideoVdpGeometry::pixels_per_degree() const {
 }
 
 Vec2d FovVideoVdpGeometry::view_direction_deg(double x, double y, int raster_width, int raster_height) const {
-  return {deg_of_atan((x - 0.5 * raster_width) * width_m / raster_width / distance_m),
-          deg_of_atan(-(y - 0.5 * raster_height) * height_m / raster_height / distance_m)};
+  return {deg_of_atan(((x - 0.5 * raster_width) * width_m / raster_width + right_m) / distance_m),
+          deg_of_atan((-(y - 0.5 * raster_height) * height_m / raster_height + up_m) / distance_m)};
 }
 
 double FovVideoVdpGeometry::magnification(const Vec2d& direction_deg) const {
@@ -88,8 +88,13 @@ double FovVideoVdpGeometry::magnification(const Vec2d& direction_deg) const {
 
 FovVideoVdpGeometry fovvideovdp_geometry(const DisplayGeometry& display) {
   constexpr double kMetrePerCentimetre = 0.01;
-  return {display.width_px, display.height_px, kMetrePerCentimetre * display.width_cm,
-          kMetrePerCentimetre * display.height_cm, kMetrePerCentimetre * display.distance_cm};
+  return {display.width_px,
+          display.height_px,
+          kMetrePerCentimetre * display.width_cm,
+          kMetrePerCentimetre * display.height_cm,
+          kMetrePerCentimetre * display.distance_cm,
+          kMetrePerCentimetre * -display.eye_x_cm,
+          kMetrePerCentimetre * -display.eye_y_cm};
 }
 
 FovVideoVdpGeometry geometry_from_diagonal(int width_px, int height_px, double diagonal_inches, double distance_m) {

@@ -14,7 +14,7 @@ def grey(value):
 
 class Compare(harness.CliTest):
     def compare(self, *arguments):
-        self.run_ok("compare", *arguments, "--json", "out.json")
+        self.run_ok("compare", *arguments, "--json", "out.json", "--overwrite")
         result = json.loads((self.folder / "out.json").read_text())
         return {score["metric"]: score for score in result["sequence"][0]["scores"]}, result
 
@@ -182,6 +182,41 @@ class Compare(harness.CliTest):
         self.assert_refused(["compare", "s/p.#.png", "t/p.#.png"], ["1-2", "--anyway"])
         self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--anyway")
         self.run_ok("compare", "s/p.#.png", "t/p.#.png", "--frames", "1")
+
+    def test_light_that_no_display_has_is_refused(self):
+        self.write("a.png", harness.png(32, 32, grey(0)))
+        self.write("b.png", harness.png(32, 32, lambda x, y: (110,) * 3 if x // 4 % 2 else (90,) * 3))
+        pair = ["compare", "a.png", "b.png", "--screen-px", "32,32", "--screen-cm", "10,10", "--screen-distance-cm", "60",
+                "--gaze-at", "0.5,0.5"]
+        for option, values in (("--contrast", ("0", "1", "-1000")), ("--peak-cd-m2", ("0", "-200")), ("--ambient-lux", ("-1",)),
+                               ("--reflectivity", ("-0.1", "1.5")), ("--relmse-epsilon", ("0", "-0.01"))):
+            for value in values:
+                self.assert_refused([*pair, f"{option}={value}"], [option, value])
+        # 10000 lux make a black of 16 cd/m2.
+        self.assert_refused([*pair, "--ambient-lux", "10000", "--peak-cd-m2", "10"], ["10 cd/m2", "black", "--ambient-lux"])
+        self.run_ok(*pair, "--contrast", "1.5", "--ambient-lux", "0", "--reflectivity", "1")
+
+    def test_nothing_is_replaced_unasked(self):
+        self.write("a.png", harness.png(16, 16, grey(100)))
+        test = harness.png(16, 16, grey(110))
+        self.write("b.png", test)
+        self.write("s/flip.0001.png", test)
+        self.write("old.csv", "mine")
+        pair = ["compare", "a.png", "b.png", "--metrics", "flip"]
+        for option in ("--csv", "--json"):
+            self.assert_refused([*pair, option, "old.csv"], ["old.csv", "--overwrite"])
+            for more in ([], ["--overwrite"]):
+                self.assert_refused([*pair, option, "s/../b.png", *more], ["b.png", "input"])
+            self.assert_refused([*pair, option, "nowhere/out"], ["nowhere"])
+        self.assert_refused([*pair, "--csv", "x", "--json", "./x"], ["two outputs"])
+        sequence = ["compare", "s/flip.####.png", "s/flip.####.png", "--metrics", "flip", "--maps", "s"]
+        self.assert_refused([*sequence, "--overwrite"], ["flip.0001.png", "input"])
+        self.assertEqual((self.folder / "b.png").read_bytes(), test)
+        self.assertEqual((self.folder / "s/flip.0001.png").read_bytes(), test)
+        self.assertEqual((self.folder / "old.csv").read_text(), "mine")
+        self.run_ok(*pair, "--csv", "old.csv", "--overwrite", "--maps", "maps")
+        self.assertIn("flip", (self.folder / "old.csv").read_text())
+        self.assert_refused([*pair, "--maps", "maps"], ["maps/flip.0000.png", "--overwrite"])
 
     def test_views_must_agree(self):
         self.render("a", "--spp", "1", "--falloff", "uniform")

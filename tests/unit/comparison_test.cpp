@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "gazetrace/error.hpp"
 
@@ -208,6 +209,99 @@ TEST(RetinalRegions, DiametersAndEccentricities) {
   EXPECT_EQ(retinal_regions({5.2, 17}, AngleReading::eccentricity).end_deg, (std::array<double, 2>{5.2, 17}));
   EXPECT_THROW(retinal_regions({17, 5.2}, AngleReading::full_angle), Error);
   EXPECT_THROW(retinal_regions({0, 5.2}, AngleReading::full_angle), Error);
+}
+
+// What a view of the middle scores is what the metric scores without a place, to the bit, whatever rounding made of the
+// view's borders; elsewhere it is not.
+TEST(Comparison, FovVideoVdpKnowsWhereTheFrameLies) {
+  ImageRgb stripes(kWidth, kHeight);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float value = (x / 3 + y / 2) % 2 == 0 ? 0.48F : 0.52F;
+      stripes(x, y) = {value, value, value};
+    }
+  }
+  const Vec2d gaze_px{20.5, 40.5};
+  const DisplayGeometry screen{3 * kWidth, 3 * kHeight, 3 * 33.3, 3 * 22.2, 57.1};
+  const auto jod = [&](double left_px, double top_px) {
+    ComparisonSettings settings = settings_of({"fovvideovdp"});
+    settings.view = view_of_display(screen, {left_px, top_px, kWidth, kHeight}, kWidth, kHeight);
+    FramePair pair = pair_of(1, 0, GazeClass::fixation);
+    pair.test = picture(stripes);
+    pair.gaze_px = gaze_px;
+    return *Comparison(settings, kWidth, kHeight).add(pair).scores[0].value;
+  };
+  const PlanarView middle = view_of_display(screen, {kWidth, kHeight, kWidth, kHeight}, kWidth, kHeight);
+  FovVideoVdpSettings plain;
+  plain.geometry = {kWidth, kHeight, middle.step_x * kWidth, middle.step_y * kHeight, 1};
+  plain.threads = 1;
+  const double q = FovVideoVdp(plain, kWidth, kHeight)
+                       .add(display_luminance(grey(0.5F).code, {}), display_luminance(stripes, {}), gaze_px)
+                       .q;
+  EXPECT_EQ(jod(kWidth, kHeight), fovvideovdp_jod(q));
+  EXPECT_GT(std::fabs(jod(0, 0) - fovvideovdp_jod(q)), 0.01);
+}
+
+TEST(Comparison, RefusesLightThatNoDisplayHas) {
+  const auto refuses = [](const auto& change) {
+    ComparisonSettings settings = settings_of({"mse"});
+    change(settings);
+    EXPECT_THROW(check_comparison(settings), Error);
+    EXPECT_THROW(Comparison(settings, kWidth, kHeight), Error);
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double value : {0.0, -1.0, kNan, kInfinity}) {
+    refuses([&](ComparisonSettings& s) { s.photometry.peak_cd_m2 = value; });
+    refuses([&](ComparisonSettings& s) { s.metric.peak_cd_m2 = value; });
+    refuses([&](ComparisonSettings& s) { s.photometry.contrast = value; });
+    refuses([&](ComparisonSettings& s) { s.metric.relmse_epsilon = value; });
+  }
+  refuses([](ComparisonSettings& s) { s.photometry.contrast = 1; });
+  for (const double value : {-0.01, kNan, kInfinity}) {
+    refuses([&](ComparisonSettings& s) { s.photometry.ambient_lux = value; });
+    refuses([&](ComparisonSettings& s) { s.photometry.reflectivity = value; });
+  }
+  refuses([](ComparisonSettings& s) { s.photometry.reflectivity = 1.01; });
+  // 60000 lux at 0.5 % are 95 cd/m2 of black.
+  refuses([](ComparisonSettings& s) { s.photometry = {DisplayResponse::srgb, 80, 1000, 60000, 0.005}; });
+  ComparisonSettings absolute = settings_of({"mse"});
+  absolute.photometry = {DisplayResponse::pq, 80, 1000, 60000, 0.005};
+  absolute.metric.response = DisplayResponse::pq;
+  EXPECT_NO_THROW(check_comparison(absolute));
+}
+
+// Light beyond a float's range leaves nothing to divide.
+TEST(Comparison, ScoresThatAreNoNumberAreRefused) {
+  ComparisonSettings settings = settings_of({"mse", "temporal_bias"});
+  settings.frames_per_second = 4;
+  settings.photometry.peak_cd_m2 = 1e300;
+  Comparison comparison(settings, kWidth, kHeight);
+  for (int frame = 1; frame < 4; ++frame) {
+    comparison.add(pair_of(frame, 0.25F, GazeClass::fixation));
+  }
+  try {
+    comparison.add(pair_of(4, 0.25F, GazeClass::fixation));
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr("temporal_bias"), testing::HasSubstr("frame 4")));
+  }
+}
+
+TEST(Comparison, ExposuresOfHdrFlipAreThoseOfTheFirstFrame) {
+  ComparisonSettings settings = settings_of({"hdr_flip"});
+  const ImageRgb light(8, 8, {0.5F, 0.5F, 0.5F});
+  const FlipExposures wanted = flip_exposures(light, {});
+  fix_flip_exposures(settings, light);
+  EXPECT_EQ(settings.metric.hdr_flip.start_ev, wanted.start_ev);
+  EXPECT_EQ(settings.metric.hdr_flip.stop_ev, wanted.stop_ev);
+  EXPECT_EQ(settings.metric.hdr_flip.count, wanted.count);
+  settings.metric.hdr_flip = {FlipToneMapper::aces, -1, 1, 3};
+  fix_flip_exposures(settings, light);
+  EXPECT_EQ(settings.metric.hdr_flip.start_ev, -1);
+  ComparisonSettings other = settings_of({"mse"});
+  fix_flip_exposures(other, light);
+  EXPECT_FALSE(other.metric.hdr_flip.start_ev);
 }
 
 TEST(Comparison, MetricsThatNeedGazeNeedAScreen) {

@@ -319,6 +319,53 @@ TEST(FovVideoVdpReference, DifferenceMap) {
   }
 }
 
+// A picture in a corner of a display is one that fills it, where nothing differs elsewhere: the same differences in
+// each band, over 16 times the pixels.
+TEST(FovVideoVdp, PicturesOffTheMiddleAreSeenWhereTheyLie) {
+  constexpr int kSide = 128;
+  constexpr int kDisplay = 4 * kSide;
+  constexpr double kMetresPerPixel = 0.002;
+  constexpr double kPoolSpace = 1.52134;
+  const auto differing = [](int side, int left, int top) {
+    ImageGray image(side, side);
+    for (int y = 0; y < side; ++y) {
+      for (int x = 0; x < side; ++x) {
+        const int dx = x - left;
+        const int dy = y - top;
+        const bool inside = dx >= 48 && dx < 80 && dy >= 48 && dy < 80;
+        image(x, y) = inside && (dx / 2 + dy / 3) % 2 == 0 ? 44.0F : 40.0F;
+      }
+    }
+    return image;
+  };
+  FovVideoVdpSettings settings;
+  settings.geometry = {kDisplay, kDisplay, kDisplay * kMetresPerPixel, kDisplay * kMetresPerPixel, 1};
+  FovVideoVdpSettings part = settings;
+  for (const auto& [left, top] : {std::pair(0, 0), std::pair(kDisplay - kSide, 0), std::pair(0, kDisplay - kSide)}) {
+    part.geometry = {kSide, kSide, kSide * kMetresPerPixel, kSide * kMetresPerPixel, 1};
+    const Vec2d unmoved = part.geometry.view_direction_deg(20, 30, kSide, kSide);
+    part.geometry.right_m = (left + kSide / 2.0 - kDisplay / 2.0) * kMetresPerPixel;
+    part.geometry.up_m = (kDisplay / 2.0 - top - kSide / 2.0) * kMetresPerPixel;
+    const Vec2d of_part = part.geometry.view_direction_deg(20, 30, kSide, kSide);
+    const Vec2d of_whole = settings.geometry.view_direction_deg(left + 20, top + 30, kDisplay, kDisplay);
+    EXPECT_NEAR(of_part.x, of_whole.x, 1e-9);
+    EXPECT_NEAR(of_part.y, of_whole.y, 1e-9);
+    EXPECT_GT(std::fabs(of_part.x - unmoved.x), 10);
+    EXPECT_NEAR(part.geometry.magnification(of_part), settings.geometry.magnification(of_whole), 1e-9);
+    const Vec2d gaze{30, 90};
+    const FovVideoVdpFrame whole =
+        FovVideoVdp(settings, kDisplay, kDisplay)
+            .add(ImageGray(kDisplay, kDisplay, 40), differing(kDisplay, left, top), Vec2d{gaze.x + left, gaze.y + top});
+    const FovVideoVdpFrame alone =
+        FovVideoVdp(part, kSide, kSide).add(ImageGray(kSide, kSide, 40), differing(kSide, 0, 0), gaze);
+    ASSERT_EQ(whole.sustained.size(), alone.sustained.size());
+    for (std::size_t b = 0; b < whole.sustained.size(); ++b) {
+      EXPECT_NEAR(alone.sustained[b], whole.sustained[b] * std::pow(16, 1 / kPoolSpace), 1e-3 * alone.sustained[b])
+          << b;
+    }
+  }
+}
+
 TEST(FovVideoVdp, SameBitsForAnyNumberOfThreadsAndPlaces) {
   ImageGray reference(131, 77);
   ImageGray test(131, 77);

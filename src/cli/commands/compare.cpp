@@ -74,8 +74,8 @@ bool holds_a_second(const CompareInputs& inputs) {
 
 // What needs neither gaze nor much time, and what is there for the asking: FovVideoVDP wants a screen and gaze,
 // flicker a second of frames as well, HDR-FLIP linear light.
-std::vector<std::string> chosen_metrics(const CompareJob& job, const CompareInputs& inputs, bool is_linear,
-                                        bool has_gaze) {
+std::vector<std::string> chosen_metrics(const CompareJob& job, const CompareInputs& inputs, bool is_linear) {
+  const bool has_gaze = !inputs.gaze.words.empty();
   std::vector<std::string> metrics = job.metrics;
   if (metrics.empty()) {
     metrics = {"mse", "relmse", "psnr", "ssim", "flip"};
@@ -136,11 +136,12 @@ class PairReader {
 
   // Light and code values of both, the test through the reference's view and exposure.
   FramePair read(std::int32_t frame) {
-    const std::string reference_path = path_of(job_.reference, frame);
-    const std::string test_path = path_of(job_.test, frame);
+    const std::string reference_path = picture_path(job_.reference, frame);
+    const std::string test_path = picture_path(job_.test, frame);
     ComparedPicture reference = read_compared_picture(reference_path);
     ComparedPicture test = read_compared_picture(test_path);
     check_comparable(job_, inputs_, reference, test, reference_path, test_path);
+    check_same_gaze(job_, inputs_, reference.facts, test.facts, test_path);
     is_linear_ = reference.is_linear;
     const double ev = job_.exposure_ev.value_or(reference.facts.exposure_ev.value_or(0));
     FramePair pair;
@@ -156,8 +157,8 @@ class PairReader {
         picture.light = emitted(picture.code, job_.settings.metric.response, peak_cd_m2(), threads());
       }
     }
-    const ComparedGaze gaze = compared_gaze(job_, inputs_, reference.facts, frame, reference.picture.code.width_px,
-                                            reference.picture.code.height_px);
+    const ComparedGaze gaze = compared_gaze(job_, inputs_, reference.facts, test.facts, frame,
+                                            reference.picture.code.width_px, reference.picture.code.height_px);
     pair.gaze_px = gaze.px;
     pair.gaze_class = gaze.gaze_class;
     pair.reference = std::move(reference.picture);
@@ -179,9 +180,6 @@ class PairReader {
     const ColorSettings& given = job.shared.color;
     const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
     return any || !inputs.reference_run ? given : inputs.reference_run->color;
-  }
-  static std::string path_of(const std::string& pattern, std::int32_t frame) {
-    return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
   }
   const CompareJob& job_;
   const CompareInputs& inputs_;
@@ -208,6 +206,9 @@ CompareConditions conditions_of(const CompareJob& job, const CompareInputs& inpu
   }
   if (inputs.frames_per_second > 0) {
     conditions.emplace_back("frame rate", fmt::format("{:g}", inputs.frames_per_second));
+  }
+  if (!inputs.gaze.words.empty()) {
+    conditions.emplace_back("gaze", inputs.gaze.words);
   }
   if (contains(settings.metrics, "flicker")) {
     const FlickerRange range = flicker_range(inputs.frames_per_second, settings.photometry.peak_cd_m2 / 2);
@@ -238,7 +239,7 @@ void write_maps(const CompareJob& job, const ComparisonSettings& settings, const
     if (frame.maps[m].empty()) {
       continue;
     }
-    const std::string pattern = job.maps + "/" + frame.scores[m].metric + ".####.png";
+    const std::string pattern = map_pattern(job, frame.scores[m].metric);
     FrameHeader header;
     header.frame = frame.frame;
     DisplayImage picture = error_map_picture(frame.scores[m].metric, frame.maps[m], pair.reference.code);
@@ -260,7 +261,7 @@ bool fails(const std::vector<Limit>& limits, const SequenceScores& claim) {
       if (!scores.value) {
         print_warnings({fmt::format("{} was not scored, so its limit is not kept", limit.metric)});
         failed = true;
-      } else if (limit.above ? *scores.value > limit.value : *scores.value < limit.value) {
+      } else if (limit.above ? !(*scores.value <= limit.value) : !(*scores.value >= limit.value)) {
         print_warnings({fmt::format("{} is {:g} ({} frames), {} {:g}", limit.metric, *scores.value, claim.gaze_class,
                                     limit.above ? "above" : "below", limit.value)});
         failed = true;
@@ -291,6 +292,7 @@ std::ofstream open_csv(const std::string& path) {
 }
 
 int run_compare(const CompareJob& job) {
+  check_comparison(job.settings);
   const CompareInputs inputs = load_compare_inputs(job);
   PairReader reader(job, inputs);
   FramePair pair = reader.read(inputs.frames.front());
@@ -298,8 +300,7 @@ int run_compare(const CompareJob& job) {
   const int height = pair.reference.code.height_px;
 
   ComparisonSettings settings = job.settings;
-  const bool has_gaze = knows_gaze(job, inputs);
-  settings.metrics = chosen_metrics(job, inputs, reader.is_linear(), has_gaze);
+  settings.metrics = chosen_metrics(job, inputs, reader.is_linear());
   settings.regions = inputs.regions;
   settings.view = compare_view(inputs, width, height);
   settings.frames_per_second = inputs.frames_per_second;
@@ -316,14 +317,9 @@ int run_compare(const CompareJob& job) {
   }
   const std::vector<Limit> limits = limits_of(job, settings.metrics);
   check_consecutive(inputs, settings.metrics);
-  if (contains(settings.metrics, "hdr_flip")) {
-    // One set of exposures for the whole sequence, or its frames would not compare.
-    const FlipExposures exposures = flip_exposures(pair.reference.light, settings.metric.hdr_flip);
-    settings.metric.hdr_flip.start_ev = exposures.start_ev;
-    settings.metric.hdr_flip.stop_ev = exposures.stop_ev;
-    settings.metric.hdr_flip.count = exposures.count;
-  }
+  fix_flip_exposures(settings, pair.reference.light);
   Comparison comparison(settings, width, height);
+  check_compare_outputs(job, inputs, settings.metrics);
   std::ofstream csv = open_csv(job.csv);
   make_folder(job.maps);
   std::vector<FrameScores> frames;

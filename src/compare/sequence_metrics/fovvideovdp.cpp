@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FovVideoVDP of luminance; metrics/fovvideovdp.cpp has the metric.
+#include <cmath>
+
 #include "compare/sequence_metric.hpp"
 #include "gazetrace/error.hpp"
 
@@ -25,13 +27,25 @@ class FovVideoVdpOfFrames : public SequenceMetric {
   FovVideoVdp metric_;
 };
 
+// How far the middle lies beside the eye's perpendicular, from one border and half the size. What rounding leaves of
+// nothing is nothing, so that pictures in the middle score to the bit as the metric's authors have it.
+double middle_m(double border_m, double half_m) {
+  constexpr double kRounding = 1e-9;
+  const double middle = border_m + half_m;
+  return std::fabs(middle) < kRounding * std::fabs(half_m) ? 0 : middle;
+}
+
 }  // namespace
 
 std::unique_ptr<SequenceMetric> make_fovvideovdp(const ComparisonSettings& settings, int width_px, int height_px) {
-  // The metric takes a picture to fill its display: a display of the picture's own pixels and size. Distance 1 m.
+  // The metric takes a picture to fill its display: a display of the picture's own pixels, size and place. Distance 1
+  // m.
   const PlanarView& view = *settings.view;
+  const double width_m = view.step_x * width_px;
+  const double height_m = view.step_y * height_px;
   FovVideoVdpSettings metric;
-  metric.geometry = {width_px, height_px, view.step_x * width_px, view.step_y * height_px, 1};
+  metric.geometry = {
+      width_px, height_px, width_m, height_m, 1, middle_m(view.left, width_m / 2), middle_m(view.top, -height_m / 2)};
   metric.frames_per_second = settings.frames_per_second;
   metric.original_border = settings.original_border;
   metric.threads = settings.metric.threads;
