@@ -58,8 +58,9 @@ struct SweepPublished {
 struct SweepTest {
   std::string id, gaze, label;
   std::size_t scene = 0;
-  std::string reference;  // SweepReference::key
-  NamedValues settings;   // what some row varies, with this row's values
+  std::string reference;         // SweepReference::key
+  NamedValues settings;          // what some row varies, with this row's values
+  NamedValues uniform_settings;  // of these, what the uniform rows beside it share: neither sampling nor gaze
   PipelineSettings pipeline;
   FramePlan plan;
   double resolution_scale = 1;  // rendered at this part of the size, and upscaled
@@ -172,6 +173,8 @@ struct SweepRow {
   std::string wrong;                             // wrong_gaze: "shuffled", "center", "mirrored"
   std::map<std::string, std::string> baselines;  // of tests: role -> id
   NamedValues settings;
+  bool is_foveated = false;     // its samples follow a gaze
+  double resolution_scale = 1;  // rendered at this part of the size, and upscaled
   std::string reference;
   std::vector<SweepFrame> frames;
   double compared_pixels = 0;  // of all frames
@@ -191,6 +194,9 @@ struct SweepRow {
 struct SweepFloor {
   std::string gaze;
   ScoreTable scores;
+  // What this gaze looks at in the reference's frames.
+  std::vector<double> band_pixel_share;        // by band of eccentricity; empty without gaze
+  std::map<std::string, double> event_shares;  // SweepFrame::event -> share of the frames
 };
 struct SweepReferenceResult {
   std::string scene, key, directory, png;  // relative
@@ -216,11 +222,11 @@ struct SweepResults {
   int threads = 0;
   std::vector<SweepRow> rows;
   std::vector<SweepReferenceResult> references;
-  std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto;  // metric -> "scene/gaze" -> ids
+  // metric -> "scene/gaze" -> ids; "scene/gaze/reference" where several references share the place: scores against
+  // different references do not compare.
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto;
   std::vector<SweepFixedQuality> fixed_quality;
   std::vector<SweepControl> controls;
-  std::map<std::string, std::vector<double>> band_pixel_share;        // by gaze
-  std::map<std::string, std::map<std::string, double>> event_shares;  // by gaze
   std::vector<std::string> notes;
 };
 
@@ -246,6 +252,9 @@ class SweepDirectory {
 // Error(usage, input) for what contradicts itself, and where the directory holds work of another build or machine:
 // times and pictures of two builds are never mixed. To be called before anything is rendered; makes the directory.
 [[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan);
+// Error(usage) where a metric cannot score this test, or nothing of it would be scored; tells it from sizes and rates
+// alone, before anything is rendered.
+void check_scoring(const SweepMeasure& measure, const SweepTest& test);
 // Renders what is not yet finished in the directory, in rounds over all rows of a scene, and puts together the tables.
 SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -302,6 +303,23 @@ void check_names(const std::vector<std::string>& given, const std::vector<std::s
   }
 }
 
+// What the metrics are told of the display, and of themselves.
+void check_viewing(SweepFile& file) {
+  const ComparisonSettings& settings = file.measure.compare.settings;
+  const DisplayPhotometry& display = settings.photometry;
+  const auto check = [&](const char* key, double value, bool is_right, const char* wish) {
+    if (!std::isfinite(value) || !is_right) {
+      refuse(file.places[key], fmt::format("{}: {} is {}", key, value, wish));
+    }
+  };
+  check("peak-cd-m2", display.peak_cd_m2, display.peak_cd_m2 > 0, "no luminance above 0");
+  check("contrast", display.contrast, display.contrast > 1, "no ratio above 1");
+  check("ambient-lux", display.ambient_lux, display.ambient_lux >= 0, "no illuminance from 0 on");
+  check("reflectivity", display.reflectivity, display.reflectivity >= 0 && display.reflectivity <= 1, "outside 0..1");
+  const double epsilon = settings.metric.relmse_epsilon;
+  check("relmse-epsilon", epsilon, epsilon > 0, "not above 0");
+}
+
 void check_measure(SweepFile& file) {
   const SweepFileMeasure& m = file.measure;
   const auto within = [&](const char* key, double value, double least, double most) {
@@ -314,6 +332,7 @@ void check_measure(SweepFile& file) {
   within("reference-rate", m.reference_rate, 1, 1e6);
   within("efficiency-spp", m.efficiency_spp, 0, 1e6);
   within("leave-out", static_cast<double>(m.leave_out.ns) * 1e-9, 0, 1e6);
+  check_viewing(file);
   check_names(m.baselines, {"uniform-reference-rate", "equal-samples", "equal-time", "low-resolution", "none"},
               "baseline", file.places["baselines"]);
   check_names({m.pictures}, {"png", "exr", "both", "none"}, "kind of pictures", file.places["pictures"]);

@@ -18,9 +18,12 @@ namespace {
 using Options = std::vector<Assignment>;
 
 // Headings of settings_options.cpp: what a uniform frame does not see.
+constexpr const char* kPresets = "Presets";
 const std::vector<std::string> kSampling{"Where the samples go", "Density models ('gazetrace list falloffs')",
-                                         "Presets"};
+                                         kPresets};
 const std::vector<std::string> kGaze{"Gaze in time", "Gaze log"};
+// Of these, what decides where a camera that follows the head is.
+const std::vector<std::string> kClock{"gaze-offset", "gaze-scale", "gaze-start", "gaze-anchor"};
 const std::vector<std::string> kAfterSampling{"Between the samples", "Over time"};
 // What makes rendering cheaper and less true: a reference takes these from [common] and [reference], not from rows.
 const std::vector<std::string> kTradeOffs{
@@ -172,6 +175,7 @@ class JobMaker {
     if (test.settings.camera_from_gaze) {
       job->settings.camera_from_gaze = true;
       job->settings.gaze = test.settings.gaze;
+      job->take(test, [](const OptionEntry& entry) { return is_among(kClock, entry.name); });
     }
     for (const std::string& option : kNeedTruth) {
       const auto row = std::find_if(setting.options.begin(), setting.options.end(),
@@ -278,14 +282,29 @@ class JobMaker {
     test.digest = digest_of(*job, inputs.frames);
     test.uniform_digest = uniform_digest(*job, name, inputs.frames);
     test.reference = add_reference(index, *job, setting, inputs.frames, loaded);
+    for (const auto& [option, value] : test.settings) {
+      if (uniform_sees(job->table.find(option)->group, *job)) {
+        test.uniform_settings.emplace_back(option, value);
+      }
+    }
     check_new(test, place);
+    check_gaze(test, place);
+    check_metrics(test);
     jobs_.plan.tests.push_back(std::move(test));
     tests_.push_back({place, job->settings.trace.seed});
   }
 
+  static bool uses_gaze_otherwise(const Job& job) {
+    const AccumulateSettings& accumulate = job.settings.accumulate;
+    return job.settings.camera_from_gaze || accumulate.reset_at_saccades || accumulate.reset_at_blinks;
+  }
+  // Whether options of a group mean anything to uniform frames beside a test. A preset is not only of sampling.
+  static bool uniform_sees(const std::string& group, const Job& test) {
+    return (group == kPresets || !is_among(kSampling, group)) && (!is_among(kGaze, group) || uses_gaze_otherwise(test));
+  }
+
   std::string uniform_digest(const Job& test, const std::string& gaze, const std::vector<std::int32_t>& frames) {
-    const AccumulateSettings& accumulate = test.settings.accumulate;
-    const bool sees_gaze = test.settings.camera_from_gaze || accumulate.reset_at_saccades || accumulate.reset_at_blinks;
+    const bool sees_gaze = uses_gaze_otherwise(test);
     Job job;
     job.take(test, [](const OptionEntry& entry) {
       return !is_among(kSampling, entry.group) && !is_among(kGaze, entry.group);
@@ -340,6 +359,43 @@ class JobMaker {
         throw Error(ErrorKind::input, place, fmt::format("'{}' and '{}' are the same setting", other.label, test.label),
                     "leave one out");
       }
+    }
+  }
+
+  // Rows of one gaze share their reference's floor, and what they show: it must be one gaze.
+  void check_gaze(const SweepTest& test, const std::string& place) const {
+    const auto differs = [](const FrameRequest& a, const FrameRequest& b) {
+      return a.gaze_direction_true != b.gaze_direction_true || a.gaze_true.no_gaze != b.gaze_true.no_gaze ||
+             gaze_class_of(a.gaze_true) != gaze_class_of(b.gaze_true);
+    };
+    for (const SweepTest& other : jobs_.plan.tests) {
+      const auto& a = other.plan.frames;
+      const auto& b = test.plan.frames;
+      if (other.gaze == test.gaze && other.reference == test.reference &&
+          !std::equal(a.begin(), a.end(), b.begin(), b.end(), std::not_fn(differs))) {
+        throw Error(ErrorKind::input, place,
+                    fmt::format("with '{}' the eye looks elsewhere than with '{}', and both are gaze '{}'", test.label,
+                                other.label, test.gaze),
+                    "give what moves the gaze in a [[gaze]] of another name");
+      }
+    }
+  }
+
+  // Once for all tests that look the same to the metrics.
+  void check_metrics(const SweepTest& test) {
+    const FrameRequest& first = test.plan.frames.front();
+    const std::string what = fmt::format("{}x{} {} {}/{} {} {} {}", first.width_px, first.height_px, first.view.step_x,
+                                         test.pipeline.fps.numerator, test.pipeline.fps.denominator,
+                                         test.plan.frames.size(), test.gaze, test.scene);
+    if (!checked_.insert(what).second) {
+      return;
+    }
+    try {
+      check_scoring(jobs_.plan.measure, test);
+    } catch (const Error& error) {
+      const std::string text = error.what();
+      throw Error(ErrorKind::input, place_of(text.starts_with("leave-out") ? "leave-out" : "metrics"),
+                  fmt::format("{}: {}", test.id, text));
     }
   }
 
@@ -477,6 +533,7 @@ class JobMaker {
     std::uint64_t seed = 0;
   };
   std::vector<TestPlace> tests_;
+  std::set<std::string> checked_;  // by check_metrics()
   std::map<std::string, std::map<std::string, std::string>> digests_;
 };
 

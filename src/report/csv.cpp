@@ -39,12 +39,13 @@ std::string report_csv(const ReportData& data) {
     start += fmt::format("{},{},{},{},{},{},{}", csv_estimate(row.time_s), csv_number(row.samples),
                          csv_number(row.spp_mean), csv_number(row.rays), csv_number(row.peak_mib),
                          csv_estimate(row.speed_up), csv_number(row.efficiency));
+    const ReportScene* const scene = find_scene(data, row);
     if (row.scores.empty()) {
       text += start + ",,,,,,,\n";
     }
     for (const auto& [metric, scores] : row.scores) {
       for (const ReportScore& score : scores) {
-        const std::optional<double> floor = find_floor(data, {row.scene, row.gaze}, metric, score.part);
+        const std::optional<double> floor = find_floor(scene, row.gaze, metric, score.part);
         text += fmt::format("{},{},{},{},{},{}\n", start, csv_cell(metric), csv_cell(score.part),
                             csv_estimate(score.value), score.is_resolved ? 1 : 0, csv_number(floor));
       }

@@ -118,6 +118,33 @@ bool has_scores(const ReportData& data, const ReportRow& row) {
   return false;
 }
 
+// What sweep/frames.cpp has scored: fixations where there are any.
+std::string scored_frames_sentence(const ReportData& data, const std::string& gaze) {
+  const auto shares = data.event_shares.find(gaze);
+  if (shares == data.event_shares.end()) {
+    return {};
+  }
+  const auto fixations = shares->second.find("fixation");
+  return fixations != shares->second.end() && fixations->second > 0
+             ? " Scores are of fixations."
+             : " No frame is a fixation: scores are of the others that are seen.";
+}
+
+std::string control_sentence(const ReportData& data, const ReportControl& control) {
+  const std::string start = fmt::format(
+      "{}: {} is {} when the gaze is {}, against {} when it is right", scene_gaze_text({control.scene, control.gaze}),
+      control.metric, value_text(control.wrong_score), control.wrong, value_text(control.right_score));
+  const std::string why = control.why.empty() ? std::string() : " (" + control.why + ")";
+  if (control_verdict(data, control) == ControlVerdict::insensitive) {
+    return start + ": it is insensitive to gaze there and supports no claim about foveation" + why + ".";
+  }
+  return start +
+         (was_measured_once(data, control) ? "; whether it notices is undecided" + why
+                                           : ", which is no more than repeats differ: whether it notices is "
+                                             "undecided") +
+         ", and it supports no claim about foveation.";
+}
+
 // Of whole frames, in the order of Verdict.
 using Tally = std::array<int, 5>;
 
@@ -157,8 +184,8 @@ ReportFindings report_findings(const ReportData& data) {
                       with_interval(test->speed_up)));
     }
     if (!has_scores(data, *test)) {
-      findings.caveats.push_back(
-          place_of(*test) + ": no metric has a score, so nothing is said of its quality. Scores are of fixations.");
+      findings.caveats.push_back(place_of(*test) + ": no metric has a score, so nothing is said of its quality." +
+                                 scored_frames_sentence(data, test->gaze));
     }
     if (!has_baseline) {
       findings.caveats.push_back(place_of(*test) +
@@ -181,12 +208,7 @@ ReportFindings report_findings(const ReportData& data) {
   }
   for (const ReportControl& control : data.controls) {
     if (!control.is_sensitive) {
-      findings.caveats.push_back(
-          fmt::format("{}: {} does not fall when the gaze is {} ({} against {}), so it is insensitive to gaze there "
-                      "and supports no "
-                      "claim about foveation.",
-                      scene_gaze_text({control.scene, control.gaze}), control.metric, control.wrong,
-                      value_text(control.wrong_score), value_text(control.right_score)));
+      findings.caveats.push_back(control_sentence(data, control));
     }
   }
   return findings;

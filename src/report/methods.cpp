@@ -18,9 +18,9 @@ std::string settings_text(const ReportSettingsList& settings) {
   return text;
 }
 
-void add(std::string& text, const std::string& pattern, const std::string& value) {
+void add(std::string& text, const std::string& before, const std::string& value, const char* after = ".") {
   if (!value.empty()) {
-    text += (text.empty() ? "" : " ") + fmt::format(fmt::runtime(pattern), value);
+    text += (text.empty() ? "" : " ") + before + value + after;
   }
 }
 
@@ -31,25 +31,24 @@ std::string report_methods(const ReportData& data) {
     return data.methods;
   }
   std::string text;
-  add(text, "Frames were rendered with gazetrace ({}).", settings_text(data.build));
-  add(text, "Machine: {}.", settings_text(data.machine));
-  add(text, "Viewing: {}.", settings_text(data.viewing));
-  add(text, "Color: {}.", settings_text(data.color));
+  add(text, "Frames were rendered with gazetrace (", settings_text(data.build), ").");
+  add(text, "Machine: ", settings_text(data.machine));
+  add(text, "Viewing: ", settings_text(data.viewing));
+  add(text, "Color: ", settings_text(data.color));
   for (const ReportScene& scene : data.scenes) {
-    add(text, "Reference of " + scene.name + ": {}.", scene.reference_text);
+    add(text, "Reference of " + scene.name + ": ", scene.reference_text);
   }
-  add(text, "Common settings: {}.", settings_text(data.common_settings));
-  add(text, "Varied: {}.", list_text(data.varied));
+  add(text, "Common settings: ", settings_text(data.common_settings));
+  add(text, "Varied: ", list_text(data.varied));
   for (const ReportRow* const test : test_rows(data)) {
-    add(text, test->label + " (" + scene_gaze_text({test->scene, test->gaze}) + "): {}.",
-        settings_text(test->settings));
+    add(text, test->label + " (" + scene_gaze_text({test->scene, test->gaze}) + "): ", settings_text(test->settings));
   }
   std::vector<std::string> metrics;
   for (const ReportMetric& metric : data.metrics) {
     metrics.push_back(metric.note.empty() ? metric.name : metric.name + " (" + metric.note + ")");
   }
-  add(text, "Metrics: {}.", list_text(metrics));
-  add(text, "Bands of eccentricity about the true gaze, in degrees: {}.", list_text(data.bands));
+  add(text, "Metrics: ", list_text(metrics));
+  add(text, "Bands of eccentricity about the true gaze, in degrees: ", list_text(data.bands));
   text +=
       " Speed-up is the time of uniform sampling at the reference rate over that of the foveated run. Intervals are at "
       "95 %; values whose intervals overlap are not told apart. Scores under the difference of the reference from "

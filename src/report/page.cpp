@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -75,9 +76,13 @@ ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
   for (const ReportFrame& frame : longest->frames) {
     set.frames.push_back(&frame);
   }
-  const ReportScene* const scene = find_scene(data, both);
-  if (scene != nullptr && !scene->reference_pattern.empty()) {
-    ViewerRun reference{"reference", nullptr, {}, {}};
+  const std::vector<const ReportScene*> scenes = find_scenes(data, both);
+  std::vector<ViewerRun> references;
+  for (const ReportScene* const scene : scenes) {
+    if (scene->reference_pattern.empty()) {
+      continue;
+    }
+    ViewerRun reference{reference_text(*scene, scenes.size()), nullptr, {}, {}};
     const std::string pattern = (fs::path(data.directory) / scene->reference_pattern).string();
     for (const ReportFrame* const frame : set.frames) {
       const std::string path = has_frame_number(pattern) ? frame_file_name(pattern, frame->index) : pattern;
@@ -86,9 +91,11 @@ ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
       }
     }
     if (!reference.pictures.empty()) {
-      set.runs.insert(set.runs.begin(), std::move(reference));
+      references.push_back(std::move(reference));
     }
   }
+  set.runs.insert(set.runs.begin(), std::make_move_iterator(references.begin()),
+                  std::make_move_iterator(references.end()));
   return set;
 }
 

@@ -131,13 +131,17 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
     html.cell(value_text(row->peak_mib));
     html.add("</tr>\n");
   }
-  html.add(
-      "<tr class=\"role-floor\"><th scope=\"row\">reference from itself<small>floor</small></th>"
-      "<td></td><td></td><td></td>");
-  for (const ReportMetric& metric : data.metrics) {
-    html.cell(value_text(find_floor(data, both, metric.name, "whole")));
+  const std::vector<const ReportScene*> scenes = find_scenes(data, both);
+  for (const ReportScene* const scene : scenes) {
+    html.add(
+        "<tr class=\"role-floor\"><th scope=\"row\">{} from itself<small>floor</small></th>"
+        "<td></td><td></td><td></td>",
+        escaped(reference_text(*scene, scenes.size())));
+    for (const ReportMetric& metric : data.metrics) {
+      html.cell(value_text(find_floor(scene, both.gaze, metric.name, "whole")));
+    }
+    html.add("<td></td><td></td><td></td><td></td></tr>\n");
   }
-  html.add("<td></td><td></td><td></td><td></td></tr>\n");
   html.end_table();
 }
 
@@ -213,7 +217,7 @@ void add_controls(Html& html, const ReportData& data) {
   if (data.controls.empty()) {
     return;
   }
-  html.begin_table("Controls: the same runs scored with a wrong gaze");
+  html.begin_table("Controls: the same settings rendered with a wrong gaze and scored with the right one");
   html.head({"scene and gaze", "metric", "gaze", "right", "wrong", "does the metric notice", "why"});
   for (const ReportControl& control : data.controls) {
     html.add("<tr><th scope=\"row\">{}</th>", escaped(scene_gaze_text({control.scene, control.gaze})));
@@ -221,7 +225,10 @@ void add_controls(Html& html, const ReportData& data) {
     html.cell(escaped(control.wrong));
     html.cell(value_text(control.right_score));
     html.cell(value_text(control.wrong_score));
-    html.cell(control.is_sensitive ? "yes" : "no: insensitive here");
+    const ControlVerdict verdict = control_verdict(data, control);
+    html.cell(verdict == ControlVerdict::sensitive     ? "yes"
+              : verdict == ControlVerdict::insensitive ? "no: insensitive here"
+                                                       : "undecided");
     html.add("<td class=\"words\">{}</td></tr>\n", escaped(control.why));
   }
   html.end_table();

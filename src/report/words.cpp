@@ -160,36 +160,87 @@ std::vector<SceneGaze> scene_gazes(const ReportData& data) {
   return found;
 }
 
-const ReportScene* find_scene(const ReportData& data, const SceneGaze& both) {
-  std::string key;
-  for (const ReportRow& row : data.rows) {
-    if (SceneGaze{row.scene, row.gaze} == both && !row.reference.empty()) {
-      key = row.reference;
-      break;
-    }
-  }
-  const ReportScene* found = nullptr;
+const ReportScene* find_scene(const ReportData& data, const ReportRow& row) {
+  const ReportScene* keyless = nullptr;  // of that name, without a key to tell it from others
   for (const ReportScene& scene : data.scenes) {
-    if (scene.name == both.scene && (found == nullptr || (!key.empty() && scene.key == key))) {
-      found = &scene;
+    if (scene.name != row.scene) {
+      continue;
+    }
+    if (!row.reference.empty() && scene.key == row.reference) {
+      return &scene;
+    }
+    if (keyless == nullptr && (row.reference.empty() || scene.key.empty())) {
+      keyless = &scene;
     }
   }
-  return found;
+  return keyless;
 }
 
-std::optional<double> find_floor(const ReportData& data, const SceneGaze& both, const std::string& metric,
+std::vector<const ReportScene*> find_scenes(const ReportData& data, const SceneGaze& both) {
+  std::vector<const ReportScene*> scenes;
+  for (const ReportRow& row : data.rows) {
+    const ReportScene* const scene = SceneGaze{row.scene, row.gaze} == both ? find_scene(data, row) : nullptr;
+    if (scene != nullptr && std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) {
+      scenes.push_back(scene);
+    }
+  }
+  return scenes;
+}
+
+std::string reference_text(const ReportScene& scene, std::size_t references) {
+  return references > 1 ? "reference " + scene.key : std::string("reference");
+}
+
+std::optional<double> find_floor(const ReportScene* scene, const std::string& gaze, const std::string& metric,
                                  const std::string& part) {
-  const ReportScene* const scene = find_scene(data, both);
   if (scene == nullptr) {
     return std::nullopt;
   }
-  const auto by_gaze = scene->floor_by_gaze.find(both.gaze);
+  const auto by_gaze = scene->floor_by_gaze.find(gaze);
   const ReportFloor& floor = by_gaze == scene->floor_by_gaze.end() ? scene->floor : by_gaze->second;
   const auto parts = floor.find(metric);
   if (parts == floor.end() || parts->second.count(part) == 0) {
     return std::nullopt;
   }
   return parts->second.at(part);
+}
+
+namespace {
+
+struct ControlledScore {
+  const ReportMetric* metric = nullptr;
+  const ReportScore* right = nullptr;  // of the run that the control belongs to
+};
+
+// A control is named by its metric, and by the part where that is not the whole frame.
+ControlledScore controlled_score(const ReportData& data, const ReportControl& control) {
+  for (const ReportMetric& metric : data.metrics) {
+    const bool is_whole = control.metric == metric.name;
+    if (is_whole || control.metric.starts_with(metric.name + " ")) {
+      const ReportRow* const row = find_row(data, control.of);
+      const std::string part = is_whole ? "whole" : control.metric.substr(metric.name.size() + 1);
+      return {&metric, row == nullptr ? nullptr : find_score(*row, metric.name, part)};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+bool was_measured_once(const ReportData& data, const ReportControl& control) {
+  const ReportScore* const right = controlled_score(data, control).right;
+  return right != nullptr && right->value && !right->value->low;
+}
+
+ControlVerdict control_verdict(const ReportData& data, const ReportControl& control) {
+  if (control.is_sensitive) {
+    return ControlVerdict::sensitive;
+  }
+  const ReportMetric* const metric = controlled_score(data, control).metric;
+  const bool is_worse = metric != nullptr && control.right_score && control.wrong_score &&
+                        (metric->is_lower_better ? *control.wrong_score > *control.right_score
+                                                 : *control.wrong_score < *control.right_score);
+  return is_worse || was_measured_once(data, control) ? ControlVerdict::undecided : ControlVerdict::insensitive;
 }
 
 std::string scene_gaze_text(const SceneGaze& both) {

@@ -42,10 +42,20 @@ struct SceneGaze {
   friend bool operator==(const SceneGaze&, const SceneGaze&) = default;
 };
 std::vector<SceneGaze> scene_gazes(const ReportData& data);  // of the rows, in their order
-// The scene as its runs saw it; empty where the file does not have it.
-const ReportScene* find_scene(const ReportData& data, const SceneGaze& both);
-std::optional<double> find_floor(const ReportData& data, const SceneGaze& both, const std::string& metric,
+// The scene with the reference that a run was measured against; empty where the file does not have it.
+const ReportScene* find_scene(const ReportData& data, const ReportRow& row);
+// Those of the runs of a scene and gaze: several where they differ in size or view.
+std::vector<const ReportScene*> find_scenes(const ReportData& data, const SceneGaze& both);
+// "reference", with its key where there are others.
+std::string reference_text(const ReportScene& scene, std::size_t references);
+std::optional<double> find_floor(const ReportScene* scene, const std::string& gaze, const std::string& metric,
                                  const std::string& part);
+
+// Whether a metric noticed that the gaze was wrong. undecided: the wrong gaze was measured once, or scores worse by no
+// more than repeats differ.
+enum class ControlVerdict { sensitive, insensitive, undecided };
+ControlVerdict control_verdict(const ReportData& data, const ReportControl& control);
+bool was_measured_once(const ReportData& data, const ReportControl& control);
 std::string scene_gaze_text(const SceneGaze& both);  // "sponza, gaze reader"
 
 }  // namespace gazetrace

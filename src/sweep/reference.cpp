@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -106,6 +107,15 @@ void average_frames(const SweepReference& reference, const ColorPipeline& color,
   }
 }
 
+// Pictures may have been lost since: rendered again they are the same, to the bit.
+bool has_pictures(const CertifiedReference& certified, const SweepReference& reference) {
+  return std::all_of(reference.plan.frames.begin(), reference.plan.frames.end(), [&](const FrameRequest& request) {
+    const std::int32_t frame = request.frame;
+    return certified.ev.contains(frame) && fs::is_regular_file(certified.mean_path(frame)) &&
+           fs::is_regular_file(certified.half_path(0, frame)) && fs::is_regular_file(certified.half_path(1, frame));
+  });
+}
+
 }  // namespace
 
 std::string CertifiedReference::half_path(int half, std::int32_t frame) const {
@@ -136,7 +146,10 @@ CertifiedReference ensure_reference(PathTracer& tracer, const SweepReference& re
   const std::string record = certified.directory + "/reference.json";
   if (const auto kept = load_exposures(record, reference.digest)) {
     certified.ev = *kept;
-    return certified;
+    if (has_pictures(certified, reference)) {
+      return certified;
+    }
+    certified.ev.clear();
   }
   for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
     if (observer.tell) {
@@ -166,7 +179,10 @@ ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline
     const MetricPicture a = metric_picture(read_exr_rgb(reference.half_path(0, frame.frame)), color, ev, threads);
     const MetricPicture b = metric_picture(read_exr_rgb(reference.half_path(1, frame.frame)), color, ev, threads);
     if (!scorer) {
-      scorer = std::make_unique<Scorer>(settings, frames, a.light.width_px, a.light.height_px);
+      // The exposures that tests are scored with, those of the whole reference's first frame.
+      ComparisonSettings fixed = settings;
+      fix_flip_exposures(fixed, read_exr_rgb(reference.mean_path(frame.frame)));
+      scorer = std::make_unique<Scorer>(fixed, frames, a.light.width_px, a.light.height_px);
     }
     scorer->add(a, b);
   }

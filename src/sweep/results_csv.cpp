@@ -2,7 +2,9 @@
 // results.csv: a line for each row, metric and part of the picture.
 #include <fmt/format.h>
 
-#include "gazetrace/sweep.hpp"
+#include <algorithm>
+
+#include "sweep/tables.hpp"
 
 namespace gazetrace {
 namespace {
@@ -25,6 +27,12 @@ std::string shown(const Interval& interval) {
   return fmt::format("{:.9g},{},{}", interval.mean, shown(interval.low), shown(interval.high));
 }
 
+// Blank where the row has no such setting: uniform rows know nothing of regions.
+std::string value_of(const NamedValues& settings, const std::string& option) {
+  const auto found = std::find_if(settings.begin(), settings.end(), [&](const auto& s) { return s.first == option; });
+  return found == settings.end() ? std::string() : found->second;
+}
+
 }  // namespace
 
 std::string sweep_csv(const SweepPlan& plan, const SweepResults& results) {
@@ -33,17 +41,22 @@ std::string sweep_csv(const SweepPlan& plan, const SweepResults& results) {
     text += "," + option;
   }
   text +=
-      ",repeats,spp,time_s,time_low_s,time_high_s,speed_up,speed_up_low,speed_up_high,efficiency,metric,part,score,"
+      ",resolution_scale,repeats,samples,spp_mean,rays,peak_mib,time_s,time_low_s,time_high_s,speed_up,speed_up_low,"
+      "speed_up_high,efficiency,metric,part,score,"
       "score_low,score_high,resolved\n";
   for (const SweepRow& row : results.rows) {
     std::string head = fmt::format("{},{},{},{},{},{}", quoted(row.id), quoted(row.scene), quoted(row.gaze),
                                    to_string(row.role), quoted(row.of), quoted(row.label));
-    for (const auto& [option, value] : row.settings) {
-      head += "," + quoted(value);
+    for (const std::string& option : plan.varied) {
+      head += "," + quoted(value_of(row.settings, option));
     }
+    const double samples = mean_of_runs(row, &SweepRun::samples);
     const bool has_speed_up = row.speed_up.mean > 0;
-    head += fmt::format(",{},{:.9g},{},{},{}", row.runs.size(), row.runs.front().samples / row.compared_pixels,
-                        shown(row.time_s), has_speed_up ? shown(row.speed_up) : ",,", shown(row.efficiency));
+    head += fmt::format(",{:.9g},{},{:.15g},{:.9g},{:.15g},{:.9g}", row.resolution_scale, row.runs.size(), samples,
+                        samples / row.compared_pixels, mean_of_runs(row, &SweepRun::rays),
+                        mean_of_runs(row, &SweepRun::peak_mib));
+    head +=
+        fmt::format(",{},{},{}", shown(row.time_s), has_speed_up ? shown(row.speed_up) : ",,", shown(row.efficiency));
     for (const auto& [metric, parts] : row.scores) {
       for (const auto& [part, score] : parts) {
         text += fmt::format("{},{},{},{},{}\n", head, metric, part, shown(score.value), score.resolved ? 1 : 0);

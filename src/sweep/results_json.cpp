@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
-#include "gazetrace/sweep.hpp"
 #include "gazetrace/version.hpp"
+#include "sweep/tables.hpp"
 
 namespace gazetrace {
 namespace {
@@ -66,13 +67,6 @@ Json json_of(const SweepFrame& frame, const SweepRow& row, std::size_t index) {
 }
 
 Json json_of(const SweepRow& row) {
-  const auto mean_of = [&](double SweepRun::*member) {
-    double sum = 0;
-    for (const SweepRun& run : row.runs) {
-      sum += run.*member / static_cast<double>(row.runs.size());
-    }
-    return sum;
-  };
   Json json{{"id", row.id},
             {"scene", row.scene},
             {"gaze", row.gaze},
@@ -83,16 +77,18 @@ Json json_of(const SweepRow& row) {
             {"wrong", text_or_null(row.wrong)},
             {"baselines", row.baselines},
             {"settings", object_of(row.settings)},
+            {"resolution_scale", row.resolution_scale},
             {"reference", row.reference}};
   json["time_s"] = json_of(row.time_s);
   json["time_s"]["values"] = Json::array();
   for (const SweepRun& run : row.runs) {
     json["time_s"]["values"].push_back(number(run.time_s));
   }
-  json["samples"] = mean_of(&SweepRun::samples);
-  json["spp_mean"] = number(mean_of(&SweepRun::samples) / row.compared_pixels);
-  json["rays"] = mean_of(&SweepRun::rays);
-  json["peak_mib"] = number(mean_of(&SweepRun::peak_mib));
+  const double samples = mean_of_runs(row, &SweepRun::samples);
+  json["samples"] = samples;
+  json["spp_mean"] = number(samples / row.compared_pixels);
+  json["rays"] = mean_of_runs(row, &SweepRun::rays);
+  json["peak_mib"] = number(mean_of_runs(row, &SweepRun::peak_mib));
   json["speed_up"] = row.speed_up.mean > 0 ? json_of(row.speed_up) : Json();
   json["efficiency"] = number(row.efficiency);
   json["published"] = Json::array();
@@ -116,9 +112,30 @@ Json json_of(const SweepRow& row) {
   return json;
 }
 
+// By gaze, where every reference says the same of it: clips of another length or picture look at other things.
+template <class T>
+Json agreed(const SweepResults& results, T SweepFloor::*member) {
+  std::map<std::string, T> values;
+  std::set<std::string> doubtful;
+  for (const SweepReferenceResult& reference : results.references) {
+    for (const SweepFloor& floor : reference.floors) {
+      const auto [found, is_new] = values.emplace(floor.gaze, floor.*member);
+      if (floor.*member != found->second || (floor.*member).empty()) {
+        doubtful.insert(floor.gaze);
+      }
+    }
+  }
+  std::erase_if(values, [&](const auto& value) { return doubtful.contains(value.first); });
+  return values;
+}
+
 Json json_of(const SweepReferenceResult& reference) {
   Json floors = Json::object();
+  Json bands = Json::object();
+  Json events = Json::object();
   for (const SweepFloor& floor : reference.floors) {
+    bands[floor.gaze] = floor.band_pixel_share;
+    events[floor.gaze] = floor.event_shares;
     for (const auto& [metric, parts] : floor.scores) {
       for (const auto& [part, value] : parts) {
         floors[floor.gaze][metric][part] = number(value);
@@ -135,7 +152,9 @@ Json json_of(const SweepReferenceResult& reference) {
             {"directory", reference.directory},
             {"png", reference.png},
             {"floor", first},
-            {"floor_by_gaze", std::move(floors)}}}};
+            {"floor_by_gaze", std::move(floors)},
+            {"band_pixel_share_by_gaze", std::move(bands)},
+            {"shares_by_gaze", std::move(events)}}}};
 }
 
 Json viewing_of(const SweepPlan& plan) {
@@ -164,8 +183,9 @@ std::string sweep_json(const SweepPlan& plan, const SweepResults& results) {
   json["varied"] = plan.varied;
   json["repeats"] = plan.measure.repeats;
   json["bands_deg"] = kEccentricityBandsDeg;
-  json["band_pixel_share"] = results.band_pixel_share;
-  json["shares"] = results.event_shares;
+  json["regions_deg"] = plan.measure.comparison.regions.end_deg;
+  json["band_pixel_share"] = agreed(results, &SweepFloor::band_pixel_share);
+  json["shares"] = agreed(results, &SweepFloor::event_shares);
   json["metrics"] = Json::array();
   for (const MetricInfo& info : comparison_metrics()) {
     const auto& wanted = plan.measure.comparison.metrics;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person reads: the table on the terminal, and the paragraph for a paper.
+// What a person reads on the terminal.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "gazetrace/sweep.hpp"
-#include "gazetrace/version.hpp"
 
 namespace gazetrace {
 namespace {
@@ -91,34 +89,6 @@ std::string controls_text(const SweepResults& results) {
   return text.empty() ? text : "\ncontrols with a wrong gaze\n" + text;
 }
 
-std::string list_of(const NamedValues& values) {
-  std::string text;
-  for (const auto& [name, value] : values) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
-  }
-  return text;
-}
-
-std::string scenes_of(const SweepPlan& plan) {
-  std::string text;
-  for (const SweepScene& scene : plan.scenes) {
-    text += fmt::format("{}{} ({})", text.empty() ? "" : "; ", scene.name, scene.description);
-  }
-  return text;
-}
-
-// Of the tests, each once.
-std::string settings_of(const SweepPlan& plan) {
-  std::vector<std::string> settings;
-  for (const SweepTest& test : plan.tests) {
-    const std::string one = fmt::format("{} ({})", test.label, list_of(test.settings));
-    if (std::find(settings.begin(), settings.end(), one) == settings.end()) {
-      settings.push_back(one);
-    }
-  }
-  return fmt::format("{}", fmt::join(settings, "; "));
-}
-
 }  // namespace
 
 std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
@@ -158,56 +128,6 @@ std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
     text += "\nnote: " + note;
   }
   return text + (results.notes.empty() ? "" : "\n");
-}
-
-std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
-  const SweepMeasure& m = plan.measure;
-  const FrameRequest& request = plan.tests.front().plan.frames.front();
-  const SweepReference& reference = plan.references.front();
-  const DisplayPhotometry& p = m.comparison.photometry;
-  std::string text = fmt::format(
-      "Images were rendered with gazetrace {} ({}, {}; build {}) on {}, using {} threads, at {}x{} pixels and {:.4g} "
-      "pixels per degree in the middle of the view. Scenes: {}. Gaze: {}. Settings that did not vary: {}; options that "
-      "are "
-      "not named were at the defaults of this version (results.json lists them). Measured settings: {}. ",
-      kVersion, build_description(), instruction_set(), results.build.substr(0, 12), results.machine, results.threads,
-      request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad), scenes_of(plan), list_of(plan.gazes),
-      list_of(plan.stated_settings), settings_of(plan));
-  text += fmt::format(
-      "The reference of each scene is the mean of {} renderings of {} samples per pixel with independent scramblings "
-      "(seeds {}); no test shares a seed with it. Its own error was measured as the score of the mean of the first "
-      "half "
-      "of these against that of the second; scores better than it are reported as unresolved, and a quarter of the "
-      "halves' mean squared difference, the variance of the reference, was subtracted from squared errors. ",
-      reference.seeds.size(), reference.pipeline.foveation.uniform_spp, fmt::join(reference.seeds, ", "));
-  text += fmt::format(
-      "Every row was rendered {} times with different seeds, in rounds over all rows of a scene whose order "
-      "alternates, "
-      "after {} unmeasured frame(s) of each row; intervals are 95 % by Student's t over the repeats, those of "
-      "speed-ups "
-      "over the logarithms of pairwise ratios. Times are of the sampling map, path tracing, reconstruction and "
-      "temporal "
-      "accumulation (and upscaling, for the low-resolution baseline), without exposure, colour and files; speed-up is "
-      "t_uniform / t_foveated at {} samples per pixel, through the same filter and temporal stage. ",
-      m.repeats, m.warm_up, m.baselines.reference_spp);
-  text += fmt::format(
-      "Efficiency is the expected over the measured time of tracing and reconstruction, the expected one from what a "
-      "sample costs in each region of a frame with {} samples in every pixel. Equal-sample baselines have the test's "
-      "mean number of samples per pixel; rates of equal-time baselines were found by measurement and then measured "
-      "like "
-      "all others. ",
-      m.efficiency_spp);
-  text += fmt::format(
-      "Metrics: {}; display {:g} cd/m2 at a contrast of {:g}:1 under {:g} lux. Eccentricity is the angle between the "
-      "rays to the recorded gaze and to a pixel. Scores are means over frames in which the eye fixates or, where no "
-      "frame is known to be of a fixation, over all with gaze",
-      fmt::join(m.comparison.metrics, ", "), p.peak_cd_m2, p.contrast, p.ambient_lux);
-  if (const auto& wanted = m.comparison.metrics;
-      std::find(wanted.begin(), wanted.end(), "fovvideovdp") != wanted.end()) {
-    text += fmt::format(" ({})", kFovVideoVdpParameters);
-  }
-  text += m.leave_out_s > 0 ? fmt::format(", the first {:g} s of each clip left out.", m.leave_out_s) : ".";
-  return text + "\n";
 }
 
 }  // namespace gazetrace

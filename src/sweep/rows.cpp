@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 namespace gazetrace {
 namespace {
@@ -35,15 +33,8 @@ std::string digest_of(const std::string& base, const std::string& what) {
   return digest_settings({{"base", base}, {"what", what}});
 }
 
-// How samples are spread over the picture: of a uniform row there is nothing of that left but its rate.
-bool spreads_samples(const std::string& option) {
-  constexpr std::array<std::string_view, 9> kPrefixes{
-      "region-", "falloff", "budget-", "angle-reading", "sample-unit", "border-", "retinal-", "contrast-", "saccade-"};
-  return std::any_of(kPrefixes.begin(), kPrefixes.end(),
-                     [&](std::string_view prefix) { return option.starts_with(prefix); });
-}
-
-void make_uniform(PlannedRow& row, double spp) {
+// Of the full size, unless its plan is of another.
+void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   FoveationSettings& foveation = row.pipeline.foveation;
   foveation.falloff = "uniform";
   foveation.retinal_velocity = false;
@@ -55,14 +46,17 @@ void make_uniform(PlannedRow& row, double spp) {
   } else {
     foveation.budget_spp = spp;
   }
+  row.row.is_foveated = false;
+  row.row.resolution_scale = static_cast<double>(size_of(row.plan).width_px) / row.size.width_px;
   NamedValues& settings = row.row.settings;
-  std::erase_if(settings, [](const auto& s) { return spreads_samples(s.first) || s.first == "spp"; });
+  settings = plan.tests[row.test].uniform_settings;
   settings.emplace_back("falloff", "uniform");
   settings.emplace_back(is_whole(spp) ? "spp" : "budget-spp", fmt::format("{:.6g}", spp));
   for (SweepFrame& frame : row.row.frames) {
     frame.rings_px.clear();
   }
-  // A row of equal time stands for itself, even where its rate is that of another.
+  // A row of equal time is rendered apart from rows of other roles even where their rates are the same: its time is
+  // measured anew, not taken from the row that its rate was found by.
   const char* purpose = row.row.role == SweepRole::equal_time ? "equal time, " : "";
   const RasterSize size = size_of(row.plan);
   row.digest =
@@ -121,6 +115,8 @@ PlannedRow test_row(const SweepPlan& plan, std::size_t test) {
   row.gaze = from.gaze;
   row.label = from.label;
   row.settings = from.settings;
+  row.is_foveated = is_foveated(from);
+  row.resolution_scale = from.resolution_scale;
   row.published = from.published;
   row.reference = from.reference;
   row.curve = digest_of(from.uniform_digest, "curve").substr(0, 8);
@@ -152,7 +148,7 @@ PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, SweepRole 
     result.row.of.clear();
   }
   result.plan = plan.tests[test.test].plan;
-  make_uniform(result, spp);
+  make_uniform(plan, result, spp);
   return result;
 }
 
@@ -203,7 +199,7 @@ std::vector<PlannedRow> baselines_of_samples(const SweepPlan& plan, const Planne
     const double small_spp = spp * pixels / (static_cast<double>(small.width_px) * small.height_px);
     PlannedRow row = uniform_row(plan, test, SweepRole::low_resolution, small_spp);
     row.plan = resized(plan.tests[test.test].plan, small);
-    make_uniform(row, small_spp);
+    make_uniform(plan, row, small_spp);
     row.row.label =
         fmt::format("uniform on {}x{} px, {:.4g} spp, upscaled", small.width_px, small.height_px, small_spp);
     rows.push_back(std::move(row));

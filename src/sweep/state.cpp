@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "gazetrace-sweep-state-1";
+constexpr const char* kStateFile = "/state.json";
+constexpr const char* kOtherFolder = "give another --output folder, or --restart to measure all again";
 
 // Numbers come back to the bit; what JSON cannot hold is null.
 Json number(double value) {
@@ -96,14 +98,16 @@ SweepRun run_of(const Json& json) {
 
 // Empty where there is no such file. What is there was written by save() of the same build, or it is damaged.
 template <class Read>
-auto load(const std::string& path, const Read& read) -> std::optional<decltype(read(Json()))> {
+auto load(const std::string& path, const Read& read,
+          const char* remedy = "remove it, and what it held is measured again")
+    -> std::optional<decltype(read(Json()))> {
   if (!fs::is_regular_file(path)) {
     return std::nullopt;
   }
   try {
     return read(Json::parse(read_text_file(path)));
   } catch (const Json::exception&) {
-    throw Error(ErrorKind::input, path, "is damaged", "remove it, and what it held is measured again");
+    throw Error(ErrorKind::input, path, "is damaged", remedy);
   }
 }
 void save(const std::string& path, const Json& json) {
@@ -114,26 +118,41 @@ void save(const std::string& path, const Json& json) {
 }  // namespace
 
 void claim_directory(const std::string& directory) {
-  const std::string path = directory + "/state.json";
-  const Json mine{{"format", kFormat}, {"build", build_digest()}, {"machine", machine_description()}};
-  const auto found = load(path, [](const Json& json) { return json; });
+  const std::string path = directory + kStateFile;
+  const std::vector<std::pair<const char*, std::string>> mine{
+      {"format", kFormat}, {"build", build_digest()}, {"machine", machine_description()}};
+  const auto found = load(
+      path,
+      [&](const Json& json) {
+        std::vector<std::string> values;
+        for (const auto& [what, value] : mine) {
+          values.push_back(json.value(what, std::string()));
+        }
+        return values;
+      },
+      kOtherFolder);
   if (!found) {
-    save(path, mine);
+    Json json;
+    for (const auto& [what, value] : mine) {
+      json[what] = value;
+    }
+    save(path, json);
     return;
   }
-  for (const char* what : {"format", "build", "machine"}) {
-    if (found->value(what, std::string()) != mine.at(what).get<std::string>()) {
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    const auto& [what, value] = mine[i];
+    if ((*found)[i] != value) {
       throw Error(ErrorKind::input, directory,
                   fmt::format("holds measurements of another {} ('{}', this is '{}'), and the two do not mix", what,
-                              found->value(what, std::string()), mine.at(what).get<std::string>()),
-                  "give another --output folder, or --restart to measure all again");
+                              (*found)[i], value),
+                  kOtherFolder);
     }
   }
 }
 
+// A state that is damaged is thrown away like any other.
 void clear_directory(const std::string& directory) {
-  const auto found = load(directory + "/state.json", [](const Json& json) { return json; });
-  if (!found) {
+  if (!fs::is_regular_file(directory + kStateFile)) {
     return;
   }
   for (const char* name :
@@ -176,15 +195,16 @@ void save_scores(const std::string& path, const ScoreTable& scores) {
 }
 
 std::optional<std::map<std::int32_t, double>> load_exposures(const std::string& path, const std::string& digest) {
-  const auto found = load(path, [](const Json& json) { return json; });
-  if (!found || found->value("digest", std::string()) != digest) {
-    return std::nullopt;
-  }
-  std::map<std::int32_t, double> ev;
-  for (const Json& frame : found->at("exposures")) {
-    ev[frame.at("frame")] = frame.at("ev");
-  }
-  return ev;
+  const auto found = load(path, [&](const Json& json) {
+    std::map<std::int32_t, double> ev;
+    if (json.at("digest") == digest) {
+      for (const Json& frame : json.at("exposures")) {
+        ev[frame.at("frame")] = frame.at("ev");
+      }
+    }
+    return ev;
+  });
+  return found && found->empty() ? std::nullopt : found;
 }
 void save_exposures(const std::string& path, const std::string& digest, const std::map<std::int32_t, double>& ev) {
   Json exposures = Json::array();

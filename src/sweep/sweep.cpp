@@ -65,10 +65,12 @@ class SceneSweep {
     }
   }
 
-  // Adds a row, unless one of the same pixels stands there for the same gaze. Returns its id.
+  // Adds a row, unless one of the same pixels stands there for the same gaze. Returns its id. Every test has a row of
+  // equal time of its own, whose time is held against that test's.
   std::string add(PlannedRow row) {
     for (const PlannedRow& other : rows_) {
-      if (other.digest == row.digest && other.row.gaze == row.row.gaze && other.row.reference == row.row.reference) {
+      if (row.row.role != SweepRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
+          other.row.reference == row.row.reference) {
         return other.row.id;
       }
     }
@@ -119,11 +121,15 @@ class SceneSweep {
     return rows;
   }
 
-  // By what these rows show and how it is scored: the same work has the same key in a longer plan.
+  // By what these rows show, how it is scored and what its time depends on: the same work has the same key in a longer
+  // plan, unless that has more rows of these pixels.
   [[nodiscard]] std::string key_of(const std::vector<const PlannedRow*>& rows) const {
     NamedValues parts{{"pixels", rows.front()->digest},
                       {"reference", digest_of_reference(*references_.at(rows.front()->row.reference))},
-                      {"seed", std::to_string(rows.front()->pipeline.trace.seed)}};
+                      {"seed", std::to_string(rows.front()->pipeline.trace.seed)},
+                      {"threads", std::to_string(resolve_threads(rows.front()->pipeline.threads))},
+                      {"bvh", std::to_string(static_cast<int>(plan_.scenes[scene_].tracer.bvh_quality))},
+                      {"warm-up", std::to_string(plan_.measure.warm_up)}};
     for (const PlannedRow* row : rows) {
       parts.emplace_back("scores " + row->row.gaze, scoring_digest(plan_.measure, row->row.frames));
     }
@@ -134,9 +140,7 @@ class SceneSweep {
   }
 
   void warm_up(const PlannedRow& row) {
-    const SweepRole role = row.row.role;
-    const bool by_others = role == SweepRole::uniform_reference_rate || role == SweepRole::uniform_rate;
-    if (plan_.measure.warm_up > 0 && !by_others && warm_.insert(row.digest).second) {
+    if (plan_.measure.warm_up > 0 && warm_.insert(row.digest).second) {
       time_row(*tracer_, colors_.at(row.row.reference), row, 0, static_cast<std::size_t>(plan_.measure.warm_up));
     }
   }
@@ -270,11 +274,11 @@ class SceneSweep {
           const FramePlan& plan = plan_.tests[row.test].plan;
           const std::string digest = digest_settings({{"reference", digest_of_reference(*reference)},
                                                       {"scores", scoring_digest(plan_.measure, row.row.frames)}});
-          result.floors.push_back({row.row.gaze, ensure_floor(certified, colors_.at(key),
-                                                              comparison_of(plan_.measure.comparison, plan,
-                                                                            row.row.frames, row.pipeline.fps),
-                                                              row.row.frames, digest)});
-          add_band_shares(row.row, plan);
+          const ComparisonSettings comparison =
+              comparison_of(plan_.measure.comparison, plan, row.row.frames, row.pipeline.fps);
+          result.floors.push_back({row.row.gaze,
+                                   ensure_floor(certified, colors_.at(key), comparison, row.row.frames, digest),
+                                   band_shares(row.row, plan), event_shares(row.row.frames)});
         }
       }
       results_.references.push_back(std::move(result));
@@ -287,7 +291,8 @@ class SceneSweep {
     }
   }
 
-  void add_band_shares(const SweepRow& row, const FramePlan& plan) {
+  // Of the pixels of frames with gaze; empty without.
+  [[nodiscard]] std::vector<double> band_shares(const SweepRow& row, const FramePlan& plan) const {
     std::vector<double> shares(kEccentricityBandsDeg.size());
     double pixels = 0;
     for (std::size_t f = 0; f < row.frames.size(); ++f) {
@@ -301,12 +306,13 @@ class SceneSweep {
         pixels += static_cast<double>(bands.band.pixels.size());
       }
     }
-    if (pixels > 0) {
-      for (double& share : shares) {
-        share /= pixels;
-      }
-      results_.band_pixel_share[row.gaze] = shares;
+    if (pixels == 0) {
+      return {};
     }
+    for (double& share : shares) {
+      share /= pixels;
+    }
+    return shares;
   }
 
   const SweepPlan& plan_;

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
-#include "sweep/frames.hpp"
 #include "sweep/scorer.hpp"
 
 namespace gazetrace {
@@ -51,6 +51,14 @@ bool is_uniform(SweepRole role) {
          role == SweepRole::equal_time || role == SweepRole::uniform_rate;
 }
 
+// On the curves of uniform and of foveated rendering; what is rendered on fewer pixels is on neither.
+bool is_on_uniform_curve(const SweepRow& row) {
+  return row.resolution_scale == 1 && (is_uniform(row.role) || (row.role == SweepRole::test && !row.is_foveated));
+}
+bool is_on_foveated_curve(const SweepRow& row) {
+  return row.resolution_scale == 1 && row.role == SweepRole::test && row.is_foveated;
+}
+
 std::optional<QualityAtTime> point_of(const SweepRow& row, const std::string& metric) {
   const auto parts = row.scores.find(metric);
   if (parts == row.scores.end() || !parts->second.contains("whole")) {
@@ -87,13 +95,22 @@ void add_ratios(std::vector<SweepRow>& rows) {
 }
 
 void add_fronts(const std::vector<std::string>& metrics, SweepResults& results) {
+  std::map<std::string, std::set<std::string>> references;  // by place
+  for (const SweepRow& row : results.rows) {
+    references[place_of(row)].insert(row.reference);
+  }
+  const auto front_of = [&](const SweepRow& row) {
+    const std::string place = place_of(row);
+    return references.at(place).size() == 1 ? place : place + "/" + row.reference;
+  };
   for (const std::string& metric : metrics) {
     std::map<std::string, std::pair<std::vector<QualityAtTime>, std::vector<std::string>>> by_place;
     for (const SweepRow& row : results.rows) {
       const auto point = point_of(row, metric);
       if (point && row.role != SweepRole::wrong_gaze) {
-        by_place[place_of(row)].first.push_back(*point);
-        by_place[place_of(row)].second.push_back(row.id);
+        auto& [points, ids] = by_place[front_of(row)];
+        points.push_back(*point);
+        ids.push_back(row.id);
       }
     }
     for (const auto& [place, points] : by_place) {
@@ -127,9 +144,9 @@ void add_fixed_quality(const SweepMeasure& measure, SweepResults& results) {
     for (const SweepRow& row : results.rows) {
       Curves& of_row = curves[place_of(row) + "/" + row.reference + "/" + row.curve];
       const auto point = point_of(row, metric);
-      if (point && is_uniform(row.role)) {
+      if (point && is_on_uniform_curve(row)) {
         of_row.uniform.push_back(*point);
-      } else if (point && row.role == SweepRole::test) {
+      } else if (point && is_on_foveated_curve(row)) {
         of_row.foveated.push_back(*point);
         of_row.any = &row;
       }
@@ -232,6 +249,14 @@ void add_notes(const SweepPlan& plan, SweepResults& results) {
 
 }  // namespace
 
+double mean_of_runs(const SweepRow& row, double SweepRun::*member) {
+  double sum = 0;
+  for (const SweepRun& run : row.runs) {
+    sum += run.*member / static_cast<double>(row.runs.size());
+  }
+  return sum;
+}
+
 std::map<std::string, std::map<std::string, SweepScore>> row_scores(const std::vector<SweepRun>& runs,
                                                                     const ScoreTable& floor) {
   std::map<std::string, std::map<std::string, std::vector<double>>> values;
@@ -274,12 +299,14 @@ void complete_tables(const SweepPlan& plan, SweepResults& results) {
         }
       }
     }
-    const std::map<std::string, double> shares = event_shares(row.frames);
-    if (!results.event_shares.contains(row.gaze) && !shares.contains("fixation") && shares.size() > 0) {
-      results.notes.push_back(
-          fmt::format("gaze {}: no frame is known to be of a fixation; all that have gaze are scored", row.gaze));
+  }
+  for (const SweepReferenceResult& reference : results.references) {
+    for (const SweepFloor& floor : reference.floors) {
+      if (!floor.event_shares.contains("fixation") && !floor.event_shares.empty()) {
+        results.notes.push_back(
+            fmt::format("gaze {}: no frame is known to be of a fixation; all that have gaze are scored", floor.gaze));
+      }
     }
-    results.event_shares[row.gaze] = shares;
   }
   add_ratios(results.rows);
   add_fronts(plan.measure.comparison.metrics, results);

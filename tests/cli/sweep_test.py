@@ -262,6 +262,15 @@ class Sweep(harness.CliTest):
             ("spp = 16", "spp = 16\nseed = 1", None, ["seeds", "reference"]),
             ('"flip", "fov', '"flop", "fov', None, ["did you mean 'flip'"]),
             ('quality = ["flip=0.05", "fovvideovdp=9.5"]', 'quality = ["ssim=0.9"]', None, ["ssim"]),
+            ("region-samples = [[16, 4, 4], [8, 2, 1]]", 'gaze-offset = ["0s", "100ms"]', None, ["looks elsewhere", "[[gaze]]"]),
+            ("region-samples = [[16, 4, 4], [8, 2, 1]]", "gaze-scale = [1, 2]", None, ["looks elsewhere", "[[gaze]]"]),
+            ("repeats = 2", 'leave-out = "10s"', "repeats = 2", ["3 frames", "10 s", "none is scored"]),
+            ("repeats = 2", "peak-cd-m2 = -5", "repeats = 2", ["peak-cd-m2", "-5"]),
+            ("repeats = 2", "peak-cd-m2 = inf", "repeats = 2", ["peak-cd-m2"]),
+            ("repeats = 2", "contrast = 1", "repeats = 2", ["contrast", "above 1"]),
+            ("repeats = 2", "ambient-lux = -1", "repeats = 2", ["ambient-lux"]),
+            ("repeats = 2", "reflectivity = 1.5", "repeats = 2", ["reflectivity", "0..1"]),
+            ("repeats = 2", "relmse-epsilon = -1", "repeats = 2", ["relmse-epsilon"]),
             ('frames = "1-3"', 'frames = "1,3"', None, ["consecutive"]),
             ('title = "a box"', "title = ", 'title = "a box"', ["toml"]),
             ("[grid]", "[[grid]]", None, ["[grid]"]),
@@ -275,6 +284,25 @@ class Sweep(harness.CliTest):
                     self.assertIn(f"bad.toml:{line[at]}:", message)
                 else:
                     self.assertIn("bad.toml", message)
+        metrics = 'metrics = ["mse", "flip", "fovvideovdp"]'
+        # What a metric cannot score is told with the line of the metrics, before anything is rendered.
+        for wanted, change, words in [
+            ('"flicker"', ("fps = 12", "fps = 12"), ["flicker", "whole seconds", "3 frames at 12"]),
+            ('"temporal_bias"', ("fps = 12", "fps = 12"), ["temporal_bias", "whole seconds"]),
+            ('"flicker"', ('frames = "1-3"', 'frames = "1"'), ["flicker", "whole seconds"]),
+            ('"flicker"', ("fps = 12", "fps = 3"), ["flicker", "3 frames a second"]),
+            ('"ms_ssim"', ("fps = 12", "fps = 12"), ["ms_ssim", "176x176", "64x36"]),
+            ('"fovvideovdp"', ("fps = 12", "fps = 2"), ["fovvideovdp", "2 frames a second"]),
+            ('"hdr_flip"]\nflip-start = 2\nflip-stop = 1\nflip-count = 2\n#', ("fps = 12", "fps = 12"), ["hdr_flip", "no range"]),
+        ]:
+            with self.subTest(metrics=wanted, change=change[1]):
+                text = PLAN.replace(*change).replace(metrics, f'metrics = ["mse", {wanted}]')
+                self.plan(text.replace('quality = ["flip=0.05", "fovvideovdp=9.5"]', ""), "bad.toml")
+                message = self.assert_refused(["sweep", "bad.toml", "-o", "out"], words)
+                self.assertIn(f"bad.toml:{line[metrics]}:", message)
+        # Where the sampling looks may vary; that it does not look there is what is measured.
+        self.plan(PLAN.replace("region-samples = [[16, 4, 4], [8, 2, 1]]", 'gaze-latency = ["0s", "100ms"]'))
+        self.run_ok("sweep", "plan.toml", "--dry-run")
         self.assert_refused(["sweep", "gone.toml"], ["gone.toml", "cannot be opened"])
         self.assert_refused(["sweep"], ["no plan"])
 

@@ -305,6 +305,91 @@ TEST(ReportFindings, SpeedAndWhatItIsWorth) {
   EXPECT_THAT(findings.caveats, Contains(HasSubstr("is > 3, uniform never reaches it")));
 }
 
+ordered_json control(const char* metric, double right, double wrong) {
+  return {{"scene", "box"},        {"gaze", "glide"},      {"metric", metric},     {"of", "t"},
+          {"wrong", "mirrored"},   {"right_score", right}, {"wrong_score", wrong}, {"sensitive", false},
+          {"why", "it was <said>"}};
+}
+
+// Worse is more for some metrics and less for others; one repeat, or a loss within their spread, decides nothing.
+TEST(ReportFindings, ControlsMayBeUndecided) {
+  ordered_json json = results({row("t", "test", score(0.1, 0.09, 0.11))});
+  json["metrics"].push_back({{"name", "psnr"}, {"better", "higher"}});
+  json["rows"][0]["scores"]["psnr"]["whole"] = score(30, 29, 31);
+  const auto verdict = [&](const char* metric, double right, double wrong) {
+    json["controls"] = ordered_json::array({control(metric, right, wrong)});
+    const ReportData data = read(json);
+    return control_verdict(data, data.controls[0]);
+  };
+  EXPECT_EQ(verdict("flip", 0.1, 0.13), ControlVerdict::undecided);
+  EXPECT_EQ(verdict("flip", 0.1, 0.09), ControlVerdict::insensitive);
+  EXPECT_EQ(verdict("flip weighted", 0.1, 0.13), ControlVerdict::undecided);
+  EXPECT_EQ(verdict("psnr", 30, 29), ControlVerdict::undecided);
+  EXPECT_EQ(verdict("psnr", 30, 31), ControlVerdict::insensitive);
+  json["rows"][0]["scores"]["psnr"]["whole"] = {{"mean", 30}, {"low", nullptr}, {"high", nullptr}, {"resolved", true}};
+  EXPECT_EQ(verdict("psnr", 30, 31), ControlVerdict::undecided);
+  const ReportData data = read(json);
+  EXPECT_THAT(report_findings(data).caveats,
+              Contains(testing::AllOf(HasSubstr("psnr is 31 when the gaze is mirrored, against 30 when it is right; "
+                                                "whether it notices is undecided (it was <said>)"),
+                                      Not(HasSubstr("insensitive")))));
+  const std::string html = tables_html(data);
+  EXPECT_THAT(html, HasSubstr("<td>undecided</td><td class=\"words\">it was &lt;said&gt;</td>"));
+  EXPECT_THAT(html, HasSubstr("rendered with a wrong gaze and scored with the right one"));
+  json["controls"][0]["sensitive"] = true;
+  EXPECT_THAT(report_findings(read(json)).caveats, Not(Contains(HasSubstr("when the gaze is"))));
+}
+
+TEST(ReportFindings, WhichFramesAreScored) {
+  ordered_json json = results({row("t", "test", {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}})});
+  const auto is_said = [&](const ordered_json& shares, const char* words) {
+    json["shares"] = {{"glide", shares}};
+    EXPECT_THAT(report_findings(read(json)).caveats,
+                Contains(testing::AllOf(HasSubstr("no metric has a score"), testing::EndsWith(words))));
+  };
+  is_said({{"fixation", 0.5}, {"blink", 0.5}}, "Scores are of fixations.");
+  is_said({{"fixation", 0.0}, {"in-flight", 1.0}}, "No frame is a fixation: scores are of the others that are seen.");
+  is_said({{"in-flight", 1.0}}, "No frame is a fixation: scores are of the others that are seen.");
+}
+
+// Two sizes of one scene and gaze are measured against a reference each.
+TEST(ReportTables, FloorsAreThoseOfEachRunsReference) {
+  ordered_json small = row("s", "test", score(0.1, 0.09, 0.11));
+  ordered_json large = row("l", "test", score(0.2, 0.19, 0.21));
+  small["reference"] = "box-1";
+  large["reference"] = "box-2";
+  ordered_json json = results({small, large});
+  const auto scene = [](const char* key, double floor) -> ordered_json {
+    return {{"name", "box"}, {"reference", {{"key", key}, {"floor", {{"flip", {{"whole", floor}}}}}}}};
+  };
+  json["scenes"] = {scene("box-2", 0.151), scene("box-1", 0.121)};
+  const ReportData data = read(json);
+  const std::string csv = report_csv(data);
+  EXPECT_THAT(csv, HasSubstr("flip,whole,0.1,0.09,0.11,1,0.121\n"));
+  EXPECT_THAT(csv, HasSubstr("flip,whole,0.2,0.19,0.21,1,0.151\n"));
+  const std::string html = tables_html(data);
+  EXPECT_THAT(html, HasSubstr("reference box-1 from itself"));
+  EXPECT_THAT(html, HasSubstr("reference box-2 from itself"));
+  EXPECT_THAT(html, testing::AllOf(HasSubstr("<td>0.121</td>"), HasSubstr("<td>0.151</td>")));
+  const std::vector<ReportPlot> plots = report_plots(data);
+  ASSERT_FALSE(plots.empty());
+  EXPECT_THAT(plots[0].svg,
+              testing::AllOf(HasSubstr("reference box-1 from itself"), HasSubstr("reference box-2 from itself")));
+  // A key that no reference has is nobody's floor.
+  json["rows"][0]["reference"] = "box-3";
+  EXPECT_THAT(report_csv(read(json)), HasSubstr("flip,whole,0.1,0.09,0.11,1,\n"));
+}
+
+TEST(ReportMethods, BracesInNamesAreText) {
+  ordered_json json = results({row("t", "test", score(0.1, 0.09, 0.11))});
+  json["rows"][0]["label"] = "run {x} {}";
+  json["rows"][0]["settings"] = {{"spp", 4}};
+  json["scenes"][0]["name"] = "a {0:d} scene";
+  const std::string methods = report_methods(read(json));
+  EXPECT_THAT(methods, HasSubstr("run {x} {} (box, gaze glide): spp 4."));
+  EXPECT_THAT(methods, HasSubstr("Reference of a {0:d} scene: spp 64."));
+}
+
 TEST(ReportFamilies, BaselinesThatSeveralTestsShare) {
   ordered_json first = row("t", "test", score(0.1, 0.09, 0.11));
   ordered_json second = row("t2", "test", score(0.1, 0.09, 0.11));

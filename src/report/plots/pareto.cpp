@@ -47,7 +47,6 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
   }
   const std::vector<double> times = plotted_range(all_times);
   const std::vector<double> scores = plotted_range(all_scores);
-  const std::optional<double> floor = find_floor(data, both, metric.name, "whole");
   constexpr double kLeft = 84, kTop = 34, kBottom = 350;
   const double right = kPlotWidth - 26;
   const PlotScale x(times, kLeft, right, wants_log(times));
@@ -60,11 +59,17 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
   svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
   svg.axes(x, y, kLeft, kTop, right, kBottom, "time of a frame [s]",
            metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
-  if (floor && y.at(*floor) > kTop && y.at(*floor) < kBottom) {
-    svg.add(fmt::format(
-        "<path class=\"line\" stroke=\"#1c1c1c\" stroke-dasharray=\"2 4\" fill=\"none\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>",
-        kLeft, y.at(*floor), right));
-    svg.text(right - 4, y.at(*floor) - 5, "reference from itself", "end", " font-size=\"11\"");
+  const std::vector<const ReportScene*> scenes = find_scenes(data, both);
+  for (const ReportScene* const scene : scenes) {
+    const std::optional<double> floor = find_floor(scene, both.gaze, metric.name, "whole");
+    if (floor && y.at(*floor) > kTop && y.at(*floor) < kBottom) {
+      svg.add(
+          fmt::format("<path class=\"line\" stroke=\"#1c1c1c\" stroke-dasharray=\"2 4\" fill=\"none\" "
+                      "d=\"M{:.1f} {:.1f}H{:.1f}\"/>",
+                      kLeft, y.at(*floor), right));
+      svg.text(right - 4, y.at(*floor) - 5, reference_text(*scene, scenes.size()) + " from itself", "end",
+               " font-size=\"11\"");
+    }
   }
   // The front that the sweep found, through its points in the order of time.
   const auto metric_fronts = data.pareto.find(metric.name);
