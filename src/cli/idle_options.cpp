@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ std::vector<IdleGroup> idle_groups(const JobSettings& job) {
   const bool hard_regions = regions && fov.border_blend_deg == 0;
   const bool reproject = job.accumulate.mode == AccumulateMode::reproject;
   return {
+      {!has_gaze && !uniform, "without gaze", {"falloff"}},
+      {!has_gaze,
+       "without gaze",
+       {"region-samples", "region-blocks", "region-angles", "angle-reading", "sample-unit", "region-shape",
+        "border-blend-deg", "block-samples", "max-block", "density-floor", "contrast-strength", "gaze-uncertainty",
+        "gaze-accuracy", "gaze-precision"}},
       {!reproject,
        "without --accumulate reproject",
        {"accumulate-order", "accumulate-frames", "accumulate-blend", "accumulate-clip", "accumulate-reset-saccades",
@@ -39,7 +46,6 @@ std::vector<IdleGroup> idle_groups(const JobSettings& job) {
        "without a gaze log",
        {"gaze-mode", "gaze-missing", "gaze-max-age", "gaze-max-gap", "gaze-offset", "gaze-scale", "gaze-start",
         "gaze-latency", "gaze-anchor", "gaze-process", "retinal-velocity", "saccade-density"}},
-      {!has_gaze, "without gaze", {"gaze-uncertainty", "gaze-accuracy", "gaze-precision"}},
       {has_gaze && uniform, "with --falloff uniform", {"gaze-uncertainty"}},
   };
 }
@@ -48,10 +54,11 @@ std::vector<IdleGroup> idle_groups(const JobSettings& job) {
 
 Warnings idle_option_warnings(const OptionTable& table, const JobSettings& job) {
   Warnings warnings;
+  std::set<std::string> said;
   for (const IdleGroup& group : idle_groups(job)) {
     for (const std::string& name : group.options) {
       const OptionEntry* entry = group.idle ? table.find(name) : nullptr;
-      if (entry != nullptr && *entry->given && entry->values() != entry->defaults) {
+      if (entry != nullptr && *entry->given && entry->values() != entry->defaults && said.insert(name).second) {
         warnings.push_back(fmt::format("--{} does nothing {}", name, group.why));
       }
     }

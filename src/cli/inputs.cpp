@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_inspect.hpp"
@@ -374,6 +375,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
     }
   }
   inputs.plan = plan_frames(camera, log, settings, inputs.steering ? &*inputs.steering : nullptr);
+  inputs.plan_settings = std::move(settings);
   if (inputs.plan.ages && !job.gaze_at) {
     inputs.decisions.emplace_back("effective gaze age", gaze_ages_text(*inputs.plan.ages));
   }
@@ -388,6 +390,12 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
         "--filter {} takes edges, texture, what shines and the background from a pinhole at one instant: {} "
         "is missing there, --filter linear or tent keep it",
         job.filter, lost));
+  }
+  if (job.trace.filter != PixelFilter::box && filter_needs_guides(filter_of(job))) {
+    inputs.warnings.push_back(
+        fmt::format("--filter {} takes edges, texture and what shines from a box of one pixel: --pixel-filter "
+                    "blackman-harris is missing there, --filter linear or tent keep it",
+                    filter_of(job)));
   }
   if (log != nullptr) {
     append(inputs.warnings, log->warnings);

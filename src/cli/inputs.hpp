@@ -24,6 +24,7 @@ struct Inputs {
   std::unique_ptr<Scene> scene;
   std::optional<GazeLog> gaze;
   std::optional<ProcessedGaze> steering;  // what --gaze-process made of it
+  PlanSettings plan_settings;
   FramePlan plan;
   std::vector<std::int32_t> frames;
   // What was decided where the settings left a choice: "environment" -> "built-in sky, ...".

@@ -124,6 +124,8 @@ std::vector<std::string> existing(const std::vector<std::string>& paths) {
 // Beyond this no picture has a meaning, and 2^stops times a bright light still fits a float.
 constexpr double kMaxStops = 64;
 constexpr int kMaxThreads = 1024;
+// So many screens away the eye looks along the screen, and squares of pixels are still numbers.
+constexpr double kMaxGazeScreens = 1000;
 
 void check_stops(const char* option, double stops) {
   if (!(std::fabs(stops) <= kMaxStops)) {
@@ -251,6 +253,11 @@ void check_settings(const JobSettings& job) {
     throw Error(ErrorKind::usage, job.gaze_max_age.ns < 0 ? "--gaze-max-age" : "--gaze-max-gap",
                 "an age cannot be negative");
   }
+  if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
+    throw Error(ErrorKind::usage, "--gaze-at",
+                fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
+                "give fractions of the screen, 0..1 on it");
+  }
   gaze_steps_of(job.gaze_process);  // names and values of the steps
   if (!(job.gaze_scale > 0)) {
     throw Error(ErrorKind::usage, "--gaze-scale", "the scale must be positive");
@@ -279,10 +286,11 @@ std::string filter_of(const JobSettings& job) {
   if (job.filter != "auto") {
     return job.filter;
   }
+  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;  // without any all frames are uniform
   const bool blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs();
   const bool accumulates_sites =
       job.accumulate.mode == AccumulateMode::reproject && job.accumulate.order == AccumulateOrder::before;
-  return job.foveation.falloff == "uniform" || blurs || accumulates_sites || job.enhance_contrast > 0 ||
+  return !has_gaze || job.foveation.falloff == "uniform" || blurs || accumulates_sites || job.enhance_contrast > 0 ||
                  job.trace.samples
              ? "linear"
              : "guided";

@@ -44,7 +44,7 @@ const Preset& preset_by_name(const std::string& name, const std::string& place) 
 }  // namespace
 
 const std::vector<Preset>& presets() {
-  static const std::vector<Preset> kPresets{
+  static const std::vector<Preset> table{
       {"paper", "the source paper, its angles as diameters: the reading that fits its timings",
        paper_settings("full-angle")},
       {"paper-radius", "the source paper, its angles as eccentricities", paper_settings("eccentricity")},
@@ -69,7 +69,7 @@ const std::vector<Preset>& presets() {
         {"clamp-indirect", "0"},
         {"exr-pixels", "float"}}},
   };
-  return kPresets;
+  return table;
 }
 
 void add_preset_option(OptionTable& table, std::string& name) {

@@ -152,8 +152,15 @@ void add_reconstruction_options(OptionTable& table, JobSettings& job) {
   table.value(
       "--filter", job.filter, "NAME",
       "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which passes "
-      "single pixels through, for uniform ones, with --aperture or --shutter, --sample-range, --enhance-contrast "
-      "and --accumulate-order before. What guided takes from first hits shows no blur of lens and shutter",
+      "single pixels through, for uniform ones (without gaze all are), with --aperture or --shutter, --sample-range, "
+      "--enhance-contrast and --accumulate-order before. One filter for all frames: where --gaze-missing uniform makes "
+      "some of a log's uniform, they are guided, too. What guided takes from first hits shows no blur of lens and "
+      "shutter",
+      kPixels);
+  table.value(
+      "--pass-through", job.foveation.pass_through_samples, "SPP",
+      "Pixels with at least so many samples keep their own mean in every filter; 0: guided and oidn smooth all; "
+      "default: in a fovea of 8 and more its full rate, at most 16; none in uniform frames",
       kPixels);
   table.value(
       "--enhance-contrast", job.enhance_contrast, "0..1",
@@ -206,10 +213,12 @@ void add_trace_options(OptionTable& table, JobSettings& job) {
   table.value("--clamp-indirect", job.trace.clamp_indirect, "RADIANCE",
               "Most that a sample may add after more than one scattering event: fewer fireflies, with bias; 0: off",
               kPixels);
-  table.value("--pixel-filter", job.trace.filter, choices<PixelFilter>(), "Spread of the samples of a pixel", kPixels);
+  table.value("--pixel-filter", job.trace.filter, choices<PixelFilter>(),
+              "Spread of the samples of a pixel; --filter guided has edges and texture of a box in any case", kPixels);
   table.value(
       "--pixel-cone", job.trace.pixel_cone, "PIXELS",
-      "Texture detail at first hits: width of a camera ray's footprint; 0: full resolution, averaged by the samples",
+      "Texture detail at first hits: width of a camera ray's footprint; 0: full resolution, averaged by the samples; "
+      "with --filter guided never less than 1",
       kPixels);
   table.value("--bounce-cone", job.trace.bounce_cone_rad, "RADIANS",
               "Texture detail after bounces: how much a diffuse bounce widens the footprint; 0: not at all", kPixels);

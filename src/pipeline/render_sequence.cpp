@@ -54,6 +54,13 @@ void count_first_look(const TraceStats& stats, TimingRow& row) {
   }
 }
 
+// One ray stands for a pixel: texture of less than a pixel's width would be noise, which no sample averages.
+GuideSettings guide_settings(const TraceSettings& trace) {
+  return {.pixel_cone = std::max(trace.pixel_cone, GuideSettings{}.pixel_cone),
+          .diffuse = trace.diffuse,
+          .edge_rays = kEdgeRays};
+}
+
 Frame plain_frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides, const FrameRequest& request,
                   const PipelineSettings& settings, TemporalHistory& history, TimingRow& row) {
   Frame dense =
@@ -123,8 +130,7 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
   std::optional<Guides> guides;
   if (filter_needs_guides(settings.filter)) {
     guides = timed(row.guides_ms, [&] {
-      return tracer.guides(request.camera, request.width_px, request.height_px,
-                           {.diffuse = settings.trace.diffuse, .edge_rays = kEdgeRays});
+      return tracer.guides(request.camera, request.width_px, request.height_px, guide_settings(settings.trace));
     });
   }
   const Guides* of_filter = guides ? &*guides : nullptr;

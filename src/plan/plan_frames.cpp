@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gazetrace/plan.hpp"
+#include "gazetrace/plan_join.hpp"
 #include "plan/gaze_geometry.hpp"
 #include "plan/gaze_motion.hpp"
 
@@ -99,15 +100,29 @@ std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
   return __builtin_sub_overflow(t_ns, by_ns, &result) ? std::numeric_limits<std::int64_t>::min() : result;
 }
 
-// On the log's clock, the time whose gaze steered the frame before this one; of the first frame, as if those before it
-// came as far apart as those after it.
-std::int64_t gaze_time_before_ns(const GazeLog& log, const PlanSettings& settings, std::size_t index) {
-  const std::vector<std::int32_t>& frames = settings.frames;
+// Of the first frame itself where none comes before it; frames before it are taken to be as far apart as those after
+// it.
+std::int32_t likely_predecessor(const std::vector<std::int32_t>& frames, std::size_t index) {
   const std::int32_t frame = frames[index];
   const std::size_t next = std::max<std::size_t>(index, 1);
   const std::int32_t step = next < frames.size() ? frames[next] - frames[next - 1] : 1;
-  const std::int64_t t_ns = frame > step ? frame_time_ns(settings, frame - step) : frame_time_ns(settings, frame);
-  return log_time_ns(log, settings.gaze, earlier(t_ns, settings.gaze_latency_ns));
+  return frame > step ? frame - step : frame;
+}
+
+void say_what_the_eye_did(FrameRequest& request, std::int32_t frame_before, const GazeMotion& motion,
+                          const GazeLog& log, const PlanSettings& settings) {
+  const std::int64_t steered_ns = earlier(frame_time_ns(settings, frame_before), settings.gaze_latency_ns);
+  const std::int64_t since_ns = log_time_ns(log, settings.gaze, steered_ns);
+  request.saccade_since_last_frame = motion.did(EyeMovement::saccade, since_ns, request.gaze_render.t_log_ns);
+  request.blink_since_last_frame = motion.did(EyeMovement::blink, since_ns, request.gaze_render.t_log_ns);
+}
+
+// A clock that begins with the log's first sample, also where processing has lost it.
+PlanSettings with_clock(const GazeLog* log, PlanSettings settings) {
+  if (log != nullptr && !settings.gaze.event_ns && !log->samples.empty()) {
+    settings.gaze.event_ns = log->samples.front().t_ns;
+  }
+  return settings;
 }
 
 }  // namespace
@@ -115,10 +130,7 @@ std::int64_t gaze_time_before_ns(const GazeLog& log, const PlanSettings& setting
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& given,
                       const ProcessedGaze* steering) {
   check_settings(given);
-  PlanSettings settings = given;
-  if (log != nullptr && !settings.gaze.event_ns && !log->samples.empty()) {
-    settings.gaze.event_ns = log->samples.front().t_ns;  // also where processing has lost the first sample
-  }
+  const PlanSettings settings = with_clock(log, given);
   const GazeLog* const steering_log = steering != nullptr ? &steering->log : log;
   const GazeMotion motion(log, settings);
   const GazeMotion steering_motion = steering_log == log ? motion : GazeMotion(steering_log, settings);
@@ -160,9 +172,7 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
       request.gaze_uncertainty_deg = steering_motion.uncertainty_deg(request);
       request.eye_speed_deg_s = motion.speed_deg_s(request.gaze_render.t_log_ns);
       request.eye_in_saccade = motion.in_saccade(request.gaze_render.t_log_ns);
-      const std::int64_t since_ns = gaze_time_before_ns(*log, settings, plan.frames.size());
-      request.saccade_since_last_frame = motion.did(EyeMovement::saccade, since_ns, request.gaze_render.t_log_ns);
-      request.blink_since_last_frame = motion.did(EyeMovement::blink, since_ns, request.gaze_render.t_log_ns);
+      say_what_the_eye_did(request, likely_predecessor(settings.frames, plan.frames.size()), motion, *log, settings);
       geometry.settle(request.gaze_render);
       geometry.settle(request.gaze_true);
       request.gaze_direction_render = geometry.direction(request.gaze_render);
@@ -176,6 +186,13 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
   plan.ages = gaze_ages(plan, settings);
   warn_about_latency(settings, plan.warnings);
   return plan;
+}
+
+void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings) {
+  if (!plan.frames.empty()) {
+    say_what_the_eye_did(plan.frames.front(), frame_before, GazeMotion(&log, settings), log,
+                         with_clock(&log, settings));
+  }
 }
 
 }  // namespace gazetrace

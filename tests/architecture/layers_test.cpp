@@ -45,7 +45,7 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"pipeline", "pipeline"},   {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
     {"compare", "compare"},     {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
     {"gaze_synth", "gaze"},     {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
-    {"report", "report"},       {"video", "video"},       {"sweep", "sweep"},
+    {"report", "report"},       {"video", "video"},       {"sweep", "sweep"},         {"plan_join", "plan"},
 };
 
 // Which files may meet which dependency.

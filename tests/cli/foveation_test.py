@@ -148,6 +148,10 @@ class Foveation(harness.CliTest):
             self.run_ok("render", "box.gltf", *GAZE, *more, "-o", f"{i}/f.exr", "--quiet")
             record = json.loads(next((self.folder / str(i)).glob("run*.json")).read_text())
             self.assertEqual(config(record["config_toml"])["filter"], expected, more)
+        # Without gaze all frames are uniform, whatever the fall-off.
+        self.run_ok("render", "box.gltf", "--size", "64x36", "--spp", "2", "-o", "eyeless/f.exr", "--quiet")
+        record = json.loads((self.folder / "eyeless/run.json").read_text())
+        self.assertEqual(config(record["config_toml"])["filter"], "linear")
 
     def test_presets_are_what_the_list_says(self):
         presets = {member["name"]: member["description"] for member in self.names("presets")}

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Options that do nothing beside the others say so, and those that do something say nothing."""
 
+import base64
 import json
+import struct
 
 import harness
 
@@ -18,6 +20,10 @@ class IdleOptions(harness.CliTest):
         for line in lines:
             self.assertTrue(line.startswith("gazetrace: warning: "), line)
         return [line.removeprefix("gazetrace: warning: ") for line in lines]
+
+    def counts(self, *arguments):
+        frame = json.loads(self.run_ok("plan", "--counts", "--json", *arguments).stdout)[0]
+        return frame["traced_samples"], frame["regions"]
 
     def test_what_does_nothing_is_said(self):
         reproject = ["--accumulate", "reproject"]
@@ -58,6 +64,23 @@ class IdleOptions(harness.CliTest):
         self.write("all.toml", self.run_ok("render", *AT, "--falloff", "mar", "--max-block", "4", "--print-config").stdout)
         self.assertEqual(self.warnings("--config", "all.toml"), [])
 
+    def test_without_gaze_all_frames_are_uniform(self):
+        eyeless = [*harness.SCREEN, "--size", "64x36"]
+        for options in (
+            ["--falloff", "mar"], ["--region-samples", "4,4,4"], ["--region-blocks", "4,8"], ["--region-angles", "6,20"],
+            ["--angle-reading", "eccentricity"], ["--sample-unit", "pixel"], ["--region-shape", "disc"], ["--border-blend-deg", "2"],
+            ["--block-samples", "4"], ["--max-block", "4"], ["--density-floor", "0.1"],
+        ):
+            with self.subTest(options=options):
+                self.assertEqual(self.warnings(*eyeless, *options), [f"{options[0]} does nothing without gaze"])
+                self.assertEqual(self.counts(*eyeless, *options), self.counts(*eyeless))
+        both = self.run_ok("plan", *eyeless, "--eye", "0,0,3", "--target", "0,0,0", "--falloff", "linear", "--contrast-strength", "1").stderr
+        self.assertEqual(both.count("does nothing without gaze"), 2)
+        # Uniform is what was asked for, and budgets are met everywhere.
+        for options in ([], ["--falloff", "uniform"], ["--spp", "3"], ["--budget-spp", "3"], ["--preset", "paper"]):
+            with self.subTest(options=options):
+                self.assertEqual(self.warnings(*eyeless, *options), [])
+
     def test_idle_options_do_nothing_indeed(self):
         def samples(*options):
             return json.loads(self.run_ok("plan", "--counts", "--json", *AT, *options).stdout)[0]["traced_samples"]
@@ -89,8 +112,33 @@ class IdleOptions(harness.CliTest):
         self.assertIn("blur of the shutter is missing there", said("glide.gltf", "--filter", "guided", "--shutter", "180deg"))
         self.assertIn("blur of lens and shutter", said("glide.gltf", "--filter", "guided", "--shutter", "180deg", *lens))
         self.assertEqual(said("glide.gltf", "--filter", "linear", "--shutter", "180deg", *lens), "")
+        spread = ["--pixel-filter", "blackman-harris"]
+        self.assertIn("--pixel-filter blackman-harris is missing there", said("box.gltf", "--filter", "guided", *spread))
+        self.assertIn("--filter guided takes edges", said("box.gltf", *spread))
+        self.assertEqual(said("box.gltf", "--filter", "linear", *spread), "")
         self.assertEqual(said("glide.gltf", "--filter", "guided"), "")
         self.assertEqual(said("box.gltf", "--filter", "guided", "--shutter", "180deg"), "")  # nothing moves
+
+    def test_the_cone_blurs_guided_texture(self):
+        # A checkerboard of single texels on the floor, seen from above.
+        gltf = harness.box_gltf()
+        uv = struct.pack("<16f", *(c for x in (0, 1) for _ in (0, 1) for z in (0, 1) for c in (x, z)))
+        gltf["buffers"].append({"byteLength": 64, "uri": "data:application/octet-stream;base64," + base64.b64encode(uv).decode()})
+        gltf["bufferViews"].append({"buffer": 1, "byteLength": 64})
+        gltf["accessors"].append({"bufferView": 2, "componentType": 5126, "count": 8, "type": "VEC2"})
+        gltf["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 2
+        gltf["materials"][0]["pbrMetallicRoughness"] = {"baseColorTexture": {"index": 0}, "metallicFactor": 0}
+        gltf["textures"] = [{"source": 0}]
+        gltf["images"] = [{"uri": "checker.png"}]
+        self.write("checker.png", harness.png(64, 64, lambda x, y: [(20, 235)[(x + y) % 2]] * 3))
+        self.write("checker.gltf", json.dumps(gltf))
+
+        def size(cone):
+            self.run_ok("render", "checker.gltf", "--eye", "0,3,2", "--target", "0,0,0", "--size", "128x72", "--falloff", "uniform", "--spp",
+                        "4", "--filter", "guided", "--pixel-cone", cone, "--frames", "1", "--quiet", "-o", f"cone{cone}/f.png")
+            return next((self.folder / f"cone{cone}").glob("*.png")).stat().st_size
+
+        self.assertLess(size("64"), 0.5 * size("0"))  # a picture with less in it packs better
 
     def test_unknown_names(self):
         for option, text in (("--filter", "unknown filter 'x'; Known: none, linear"), ("--falloff", "unknown falloff 'x'; Known: regions"),

@@ -16,6 +16,7 @@
 #include "cli/summary.hpp"
 #include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/plan_join.hpp"
 #include "gazetrace/version.hpp"
 
 namespace gazetrace {
@@ -113,6 +114,9 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   settings.preroll = static_cast<std::int32_t>(inputs.plan.frames.size() - inputs.frames.size());
   digest_job(arguments.table, job, inputs.frames, digests, settings);
   TemporalHistory history = starting_history(inputs.plan, settings, inputs.warnings);
+  if (inputs.gaze && !history.passed.empty()) {
+    join_plan(inputs.plan, history.passed.back(), *inputs.gaze, inputs.plan_settings);
+  }
   prepare_outputs(settings, inputs.frames, digests);
 
   TracerOptions options;

@@ -125,10 +125,12 @@ class FrameMaker {
     is_linear_ = left.is_linear;
     const double ev = left.facts.exposure_ev.value_or(0);
     DisplayImage image = shown(left, ev);
-    const ComparedGaze gaze = compared_gaze(job, inputs_, left.facts, frame, image.width_px, image.height_px);
+    const std::string right_path = path_of(job.test, frame);
+    const FrameFacts right_facts = job.test == job.reference ? left.facts : read_frame_facts(right_path);
+    const ComparedGaze gaze =
+        compared_gaze(job, inputs_, left.facts, right_facts, frame, image.width_px, image.height_px);
     draw(image, gaze.px);
     if (job.test != job.reference) {
-      const std::string right_path = path_of(job.test, frame);
       const ComparedPicture right = read_compared_picture(right_path);
       check_comparable(job, inputs_, left, right, left_path, right_path);
       DisplayImage other = shown(right, ev);
