@@ -101,7 +101,7 @@ def screen_cm(width, height):
 def ours(program, folder, width, height, metric):
     size = screen_cm(width, height)
     start = time.perf_counter()
-    subprocess.run([program, "compare", folder / "ref.png", folder / "test.png", "--metrics", metric, "--json", folder / "out.json",
+    subprocess.run([program, "compare", folder / "ref.png", folder / "test.png", "--metrics", metric, "--json", folder / "out.json", "--overwrite",
                     "--screen-px", f"{width},{height}", "--screen-cm", f"{size[0]!r},{size[1]!r}",
                     "--screen-distance-cm", str(DISTANCE_CM), "--gaze-at", f"{(width // 2 + 0.5) / width!r},{(height // 2 + 0.5) / height!r}",
                     "--threads", "2"], check=True, stdout=subprocess.DEVNULL)

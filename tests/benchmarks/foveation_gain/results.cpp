@@ -68,6 +68,9 @@ std::string verdict(const Comparison& comparison, Metric metric) {
   if (comparison.gazes < kFewestGazes) {
     return "few";
   }
+  if (2 * comparison.continued > comparison.leaves) {
+    return "beyond";
+  }
   const double nothing = metric == Metric::relmse ? 1 : 0;
   constexpr double kRounding = 1e-7;  // of the rows' numbers
   const bool above = comparison.effect.low > nothing + kRounding;
@@ -169,7 +172,7 @@ Comparison Results::compare_pairs(Metric metric, std::size_t column, const std::
 }
 
 std::optional<double> Results::time_ms(const std::string& scene, const std::string& arm, const std::string& filter,
-                                       const std::string& gaze, double spp) const {
+                                       const std::string& gaze, std::optional<double> spp) const {
   const auto exact = times_.find(joined(scene, arm, filter, gaze));
   if (exact != times_.end()) {
     return median_of(exact->second).sum_ms();
@@ -182,7 +185,7 @@ std::optional<double> Results::time_ms(const std::string& scene, const std::stri
   for (const std::string& other : timed->second) {
     const std::vector<Row>& rounds = times_.at(joined(scene, arm, filter, other));
     StageTimes time = median_of(rounds);
-    time.trace_ms *= spp / rounds[0].spp;
+    time.trace_ms *= spp ? *spp / rounds[0].spp : 1;
     sum += time.sum_ms();
   }
   return sum / static_cast<double>(timed->second.size());
@@ -200,7 +203,7 @@ std::optional<Results::Pair> Results::at_equal_time(const Place& place, const st
   std::vector<std::pair<double, double>> curve;  // logarithm of the time, error on its scale
   for (const double rate : kUniformRates) {
     const std::optional<double> e = error(place, uniform_arm(rate), filter, metric, column);
-    const std::optional<double> t = time_ms(place.scene, uniform_arm(rate), filter, kAnyGaze, 1);
+    const std::optional<double> t = time_ms(place.scene, uniform_arm(rate), filter, kAnyGaze);
     if (e && t && (curve.empty() || std::log(*t) > curve.back().first)) {
       curve.emplace_back(std::log(*t), on_scale(metric, *e));
     }

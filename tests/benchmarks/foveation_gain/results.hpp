@@ -28,7 +28,7 @@ struct Comparison {
   std::size_t continued = 0;  // of them, beyond the measured times
 };
 // "wins", "loses", "even": the interval lies on one side or not; "floor": beneath it nothing is claimed; "few": of less
-// than kFewestGazes no interval is to be trusted.
+// than kFewestGazes no interval is to be trusted; "beyond": most of it lies beyond the measured times.
 inline constexpr std::size_t kFewestGazes = 4;
 std::string verdict(const Comparison& comparison, Metric metric);
 
@@ -52,9 +52,12 @@ class Results {
   [[nodiscard]] Interval equal_rate(const std::string& model, const std::string& filter, Metric metric) const;
   // The larger of all deviations of a model's samples from those of uniform at rate 1.
   [[nodiscard]] double sample_deviation() const;
-  // Over all rounds, the median of each stage; empty: not timed. Untimed gazes: see tables.cpp's head.
+  // Over all rounds, the median of each stage; empty: not timed. A gaze that was not timed takes as long as the timed
+  // ones by the mean, and so does the arm where no gaze is named; with `spp` their tracing is scaled to so many
+  // samples.
   [[nodiscard]] std::optional<double> time_ms(const std::string& scene, const std::string& arm,
-                                              const std::string& filter, const std::string& gaze, double spp) const;
+                                              const std::string& filter, const std::string& gaze,
+                                              std::optional<double> spp = std::nullopt) const;
   [[nodiscard]] double mean_share(std::size_t column) const;
   [[nodiscard]] double mean_floor(Metric metric, std::size_t column, const std::string& scene = "") const;
 

@@ -34,9 +34,10 @@ struct StageTimes {
   [[nodiscard]] double sum_ms() const { return plan_ms + guides_ms + trace_ms + reconstruct_ms; }
 };
 
-// kind   setup: `arm` says how the scene's errors came about, "timed" how its times did; rows of other settings never
-//        share a file
-//        floor: of the reference. `arm` "halves": one half of its files against the other; "own": the relative MSE that
+// kind   setup: `arm` says how the scene's errors came about, "timed" how its times did: frame, budget, view, gazes,
+//        metrics and the references' bytes. Rows that differ in these never share a file; which program measured them
+//        is for its user to know floor: of the reference. `arm` "halves": one half of its files against the other;
+//        "own": the relative MSE that
 //               its own noise adds to every picture's
 //        score: an arm's errors at a gaze
 //        time:  what an arm took in round `seed`; `gaze` is "-" where it does not matter

@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <random>
 #include <utility>
 
 #include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace::gain {
 namespace {
@@ -23,6 +26,40 @@ namespace {
 enum class Seeds : int { models = 1, uniform, low_resolution, in_blocks, foveal_rate };
 int seed_of(Seeds whose, int seed, std::size_t gaze) {
   return 1'000'000 * static_cast<int>(whose) + 1000 * seed + static_cast<int>(gaze);
+}
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+// What is seen, from where.
+Settings view_of(const StudySettings& settings) {
+  Settings view{{"scene", settings.scene}};
+  if (settings.viewpoint) {
+    const auto& [eye, target, fov_deg] = *settings.viewpoint;
+    view.emplace_back("viewpoint",
+                      fmt::format("{} {} {} {} {} {} {}", eye.x, eye.y, eye.z, target.x, target.y, target.z, fov_deg));
+  }
+  return view;
+}
+
+// What else scores depend on, but for the program: references by their bytes, since files are made anew under old
+// names.
+Settings judgement_of(const StudySettings& settings) {
+  Settings judgement = view_of(settings);
+  for (const std::string& path : settings.reference) {
+    std::ifstream file(path, std::ios::binary);
+    judgement.emplace_back("reference", std::string(std::istreambuf_iterator<char>(file), {}));
+  }
+  for (const Gaze& gaze : settings.gazes) {
+    judgement.emplace_back("gaze", fmt::format("{} {:.9g} {:.9g}", gaze.name, gaze.at.x, gaze.at.y));
+  }
+  for (const std::string& metric : settings.metrics) {
+    judgement.emplace_back("metric", metric);
+  }
+  return judgement;
+}
+
+std::string short_digest(const Settings& settings) {
+  return digest_settings(settings).substr(0, 12);
 }
 
 class Study {
@@ -177,8 +214,8 @@ void Study::errors_of_seed(Judge& judge, int seed) {
 void Study::measure_errors() {
   Judge judge(settings_.reference, renderer_.view(), settings_.ev, settings_.gazes, settings_.metrics);
   const std::string setup =
-      fmt::format("{}x{} budget {} ev {} references {}", settings_.size.width_px, settings_.size.height_px,
-                  settings_.budget_spp, judge.ev(), settings_.reference.size());
+      fmt::format("{}x{} budget {} ev {} references {} inputs {}", settings_.size.width_px, settings_.size.height_px,
+                  settings_.budget_spp, judge.ev(), settings_.reference.size(), short_digest(judgement_of(settings_)));
   fmt::print("{}: {}, {:.2f} pixels per degree\n", world_.name, setup, judge.pixels_per_degree());
   rows_.claim("setup", world_.name, setup);
   for (Row& row : judge.floor()) {
@@ -241,7 +278,8 @@ void Study::measure_times() {
     gazes.push_back(settings_.gazes.front());
   }
   rows_.claim("timed", world_.name,
-              fmt::format("{}x{} budget {}", settings_.size.width_px, settings_.size.height_px, settings_.budget_spp));
+              fmt::format("{}x{} budget {} inputs {}", settings_.size.width_px, settings_.size.height_px,
+                          settings_.budget_spp, short_digest(view_of(settings_))));
   // Memory that the first frame asks the system for is there afterwards.
   renderer_.filtered(renderer_.trace(uniform_settings(settings_.budget_spp), std::nullopt, 0, surfaces_),
                      settings_.filters.back());

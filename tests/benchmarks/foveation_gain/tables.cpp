@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model's time at a gaze that was not timed is the mean over its timed gazes, tracing scaled by the samples.
 #include "foveation_gain/tables.hpp"
 
 #include <fmt/format.h>
@@ -36,8 +35,8 @@ std::string cell_text(const Comparison& c, Metric metric, bool with_interval) {
   const std::string interval =
       with_interval ? fmt::format(" ({} .. {})", effect_text(metric, c.effect.low), effect_text(metric, c.effect.high))
                     : "";
-  return fmt::format("{}{} {}{}", effect_text(metric, c.effect.value), interval, verdict(c, metric),
-                     c.beneath_floor ? "*" : "");
+  return fmt::format("{}{}{} {}{}", c.continued > 0 ? "~" : "", effect_text(metric, c.effect.value), interval,
+                     verdict(c, metric), c.beneath_floor ? "*" : "");
 }
 std::string rate_text(const Interval& rate, bool with_interval) {
   const auto text = [](double r) {
@@ -134,8 +133,8 @@ std::string time_ratios(const Results& results) {
     text += "| " + model + " |";
     for (const std::string& filter : results.filters()) {
       for (const std::string& scene : results.scenes()) {
-        const auto own = results.time_ms(scene, model, filter, "", 1);
-        const auto other = results.time_ms(scene, uniform_arm(1), filter, kAnyGaze, 1);
+        const auto own = results.time_ms(scene, model, filter, "");
+        const auto other = results.time_ms(scene, uniform_arm(1), filter, kAnyGaze);
         text += own && other ? fmt::format(" {:.2f}", *own / *other) : " -";
       }
       text += " |";
@@ -241,8 +240,13 @@ void print_tables(const std::vector<std::string>& files, const std::string& full
   fmt::print(
       "\nFor each filter, models against uniform through the same filter, the best first. relMSE: ratio, under 1 is "
       "better;\nFLIP: difference, under 0 is better; JOD: difference, over 0 is better. wins, loses: the 95 % interval "
-      "over scenes,\ngazes and seeds lies on one side; even: it does not; few: under {} gazes; *: beneath the "
-      "reference's floor.\n\"As uniform at\": times the budget. Bands of degrees: at {}.\n",
+      "over scenes,\ngazes and seeds lies on one side; even: it does not. Each interval stands by itself: of all "
+      "these, "
+      "one in twenty says wins\nor loses by chance. few: under {} gazes; *: beneath the reference's floor; ~: some, "
+      "beyond: most of it at times beyond the\nmeasured ones. Intervals at equal time know nothing of how times "
+      "scatter "
+      "between rounds and between timed and other gazes.\n\"As uniform at\": times the budget. Bands of degrees: at "
+      "{}.\n",
       kFewestGazes, results.has_times() ? "equal time" : "equal samples");
   for (const std::string& filter : results.filters()) {
     fmt::print("{}", summary(results, filter));
