@@ -426,4 +426,9 @@ SweepFile read_sweep_file(const std::string& path) {
   return file;
 }
 
+std::string place_of(const SweepFile& file, const std::string& key) {
+  const auto found = file.places.find(key);
+  return found == file.places.end() ? file.path : found->second;
+}
+
 }  // namespace gazetrace

@@ -72,5 +72,7 @@ struct SweepFile {
 
 // Error(input) in one line for whatever can be known from the file alone.
 SweepFile read_sweep_file(const std::string& path);
+// The line of a key of [reference] or [measure]; where it is not given, the file.
+std::string place_of(const SweepFile& file, const std::string& key);
 
 }  // namespace gazetrace

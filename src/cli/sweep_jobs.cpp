@@ -4,33 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <memory>
 #include <set>
 
 #include "cli/inputs.hpp"
+#include "cli/sweep_job.hpp"
+#include "cli/sweep_job_checks.hpp"
+#include "cli/sweep_measure.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
-
-using Options = std::vector<Assignment>;
-
-// Headings of settings_options.cpp: what a uniform frame does not see.
-constexpr const char* kPresets = "Presets";
-const std::vector<std::string> kSampling{"Where the samples go", "Density models ('gazetrace list falloffs')",
-                                         kPresets};
-const std::vector<std::string> kGaze{"Gaze in time", "Gaze log"};
-// Of these, what decides where a camera that follows the head is.
-const std::vector<std::string> kClock{"gaze-offset", "gaze-scale", "gaze-start", "gaze-anchor"};
-const std::vector<std::string> kAfterSampling{"Between the samples", "Over time"};
-// What makes rendering cheaper and less true: a reference takes these from [common] and [reference], not from rows.
-const std::vector<std::string> kTradeOffs{
-    "bounces",        "russian-roulette", "light-sampling", "compensate-environment",
-    "clamp-indirect", "pixel-cone",       "bounce-cone",    "seed"};
-// Of these none is right by itself.
-const std::vector<std::string> kNeedTruth{"bounces", "pixel-cone", "bounce-cone"};
 
 // Told in the paragraph on methods though they may be the defaults.
 const std::vector<std::string> kAlwaysStated{
@@ -38,84 +23,21 @@ const std::vector<std::string> kAlwaysStated{
     "filter", "accumulate", "bounces", "diffuse",        "light-sampling", "pixel-filter",  "sample-unit",
     "seed",   "exposure",   "view",    "region-shape",   "clamp-indirect", "pixel-cone",    "bounce-cone"};
 
-bool is_among(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-// The table refers to the settings: the two stay where they are.
-struct Job {
-  JobSettings settings;
-  OptionTable table;
-  std::map<std::string, std::string> places;  // of the options that were given
-
-  Job() { add_job_options(table, settings); }
-  Job(const Job&) = delete;
-  Job& operator=(const Job&) = delete;
-
-  void assign(const Options& options, const std::function<bool(const OptionEntry&)>& wanted = {}) {
-    for (const Assignment& option : options) {
-      const OptionEntry& entry = *table.find(option.option);
-      if (!wanted || wanted(entry)) {
-        entry.assign(option.values, option.place + ": " + option.option);
-        places[option.option] = option.place;
-      }
-    }
-  }
-  // The effective values of another job, those of its presets among them.
-  void take(const Job& other, const std::function<bool(const OptionEntry&)>& wanted) {
-    for (const OptionEntry& entry : other.table.entries()) {
-      const std::vector<std::string> values = entry.values();
-      if (!values.empty() && values != entry.defaults && wanted(entry)) {
-        table.find(entry.name)->assign(values, entry.name);
-        const auto place = other.places.find(entry.name);
-        places[entry.name] = place == other.places.end() ? std::string() : place->second;
-      }
-    }
-  }
-  void assign(const std::string& option, const std::string& value) { table.find(option)->assign({value}, option); }
-  [[nodiscard]] std::string text_of(const std::string& option) const {
-    return fmt::format("{}", fmt::join(table.find(option)->values(), ";"));
-  }
-};
-
-// Runs a check, and puts the plan's line before what it complains of.
-template <class Check>
-auto with_place(const Job& job, const std::string& otherwise, const Check& check) {
-  try {
-    return check();
-  } catch (const Error& error) {
-    const std::string text = error.what();
-    std::string place = otherwise;
-    if (text.starts_with("--")) {
-      const auto found = job.places.find(text.substr(2, text.find(':') - 2));
-      place = found == job.places.end() ? otherwise : found->second;
-    } else {
-      for (const char* option : {"scene", "env", "gaze", "camera-path"}) {
-        if (job.places.contains(option) && !job.text_of(option).empty() && text.starts_with(job.text_of(option))) {
-          place = job.places.at(option);
-        }
-      }
-    }
-    throw Error(error.kind() == ErrorKind::usage ? ErrorKind::input : error.kind(), place, text);
-  }
-}
-
 class JobMaker {
  public:
-  JobMaker(const SweepFile& file, const std::optional<FrameList>& frames, const std::optional<int>& threads)
-      : file_(file), frames_(frames), threads_(threads) {}
+  explicit JobMaker(const SweepRequest& request) : request_(request), file_(request.file) {}
 
   SweepJobs make() {
     SweepPlan& plan = jobs_.plan;
     plan.title = file_.title;
     plan.plan_file = file_.path;
     plan.varied = file_.varied;
-    plan.measure = measure();
+    plan.measure = sweep_measure(file_, request_.threads);
     for (std::size_t s = 0; s < file_.scenes.size(); ++s) {
       add_scene(s);
     }
-    check_seeds();
-    check_frames();
+    check_seeds(file_, tests_);
+    check_frames(file_.path, plan.measure.comparison.metrics, plan.tests);
     state_settings();
     for (const SweepFileGaze& gaze : file_.gazes) {
       plan.gazes.emplace_back(gaze.name, "(" + options_text(gaze.options) + ")");
@@ -126,70 +48,6 @@ class JobMaker {
   }
 
  private:
-  void assign_shared(Job& job, const SweepFileScene& scene) const {
-    job.assign(file_.common);
-    if (frames_) {
-      job.settings.frames = frames_;
-    }
-    if (threads_) {
-      job.settings.threads = *threads_;
-    }
-    job.assign(scene.options);
-    job.settings.quiet = true;
-  }
-
-  std::unique_ptr<Job> test_job(const SweepFileScene& scene, const SweepFileGaze* gaze,
-                                const SweepFileSetting& setting) const {
-    auto job = std::make_unique<Job>();
-    assign_shared(*job, scene);
-    if (gaze != nullptr) {
-      job->assign(gaze->options);
-    }
-    job->assign(setting.options);
-    // Its baselines go through the same one.
-    job->settings.filter = filter_of(job->settings);
-    return job;
-  }
-
-  // What of the row decides what is pictured, what is true by [common] and the scene, then [reference].
-  std::unique_ptr<Job> reference_job(const SweepFileScene& scene, const Job& test,
-                                     const SweepFileSetting& setting) const {
-    auto job = std::make_unique<Job>();
-    job->take(test, [](const OptionEntry& entry) {
-      return !is_among(kSampling, entry.group) && !is_among(kAfterSampling, entry.group) &&
-             !is_among(kTradeOffs, entry.name) && !is_among(kGaze, entry.group);
-    });
-    const auto is_trade_off = [](const OptionEntry& entry) {
-      return is_among(kTradeOffs, entry.name) && entry.name != "seed";
-    };
-    job->assign(file_.common, is_trade_off);
-    job->assign(scene.options, is_trade_off);
-    for (const auto& [option, value] :
-         {std::pair("falloff", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
-          std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0")}) {
-      job->assign(option, value);
-    }
-    job->assign(file_.reference.options);
-    job->settings.frames = test.settings.frames;
-    job->settings.threads = test.settings.threads;
-    if (test.settings.camera_from_gaze) {
-      job->settings.camera_from_gaze = true;
-      job->settings.gaze = test.settings.gaze;
-      job->take(test, [](const OptionEntry& entry) { return is_among(kClock, entry.name); });
-    }
-    for (const std::string& option : kNeedTruth) {
-      const auto row = std::find_if(setting.options.begin(), setting.options.end(),
-                                    [&](const Assignment& given) { return given.option == option; });
-      const auto found = job->places.find(option);
-      if (row != setting.options.end() && found == job->places.end()) {
-        throw Error(ErrorKind::input, row->place,
-                    fmt::format("'{}' varies, and the reference does not know which value is right", option),
-                    fmt::format("give '{}' in [reference]", option));
-      }
-    }
-    return job;
-  }
-
   // Content digests, read once for each set of files.
   const std::map<std::string, std::string>& files_of(const Job& job) {
     std::string names;
@@ -225,7 +83,7 @@ class JobMaker {
       }
     }
     auto job = std::make_shared<Job>();
-    assign_shared(*job, scene);
+    assign_shared(request_, scene, *job);
     TracerOptions tracer;
     tracer.threads = job->settings.threads;
     tracer.bvh_quality = job->settings.bvh;
@@ -247,7 +105,7 @@ class JobMaker {
   void add_test(std::size_t index, const SweepFileGaze* gaze, std::size_t k, std::shared_ptr<const Scene>& loaded) {
     const SweepFileScene& scene = file_.scenes[index];
     const SweepFileSetting& setting = file_.settings[k];
-    const std::unique_ptr<Job> job = test_job(scene, gaze, setting);
+    const std::unique_ptr<Job> job = test_job(request_, scene, gaze, setting);
     const std::string place = setting.place;
     const std::string name = gaze == nullptr ? "none" : gaze->name;
     with_place(*job, place, [&] { check(*job); });
@@ -287,36 +145,22 @@ class JobMaker {
         test.uniform_settings.emplace_back(option, value);
       }
     }
-    check_new(test, place);
-    check_gaze(test, place);
+    check_new(jobs_.plan.tests, test, place);
+    check_gaze(jobs_.plan.tests, test, place);
     check_metrics(test);
     jobs_.plan.tests.push_back(std::move(test));
     tests_.push_back({place, job->settings.trace.seed});
   }
 
-  static bool uses_gaze_otherwise(const Job& job) {
-    const AccumulateSettings& accumulate = job.settings.accumulate;
-    return job.settings.camera_from_gaze || accumulate.reset_at_saccades || accumulate.reset_at_blinks;
-  }
-  // Whether options of a group mean anything to uniform frames beside a test. A preset is not only of sampling.
-  static bool uniform_sees(const std::string& group, const Job& test) {
-    return (group == kPresets || !is_among(kSampling, group)) && (!is_among(kGaze, group) || uses_gaze_otherwise(test));
-  }
-
   std::string uniform_digest(const Job& test, const std::string& gaze, const std::vector<std::int32_t>& frames) {
-    const bool sees_gaze = uses_gaze_otherwise(test);
-    Job job;
-    job.take(test, [](const OptionEntry& entry) {
-      return !is_among(kSampling, entry.group) && !is_among(kGaze, entry.group);
-    });
-    const std::string digest = digest_of(job, frames);
-    return sees_gaze ? digest_settings({{"settings", digest}, {"gaze", gaze}}) : digest;
+    const std::string digest = digest_of(*uniform_job(test), frames);
+    return uses_gaze_otherwise(test) ? digest_settings({{"settings", digest}, {"gaze", gaze}}) : digest;
   }
 
   std::string add_reference(std::size_t index, const Job& test, const SweepFileSetting& setting,
                             const std::vector<std::int32_t>& frames, const std::shared_ptr<const Scene>& loaded) {
     const SweepFileScene& scene = file_.scenes[index];
-    const std::unique_ptr<Job> job = reference_job(scene, test, setting);
+    const std::unique_ptr<Job> job = reference_job(request_, scene, test, setting);
     with_place(*job, scene.place, [&] { check(*job); });
     SweepReference reference;
     for (int i = 0; i < file_.reference.scramblings; ++i) {
@@ -352,35 +196,6 @@ class JobMaker {
     }
   }
 
-  void check_new(const SweepTest& test, const std::string& place) const {
-    for (const SweepTest& other : jobs_.plan.tests) {
-      if (other.digest == test.digest && other.gaze == test.gaze && other.scene == test.scene &&
-          other.resolution_scale == test.resolution_scale) {
-        throw Error(ErrorKind::input, place, fmt::format("'{}' and '{}' are the same setting", other.label, test.label),
-                    "leave one out");
-      }
-    }
-  }
-
-  // Rows of one gaze share their reference's floor, and what they show: it must be one gaze.
-  void check_gaze(const SweepTest& test, const std::string& place) const {
-    const auto differs = [](const FrameRequest& a, const FrameRequest& b) {
-      return a.gaze_direction_true != b.gaze_direction_true || a.gaze_true.no_gaze != b.gaze_true.no_gaze ||
-             gaze_class_of(a.gaze_true) != gaze_class_of(b.gaze_true);
-    };
-    for (const SweepTest& other : jobs_.plan.tests) {
-      const auto& a = other.plan.frames;
-      const auto& b = test.plan.frames;
-      if (other.gaze == test.gaze && other.reference == test.reference &&
-          !std::equal(a.begin(), a.end(), b.begin(), b.end(), std::not_fn(differs))) {
-        throw Error(ErrorKind::input, place,
-                    fmt::format("with '{}' the eye looks elsewhere than with '{}', and both are gaze '{}'", test.label,
-                                other.label, test.gaze),
-                    "give what moves the gaze in a [[gaze]] of another name");
-      }
-    }
-  }
-
   // Once for all tests that look the same to the metrics.
   void check_metrics(const SweepTest& test) {
     const FrameRequest& first = test.plan.frames.front();
@@ -394,103 +209,9 @@ class JobMaker {
       check_scoring(jobs_.plan.measure, test);
     } catch (const Error& error) {
       const std::string text = error.what();
-      throw Error(ErrorKind::input, place_of(text.starts_with("leave-out") ? "leave-out" : "metrics"),
+      throw Error(ErrorKind::input, place_of(file_, text.starts_with("leave-out") ? "leave-out" : "metrics"),
                   fmt::format("{}: {}", test.id, text));
     }
-  }
-
-  void check_seeds() const {
-    const auto repeats = static_cast<std::uint64_t>(file_.measure.repeats);
-    const auto scramblings = static_cast<std::uint64_t>(file_.reference.scramblings);
-    for (const auto& [place, seed] : tests_) {
-      if (seed < file_.reference.seed + scramblings && file_.reference.seed < seed + repeats) {
-        throw Error(ErrorKind::input, place,
-                    fmt::format("seeds {} to {} are of the reference, too", seed, seed + repeats - 1),
-                    "give [reference] another seed");
-      }
-    }
-  }
-
-  // Some metrics look back in time: their frames must follow each other.
-  void check_frames() const {
-    const std::vector<std::string>& metrics = jobs_.plan.measure.comparison.metrics;
-    const auto over_time = std::find_if(metrics.begin(), metrics.end(), [](const std::string& name) {
-      return is_among({"fovvideovdp", "flicker", "temporal_bias"}, name);
-    });
-    if (over_time == metrics.end()) {
-      return;
-    }
-    for (const SweepTest& test : jobs_.plan.tests) {
-      const auto& frames = test.plan.frames;
-      if (frames.back().frame - frames.front().frame + 1 != static_cast<std::int32_t>(frames.size())) {
-        throw Error(ErrorKind::input, file_.path,
-                    *over_time + " sees time, but frames are missing between the first and the last",
-                    "name consecutive frames, or leave the metric out of [measure]");
-      }
-    }
-  }
-
-  [[nodiscard]] std::string place_of(const std::string& key) const {
-    const auto found = file_.places.find(key);
-    return found == file_.places.end() ? file_.path : found->second;
-  }
-
-  [[nodiscard]] SweepMeasure measure() const {
-    const SweepFileMeasure& from = file_.measure;
-    SweepMeasure measure;
-    measure.repeats = from.repeats;
-    measure.warm_up = from.warm_up;
-    measure.leave_out_s = static_cast<double>(from.leave_out.ns) * 1e-9;
-    measure.efficiency_spp = from.efficiency_spp;
-    measure.comparison = from.compare.settings;
-    measure.comparison.metrics = from.compare.metrics;
-    measure.comparison.photometry.response = measure.comparison.metric.response;
-    measure.comparison.metric.peak_cd_m2 = measure.comparison.photometry.peak_cd_m2;
-    measure.comparison.original_border = !from.compare.correct_border;
-    measure.comparison.metric.threads = threads_.value_or(0);
-    measure.write_png = from.pictures == "png" || from.pictures == "both";
-    measure.write_exr = from.pictures == "exr" || from.pictures == "both";
-    SweepBaselines& baselines = measure.baselines;
-    baselines.reference_rate = is_among(from.baselines, "uniform-reference-rate");
-    baselines.equal_samples = is_among(from.baselines, "equal-samples");
-    baselines.equal_time = is_among(from.baselines, "equal-time");
-    baselines.low_resolution = is_among(from.baselines, "low-resolution");
-    baselines.wrong_gaze = from.controls;
-    baselines.reference_spp = from.reference_rate;
-    for (const std::string& text : from.uniform_rates) {
-      double spp = 0;
-      parse_value(text, place_of("uniform-rates") + ": uniform-rates", spp);
-      if (!(spp > 0 && spp <= 1e6)) {
-        throw Error(ErrorKind::input, place_of("uniform-rates"), fmt::format("{} samples a pixel are no rate", text));
-      }
-      baselines.uniform_rates.push_back(spp);
-    }
-    measure.fixed_quality = fixed_quality();
-    return measure;
-  }
-
-  [[nodiscard]] std::vector<std::pair<std::string, double>> fixed_quality() const {
-    std::vector<std::string> wanted = file_.measure.quality;
-    if (wanted.empty()) {
-      wanted = {"fovvideovdp=9", "fovvideovdp=9.5", "flip=0.05"};
-    }
-    std::vector<std::pair<std::string, double>> levels;
-    for (const std::string& text : wanted) {
-      const std::string place = place_of("quality");
-      const std::size_t equals = text.find('=');
-      if (equals == std::string::npos) {
-        throw Error(ErrorKind::input, place, "'" + text + "' is not METRIC=VALUE", "write \"flip=0.05\"");
-      }
-      std::pair<std::string, double> level{text.substr(0, equals), 0};
-      parse_value(text.substr(equals + 1), place + ": quality", level.second);
-      if (is_among(file_.measure.compare.metrics, level.first)) {
-        levels.push_back(level);
-      } else if (!file_.measure.quality.empty()) {
-        throw Error(ErrorKind::input, place, "metric '" + level.first + "' is not among those measured",
-                    "add it to metrics");
-      }
-    }
-    return levels;
   }
 
   // Every setting that reaches into pixels and has one value in all rows.
@@ -498,7 +219,8 @@ class JobMaker {
     std::vector<std::unique_ptr<Job>> jobs;
     for (const SweepFileScene& scene : file_.scenes) {
       for (std::size_t g = 0; g < std::max<std::size_t>(file_.gazes.size(), 1); ++g) {
-        jobs.push_back(test_job(scene, file_.gazes.empty() ? nullptr : &file_.gazes[g], file_.settings.front()));
+        jobs.push_back(
+            test_job(request_, scene, file_.gazes.empty() ? nullptr : &file_.gazes[g], file_.settings.front()));
       }
     }
     for (const OptionEntry& entry : jobs.front()->table.entries()) {
@@ -523,16 +245,11 @@ class JobMaker {
     return text;
   }
 
+  const SweepRequest request_;
   const SweepFile& file_;
-  const std::optional<FrameList>& frames_;
-  const std::optional<int>& threads_;
   const Scene empty_;  // where the camera stands elsewhere
   SweepJobs jobs_;
-  struct TestPlace {
-    std::string place;
-    std::uint64_t seed = 0;
-  };
-  std::vector<TestPlace> tests_;
+  std::vector<SweepTestPlace> tests_;
   std::set<std::string> checked_;  // by check_metrics()
   std::map<std::string, std::map<std::string, std::string>> digests_;
 };
@@ -541,7 +258,7 @@ class JobMaker {
 
 SweepJobs make_sweep_jobs(const SweepFile& file, const std::optional<FrameList>& frames,
                           const std::optional<int>& threads) {
-  return JobMaker(file, frames, threads).make();
+  return JobMaker({file, frames, threads}).make();
 }
 
 }  // namespace gazetrace
