@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -20,18 +21,14 @@ namespace gazetrace {
 namespace {
 
 constexpr const char* kScale = "resolution-scale";
-const std::vector<std::string> kTables{"title",   "common",    "scene",     "gaze",   "grid",
-                                       "setting", "published", "reference", "measure"};
+constexpr std::array kTables{"title",   "common",    "scene",     "gaze",   "grid",
+                             "setting", "published", "reference", "measure"};
 // What decides the scene, and may therefore not differ between two rows of one.
-const std::vector<std::string> kOfScene{"scene", "animation", "env", "env-rotation", "env-ev", "bvh", "threads"};
-const std::vector<std::string> kOfGaze{"gaze", "gaze-at"};
+constexpr std::array kOfScene{"scene", "animation", "env", "env-rotation", "env-ev", "bvh", "threads"};
+constexpr std::array kOfGaze{"gaze", "gaze-at"};
 // Of `render`, but nothing for a sweep: it has files of its own, and each frame is complete.
-const std::vector<std::string> kNotHere{"only-pixel", "exr-pixels", "exr-compression", "exr-zip-level", "aov"};
-const std::vector<std::string> kAlsoHere{"bvh", "threads", "frames", "preset"};
-
-bool is_among(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
+constexpr std::array kNotHere{"only-pixel", "exr-pixels", "exr-compression", "exr-zip-level", "aov"};
+constexpr std::array kAlsoHere{"bvh", "threads", "frames", "preset"};
 
 [[noreturn]] void refuse(const std::string& place, const std::string& problem, const std::string& remedy = {}) {
   throw Error(ErrorKind::input, place, problem, remedy);
@@ -393,7 +390,7 @@ SweepFile read_sweep_file(const std::string& path) {
   const TomlNode root = parse_toml(text_of(path), path);
   for (const auto& [key, node] : root.members) {
     if (!is_among(kTables, key)) {
-      refuse(toml_place(path, node), unknown_name_message("key", key, kTables));
+      refuse(toml_place(path, node), unknown_name_message("key", key, {kTables.begin(), kTables.end()}));
     }
   }
   const auto options = std::make_unique<RenderOptions>();
@@ -405,7 +402,8 @@ SweepFile read_sweep_file(const std::string& path) {
     }
   }
   file.scenes = read_named(root, "scene", *options, {{"path", "scene"}, {"environment", "env"}}, {"scene"}, path);
-  file.gazes = read_named(root, "gaze", *options, {{"log", "gaze"}, {"at", "gaze-at"}}, kOfGaze, path);
+  file.gazes =
+      read_named(root, "gaze", *options, {{"log", "gaze"}, {"at", "gaze-at"}}, {kOfGaze.begin(), kOfGaze.end()}, path);
   if (file.scenes.empty()) {
     refuse(path, "there is no scene", "add [[scene]] with a name and a path");
   }

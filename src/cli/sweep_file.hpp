@@ -2,15 +2,24 @@
 // A sweep's plan as it is written: TOML, every value checked by itself, every message with its line.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/compare_inputs.hpp"
 #include "cli/option_table.hpp"
 
 namespace gazetrace {
+
+// `names`: any list of texts.
+template <class Names>
+bool is_among(const Names& names, std::string_view name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
 
 // An option of `render` and what a plan gives it.
 struct Assignment {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "cli/inputs.hpp"
@@ -13,21 +14,19 @@ namespace {
 
 // Headings of settings_options.cpp: what a uniform frame does not see.
 constexpr const char* kPresets = "Presets";
-const std::vector<std::string> kSampling{"Where the samples go", "Density models ('gazetrace list falloffs')",
-                                         kPresets};
-const std::vector<std::string> kGaze{"Gaze in time", "Gaze log"};
+constexpr std::array kSampling{"Where the samples go", "Density models ('gazetrace list falloffs')", kPresets};
+constexpr std::array kGaze{"Gaze in time", "Gaze log"};
 // Of these, what decides where a camera that follows the head is.
-const std::vector<std::string> kClock{"gaze-offset", "gaze-scale", "gaze-start", "gaze-anchor"};
-const std::vector<std::string> kAfterSampling{"Between the samples", "Over time"};
+constexpr std::array kClock{"gaze-offset", "gaze-scale", "gaze-start", "gaze-anchor"};
+constexpr std::array kAfterSampling{"Between the samples", "Over time"};
 // What makes rendering cheaper and less true: a reference takes these from [common] and [reference], not from rows.
-const std::vector<std::string> kTradeOffs{
-    "bounces",        "russian-roulette", "light-sampling", "compensate-environment",
-    "clamp-indirect", "pixel-cone",       "bounce-cone",    "seed"};
+constexpr std::array kTradeOffs{"bounces",        "russian-roulette", "light-sampling", "compensate-environment",
+                                "clamp-indirect", "pixel-cone",       "bounce-cone",    "seed"};
 // Of these none is right by itself.
-const std::vector<std::string> kNeedTruth{"bounces", "pixel-cone", "bounce-cone"};
+constexpr std::array kNeedTruth{"bounces", "pixel-cone", "bounce-cone"};
 
 void check_truth_is_known(const Job& reference, const SweepFileSetting& setting) {
-  for (const std::string& option : kNeedTruth) {
+  for (const char* const option : kNeedTruth) {
     const auto row = std::find_if(setting.options.begin(), setting.options.end(),
                                   [&](const Assignment& given) { return given.option == option; });
     if (row != setting.options.end() && !reference.places.contains(option)) {
@@ -39,10 +38,6 @@ void check_truth_is_known(const Job& reference, const SweepFileSetting& setting)
 }
 
 }  // namespace
-
-bool is_among(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 void Job::assign(const std::vector<Assignment>& options, const std::function<bool(const OptionEntry&)>& wanted) {
   for (const Assignment& option : options) {

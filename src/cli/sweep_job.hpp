@@ -17,8 +17,6 @@
 
 namespace gazetrace {
 
-bool is_among(const std::vector<std::string>& names, const std::string& name);
-
 // The table refers to the settings: the two stay where they are.
 struct Job {
   JobSettings settings;

@@ -4,12 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 
-#include "cli/sweep_job.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
+namespace {
+
+constexpr std::array kOverTime{"fovvideovdp", "flicker", "temporal_bias"};
+
+}  // namespace
 
 void check_new(const std::vector<SweepTest>& tests, const SweepTest& test, const std::string& place) {
   for (const SweepTest& other : tests) {
@@ -53,9 +58,8 @@ void check_seeds(const SweepFile& file, const std::vector<SweepTestPlace>& tests
 
 void check_frames(const std::string& plan_file, const std::vector<std::string>& metrics,
                   const std::vector<SweepTest>& tests) {
-  const auto over_time = std::find_if(metrics.begin(), metrics.end(), [](const std::string& name) {
-    return is_among({"fovvideovdp", "flicker", "temporal_bias"}, name);
-  });
+  const auto over_time =
+      std::find_if(metrics.begin(), metrics.end(), [](const std::string& name) { return is_among(kOverTime, name); });
   if (over_time == metrics.end()) {
     return;
   }

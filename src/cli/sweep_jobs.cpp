@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <set>
@@ -18,7 +19,7 @@ namespace gazetrace {
 namespace {
 
 // Told in the paragraph on methods though they may be the defaults.
-const std::vector<std::string> kAlwaysStated{
+constexpr std::array kAlwaysStated{
     "size",   "fps",        "falloff", "region-samples", "region-blocks",  "region-angles", "angle-reading",
     "filter", "accumulate", "bounces", "diffuse",        "light-sampling", "pixel-filter",  "sample-unit",
     "seed",   "exposure",   "view",    "region-shape",   "clamp-indirect", "pixel-cone",    "bounce-cone"};

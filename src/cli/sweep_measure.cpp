@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/option_codecs.hpp"
-#include "cli/sweep_job.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {

@@ -58,7 +58,7 @@ ImageGray display_luminance(const ImageRgb& code, const DisplayPhotometry& photo
     levels[i] = level(static_cast<double>(i) / 255.0);
   }
   return luminance_of(code, threads, [&](float v) {
-    const auto i = static_cast<std::size_t>(std::clamp(v, 0.0F, 1.0F) * 255.0F + 0.5F);
+    const auto i = static_cast<std::size_t>(std::lround(std::clamp(v, 0.0F, 1.0F) * 255.0F));
     return codes[i] == v ? levels[i] : level(static_cast<double>(v));
   });
 }

@@ -312,14 +312,15 @@ void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, co
 }  // namespace
 
 const std::vector<std::string>& exr_compression_names() {
-  static const std::vector<std::string> kNames = [] {
-    std::vector<std::string> names;
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    all.reserve(kCompressions.size());
     for (const Compression& compression : kCompressions) {
-      names.emplace_back(compression.name);
+      all.emplace_back(compression.name);
     }
-    return names;
+    return all;
   }();
-  return kNames;
+  return names;
 }
 
 std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,

@@ -38,7 +38,8 @@ void render_scrambling(PathTracer& tracer, const SweepReference& reference, cons
   render_sequence(tracer, reference.plan, color, settings, {});
 }
 
-void write_mean(const std::string& path, Frame frame, const FrameRequest& request, const SweepReference& reference) {
+void write_mean(const std::string& path, const Frame& frame, const FrameRequest& request,
+                const SweepReference& reference) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
@@ -92,7 +93,7 @@ void average_frames(const SweepReference& reference, const ColorPipeline& color,
       halves[h] = mean_of(certified.directory, h * half, half, frame, threads);
       Frame picture;
       picture.radiance = halves[h];
-      write_mean(certified.half_path(static_cast<int>(h), frame), std::move(picture), request, reference);
+      write_mean(certified.half_path(static_cast<int>(h), frame), picture, request, reference);
     }
     Frame mean;
     mean.radiance = mean_of_two(halves[0], halves[1]);
@@ -103,7 +104,7 @@ void average_frames(const SweepReference& reference, const ColorPipeline& color,
     header.exposure_ev = ev;
     write_display_image(frame_file_name(certified.directory + "/reference.####.png", frame),
                         color.apply(mean.radiance, ev, 8, threads), header, {});
-    write_mean(certified.mean_path(frame), std::move(mean), request, reference);
+    write_mean(certified.mean_path(frame), mean, request, reference);
   }
 }
 
