@@ -33,8 +33,8 @@ std::string score_text(const SweepRow& row, const std::string& metric) {
   return with_spread(score.value) + (score.resolved ? "" : " unresolved");
 }
 
-std::string place_heading(const SweepRow& row) {
-  return fmt::format("\n{}, gaze {}\n", row.scene, row.gaze);
+bool is_beside(const SweepRow& a, const SweepRow& b) {
+  return a.scene == b.scene && a.gaze == b.gaze;
 }
 
 std::string aligned(const std::vector<std::vector<std::string>>& lines) {
@@ -52,6 +52,25 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
     }
     one.erase(one.find_last_not_of(' ') + 1);
     text += one + "\n";
+  }
+  return text;
+}
+
+// Rows of a place that no other beats in both time and quality; where several references share the place, for each.
+std::string fronts_text(const SweepPlan& plan, const SweepResults& results, const SweepRow& of_place) {
+  std::string text;
+  const std::string place = of_place.scene + "/" + of_place.gaze;
+  for (const std::string& metric : plan.measure.comparison.metrics) {
+    const auto fronts = results.pareto.find(metric);
+    if (fronts == results.pareto.end()) {
+      continue;
+    }
+    for (const auto& [name, ids] : fronts->second) {
+      if (name == place || name.starts_with(place + "/")) {
+        text += fmt::format("Pareto front of time and {}{}: {}\n", metric,
+                            name == place ? "" : ", reference " + name.substr(place.size() + 1), fmt::join(ids, ", "));
+      }
+    }
   }
   return text;
 }
@@ -96,17 +115,16 @@ std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
   const std::vector<std::string>& metrics = plan.measure.comparison.metrics;
   header.insert(header.end(), metrics.begin(), metrics.end());
   std::string text = plan.title + "\n";
-  std::vector<std::string> places;
+  std::vector<const SweepRow*> places;  // the first row of each
   for (const SweepRow& row : results.rows) {
-    const std::string place = place_heading(row);
-    if (std::find(places.begin(), places.end(), place) == places.end()) {
-      places.push_back(place);
+    if (std::none_of(places.begin(), places.end(), [&](const SweepRow* first) { return is_beside(*first, row); })) {
+      places.push_back(&row);
     }
   }
-  for (const std::string& place : places) {
+  for (const SweepRow* const first : places) {
     std::vector<std::vector<std::string>> lines{header};
     for (const SweepRow& row : results.rows) {
-      if (place_heading(row) != place) {
+      if (!is_beside(*first, row)) {
         continue;
       }
       std::string role = to_string(row.role);
@@ -121,7 +139,8 @@ std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
         lines.back().push_back(score_text(row, metric));
       }
     }
-    text += place + aligned(lines);
+    text +=
+        fmt::format("\n{}, gaze {}\n", first->scene, first->gaze) + aligned(lines) + fronts_text(plan, results, *first);
   }
   text += published_text(results) + fixed_quality_text(results) + controls_text(results);
   for (const std::string& note : results.notes) {
