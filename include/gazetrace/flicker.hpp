@@ -24,6 +24,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "gazetrace/display.hpp"
 #include "gazetrace/image.hpp"
@@ -40,6 +41,8 @@ struct FlickerRange {
   double lowest_hz = 1, highest_hz = 0, fusion_hz = 0;
 };
 FlickerRange flicker_range(double frames_per_second, double luminance_cd_m2);
+// "from 1 to 12 Hz, ...": what is told and what is not, in words for whoever reads the scores.
+std::string flicker_range_text(const FlickerRange& range);
 
 struct FlickerSettings {
   PlanarView view;

@@ -113,6 +113,16 @@ FlickerRange flicker_range(double frames_per_second, double luminance_cd_m2) {
   return range;
 }
 
+std::string flicker_range_text(const FlickerRange& range) {
+  return fmt::format(
+      "from {:g} to {:g} Hz, of which a frame sees the second before it; {}", range.lowest_hz, range.highest_hz,
+      range.fusion_hz > range.highest_hz
+          ? fmt::format("up to {:.0f} Hz would be seen, but what is faster than {:g} Hz cannot be told at "
+                        "this frame rate and shows as something slower, or not",
+                        range.fusion_hz, range.highest_hz)
+          : "all that is seen can be told at this frame rate");
+}
+
 struct FlickerMeter::Impl {
   FlickerSettings settings;
   int frames;

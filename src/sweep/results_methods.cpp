@@ -4,9 +4,7 @@
 
 #include <algorithm>
 
-#include "gazetrace/flicker.hpp"
 #include "gazetrace/version.hpp"
-#include "sweep/frames.hpp"
 #include "sweep/scorer.hpp"
 
 namespace gazetrace {
@@ -112,21 +110,6 @@ std::string exposures_of(const FlipExposureSettings& flip) {
                      place(flip.stop_ev));
 }
 
-std::string flicker_text(const SweepPlan& plan) {
-  std::vector<std::string> ranges;
-  for (const SweepTest& test : plan.tests) {
-    const std::vector<SweepFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, plan.measure.leave_out_s);
-    const ComparisonSettings settings = comparison_of(plan.measure.comparison, test.plan, frames, test.pipeline.fps);
-    if (std::find(settings.metrics.begin(), settings.metrics.end(), "flicker") == settings.metrics.end()) {
-      continue;  // without gaze
-    }
-    const FlickerRange range = flicker_range(settings.frames_per_second, settings.photometry.peak_cd_m2 / 2);
-    ranges.push_back(fmt::format("from {:g} to {:g} Hz, of up to {:.0f} Hz that would be seen", range.lowest_hz,
-                                 range.highest_hz, range.fusion_hz));
-  }
-  return "flicker " + each_once(ranges) + ", over the second before each frame";
-}
-
 // What single metrics were told.
 std::string metric_settings(const SweepPlan& plan) {
   const ComparisonSettings& c = plan.measure.comparison;
@@ -141,7 +124,7 @@ std::string metric_settings(const SweepPlan& plan) {
     texts.push_back(exposures_of(c.metric.hdr_flip));
   }
   if (has("flicker")) {
-    texts.push_back(flicker_text(plan));
+    texts.push_back(fmt::format("{}", fmt::join(flicker_ranges(plan), "; ")));
   }
   if (has("fovvideovdp")) {
     texts.push_back(fmt::format(

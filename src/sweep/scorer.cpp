@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/scorer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "gazetrace/flicker.hpp"
 #include "sweep/frames.hpp"
 
 namespace gazetrace {
@@ -60,6 +63,24 @@ ComparisonSettings comparison_of(const ComparisonSettings& settings, const Frame
     });
   }
   return result;
+}
+
+std::vector<std::string> flicker_ranges(const SweepPlan& plan) {
+  std::vector<std::string> ranges;
+  for (const SweepTest& test : plan.tests) {
+    const std::vector<SweepFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, plan.measure.leave_out_s);
+    const ComparisonSettings settings = comparison_of(plan.measure.comparison, test.plan, frames, test.pipeline.fps);
+    if (std::find(settings.metrics.begin(), settings.metrics.end(), "flicker") == settings.metrics.end()) {
+      continue;  // without gaze
+    }
+    const FlickerRange range = flicker_range(settings.frames_per_second, settings.photometry.peak_cd_m2 / 2);
+    const std::string text =
+        fmt::format("flicker at {:g} frames a second: {}", settings.frames_per_second, flicker_range_text(range));
+    if (std::find(ranges.begin(), ranges.end(), text) == ranges.end()) {
+      ranges.push_back(text);
+    }
+  }
+  return ranges;
 }
 
 Scorer::Scorer(const ComparisonSettings& settings, const std::vector<SweepFrame>& frames, int width_px, int height_px)

@@ -15,6 +15,10 @@ namespace gazetrace {
 ComparisonSettings comparison_of(const ComparisonSettings& settings, const FramePlan& plan,
                                  const std::vector<SweepFrame>& frames, const FrameRate& fps);
 
+// What each frame rate of the tests that are scored for flicker lets it tell, and what not: "flicker at 24 frames a
+// second: from 1 to 12 Hz, ...".
+std::vector<std::string> flicker_ranges(const SweepPlan& plan);
+
 class Scorer {
  public:
   // `frames` are those that will be added, in their order.

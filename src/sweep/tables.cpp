@@ -241,6 +241,9 @@ void add_notes(const SweepPlan& plan, SweepResults& results) {
     results.notes.emplace_back(
         "FovVideoVDP does not see uniform differences; its scores at different gaze positions do not compare");
   }
+  for (const std::string& range : flicker_ranges(plan)) {
+    results.notes.push_back(range + "; blind to bias, which temporal_bias tells");
+  }
   if (plan.measure.leave_out_s > 0) {
     results.notes.push_back(
         fmt::format("the first {:g} s of each clip are seen by the metrics, but not scored", plan.measure.leave_out_s));

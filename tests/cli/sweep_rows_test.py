@@ -3,6 +3,7 @@
 
 import csv
 import json
+import re
 
 import gaze_test
 import harness
@@ -133,6 +134,32 @@ class SweepRows(harness.CliTest):
                       "3 bounces, a pixel cone of 0 pixels, a bounce cone of 0.15 rad"):
             self.assertIn(words, text)
         self.assertEqual(self.results()["regions_deg"], [2.6, 8.5])
+
+    def test_flicker_beyond_the_frame_rate_is_told(self):
+        # Half of 4 frames a second are 2 Hz; of 5, two whole periods in a second.
+        self.plan('[grid]\nfps = [4, 5]\nframes = ["1-6"]\nregion-samples = [[8, 2, 1]]\n',
+                  'metrics = ["flicker"]\nbaselines = ["none"]\n')
+        table = self.sweep("--quiet").stdout
+        results = self.results()
+        notes = [note for note in results["notes"] if note.startswith("flicker at ")]
+        self.assertEqual(len(notes), 2)
+        methods = (self.folder / "out/methods.txt").read_text()
+        self.run_ok("report", "out", "-o", "report.html")
+        page = (self.folder / "report.html").read_text()
+        for fps, note in zip((4, 5), notes):
+            words = (f"flicker at {fps} frames a second: from 1 to 2 Hz",
+                     "what is faster than 2 Hz cannot be told at this frame rate")
+            for word in words:
+                self.assertIn(word, note)
+                self.assertIn(word, methods)
+                self.assertIn(word, page)
+                self.assertIn(word, results["methods"])
+                self.assertIn(word, table)
+            seen = float(re.search(r"up to (\d+) Hz would be seen", note)[1])
+            self.assertGreater(seen, 20)  # nobody takes 20 Hz on a bright display for steady
+        self.plan()
+        self.sweep("--quiet", folder="without")
+        self.assertEqual([note for note in self.results("without")["notes"] if "flicker" in note], [])
 
     def test_restart_throws_away_what_is_damaged(self):
         self.plan()

@@ -213,6 +213,18 @@ TEST(FlickerRange, SaysWhatTheFrameRateHides) {
   EXPECT_LT(flicker_range(240, 100).fusion_hz, 120);
 }
 
+TEST(FlickerRange, IsToldInWords) {
+  FlickerRange range{1, 12, 53.4};
+  EXPECT_EQ(
+      flicker_range_text(range),
+      "from 1 to 12 Hz, of which a frame sees the second before it; up to 53 Hz would be seen, but what is faster "
+      "than 12 Hz cannot be told at this frame rate and shows as something slower, or not");
+  range.highest_hz = 60;
+  EXPECT_EQ(
+      flicker_range_text(range),
+      "from 1 to 60 Hz, of which a frame sees the second before it; all that is seen can be told at this frame rate");
+}
+
 TEST(SlidingSpectrum, IsThatOfTheLastFramesAfterManyFrames) {
   constexpr int kFrames = 25;
   std::mt19937 random(4);

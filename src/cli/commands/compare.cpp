@@ -212,16 +212,7 @@ CompareConditions conditions_of(const CompareJob& job, const CompareInputs& inpu
   }
   if (contains(settings.metrics, "flicker")) {
     const FlickerRange range = flicker_range(inputs.frames_per_second, settings.photometry.peak_cd_m2 / 2);
-    conditions.emplace_back(
-        "flicker",
-        fmt::format("from {:g} to {:g} Hz, of which a frame sees the second before it; {}; blind to bias "
-                    "(see temporal_bias)",
-                    range.lowest_hz, range.highest_hz,
-                    range.fusion_hz > range.highest_hz
-                        ? fmt::format("up to {:.0f} Hz would be seen, but what is faster than {:g} Hz cannot "
-                                      "be told at this frame rate and shows as something slower, or not",
-                                      range.fusion_hz, range.highest_hz)
-                        : "all that is seen can be told at this frame rate"));
+    conditions.emplace_back("flicker", flicker_range_text(range) + "; blind to bias (see temporal_bias)");
   }
   if (contains(settings.metrics, "fovvideovdp")) {
     const DisplayPhotometry& p = settings.photometry;
