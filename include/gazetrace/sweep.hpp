@@ -151,7 +151,9 @@ struct SweepFrameRun {
 };
 // One rendering of all frames of a row.
 struct SweepRun {
-  double time_s = 0;                         // a frame, mean: plan, trace, guides, reconstruct, temporal, upscaling
+  double time_s = 0;  // a frame, mean: plan, trace, guides, reconstruct, temporal, upscaling
+  // A frame, mean: exposure, view and the files of its picture. Of the repeat whose pictures are kept; else unknown.
+  std::optional<double> output_s;
   double samples = 0, rays = 0, pixels = 0;  // of all frames
   double lost_samples = 0;                   // rejected rays and samples that were not finite
   double peak_mib = 0;  // of the process while the frames were rendered, scene and the metrics' state with it
@@ -183,6 +185,9 @@ struct SweepRow {
   std::vector<SweepRun> runs;  // by repeat
   // Of the runs:
   Interval time_s, speed_up, reached;  // reached: equal_time over the test's
+  // As speed_up, of times that the first repeat's output_s is added to; empty where no pictures were written. Reading
+  // the scene, which is done once for a sequence, is in neither.
+  std::optional<double> end_to_end;
   std::optional<double> efficiency;
   std::map<std::string, std::map<std::string, SweepScore>> scores;  // metric -> part
 };

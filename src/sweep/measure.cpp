@@ -56,11 +56,15 @@ class RunSum {
     }
     run_.frames.push_back({(render_ms(row) + upscale_ms) * 1e-3, {}});
   }
+  void add_output(double ms) { output_ms_ += ms; }
   void peak_of_frame(double mib) { run_.peak_mib = std::max(run_.peak_mib, mib); }
   [[nodiscard]] SweepRun run() const {
     SweepRun run = run_;
     for (const SweepFrameRun& frame : run.frames) {
       run.time_s += frame.time_s / static_cast<double>(run.frames.size());
+    }
+    if (output_ms_ > 0) {
+      run.output_s = output_ms_ * 1e-3 / static_cast<double>(run.frames.size());
     }
     return run;
   }
@@ -69,6 +73,7 @@ class RunSum {
  private:
   SweepRun run_;
   StoredRun stored_;
+  double output_ms_ = 0;
 };
 
 PipelineSettings settings_of(const PlannedRow& row, int repeat) {
@@ -109,20 +114,21 @@ std::vector<GazeScorer> scorers_of(const std::vector<const PlannedRow*>& rows, c
   return scorers;
 }
 
-void write_pictures(const SweepMeasure& measure, const std::string& folder, const FrameRequest& request,
-                    const MetricPicture& picture, double ev, const ImageGray* flip) {
+FrameHeader header_of(const FrameRequest& request, double ev) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
   header.exposure_ev = ev;
   header.gaze_true = request.gaze_true;
   header.gaze_render = request.gaze_render;
+  return header;
+}
+
+void write_pictures(const SweepMeasure& measure, const std::string& folder, const FrameRequest& request,
+                    const MetricPicture& picture, double ev) {
+  const FrameHeader header = header_of(request, ev);
   if (measure.write_png) {
     write_display_image(frame_file_name(folder + "/frame.####.png", request.frame), display_image_of(picture.code),
-                        header, {});
-  }
-  if (measure.write_png && flip != nullptr) {
-    write_display_image(frame_file_name(folder + "/flip.####.png", request.frame), error_map_picture("flip", *flip),
                         header, {});
   }
   if (measure.write_exr) {
@@ -160,7 +166,11 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
       light = frame.radiance;
     }
     const double ev = scene.reference.ev.at(request.frame);
+    const Stopwatch view_watch;
     const MetricPicture test = metric_picture(std::move(light), scene.color, ev, settings.threads);
+    if (write) {
+      sum.add_output(view_watch.elapsed_ms());
+    }
     const MetricPicture reference =
         metric_picture(read_exr_rgb(scene.reference.mean_path(request.frame)), scene.color, ev, settings.threads);
     if (scorers.empty()) {
@@ -172,10 +182,23 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
       frame_scores[s].push_back(scorers[s].scorer.add(reference, test));
     }
     if (write) {
-      write_pictures(measure, directory + "/" + folder, request, test, ev, scorers.front().scorer.map_of("flip"));
+      const std::string place = directory + "/" + folder;
+      const Stopwatch file_watch;
+      write_pictures(measure, place, request, test, ev);
+      sum.add_output(file_watch.elapsed_ms());
+      const ImageGray* const flip = scorers.front().scorer.map_of("flip");
+      if (measure.write_png && flip != nullptr) {
+        write_display_image(frame_file_name(place + "/flip.####.png", request.frame), error_map_picture("flip", *flip),
+                            header_of(request, ev), {});
+      }
     }
   };
-  observer.frame_done = [&](const TimingRow& row, bool) { sum.add(row, upscale_ms); };
+  observer.frame_done = [&](const TimingRow& row, bool) {
+    sum.add(row, upscale_ms);
+    if (write) {
+      sum.add_output(row.exposure_ms);
+    }
+  };
   render_sequence(scene.tracer, first.plan, scene.color, settings, observer);
 
   StoredRun stored = sum.stored();

@@ -42,7 +42,7 @@ std::string sweep_csv(const SweepPlan& plan, const SweepResults& results) {
   }
   text +=
       ",resolution_scale,repeats,samples,spp_mean,rays,peak_mib,time_s,time_low_s,time_high_s,speed_up,speed_up_low,"
-      "speed_up_high,efficiency,metric,part,score,"
+      "speed_up_high,end_to_end,efficiency,metric,part,score,"
       "score_low,score_high,resolved\n";
   for (const SweepRow& row : results.rows) {
     std::string head = fmt::format("{},{},{},{},{},{}", quoted(row.id), quoted(row.scene), quoted(row.gaze),
@@ -55,8 +55,8 @@ std::string sweep_csv(const SweepPlan& plan, const SweepResults& results) {
     head += fmt::format(",{:.9g},{},{:.15g},{:.9g},{:.15g},{:.9g}", row.resolution_scale, row.runs.size(), samples,
                         samples / row.compared_pixels, mean_of_runs(row, &SweepRun::rays),
                         mean_of_runs(row, &SweepRun::peak_mib));
-    head +=
-        fmt::format(",{},{},{}", shown(row.time_s), has_speed_up ? shown(row.speed_up) : ",,", shown(row.efficiency));
+    head += fmt::format(",{},{},{},{}", shown(row.time_s), has_speed_up ? shown(row.speed_up) : ",,",
+                        shown(row.end_to_end), shown(row.efficiency));
     for (const auto& [metric, parts] : row.scores) {
       for (const auto& [part, score] : parts) {
         text += fmt::format("{},{},{},{},{}\n", head, metric, part, shown(score.value), score.resolved ? 1 : 0);

@@ -84,12 +84,14 @@ Json json_of(const SweepRow& row) {
   for (const SweepRun& run : row.runs) {
     json["time_s"]["values"].push_back(number(run.time_s));
   }
+  json["output_s"] = row.runs.empty() ? Json() : number(row.runs.front().output_s);
   const double samples = mean_of_runs(row, &SweepRun::samples);
   json["samples"] = samples;
   json["spp_mean"] = number(samples / row.compared_pixels);
   json["rays"] = mean_of_runs(row, &SweepRun::rays);
   json["peak_mib"] = number(mean_of_runs(row, &SweepRun::peak_mib));
   json["speed_up"] = row.speed_up.mean > 0 ? json_of(row.speed_up) : Json();
+  json["end_to_end"] = number(row.end_to_end);
   json["efficiency"] = number(row.efficiency);
   json["published"] = Json::array();
   for (const SweepPublished& other : row.published) {

@@ -170,6 +170,14 @@ std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
       "exposure, colour and files; speed-up is "
       "t_uniform / t_foveated at {} samples per pixel, through the same filter and temporal stage. ",
       m.repeats, m.warm_up, m.baselines.reference_spp);
+  if (m.write_png || m.write_exr) {
+    text += fmt::format(
+        "End-to-end ratios are of these times and what exposure, view and writing of the pictures ({}) took in the "
+        "first repeat; reading the scene, done once for all rows, is not in them. ",
+        m.write_png && m.write_exr ? "PNG and EXR"
+        : m.write_png              ? "PNG"
+                                   : "EXR");
+  }
   text += fmt::format(
       "Efficiency is the expected over the measured time of tracing and reconstruction, the expected one from what a "
       "sample costs in each region of a frame with {} samples in every pixel. Equal-sample baselines have the test's "

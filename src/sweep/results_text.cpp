@@ -56,6 +56,16 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
   return text;
 }
 
+// What the columns of times hold.
+std::string times_text(const SweepMeasure& measure) {
+  const bool writes = measure.write_png || measure.write_exr;
+  return fmt::format(
+      "s a frame, speed-up: sampling map, tracing, reconstruction and accumulation, t_uniform / t_foveated\n"
+      "end-to-end: {}\n",
+      writes ? "the same with exposure, view and writing of the pictures, without reading the scene"
+             : "not known, as no pictures were written");
+}
+
 // Rows of a place that no other beats in both time and quality; where several references share the place, for each.
 std::string fronts_text(const SweepPlan& plan, const SweepResults& results, const SweepRow& of_place) {
   std::string text;
@@ -111,10 +121,10 @@ std::string controls_text(const SweepResults& results) {
 }  // namespace
 
 std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
-  std::vector<std::string> header{"id", "role", "setting", "s a frame", "spp", "speed-up", "efficiency"};
+  std::vector<std::string> header{"id", "role", "setting", "s a frame", "spp", "speed-up", "end-to-end", "efficiency"};
   const std::vector<std::string>& metrics = plan.measure.comparison.metrics;
   header.insert(header.end(), metrics.begin(), metrics.end());
-  std::string text = plan.title + "\n";
+  std::string text = plan.title + "\n" + times_text(plan.measure);
   std::vector<const SweepRow*> places;  // the first row of each
   for (const SweepRow& row : results.rows) {
     if (std::none_of(places.begin(), places.end(), [&](const SweepRow* first) { return is_beside(*first, row); })) {
@@ -134,6 +144,7 @@ std::string sweep_table(const SweepPlan& plan, const SweepResults& results) {
       lines.push_back({row.id, role, row.label, with_spread(row.time_s),
                        fmt::format("{:.4g}", row.runs.front().samples / row.compared_pixels),
                        row.speed_up.mean > 0 ? ratio_text(row.speed_up) : "-",
+                       row.end_to_end ? fmt::format("{:.4g}", *row.end_to_end) : "-",
                        row.efficiency ? fmt::format("{:.0f} %", 100 * *row.efficiency) : "-"});
       for (const std::string& metric : metrics) {
         lines.back().push_back(score_text(row, metric));

@@ -69,6 +69,7 @@ Json json_of(const SweepRun& run) {
     frames.push_back({{"time_s", frame.time_s}, {"scores", json_of(frame.scores)}});
   }
   return {{"time_s", run.time_s},
+          {"output_s", run.output_s ? Json(*run.output_s) : Json()},
           {"samples", run.samples},
           {"rays", run.rays},
           {"pixels", run.pixels},
@@ -82,6 +83,9 @@ Json json_of(const SweepRun& run) {
 SweepRun run_of(const Json& json) {
   SweepRun run;
   run.time_s = json.at("time_s");
+  if (!json.at("output_s").is_null()) {
+    run.output_s = json.at("output_s").get<double>();
+  }
   run.samples = json.at("samples");
   run.rays = json.at("rays");
   run.pixels = json.at("pixels");

@@ -41,6 +41,18 @@ std::vector<double> times_of(const SweepRow& row) {
   return times;
 }
 
+// With what the first repeat's pictures took.
+std::optional<std::vector<double>> times_with_output(const SweepRow& row) {
+  if (row.runs.empty() || !row.runs.front().output_s) {
+    return std::nullopt;
+  }
+  std::vector<double> times = times_of(row);
+  for (double& time_s : times) {
+    time_s += *row.runs.front().output_s;
+  }
+  return times;
+}
+
 const SweepRow* row_by_id(const std::vector<SweepRow>& rows, const std::string& id) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const SweepRow& row) { return row.id == id; });
   return found == rows.end() ? nullptr : &*found;
@@ -85,6 +97,11 @@ void add_ratios(std::vector<SweepRow>& rows) {
   for (SweepRow& row : rows) {
     if (const SweepRow* uniform = row_by_id(rows, reference_rate_of(row, rows))) {
       row.speed_up = ratio_interval(times_of(*uniform), times_of(row));
+      const auto whole_uniform = times_with_output(*uniform);
+      const auto whole = times_with_output(row);
+      if (whole_uniform && whole) {
+        row.end_to_end = ratio_interval(*whole_uniform, *whole).mean;
+      }
     }
     if (row.role == SweepRole::equal_time) {
       if (const SweepRow* test = row_by_id(rows, row.of)) {

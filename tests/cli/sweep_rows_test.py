@@ -67,12 +67,42 @@ class SweepRows(harness.CliTest):
                 self.assertGreater(row[name], 0)
                 self.assertAlmostEqual(float(line[name]) / row[name], 1, places=7, msg=name)
             self.assertAlmostEqual(float(line["time_s"]) / row["time_s"]["mean"], 1, places=7)
+            self.assertEqual((line["end_to_end"], row["end_to_end"], row["output_s"]), ("", None, None))  # no pictures
             score = row["scores"][line["metric"]][line["part"]]["mean"]
             self.assertAlmostEqual(float(line["score"]), score, delta=1e-7 * score)
             # Of the rows that see no gaze there is nothing to tell but rate and filter.
             if row["role"] != "test":
                 self.assertLessEqual(set(row["settings"]), {"filter", "falloff", "spp", "budget-spp"})
                 self.assertEqual(row["settings"]["falloff"], "uniform")
+
+    def test_end_to_end_ratios_are_of_times_with_output(self):
+        self.plan(measure='metrics = ["mse"]\nreference-rate = 8\nbaselines = ["uniform-reference-rate"]\n')
+        plan = (self.folder / "plan.toml").read_text()
+        for pictures, suffixes in (("none", set()), ("png", {".png"}), ("both", {".png", ".exr"})):
+            self.write("plan.toml", plan.replace('"none"\nmetrics', f'"{pictures}"\nmetrics'))
+            table = self.sweep("--quiet", folder=pictures).stdout
+            rows = {row["id"]: row for row in self.results(pictures)["rows"]}
+            self.assertEqual(len(rows), 2)
+            found = {path.suffix for path in (self.folder / pictures / "frames").rglob("frame.*")}
+            self.assertEqual(found, suffixes)
+            self.assertIn("end-to-end: " + ("the same with" if suffixes else "not known"), table)
+            methods = (self.folder / pictures / "methods.txt").read_text()
+            self.assertEqual("End-to-end ratios are of these times and" in methods, bool(suffixes))
+            with open(self.folder / pictures / "results.csv", newline="") as file:
+                lines = {line["id"]: line for line in csv.DictReader(file)}
+            for row in rows.values():
+                if not suffixes:
+                    self.assertEqual((lines[row["id"]]["end_to_end"], row["end_to_end"], row["output_s"]), ("", None, None))
+                    continue
+                self.assertGreater(row["output_s"], 0)
+                uniform = rows["box-left-1-uniform"]
+                ratios = [(a + uniform["output_s"]) / (b + row["output_s"])
+                          for a, b in zip(uniform["time_s"]["values"], row["time_s"]["values"])]
+                self.assertAlmostEqual(row["end_to_end"], (ratios[0] * ratios[1]) ** 0.5, places=9)
+                self.assertAlmostEqual(float(lines[row["id"]]["end_to_end"]) / row["end_to_end"], 1, places=7)
+            # Taken up again, the same.
+            self.sweep("--quiet", folder=pictures)
+            self.assertEqual({row["id"]: row for row in self.results(pictures)["rows"]}, rows)
 
     def test_every_test_has_a_row_of_equal_time(self):
         # Uniform rendering stops at four times the reference rate, long before it takes as long as either of these: the
