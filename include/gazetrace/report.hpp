@@ -105,7 +105,8 @@ struct ReportData {
   std::vector<ReportMetric> metrics;
   std::vector<ReportScene> scenes;
   std::vector<ReportRow> rows;
-  std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto;  // metric -> "scene/gaze" -> row ids
+  // metric -> "scene/gaze" -> row ids; "scene/gaze/reference" where several references share the place
+  std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto;
   std::vector<ReportFixedQuality> fixed_quality;
   std::vector<ReportControl> controls;
   std::vector<std::string> notes;

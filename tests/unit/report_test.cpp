@@ -380,6 +380,46 @@ TEST(ReportTables, FloorsAreThoseOfEachRunsReference) {
   EXPECT_THAT(report_csv(read(json)), HasSubstr("flip,whole,0.1,0.09,0.11,1,\n"));
 }
 
+TEST(ReportPlots, EachReferenceHasAFront) {
+  ordered_json json = results({});
+  json["scenes"] = {{{"name", "box"}, {"reference", {{"key", "box-1"}}}},
+                    {{"name", "box"}, {"reference", {{"key", "box-2"}}}}};
+  const auto add = [&](const char* id, const char* reference, double time_s, double flip) {
+    ordered_json one = row(id, "test", score(flip, flip, flip));
+    one["reference"] = reference;
+    one["time_s"] = estimate(time_s, time_s, time_s);
+    json["rows"].push_back(one);
+  };
+  add("a", "box-1", 1, 0.4);
+  add("b", "box-1", 2, 0.2);
+  add("c", "box-2", 3, 0.8);
+  add("d", "box-2", 4, 0.6);
+  add("e", "box-2", 5, 0.7);
+  json["pareto"] = {
+      {"flip",
+       {{"box/glide/box-1", {"a", "b"}}, {"box/glide/box-2", {"d", "c"}}, {"box/glider", ordered_json::array({"e"})}}}};
+  const auto plot = [&] { return report_plots(read(json)).at(0); };
+  const auto lines = [](const std::string& svg) {
+    std::size_t count = 0;
+    for (std::size_t at = svg.find("class=\"front\""); at != std::string::npos;
+         at = svg.find("class=\"front\"", at + 1)) {
+      ++count;
+    }
+    return count;
+  };
+  const ReportPlot two = plot();
+  EXPECT_EQ(lines(two.svg), 2U);
+  EXPECT_THAT(two.svg, testing::AllOf(HasSubstr(">front of reference box-1<"), HasSubstr(">front of reference box-2<"),
+                                      HasSubstr("of one reference each")));
+  for (const char* const cells : {"1,a,", "2,b,", "3,c,", "4,d,"}) {
+    EXPECT_THAT(two.csv, testing::ContainsRegex(std::string("\n") + cells + "[^\n]*,1,1\n"));
+  }
+  EXPECT_THAT(two.csv, testing::ContainsRegex("\n5,e,[^\n]*,1,0\n"));
+  json["pareto"] = {{"flip", {{"box/glide", {"a", "b"}}}}};
+  EXPECT_EQ(lines(plot().svg), 1U);
+  EXPECT_THAT(plot().svg, testing::AllOf(HasSubstr("Broad line: Pareto front"), Not(HasSubstr("front of"))));
+}
+
 TEST(ReportMethods, BracesInNamesAreText) {
   ordered_json json = results({row("t", "test", score(0.1, 0.09, 0.11))});
   json["rows"][0]["label"] = "run {x} {}";

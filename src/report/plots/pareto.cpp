@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against time: every run of a scene and gaze, with intervals, the Pareto front and the reference's own noise.
+// Error against time: every run of a scene and gaze, with intervals, Pareto fronts and the reference's own noise.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,6 +26,70 @@ std::vector<Point> points_of(const ReportData& data, const SceneGaze& both, cons
     }
   }
   return points;
+}
+
+// The points of a front that the sweep found, in the order of time.
+struct Front {
+  std::vector<const Point*> points;
+  std::string name;  // of its reference, where the place has several
+};
+
+// Scores against different references do not compare: each has a front of its own, under the place and its key.
+std::vector<Front> fronts_of(const ReportData& data, const SceneGaze& both, const std::string& metric,
+                             const std::vector<Point>& points) {
+  std::vector<Front> fronts;
+  const auto of_metric = data.pareto.find(metric);
+  if (of_metric == data.pareto.end()) {
+    return fronts;
+  }
+  const std::string place = both.scene + "/" + both.gaze;
+  for (const auto& [name, ids] : of_metric->second) {
+    if (name != place && !name.starts_with(place + "/")) {
+      continue;
+    }
+    Front front;
+    front.name = name == place ? "" : "reference " + name.substr(place.size() + 1);
+    for (const Point& point : points) {
+      if (std::find(ids.begin(), ids.end(), point.row->id) != ids.end()) {
+        front.points.push_back(&point);
+      }
+    }
+    std::sort(front.points.begin(), front.points.end(),
+              [](const Point* a, const Point* b) { return a->time_s.mean < b->time_s.mean; });
+    fronts.push_back(std::move(front));
+  }
+  return fronts;
+}
+
+void draw_front(const Front& front, const PlotScale& x, const PlotScale& y, PlotSvg& svg) {
+  if (front.points.empty()) {
+    return;
+  }
+  std::string path;
+  for (const Point* const point : front.points) {
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x.at(point->time_s.mean), y.at(point->score.mean));
+  }
+  if (front.points.size() > 1) {
+    svg.add(fmt::format(
+        "<path class=\"front\" stroke=\"#0072b2\" stroke-opacity=\"0.45\" stroke-width=\"3\" fill=\"none\" d=\"{}\"/>",
+        path));
+  }
+  if (!front.name.empty()) {
+    const Point& last = *front.points.back();
+    const double px = x.at(last.time_s.mean);
+    svg.text(px, y.at(last.score.mean) + 17, "front of " + front.name, px < kPlotWidth / 2 ? "start" : "end",
+             " font-size=\"11\"");
+  }
+}
+
+std::string front_words(const std::vector<Front>& fronts) {
+  const auto lines =
+      std::count_if(fronts.begin(), fronts.end(), [](const Front& front) { return front.points.size() > 1; });
+  const std::string bars = "Bars: intervals at 95 %.";
+  if (fronts.size() > 1) {
+    return "Pareto fronts (broad lines) are of one reference each: others' scores do not compare. " + bars;
+  }
+  return lines > 0 ? "Broad line: Pareto front. " + bars : bars;
 }
 
 }  // namespace
@@ -71,28 +135,9 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
                " font-size=\"11\"");
     }
   }
-  // The front that the sweep found, through its points in the order of time.
-  const auto metric_fronts = data.pareto.find(metric.name);
-  std::vector<const Point*> front;
-  if (metric_fronts != data.pareto.end()) {
-    const auto ids = metric_fronts->second.find(both.scene + "/" + both.gaze);
-    if (ids != metric_fronts->second.end()) {
-      for (const Point& point : points) {
-        if (std::find(ids->second.begin(), ids->second.end(), point.row->id) != ids->second.end()) {
-          front.push_back(&point);
-        }
-      }
-    }
-  }
-  std::sort(front.begin(), front.end(), [](const Point* a, const Point* b) { return a->time_s.mean < b->time_s.mean; });
-  std::string path;
-  for (const Point* const point : front) {
-    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x.at(point->time_s.mean), y.at(point->score.mean));
-  }
-  if (front.size() > 1) {
-    svg.add(fmt::format(
-        "<path class=\"front\" stroke=\"#0072b2\" stroke-opacity=\"0.45\" stroke-width=\"3\" fill=\"none\" d=\"{}\"/>",
-        path));
+  const std::vector<Front> fronts = fronts_of(data, both, metric.name, points);
+  for (const Front& front : fronts) {
+    draw_front(front, x, y, svg);
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
@@ -114,16 +159,16 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
              " font-size=\"11\"");
   }
   const double end = svg.legend(entries, 24, kBottom + 52);
-  svg.text(24, end + 16,
-           front.size() > 1 ? "Broad line: Pareto front. Bars: intervals at 95 %." : "Bars: intervals at 95 %.",
-           "start", " font-size=\"11\"");
+  svg.text(24, end + 16, front_words(fronts), "start", " font-size=\"11\"");
   plot.svg = svg.str();
 
   plot.csv =
       "number,id,role,label,time_s,time_s_low,time_s_high," + csv_cell(metric.name) + ",low,high,resolved,front\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
-    const bool on_front = std::find(front.begin(), front.end(), &point) != front.end();
+    const bool on_front = std::any_of(fronts.begin(), fronts.end(), [&](const Front& front) {
+      return std::find(front.points.begin(), front.points.end(), &point) != front.points.end();
+    });
     plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, csv_cell(point.row->id), csv_cell(point.row->role),
                             csv_cell(point.row->label), csv_estimate(point.time_s), csv_estimate(point.score),
                             point.is_resolved ? 1 : 0, on_front ? 1 : 0);
