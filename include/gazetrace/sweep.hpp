@@ -206,6 +206,7 @@ struct SweepFloor {
 struct SweepReferenceResult {
   std::string scene, key, directory, png;  // relative
   double spp = 0;
+  std::size_t pictures = 0;  // frames that were rendered: 1 where neither camera nor scene moves
   std::vector<std::uint64_t> seeds;
   std::vector<SweepFloor> floors;
 };

@@ -23,8 +23,16 @@ std::string scrambling_folder(const std::string& directory, std::size_t scrambli
   return directory + fmt::format("/scrambling-{}", scrambling + 1);
 }
 
-void render_scrambling(PathTracer& tracer, const SweepReference& reference, const ColorPipeline& color,
-                       const std::string& directory, std::size_t scrambling) {
+FramePlan only(const FramePlan& plan, const std::vector<std::int32_t>& frames) {
+  FramePlan part = plan;
+  std::erase_if(part.frames, [&](const FrameRequest& request) {
+    return std::find(frames.begin(), frames.end(), request.frame) == frames.end();
+  });
+  return part;
+}
+
+void render_scrambling(PathTracer& tracer, const SweepReference& reference, const std::vector<std::int32_t>& pictures,
+                       const ColorPipeline& color, const std::string& directory, std::size_t scrambling) {
   PipelineSettings settings = reference.pipeline;
   settings.trace.seed = reference.seeds[scrambling];
   settings.output = {};
@@ -35,7 +43,7 @@ void render_scrambling(PathTracer& tracer, const SweepReference& reference, cons
   settings.settings_digest =
       digest_settings({{"reference", reference.digest}, {"seed", std::to_string(settings.trace.seed)}});
   fs::create_directories(settings.output.run_directory);
-  render_sequence(tracer, reference.plan, color, settings, {});
+  render_sequence(tracer, only(reference.plan, pictures), color, settings, {});
 }
 
 void write_mean(const std::string& path, const Frame& frame, const FrameRequest& request,
@@ -81,16 +89,20 @@ ImageRgb mean_of_two(const ImageRgb& a, const ImageRgb& b) {
   return mean;
 }
 
-// The halves first, the mean last: where it is, the frame is complete.
-void average_frames(const SweepReference& reference, const ColorPipeline& color, CertifiedReference& certified) {
+// The halves first, the mean last: where it is, the frame is complete. Frames between two pictures show the one before.
+void average_frames(const SweepReference& reference, const std::vector<std::int32_t>& pictures,
+                    const ColorPipeline& color, CertifiedReference& certified) {
   TemporalHistory history;
   const std::size_t half = reference.seeds.size() / 2;
   const int threads = reference.pipeline.threads;
+  std::array<ImageRgb, 2> halves;
   for (const FrameRequest& request : reference.plan.frames) {
     const std::int32_t frame = request.frame;
-    std::array<ImageRgb, 2> halves;
+    const bool is_new = std::find(pictures.begin(), pictures.end(), frame) != pictures.end();
     for (std::size_t h = 0; h < halves.size(); ++h) {
-      halves[h] = mean_of(certified.directory, h * half, half, frame, threads);
+      if (is_new) {
+        halves[h] = mean_of(certified.directory, h * half, half, frame, threads);
+      }
       Frame picture;
       picture.radiance = halves[h];
       write_mean(certified.half_path(static_cast<int>(h), frame), picture, request, reference);
@@ -127,6 +139,25 @@ std::string CertifiedReference::mean_path(std::int32_t frame) const {
   return frame_file_name(directory + "/" + kMean, frame);
 }
 
+std::vector<std::int32_t> reference_pictures(const SweepReference& reference, const Scene& scene) {
+  const std::vector<FrameRequest>& frames = reference.plan.frames;
+  const auto is_like_first = [&](const FrameRequest& request) {
+    const Camera& a = frames.front().camera;
+    const Camera& b = request.camera;
+    return a.pose == b.pose && a.projection == b.projection && a.lens == b.lens && b.shutter_poses.empty();
+  };
+  if (scene.motions.empty() && scene.deformations.empty() &&
+      reference.pipeline.accumulate.mode == AccumulateMode::off &&
+      std::all_of(frames.begin(), frames.end(), is_like_first)) {
+    return {frames.front().frame};
+  }
+  std::vector<std::int32_t> all;
+  for (const FrameRequest& request : frames) {
+    all.push_back(request.frame);
+  }
+  return all;
+}
+
 std::string reference_folder(const SweepReference& reference) {
   return "references/" + reference.key;
 }
@@ -138,12 +169,15 @@ MetricPicture metric_picture(ImageRgb light, const ColorPipeline& color, double 
   return picture;
 }
 
-CertifiedReference ensure_reference(PathTracer& tracer, const SweepReference& reference, const ColorPipeline& color,
-                                    const std::string& sweep_directory, const SweepObserver& observer) {
+CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, const SweepReference& reference,
+                                    const ColorPipeline& color, const std::string& sweep_directory,
+                                    const SweepObserver& observer) {
   CertifiedReference certified;
   certified.directory = sweep_directory + "/" + reference_folder(reference);
   certified.spp =
       static_cast<double>(reference.pipeline.foveation.uniform_spp) * static_cast<double>(reference.seeds.size());
+  const std::vector<std::int32_t> pictures = reference_pictures(reference, scene);
+  certified.pictures = pictures.size();
   const std::string record = certified.directory + "/reference.json";
   if (const auto kept = load_exposures(record, reference.digest)) {
     certified.ev = *kept;
@@ -156,9 +190,9 @@ CertifiedReference ensure_reference(PathTracer& tracer, const SweepReference& re
     if (observer.tell) {
       observer.tell(fmt::format("reference {}: scrambling {} of {}", reference.key, k + 1, reference.seeds.size()));
     }
-    render_scrambling(tracer, reference, color, certified.directory, k);
+    render_scrambling(tracer, reference, pictures, color, certified.directory, k);
   }
-  average_frames(reference, color, certified);
+  average_frames(reference, pictures, color, certified);
   save_exposures(record, reference.digest, certified.ev);
   for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
     fs::remove_all(scrambling_folder(certified.directory, k));

@@ -149,6 +149,7 @@ Json json_of(const SweepReferenceResult& reference) {
           {"reference",
            {{"key", reference.key},
             {"spp", reference.spp},
+            {"frames_rendered", reference.pictures},
             {"seeds", reference.seeds},
             {"scramblings", reference.seeds.size()},
             {"directory", reference.directory},

@@ -134,6 +134,15 @@ std::string metric_settings(const SweepPlan& plan) {
   return texts.empty() ? std::string() : fmt::format(" ({})", fmt::join(texts, "; "));
 }
 
+// Of clips whose reference is one picture.
+std::string standing_pictures(const SweepResults& results) {
+  const bool stands = std::any_of(results.references.begin(), results.references.end(),
+                                  [](const SweepReferenceResult& reference) { return reference.pictures == 1; });
+  const bool is_clip =
+      std::any_of(results.rows.begin(), results.rows.end(), [](const SweepRow& row) { return row.frames.size() > 1; });
+  return stands && is_clip ? ", once for all frames where neither camera nor scene moves" : "";
+}
+
 }  // namespace
 
 std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
@@ -152,13 +161,13 @@ std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
   text += fmt::format("Pictures were shown and scored through the view {}. ", views_of(plan));
   text += fmt::format(
       "The reference of each scene is the mean of {} renderings of {} samples per pixel with independent scramblings "
-      "(seeds {}), rendered with {}; no test shares a seed with it. Its own error was measured as the score of the "
+      "(seeds {}), rendered with {}{}; no test shares a seed with it. Its own error was measured as the score of the "
       "mean of the first "
       "half "
       "of these against that of the second; scores better than it are reported as unresolved, and a quarter of the "
       "halves' mean squared difference, the variance of the reference, was subtracted from squared errors. ",
       reference.seeds.size(), reference.pipeline.foveation.uniform_spp, fmt::join(reference.seeds, ", "),
-      light_of_references(plan));
+      light_of_references(plan), standing_pictures(results));
   text += fmt::format(
       "Every row was rendered {} times with different seeds, in rounds over all rows of a scene whose order "
       "alternates, "

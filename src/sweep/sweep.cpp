@@ -47,7 +47,7 @@ class SceneSweep {
     const std::shared_ptr<const Scene> scene = plan_.scenes[scene_].load();
     PathTracer tracer(*scene, plan_.scenes[scene_].tracer);
     tracer_ = &tracer;
-    prepare_references();
+    prepare_references(*scene);
     first_round();
     for (int repeat = 1; repeat < plan_.measure.repeats; ++repeat) {
       for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -99,12 +99,12 @@ class SceneSweep {
     }
   }
 
-  void prepare_references() {
+  void prepare_references(const Scene& scene) {
     for (const SweepReference& reference : plan_.references) {
       if (reference.scene == scene_) {
         references_.emplace(reference.key, &reference);
         colors_.emplace(reference.key, ColorPipeline(reference.color));
-        certified_.emplace(reference.key, ensure_reference(*tracer_, reference, colors_.at(reference.key),
+        certified_.emplace(reference.key, ensure_reference(*tracer_, scene, reference, colors_.at(reference.key),
                                                            plan_.directory, observer_));
       }
     }
@@ -267,6 +267,7 @@ class SceneSweep {
       result.directory = reference_folder(*reference);
       result.png = result.directory + "/reference.####.png";
       result.spp = certified.spp;
+      result.pictures = certified.pictures;
       result.seeds = reference->seeds;
       std::set<std::string> done;
       for (const PlannedRow& row : rows_) {

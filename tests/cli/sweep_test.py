@@ -122,6 +122,13 @@ class Sweep(harness.CliTest):
         reference = results["scenes"][0]["reference"]
         self.assertEqual(reference["scramblings"], 4)
         self.assertGreater(reference["floor"]["mse"]["whole"], 0)
+        # Nothing moves: one picture stands for the three frames.
+        self.assertEqual(reference["frames_rendered"], 1)
+        picture = "out/" + reference["directory"] + "/reference.000{}.exr"
+        for k in (2, 3):
+            self.run_ok("compare", picture.format(1), picture.format(k), "--metrics", "mse", "--fail-above", "mse=0",
+                        "--anyway")
+        self.assertIn("once for all frames", (self.folder / "out/methods.txt").read_text())
 
     def test_scores_are_those_of_render_and_compare(self):
         text = PLAN.replace('[[16, 4, 4], [8, 2, 1]]', '[[8, 2, 1]]')
