@@ -211,6 +211,7 @@ struct SweepReferenceResult {
   std::vector<SweepFloor> floors;
 };
 
+// `curve`: what its foveated rows share of what the plan varies, "region-blocks 1;1"; rates of samples are the curve.
 struct SweepFixedQuality {
   std::string metric, scene, gaze, curve;
   double at = 0;

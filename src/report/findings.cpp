@@ -201,9 +201,10 @@ ReportFindings report_findings(const ReportData& data) {
   for (const ReportFixedQuality& fixed : data.fixed_quality) {
     if (!fixed.speed_up || !fixed.bound.empty()) {
       findings.caveats.push_back(fmt::format(
-          "{}: speed-up at {} {} is {}{}{}.", scene_gaze_text({fixed.scene, fixed.gaze}), fixed.metric,
-          value_text(fixed.at), fixed.speed_up ? fixed.bound + " " : "",
-          fixed.speed_up ? value_text(fixed.speed_up) : "not known", fixed.why.empty() ? "" : ", " + fixed.why));
+          "{}{}: speed-up at {} {} is {}{}{}.", scene_gaze_text({fixed.scene, fixed.gaze}),
+          fixed.curve.empty() ? "" : ", " + fixed.curve, fixed.metric, value_text(fixed.at),
+          fixed.speed_up ? fixed.bound + " " : "", fixed.speed_up ? value_text(fixed.speed_up) : "not known",
+          fixed.why.empty() ? "" : ", " + fixed.why));
     }
   }
   for (const ReportControl& control : data.controls) {

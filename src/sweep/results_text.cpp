@@ -100,7 +100,8 @@ std::string fixed_quality_text(const SweepResults& results) {
   std::string text;
   for (const SweepFixedQuality& one : results.fixed_quality) {
     const FixedQuality& r = one.result;
-    text += fmt::format("  {}/{} {} {:g}: {}{}\n", one.scene, one.gaze, one.metric, one.at,
+    text += fmt::format("  {}/{}{} {} {:g}: {}{}\n", one.scene, one.gaze,
+                        one.curve.empty() ? "" : ", " + one.curve + ",", one.metric, one.at,
                         r.speed_up ? fmt::format("{}{}{:.3g}", r.bound, r.bound.empty() ? "" : " ", *r.speed_up) : "-",
                         r.why.empty() ? "" : " (" + r.why + ")");
   }

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
+#include <string_view>
 
 #include "sweep/scorer.hpp"
 
@@ -151,35 +154,72 @@ std::optional<double> floor_of(const SweepResults& results, const SweepRow& row,
   return std::nullopt;
 }
 
-void add_fixed_quality(const SweepMeasure& measure, SweepResults& results) {
-  struct Curves {
-    std::vector<QualityAtTime> uniform, foveated;
+// What a row varies but how many samples it takes: rows alike in it climb one curve.
+std::string family_of(const SweepRow& row) {
+  static constexpr std::array<std::string_view, 4> kRates{"spp", "region-samples", "budget-spp", "budget-samples"};
+  std::string text;
+  for (const auto& [option, value] : row.settings) {
+    if (std::find(kRates.begin(), kRates.end(), option) == kRates.end()) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", option, value);
+    }
+  }
+  return text;
+}
+
+// A uniform curve and the foveated ones that share all but the sampling with it.
+struct QualityCurves {
+  struct Foveated {
+    std::vector<QualityAtTime> points;
     const SweepRow* any = nullptr;
   };
+  std::vector<QualityAtTime> uniform;
+  std::map<std::string, Foveated> foveated;  // by family
+};
+
+// Where no family has a second rate, what varies is itself what trades time for quality: one curve.
+void join_single_points(QualityCurves& curves) {
+  const bool all_single = std::all_of(curves.foveated.begin(), curves.foveated.end(),
+                                      [](const auto& family) { return family.second.points.size() == 1; });
+  if (!all_single || curves.foveated.size() < 2) {
+    return;
+  }
+  QualityCurves::Foveated joined;
+  for (const auto& [family, one] : curves.foveated) {
+    joined.points.push_back(one.points.front());
+    joined.any = one.any;
+  }
+  curves.foveated = {{std::string(), joined}};
+}
+
+void add_fixed_quality(const SweepMeasure& measure, SweepResults& results) {
   for (const auto& [metric, level] : measure.fixed_quality) {
-    std::map<std::string, Curves> curves;
+    std::map<std::string, QualityCurves> places;
     for (const SweepRow& row : results.rows) {
-      Curves& of_row = curves[place_of(row) + "/" + row.reference + "/" + row.curve];
+      QualityCurves& curves = places[place_of(row) + "/" + row.reference + "/" + row.curve];
       const auto point = point_of(row, metric);
       if (point && is_on_uniform_curve(row)) {
-        of_row.uniform.push_back(*point);
+        curves.uniform.push_back(*point);
       } else if (point && is_on_foveated_curve(row)) {
-        of_row.foveated.push_back(*point);
-        of_row.any = &row;
+        QualityCurves::Foveated& foveated = curves.foveated[family_of(row)];
+        foveated.points.push_back(*point);
+        foveated.any = &row;
       }
     }
-    for (const auto& [name, both] : curves) {
-      if (both.any == nullptr || both.uniform.empty()) {
+    for (auto& [name, curves] : places) {
+      if (curves.uniform.empty()) {
         continue;
       }
-      SweepFixedQuality one{metric, both.any->scene, both.any->gaze, both.any->curve, level, {}};
-      const auto floor = floor_of(results, *both.any, metric);
-      if (floor && is_better(metric, level, *floor)) {
-        one.result.why = fmt::format("the reference itself is only known to {:.4g}", *floor);
-      } else {
-        one.result = speed_up_at_quality(both.uniform, both.foveated, direction_of(metric), level);
+      join_single_points(curves);
+      for (const auto& [family, foveated] : curves.foveated) {
+        SweepFixedQuality one{metric, foveated.any->scene, foveated.any->gaze, family, level, {}};
+        const auto floor = floor_of(results, *foveated.any, metric);
+        if (floor && is_better(metric, level, *floor)) {
+          one.result.why = fmt::format("the reference itself is only known to {:.4g}", *floor);
+        } else {
+          one.result = speed_up_at_quality(curves.uniform, foveated.points, direction_of(metric), level);
+        }
+        results.fixed_quality.push_back(std::move(one));
       }
-      results.fixed_quality.push_back(std::move(one));
     }
   }
 }

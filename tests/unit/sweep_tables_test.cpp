@@ -67,6 +67,46 @@ TEST(SweepTables, FixedQualityIsOfUniformAndFoveatedRowsAtFullSize) {
   EXPECT_EQ(quality.bound, ">");
 }
 
+SweepRow with(SweepRow row, const NamedValues& settings) {
+  row.settings = settings;
+  return row;
+}
+
+// All three curves fall from 4 to 1 while time grows fourfold: those that begin at 0.5 and 0.25 s are 2 and 4 times
+// faster at every level between.
+TEST(SweepTables, FixedQualityHasACurveForWhateverVariesBesideTheRate) {
+  SweepResults results;
+  results.references = {reference_of("box-a")};
+  results.rows = {row_of("rate1", SweepRole::uniform_rate, false, 1, 4),
+                  row_of("rate4", SweepRole::uniform_rate, false, 4, 1)};
+  for (const auto& [blocks, first_s] : {std::pair("1;1", 0.5), std::pair("2;4", 0.25)}) {
+    for (const auto& [samples, time_s, mse] :
+         {std::tuple("4;2;1", first_s, 4.0), std::tuple("16;8;4", 4 * first_s, 1.0)}) {
+      results.rows.push_back(with(row_of(std::string(blocks) + samples, SweepRole::test, true, time_s, mse),
+                                  {{"region-blocks", blocks}, {"region-samples", samples}}));
+    }
+  }
+  complete_tables(plan_of(2), results);
+  ASSERT_EQ(results.fixed_quality.size(), 2U);
+  EXPECT_EQ(results.fixed_quality[0].curve, "region-blocks 1;1");
+  EXPECT_NEAR(results.fixed_quality[0].result.speed_up.value_or(0), 2, 1e-12);
+  EXPECT_EQ(results.fixed_quality[1].curve, "region-blocks 2;4");
+  EXPECT_NEAR(results.fixed_quality[1].result.speed_up.value_or(0), 4, 1e-12);
+}
+
+TEST(SweepTables, FixedQualityTakesWhatVariesForTheCurveWhereNoRateDoes) {
+  SweepResults results;
+  results.references = {reference_of("box-a")};
+  results.rows = {row_of("rate1", SweepRole::uniform_rate, false, 1, 4),
+                  row_of("rate4", SweepRole::uniform_rate, false, 4, 1),
+                  with(row_of("coarse", SweepRole::test, true, 0.5, 4), {{"region-blocks", "2;4"}}),
+                  with(row_of("fine", SweepRole::test, true, 2, 1), {{"region-blocks", "1;1"}})};
+  complete_tables(plan_of(2), results);
+  ASSERT_EQ(results.fixed_quality.size(), 1U);
+  EXPECT_EQ(results.fixed_quality[0].curve, "");
+  EXPECT_NEAR(results.fixed_quality[0].result.speed_up.value_or(0), 2, 1e-12);
+}
+
 TEST(SweepTables, UniformTestsAloneHaveNoSpeedUp) {
   SweepResults results;
   results.references = {reference_of("box-a")};
