@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """FLIP and FovVideoVDP beside their authors' programs (Python packages flip-evaluator and pyfvvdp, with a PyTorch for the CPU).
 
-    metrics_against_authors.py GAZETRACE [--pairs N] [--time]
+    metrics_against_authors.py GAZETRACE [--pairs N] [--hdr-pairs N] [--clips N] [--time]
 
 Makes pairs of pictures, scores each with `gazetrace compare` and with those of the two programs that can be imported,
-and prints the worst differences by what was done to them. --time scores one 3840 x 2160 pair as well and prints seconds
+and prints the worst differences by what was done to them: LDR-FLIP and FovVideoVDP of display pictures with gaze in the
+middle, HDR-FLIP of light over ten stops (needs the OpenEXR package), FovVideoVDP of clips of 14 frames with a gaze that
+moves or jumps from frame to frame. --time scores one 3840 x 2160 pair as well and prints seconds
 of three rounds, with reading and the start of the program on our side and not on theirs. Needs numpy.
 """
 
@@ -27,6 +29,10 @@ try:
 except ImportError:
     flip_evaluator = None
 try:
+    import OpenEXR
+except ImportError:
+    OpenEXR = None
+try:
     import pyfvvdp
     import torch
 except ImportError:
@@ -34,6 +40,7 @@ except ImportError:
 
 FOV_DEG = 40
 DISTANCE_CM = 60.0
+SIZES = [(256, 256), (320, 180), (97, 64), (201, 133)]
 KINDS = ("noise", "blur", "blocks of 4 pixels", "colour cast", "specks")
 
 
@@ -127,47 +134,171 @@ def their_jod(reference, test):
     return float(jod), time.perf_counter() - start
 
 
+def write_hdr_pair(folder, random, width, height, kind):
+    """Light over ten stops, as floats: display codes to a power, and a lamp."""
+    reference = scene(random, width, height)
+    y, x = np.mgrid[0:height, 0:width]
+    lamp = np.exp(-np.hypot(x - random.uniform(0, width), y - random.uniform(0, height)) / (0.05 * height))
+    light = [(np.clip(picture, 0, 1) ** 2.2 * random_scale + 30 * lamp[..., None]).astype(np.float32)
+             for random_scale in [random.uniform(0.3, 3)] for picture in (reference, spoiled(random, reference, kind))]
+    for name, picture in zip(("ref", "test"), light):
+        header = {"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}
+        with OpenEXR.File(header, {"RGB": picture}) as file:
+            file.write(str(folder / f"{name}.exr"))
+    return light
+
+
+def our_hdr_flip(program, folder, width, height):
+    size = screen_cm(width, height)
+    subprocess.run([program, "compare", folder / "ref.exr", folder / "test.exr", "--metrics", "hdr_flip", "--json",
+                    folder / "out.json", "--overwrite", "--anyway", "--screen-px", f"{width},{height}",
+                    "--screen-cm", f"{size[0]!r},{size[1]!r}", "--screen-distance-cm", str(DISTANCE_CM), "--threads", "2"],
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    result = json.loads((folder / "out.json").read_text())
+    return result["sequence"][0]["scores"][0]["value"], float(result["conditions"]["ppd"].split()[0])
+
+
+def their_hdr_flip(reference, test, ppd):
+    _, mean, _ = flip_evaluator.evaluate(reference, test, "HDR", inputsRGB=True, applyMagma=False, parameters={"ppd": ppd})
+    return float(mean)
+
+
+CLIP_FRAMES, CLIP_FPS = 14, 24
+
+
+def clip_gaze(random, clip, width, height):
+    """A gaze for each frame, in whole pixels: gliding, or three places one after the other."""
+    begin, end = random.uniform(0.1, 0.9, 2), random.uniform(0.1, 0.9, 2)
+    if clip % 2 == 0:
+        places = [begin + (end - begin) * k / (CLIP_FRAMES - 1) for k in range(CLIP_FRAMES)]
+    else:
+        three = random.uniform(0.05, 0.95, (3, 2))
+        places = [three[k * 3 // CLIP_FRAMES] for k in range(CLIP_FRAMES)]
+    return np.floor(np.array(places) * (width, height))
+
+
+def write_clip(folder, random, width, height, clip):
+    """A picture that drifts, and the same with what is done to it done anew in every frame."""
+    wide = scene(random, width + 2 * CLIP_FRAMES, height)
+    clips = {"ref": [], "test": []}
+    for k in range(CLIP_FRAMES):
+        frame = wide[:, 2 * k:2 * k + width]
+        for name, picture in (("ref", frame), ("test", spoiled(random, frame, clip % len(KINDS)))):
+            clips[name].append((np.clip(picture, 0, 1) * 255 + 0.5).astype(np.uint8))
+            (folder / f"{name}.{k + 1:04}.png").write_bytes(png(clips[name][-1]))
+    gaze = clip_gaze(random, clip, width, height)
+    rows = ["# gazetrace-gaze 1", "t_ns,u,v"]
+    for k, (x, y) in enumerate(gaze):
+        rows.append(f"{k * 1_000_000_000 // CLIP_FPS},{(x + 0.5) / width!r},{(y + 0.5) / height!r}")
+    (folder / "gaze.csv").write_text("\n".join(rows) + "\n")
+    return np.stack(clips["ref"], axis=-1), np.stack(clips["test"], axis=-1), gaze
+
+
+def our_clip_jod(program, folder, width, height):
+    size = screen_cm(width, height)
+    subprocess.run([program, "compare", folder / "ref.####.png", folder / "test.####.png", "--metrics", "fovvideovdp",
+                    "--json", folder / "out.json", "--overwrite", "--fps", str(CLIP_FPS), "--gaze", folder / "gaze.csv",
+                    "--gaze-start", "0s", "--screen-px", f"{width},{height}", "--screen-cm", f"{size[0]!r},{size[1]!r}",
+                    "--screen-distance-cm", str(DISTANCE_CM), "--threads", "2"], check=True, stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL)
+    result = json.loads((folder / "out.json").read_text())
+    whole = next(part for part in result["sequence"] if part["frames"] == CLIP_FRAMES)
+    return whole["scores"][0]["value"]
+
+
+def their_clip_jod(reference, test, gaze):
+    height, width = reference.shape[:2]
+    geometry = pyfvvdp.fvvdp_display_geometry((width, height), distance_m=DISTANCE_CM / 100, fov_horizontal=FOV_DEG)
+    metric = pyfvvdp.fvvdp(display_geometry=geometry, display_name="standard_4k", foveated=True, heatmap=None,
+                           device=torch.device("cpu"))
+    jod, _ = metric.predict(test, reference, dim_order="HWCF", frames_per_second=CLIP_FPS,
+                            fixation_point=torch.tensor(gaze, dtype=torch.float32))
+    return float(jod)
+
+
+def table(title, worst):
+    metrics = sorted({metric for _, metric in worst})
+    print(f"{title:<24}" + "".join(f"{metric:>14}" for metric in metrics))
+    for row in (*KINDS, "all"):
+        print(f"{row:<24}" + "".join(f"{worst.get((row, metric), math.nan):>14.2g}" for metric in metrics))
+
+
+def keep(worst, kind, metric, difference):
+    for row in (KINDS[kind], "all"):
+        worst[row, metric] = max(worst.get((row, metric), 0), difference)
+
+
+def stills(program, folder, random, count):
+    worst = {}
+    for pair in range(count):
+        width, height = SIZES[pair % 4]
+        kind = pair % 5
+        pictures = write_pair(folder, random, width, height, kind)
+        if flip_evaluator is not None:
+            value, _, ppd = ours(program, folder, width, height, "flip")
+            keep(worst, kind, "flip", abs(value - their_flip(*pictures, ppd)[0]))
+        if pyfvvdp is not None:
+            value, _, _ = ours(program, folder, width, height, "fovvideovdp")
+            keep(worst, kind, "fovvideovdp", abs(value - their_jod(*pictures)[0]))
+    return worst
+
+
+def hdr_pairs(program, folder, random, count):
+    worst = {}
+    for pair in range(count):
+        width, height = SIZES[pair % 4]
+        light = write_hdr_pair(folder, random, width, height, pair % 5)
+        value, ppd = our_hdr_flip(program, folder, width, height)
+        keep(worst, pair % 5, "hdr_flip", abs(value - their_hdr_flip(*light, ppd)))
+    return worst
+
+
+def clips(program, folder, random, count):
+    worst = {}
+    for clip in range(count):
+        width, height = SIZES[clip % 4]
+        pictures = write_clip(folder, random, width, height, clip)
+        value = our_clip_jod(program, folder, width, height)
+        keep(worst, clip % 5, "fovvideovdp", abs(value - their_clip_jod(*pictures)))
+    return worst
+
+
+def times(program, folder, random):
+    width, height = 3840, 2160
+    pictures = write_pair(folder, random, width, height, 0)
+    for _ in range(3):
+        if flip_evaluator is not None:
+            _, seconds, ppd = ours(program, folder, width, height, "flip")
+            print(f"flip         3840x2160: ours {seconds:.2f} s, flip-evaluator {their_flip(*pictures, ppd)[1]:.2f} s")
+        if pyfvvdp is not None:
+            _, seconds, _ = ours(program, folder, width, height, "fovvideovdp")
+            print(f"fovvideovdp  3840x2160: ours {seconds:.2f} s, pyfvvdp {their_jod(*pictures)[1]:.2f} s")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--pairs", type=int, default=20)
+    parser.add_argument("--hdr-pairs", type=int, default=0)
+    parser.add_argument("--clips", type=int, default=0)
     parser.add_argument("--time", action="store_true")
     arguments = parser.parse_args()
     if flip_evaluator is None and pyfvvdp is None:
         sys.exit("neither flip_evaluator nor pyfvvdp can be imported")
-    random = np.random.default_rng(20)
-    worst = {}
-    sizes = [(256, 256), (320, 180), (97, 64), (201, 133)]
+    if arguments.hdr_pairs and (flip_evaluator is None or OpenEXR is None):
+        sys.exit("--hdr-pairs needs flip_evaluator and OpenEXR")
+    if arguments.clips and pyfvvdp is None:
+        sys.exit("--clips needs pyfvvdp")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for pair in range(arguments.pairs):
-            width, height = sizes[pair % 4]
-            kind = pair % 5
-            pictures = write_pair(folder, random, width, height, kind)
-            differences = {}
-            if flip_evaluator is not None:
-                value, _, ppd = ours(arguments.program, folder, width, height, "flip")
-                differences["flip"] = abs(value - their_flip(*pictures, ppd)[0])
-            if pyfvvdp is not None:
-                value, _, _ = ours(arguments.program, folder, width, height, "fovvideovdp")
-                differences["fovvideovdp"] = abs(value - their_jod(*pictures)[0])
-            for metric, difference in differences.items():
-                for row in (KINDS[kind], "all"):
-                    worst[row, metric] = max(worst.get((row, metric), 0), difference)
-        metrics = sorted({metric for _, metric in worst})
-        print(f"{'worst difference':<24}" + "".join(f"{metric:>14}" for metric in metrics))
-        for row in (*KINDS, "all"):
-            print(f"{row:<24}" + "".join(f"{worst.get((row, metric), math.nan):>14.2g}" for metric in metrics))
+        if arguments.pairs:
+            table("worst difference", stills(arguments.program, folder, np.random.default_rng(20), arguments.pairs))
+        if arguments.hdr_pairs:
+            table("worst, pairs of light", hdr_pairs(arguments.program, folder, np.random.default_rng(21), arguments.hdr_pairs))
+        if arguments.clips:
+            table("worst, clips", clips(arguments.program, folder, np.random.default_rng(22), arguments.clips))
         if arguments.time:
-            width, height = 3840, 2160
-            pictures = write_pair(folder, random, width, height, 0)
-            for _ in range(3):
-                if flip_evaluator is not None:
-                    _, seconds, ppd = ours(arguments.program, folder, width, height, "flip")
-                    print(f"flip         3840x2160: ours {seconds:.2f} s, flip-evaluator {their_flip(*pictures, ppd)[1]:.2f} s")
-                if pyfvvdp is not None:
-                    _, seconds, _ = ours(arguments.program, folder, width, height, "fovvideovdp")
-                    print(f"fovvideovdp  3840x2160: ours {seconds:.2f} s, pyfvvdp {their_jod(*pictures)[1]:.2f} s")
+            times(arguments.program, folder, np.random.default_rng(23))
 
 
 if __name__ == "__main__":
