@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "core/luminance.hpp"
 
@@ -11,6 +12,8 @@ namespace gazetrace {
 namespace {
 
 constexpr int kReach = 2;  // the neighborhood is 5x5 sites
+// Light that no float holds: in the dark the past fades towards it, and its square leaves what doubles can hold.
+constexpr double kNoLight = std::numeric_limits<float>::min();
 
 }  // namespace
 
@@ -42,6 +45,7 @@ Spread spread_around(const Frame& frame, const SurfaceMotion& motion, int x, int
   const double mean_luminance = luminance_sum / n;
   // What the samples say of their own noise, for a neighborhood that agrees by chance; channels in proportion.
   const double own = mean_luminance > 0 ? sample_variance / n / (mean_luminance * mean_luminance) : 0;
+  spread.known = spread.taps > 1 || own > 0;
   const Vec3d& m = spread.mean;
   spread.variance = {std::max(squares.x / n - m.x * m.x, own * m.x * m.x),
                      std::max(squares.y / n - m.y * m.y, own * m.y * m.y),
@@ -50,11 +54,14 @@ Spread spread_around(const Frame& frame, const SurfaceMotion& motion, int x, int
 }
 
 void clip(const Spread& spread, double sigmas, PastSums& past) {
+  if (!spread.known) {
+    return;
+  }
   const Vec3d mean = past.radiance / past.count;
   // The past has noise of its own: a variance of its luminance, shared out in proportion.
   const double past_luminance = luminance(mean);
   const double own =
-      past_luminance > 0 ? past.variance / (past.count * past.count) / (past_luminance * past_luminance) : 0;
+      past_luminance > kNoLight ? past.variance / (past.count * past.count) / (past_luminance * past_luminance) : 0;
   double farthest = 1;
   const auto clipped = [&](double value, double center, double variance) {
     const double limit =

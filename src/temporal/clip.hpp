@@ -12,6 +12,7 @@ namespace gazetrace {
 struct Spread {
   Vec3d mean, variance;
   int taps = 0;
+  bool known = false;  // a single tap of a single sample tells nothing of its spread
 };
 
 // Of the current frame about a pixel, on the same object, a site's width apart, so that each tap is another site.

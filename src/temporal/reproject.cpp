@@ -19,6 +19,8 @@ namespace {
 
 constexpr float kFullRatePx = 1.5F;
 constexpr float kKnowsNoise = 2;  // samples
+// Samples: a past worth less is none. It would show in no digit, and squares of its count leave what numbers can hold.
+constexpr double kLeastWorth = 1e-9;
 
 ImageGray footprints_of(const SamplingMap& map) {
   ImageGray footprint(map.width_px, map.height_px, 1.0F);
@@ -139,7 +141,9 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
         if (settings.clip_sigmas > 0) {
           clip(spread_around(frame, motion, x, y, footprint.pixels[i]), settings.clip_sigmas, past);
         }
-        if (settings.blend > 0 && count > 0) {
+        if (past.count < kLeastWorth) {
+          past = {};
+        } else if (settings.blend > 0 && count > 0) {
           scale_worth(past, count * (1 / settings.blend - 1) / past.count);
         }
       }

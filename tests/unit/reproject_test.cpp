@@ -280,6 +280,60 @@ TEST(Reproject, AThousandFramesDoNotDrift) {
   EXPECT_GT(history.count_sum(2, 9), 20);
 }
 
+void expect_finite(const Frame& frame, const TemporalHistory& history, int number) {
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    const Vec3f& pixel = frame.radiance.pixels[i];
+    ASSERT_TRUE(std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z)) << number;
+    ASSERT_TRUE(std::isfinite(frame.variance.pixels[i]) && std::isfinite(history.radiance_sum.pixels[i].x)) << number;
+  }
+}
+
+// In the dark what is left of the past halves from frame to frame, until its square is none: after 600 of them.
+TEST(Reproject, ThousandsOfBlackFramesStayFinite) {
+  AccumulateSettings settings;
+  settings.mode = AccumulateMode::reproject;
+  settings.frames = 2;
+  TemporalHistory history;
+  for (int k = 1; k <= 4000; ++k) {
+    const Frame out = pass(k <= 3 ? even_frame(1, 4, 0.5F) : even_frame(0, 4), wall(), settings, history, k);
+    expect_finite(out, history, k);
+  }
+}
+
+// A neighborhood that is black but for the least light there is leaves next to nothing of a bright past.
+TEST(Reproject, APastThatIsContradictedBeyondNumbersStaysFinite) {
+  AccumulateSettings settings;
+  settings.mode = AccumulateMode::reproject;
+  for (const double blend : {0.0, 0.1}) {
+    settings.blend = blend;
+    TemporalHistory history;
+    const auto spark = [](int x, int y) { return x == 8 && y == 6 ? 1e-38 : 0.0; };
+    int k = 0;
+    for (int round = 0; round < 4; ++round) {
+      for (const Frame& frame : {even_frame(1, 0.0625F), even_frame(1, 0.0625F), frame_of(spark, 0.0625F),
+                                 even_frame(0, 0.0625F), frame_of(spark, 0.0625F), frame_of(spark, 0)}) {
+        const Frame out = pass(frame, wall(), settings, history, ++k);
+        expect_finite(out, history, k);
+      }
+    }
+  }
+}
+
+// One sample of one pixel does not tell how far the next one may be off: the past is kept.
+TEST(Reproject, APixelAloneIsNotHeldAgainstItself) {
+  AccumulateSettings settings = all_kept();
+  settings.clip_sigmas = 3;
+  TemporalHistory history;
+  SurfaceMotion motion = wall();
+  motion.object(8, 6) = 2;
+  Frame out;
+  for (int k = 1; k <= 16; ++k) {
+    out = pass(frame_of([k](int x, int y) { return x == 8 && y == 6 ? k % 2 : 0.5; }, 1), motion, settings, history, k);
+  }
+  EXPECT_FLOAT_EQ(out.sample_count(8, 6), 16);
+  EXPECT_NEAR(value(out, 8, 6), 0.5, 1e-6);
+}
+
 TEST(Reproject, ACutForgetsEverything) {
   const auto after = [](const std::function<void(FrameRequest&)>& change) {
     TemporalHistory history;
