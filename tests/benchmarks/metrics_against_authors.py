@@ -139,8 +139,9 @@ def write_hdr_pair(folder, random, width, height, kind):
     reference = scene(random, width, height)
     y, x = np.mgrid[0:height, 0:width]
     lamp = np.exp(-np.hypot(x - random.uniform(0, width), y - random.uniform(0, height)) / (0.05 * height))
-    light = [(np.clip(picture, 0, 1) ** 2.2 * random_scale + 30 * lamp[..., None]).astype(np.float32)
-             for random_scale in [random.uniform(0.3, 3)] for picture in (reference, spoiled(random, reference, kind))]
+    scale = random.uniform(0.3, 3)
+    light = [np.ascontiguousarray(np.clip(picture, 0, 1) ** 2.2 * scale + 30 * lamp[..., None], dtype=np.float32)
+             for picture in (reference, spoiled(random, reference, kind))]
     for name, picture in zip(("ref", "test"), light):
         header = {"compression": OpenEXR.NO_COMPRESSION, "type": OpenEXR.scanlineimage}
         with OpenEXR.File(header, {"RGB": picture}) as file:
@@ -189,7 +190,7 @@ def write_clip(folder, random, width, height, clip):
     gaze = clip_gaze(random, clip, width, height)
     rows = ["# gazetrace-gaze 1", "t_ns,u,v"]
     for k, (x, y) in enumerate(gaze):
-        rows.append(f"{k * 1_000_000_000 // CLIP_FPS},{(x + 0.5) / width!r},{(y + 0.5) / height!r}")
+        rows.append(f"{k * 1_000_000_000 // CLIP_FPS},{float(x + 0.5) / width!r},{float(y + 0.5) / height!r}")
     (folder / "gaze.csv").write_text("\n".join(rows) + "\n")
     return np.stack(clips["ref"], axis=-1), np.stack(clips["test"], axis=-1), gaze
 
