@@ -95,7 +95,8 @@ FlickerRange flicker_range(double frames_per_second, double luminance_cd_m2) {
   const int frames = frames_of_a_second(frames_per_second);
   FlickerRange range;
   range.lowest_hz = frames_per_second / frames;
-  range.highest_hz = range.lowest_hz * (frames / 2);
+  const int whole_periods = frames / 2;  // of the highest frequency, in a second
+  range.highest_hz = range.lowest_hz * whole_periods;
   const auto sees = [&](double hz) {
     double most = 0;
     for (std::size_t s = 0; s < kScales; ++s) {

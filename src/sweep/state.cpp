@@ -129,6 +129,7 @@ void claim_directory(const std::string& directory) {
       path,
       [&](const Json& json) {
         std::vector<std::string> values;
+        values.reserve(mine.size());
         for (const auto& [what, value] : mine) {
           values.push_back(json.value(what, std::string()));
         }
