@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// First hits on the simplest of surfaces, for tests of filters that see them.
+// First hits on the simplest of surfaces, and maps of them, for tests of filters that see them.
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
+#include "foveation/falloff.hpp"
 #include "gazetrace/guides.hpp"
 
 namespace gazetrace {
@@ -22,6 +24,25 @@ inline Guides wall() {
   guides.material = Image<std::uint32_t>(kGuidesWallPx, kGuidesWallPx, 1);
   guides.kind = Image<SurfaceKind>(kGuidesWallPx, kGuidesWallPx, SurfaceKind::diffuse);
   return guides;
+}
+
+struct PixelSpan {
+  int begin = 0, end = 0;  // half open
+};
+
+// Single pixels within the spans, blocks of 8 samples around.
+inline SamplingMap map_with_fovea(const PixelSpan& across, const PixelSpan& down, std::uint32_t foveal_samples,
+                                  int block_px) {
+  Layout layout;
+  layout.regions = {{"fovea", 1, foveal_samples, SampleUnit::per_block},
+                    {"periphery", block_px, 8, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kGuidesWallPx, kGuidesWallPx, 1);
+  for (int y = down.begin; y < down.end; ++y) {
+    for (int x = across.begin; x < across.end; ++x) {
+      layout.region(x, y) = 0;
+    }
+  }
+  return map_from_layout(std::move(layout));
 }
 
 }  // namespace gazetrace

@@ -20,15 +20,7 @@ constexpr int kSize = kGuidesWallPx;
 
 // A square of single pixels with 32 samples within [begin, kSize - begin), blocks of 8 samples around.
 SamplingMap map_about_the_middle(int begin, int block_px) {
-  Layout layout;
-  layout.regions = {{"fovea", 1, 32, SampleUnit::per_block}, {"periphery", block_px, 8, SampleUnit::per_block}};
-  layout.region = Image<std::uint8_t>(kSize, kSize, 1);
-  for (int y = begin; y < kSize - begin; ++y) {
-    for (int x = begin; x < kSize - begin; ++x) {
-      layout.region(x, y) = 0;
-    }
-  }
-  return map_from_layout(std::move(layout));
+  return map_with_fovea({begin, kSize - begin}, {begin, kSize - begin}, 32, block_px);
 }
 
 // All samples of a site at the middle of its pixels, under light_at(x, y) of its first pixel. As the tracer, no

@@ -24,15 +24,7 @@ constexpr int kSize = kGuidesWallPx;
 
 // Blocks of 4 with 8 samples; with `fovea`, single pixels in the middle.
 SamplingMap block_map(bool fovea = false, std::uint32_t foveal_samples = 32) {
-  Layout layout;
-  layout.regions = {{"fovea", 1, foveal_samples, SampleUnit::per_block}, {"periphery", 4, 8, SampleUnit::per_block}};
-  layout.region = Image<std::uint8_t>(kSize, kSize, 1);
-  for (int y = 22; fovea && y < 41; ++y) {
-    for (int x = 21; x < 42; ++x) {
-      layout.region(x, y) = 0;
-    }
-  }
-  return map_from_layout(std::move(layout));
+  return fovea ? map_with_fovea({21, 42}, {22, 41}, foveal_samples, 4) : map_with_fovea({}, {}, foveal_samples, 4);
 }
 
 // One sample in every other pixel of each site, on what the guides show there; `light_at(x, y)` falls on it.

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/sweep_row.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -13,16 +15,9 @@ using testing::Pair;
 using testing::UnorderedElementsAre;
 
 SweepRow row_of(const std::string& id, SweepRole role, bool is_foveated, double time_s, double mse) {
-  SweepRow row;
-  row.id = id;
-  row.scene = "box";
-  row.gaze = "left";
-  row.curve = "one";
-  row.reference = "box-a";
+  SweepRow row = row_of_box(id, time_s);
   row.role = role;
   row.is_foveated = is_foveated;
-  row.runs.resize(1);
-  row.runs.front().time_s = time_s;
   row.runs.front().scores["mse"]["whole"] = mse;
   return row;
 }

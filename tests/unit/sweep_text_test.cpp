@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "support/sweep_row.hpp"
 #include "sweep/tables.hpp"
 
 namespace gazetrace {
@@ -13,16 +14,9 @@ namespace {
 using testing::HasSubstr;
 
 SweepRow row_of(const std::string& id, double time_s, double mse, double psnr) {
-  SweepRow row;
-  row.id = id;
-  row.scene = "box";
-  row.gaze = "left";
-  row.curve = "one";
-  row.reference = "box-a";
+  SweepRow row = row_of_box(id, time_s);
   row.is_foveated = true;
   row.compared_pixels = 10;
-  row.runs.resize(1);
-  row.runs.front().time_s = time_s;
   row.runs.front().samples = 20;
   row.runs.front().scores["mse"]["whole"] = mse;
   row.runs.front().scores["psnr"]["whole"] = psnr;

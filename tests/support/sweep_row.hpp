@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A row of a sweep's tables, measured once, for tests of what the tables say.
+#pragma once
+
+#include <string>
+
+#include "gazetrace/sweep.hpp"
+
+namespace gazetrace {
+
+inline SweepRow row_of_box(const std::string& id, double time_s) {
+  SweepRow row;
+  row.id = id;
+  row.scene = "box";
+  row.gaze = "left";
+  row.curve = "one";
+  row.reference = "box-a";
+  row.runs.resize(1);
+  row.runs.front().time_s = time_s;
+  return row;
+}
+
+}  // namespace gazetrace
