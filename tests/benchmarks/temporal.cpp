@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What accumulation over time gives and costs, on a scene under a sky, at equal samples.
-//   gazetrace_temporal scene.gltf sky.hdr gaze.csv [--frames N] [--height PX] [--reference-spp N] [--filter NAME]
-//   [--only TEXT]
+//   gazetrace_temporal scene.gltf sky.hdr gaze.csv [--frames N] [--height PX] [--reference-spp N]
+//   [--filter NAME,NAME] [--start X,Y,Z] [--only sequences|light|body|seams]
 // Two sequences at 24 frames a second, both with the recorded gaze (replay, not viewing): a camera that glides and
 // turns, and one that stands still while the gaze moves. References are uniform, of two halves with other seeds, whose
-// difference gives the floor below which nothing is claimed.
+// difference gives the floor below which nothing is claimed; where the camera stands, of 16 times --reference-spp.
 //   relmse   mean over frames and pixels of (x - ref)^2 / (ref^2 + 0.01 mean^2), the reference's own taken off
 //   bias     mean of x - ref over all frames and pixels, by the mean of ref, percent
 //   local    root mean square over pixels of the mean over time of x - ref, by the mean of ref: what does not average
@@ -31,6 +31,7 @@
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "sequence_measures.hpp"
+#include "world.hpp"
 
 namespace {
 
@@ -40,11 +41,13 @@ using benchmark::Luminances;
 using benchmark::Reference;
 using benchmark::SeenFlicker;
 
+constexpr std::uint32_t kStillReference = 16;
 constexpr std::array kAfter{0, 1, 2, 4, 8, 16};
 
 struct Options {
   std::string scene, sky, gaze, only;
-  std::string filter = "linear";
+  std::vector<std::string> filters{"linear"};
+  Vec3d start{6, 2, -0.3};  // of the camera, which looks towards -x
   int frames = 120, height_px = 90;
   std::uint32_t reference_spp = 128;
 };
@@ -72,7 +75,9 @@ Options parse(int argc, char** argv) {
     } else if (name == "--reference-spp") {
       options.reference_spp = static_cast<std::uint32_t>(std::atoi(value));
     } else if (name == "--filter") {
-      options.filter = value;
+      options.filters = benchmark::parse_names(value);
+    } else if (name == "--start") {
+      options.start = benchmark::parse_point(value);
     } else if (name == "--only") {
       options.only = value;
     } else {
@@ -122,8 +127,8 @@ class Bench {
 
   [[nodiscard]] FramePlan plan(bool glides, int first, int last) const {
     CameraPath path;
-    const auto at = [](double s) {
-      const Vec3d eye{6 - 0.4 * s, 2, -0.3 + 0.2 * std::sin(s)};
+    const auto at = [start = options_.start](double s) {
+      const Vec3d eye = start + Vec3d{-0.4 * s, 0, 0.2 * std::sin(s)};
       return look_at(eye, eye + Vec3d{-1, 0.06, 0.25 * std::sin(0.7 * s)}, {0, 1, 0});
     };
     Projection projection;
@@ -144,19 +149,23 @@ class Bench {
     return plan_frames(path, &log_, settings);
   }
 
-  [[nodiscard]] PipelineSettings settings_of(const AccumulateSettings& accumulate) const {
+  [[nodiscard]] PipelineSettings settings_of(const AccumulateSettings& accumulate, const std::string& filter) const {
     PipelineSettings settings;
-    settings.filter = options_.filter;
+    settings.filter = filter;
     settings.accumulate = accumulate;
     settings.history_digest = "none";
     settings.trace.seed = 1;
     return settings;
   }
 
-  [[nodiscard]] PipelineSettings reference_settings(std::uint64_t seed) const {
+  // One frame is worth more samples than each of many.
+  [[nodiscard]] std::uint32_t reference_spp(bool still) const {
+    return options_.reference_spp * (still ? kStillReference : 1);
+  }
+  [[nodiscard]] PipelineSettings reference_settings(std::uint64_t seed, bool still) const {
     PipelineSettings settings;
     settings.foveation.falloff = "uniform";
-    settings.foveation.uniform_spp = options_.reference_spp / 2;
+    settings.foveation.uniform_spp = reference_spp(still) / 2;
     settings.trace.seed = seed;
     return settings;
   }
@@ -195,7 +204,7 @@ Reference make_reference(PathTracer& tracer, const Bench& bench, const FramePlan
   one.frames.resize(1);
   Reference reference;
   const auto half = [&](std::uint64_t seed) {
-    Luminances frames = render(tracer, still ? one : all, bench.reference_settings(seed));
+    Luminances frames = render(tracer, still ? one : all, bench.reference_settings(seed, still));
     frames.resize(all.frames.size(), frames.front());
     return frames;
   };
@@ -210,6 +219,9 @@ Reference make_reference(PathTracer& tracer, const Bench& bench, const FramePlan
     }
   }
   reference.level = sum / static_cast<double>(reference.a.size() * reference.a[0].size());
+  if (!(reference.level > 0)) {
+    throw Error(ErrorKind::input, "--start", "the reference is black", "begin where light reaches, not in a wall");
+  }
   return reference;
 }
 
@@ -269,27 +281,33 @@ void print_floor(const FramePlan& plan, const Reference& reference) {
              floor / static_cast<double>(reference.a.size() * reference.a[0].size()), seen.all, seen.periphery);
 }
 
+void compare_variants(PathTracer& tracer, const Bench& bench, const FramePlan& plan, const Reference& reference,
+                      const std::string& filter) {
+  fmt::print(
+      "\nFilter {}\n\n| accumulation | relmse | bias | local | flicker | seen | seen beyond {} deg | ms a frame |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+      filter, benchmark::kPeriphery_deg);
+  for (const Variant& variant : make_variants()) {
+    if (variant.orders && filter_needs_guides(filter)) {
+      continue;
+    }
+    double temporal_ms = 0;
+    const Luminances frames = render(tracer, plan, bench.settings_of(variant.accumulate, filter), &temporal_ms);
+    print_row(variant.name, plan, frames, reference, temporal_ms);
+  }
+}
+
 void compare_sequences(PathTracer& tracer, const Bench& bench, const Options& options) {
-  const bool has_orders = !filter_needs_guides(options.filter);
   for (const bool glides : {true, false}) {
     const FramePlan plan = bench.plan(glides, 1, options.frames);
     const Reference reference = make_reference(tracer, bench, plan, !glides);
-    fmt::print("\n{}, {} frames of {}x{}, filter {}, references of {} spp\n\n",
+    fmt::print("\n{}, {} frames of {}x{}, references of {} spp\n",
                glides ? "The camera glides" : "The camera stands still", options.frames, bench.width_px(),
-               options.height_px, options.filter, options.reference_spp);
-    fmt::print(
-        "| accumulation | relmse | bias | local | flicker | seen | seen beyond {} deg | ms a frame |\n"
-        "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
-        benchmark::kPeriphery_deg);
-    for (const Variant& variant : make_variants()) {
-      if (!has_orders && variant.orders) {
-        continue;
-      }
-      double temporal_ms = 0;
-      const Luminances frames = render(tracer, plan, bench.settings_of(variant.accumulate), &temporal_ms);
-      print_row(variant.name, plan, frames, reference, temporal_ms);
-    }
+               options.height_px, bench.reference_spp(!glides));
     print_floor(plan, reference);
+    for (const std::string& filter : options.filters) {
+      compare_variants(tracer, bench, plan, reference, filter);
+    }
   }
 }
 
@@ -303,20 +321,20 @@ double mean_of(const std::vector<float>& values) {
 
 // Two scenes, the history handed over by a checkpoint: from the next frame on everything is the second one's.
 Luminances across_a_change(PathTracer& before, PathTracer& after, const Bench& bench, const Variant& variant,
-                           bool glides, int first_after) {
-  PipelineSettings settings = bench.settings_of(variant.accumulate);
+                           const std::string& filter, int first_after) {
+  PipelineSettings settings = bench.settings_of(variant.accumulate, filter);
   settings.checkpoint = (std::string(std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp") +
                          "/gazetrace_temporal_benchmark.bin");
-  (void)render(before, bench.plan(glides, 1, first_after - 1), settings);
+  (void)render(before, bench.plan(false, 1, first_after - 1), settings);
   settings.resume_from = settings.checkpoint;
   settings.checkpoint.clear();
-  Luminances frames = render(after, bench.plan(glides, first_after, first_after + kAfter.back()), settings);
+  Luminances frames = render(after, bench.plan(false, first_after, first_after + kAfter.back()), settings);
   std::remove(settings.resume_from.c_str());
   return frames;
 }
 
 // How much more than the new light is seen, relative to how much there was more before.
-void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench) {
+void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench, const std::string& filter) {
   constexpr int kFirst = 33;
   Scene dark = scene;
   for (Vec3f& radiance : dark.environment.radiance.pixels) {
@@ -329,9 +347,9 @@ void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench) 
   }
   fmt::print("\n| --- |{}\n", " --- | --- | --- | --- | --- | --- |");
   for (const Variant& variant : make_variants()) {
-    const Luminances frames = across_a_change(tracer, dark_tracer, bench, variant, false, kFirst);
+    const Luminances frames = across_a_change(tracer, dark_tracer, bench, variant, filter, kFirst);
     const Luminances alone =
-        render(dark_tracer, bench.plan(false, kFirst, kFirst + kAfter.back()), bench.settings_of({}));
+        render(dark_tracer, bench.plan(false, kFirst, kFirst + kAfter.back()), bench.settings_of({}, filter));
     double level = 0;
     for (const auto& frame : alone) {
       level += mean_of(frame) / static_cast<double>(alone.size());
@@ -346,11 +364,14 @@ void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench) 
 }
 
 // A board that stands before the camera is gone: where it was seen, and where its shadow or light was.
-void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, const Options& options) {
+void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, const Options& options,
+                  const std::string& filter) {
   constexpr int kFirst = 33;
   Scene with_board = scene;
   Geometry board;
-  board.positions = {{3.5F, 0.6F, -1.0F}, {3.5F, 0.6F, 0.4F}, {3.5F, 2.4F, 0.4F}, {3.5F, 2.4F, -1.0F}};
+  for (const Vec3d& corner : {Vec3d{-2.5, -1.4, -0.7}, {-2.5, -1.4, 0.7}, {-2.5, 0.4, 0.7}, {-2.5, 0.4, -0.7}}) {
+    board.positions.push_back(to_float(options.start + corner));
+  }
   board.normals.assign(4, {1, 0, 0});
   board.triangles = {{0, 1, 2}, {0, 2, 3}};
   Material white;
@@ -366,8 +387,8 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
       board_tracer.surface_motion(one.frames[0].camera, bench.width_px(), options.height_px, {one.frames[0].camera, 0});
   const auto board_object = static_cast<std::uint32_t>(with_board.instances.size());
   const auto truth = [&](PathTracer& of) {
-    const auto a = render(of, one, bench.reference_settings(1001));
-    const auto b = render(of, one, bench.reference_settings(2002));
+    const auto a = render(of, one, bench.reference_settings(1001, true));
+    const auto b = render(of, one, bench.reference_settings(2002, true));
     std::vector<float> mean = a[0];
     for (std::size_t i = 0; i < mean.size(); ++i) {
       mean[i] = 0.5F * (mean[i] + b[0][i]);
@@ -394,7 +415,7 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
     }
     fmt::print("\n| --- |{}\n", " --- | --- | --- | --- | --- | --- |");
     for (const Variant& variant : make_variants()) {
-      const Luminances frames = across_a_change(board_tracer, tracer, bench, variant, false, kFirst);
+      const Luminances frames = across_a_change(board_tracer, tracer, bench, variant, filter, kFirst);
       fmt::print("| {} |", variant.name);
       for (const int after : kAfter) {
         // The part of the old picture in the new one, by least squares.
@@ -414,10 +435,10 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
   }
 }
 
-void seams(PathTracer& tracer, const Bench& bench) {
+void seams(PathTracer& tracer, const Bench& bench, const std::string& filter) {
   constexpr int kLast = 60;
   const Variant variant = make_variants()[1];
-  const Luminances whole = render(tracer, bench.plan(true, 1, kLast), bench.settings_of(variant.accumulate));
+  const Luminances whole = render(tracer, bench.plan(true, 1, kLast), bench.settings_of(variant.accumulate, filter));
   fmt::print(
       "\nA run that begins at frame {}, with frames rendered before it for their history\n\n"
       "| before | root mean square of the difference to one run, by the mean | the same of a frame's own noise |\n"
@@ -430,11 +451,11 @@ void seams(PathTracer& tracer, const Bench& bench) {
     }
     return 100 * std::sqrt(square) / mean_of(whole.back());
   };
-  PipelineSettings other = bench.settings_of(variant.accumulate);
+  PipelineSettings other = bench.settings_of(variant.accumulate, filter);
   other.trace.seed = 77;
   const Luminances other_seed = render(tracer, bench.plan(true, 1, kLast), other);
   for (const int preroll : {0, 8, 16, 32, 48}) {
-    PipelineSettings settings = bench.settings_of(variant.accumulate);
+    PipelineSettings settings = bench.settings_of(variant.accumulate, filter);
     settings.preroll = preroll;
     const Luminances some = render(tracer, bench.plan(true, kLast - preroll, kLast), settings);
     fmt::print("| {} | {:.3f} % | {:.3f} % |\n", preroll, difference(some.back(), whole.back()),
@@ -449,14 +470,19 @@ int run(int argc, char** argv) {
   PathTracer tracer(scene, {});
   const Bench bench(options);
   const auto wanted = [&](const char* part) { return options.only.empty() || options.only == part; };
-  if (wanted("seams")) {
-    seams(tracer, bench);
-  }
-  if (wanted("light")) {
-    light_goes_out(tracer, scene, bench);
-  }
-  if (wanted("body")) {
-    body_is_gone(tracer, scene, bench, options);
+  for (const std::string& filter : options.filters) {
+    if (options.only != "sequences") {
+      fmt::print("\n## {}\n", filter);
+    }
+    if (wanted("seams")) {
+      seams(tracer, bench, filter);
+    }
+    if (wanted("light")) {
+      light_goes_out(tracer, scene, bench, filter);
+    }
+    if (wanted("body")) {
+      body_is_gone(tracer, scene, bench, options, filter);
+    }
   }
   if (wanted("sequences")) {
     compare_sequences(tracer, bench, options);

@@ -4,6 +4,7 @@
 //   gazetrace_foveation_gain SCENE.gltf=SKY.hdr [--eye X,Y,Z --target X,Y,Z --fov DEG] --reference A.exr,B.exr,...
 //       --csv FILE [--size 960x540] [--budget 1] [--models all] [--filters none,linear,guided]
 //       [--gaze U,V ...] [--fixations LOG.csv:COUNT:SEED] [--seeds 1] [--ev E] [--metrics relmse,flip,fovvideovdp]
+//       [--clip FRAMES]
 //   gazetrace_foveation_gain ... --times ROUNDS
 //   gazetrace_foveation_gain --tables FILE.csv [FILE.csv ...] [--full FILE.md]
 // The first form appends to the CSV file what it lacks of the scene's errors, an arm a row; the second the times, which
@@ -19,6 +20,8 @@
 //   low resolution  uniform with as many samples in all in a frame of half the width and height, enlarged bilinearly
 //   in blocks       uniform with as many samples in all in blocks of 8 samples and more, as models have them in the
 //                   periphery: what a filter does to a single pixel with a sample is not what it does to a block
+// With --clip every picture is the last of so many frames at rest, each of --budget samples a pixel, for models and
+// rivals alike: accumulated by reprojection after the filter. Times are those of a frame, by the mean.
 // Models and rivals share no samples, nor do gazes. The reference is the mean of the files, each of a seed of its own;
 // --ev, by default what brings its log-average luminance to 0.18, is the exposure. relMSE (the library's) is that of
 // linear light at the exposure; FLIP and FovVideoVDP see the plain sRGB view in 8 bits. The floor is the score of one
@@ -122,6 +125,8 @@ Arguments parse(int argc, char** argv) {
       study.ev = std::strtod(value, nullptr);
     } else if (name == "--csv") {
       study.csv = value;
+    } else if (name == "--clip") {
+      study.clip_frames = std::max(std::atoi(value), 1);
     } else if (name == "--times") {
       study.time_rounds = std::atoi(value);
     } else if (name == "--tables") {

@@ -16,7 +16,7 @@ namespace gazetrace::gain {
 namespace {
 
 // As the program's own frames have it: an arm is what `gazetrace render` makes with its seed.
-constexpr std::int32_t kFrame = 1;
+constexpr std::int32_t kFirstFrame = 1;
 constexpr int kEdgeRays = 4;
 constexpr double kNoDifferenceJod = 10;
 
@@ -63,13 +63,20 @@ ImageRgb mean_of(const ImageRgb& a, const ImageRgb& b) {
 }  // namespace
 
 double Traced::spp() const {
-  return static_cast<double>(sparse.stats.samples) / (static_cast<double>(map.width_px) * map.height_px);
+  double samples = 0;
+  double pixels = 0;
+  for (const Shot& shot : frames) {
+    samples += static_cast<double>(shot.sparse.stats.samples);
+    pixels += static_cast<double>(shot.map.width_px) * shot.map.height_px;
+  }
+  return samples / pixels;
 }
 
-Renderer::Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size)
+Renderer::Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames)
     : tracer_(tracer),
       camera_(camera),
-      view_(view_of_display(display_by_name("paper"), {}, size.width_px, size.height_px)) {}
+      view_(view_of_display(display_by_name("paper"), {}, size.width_px, size.height_px)),
+      clip_frames_(clip_frames) {}
 
 Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Gaze>& gaze, int seed,
                        bool surfaces) const {
@@ -79,32 +86,56 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
   }
   MapContext context;
   context.seed = static_cast<std::uint64_t>(seed);
-  context.frame = kFrame;
   TraceSettings trace;
   trace.seed = context.seed;
   trace.surfaces = surfaces;
   Traced traced;
-  const Stopwatch plan;
-  traced.map = make_sampling_map(settings, view_, direction, context);
-  traced.plan_ms = plan.elapsed_ms();
-  const Stopwatch rays;
-  traced.sparse = tracer_.trace(camera_, kFrame, traced.map, trace);
-  traced.trace_ms = rays.elapsed_ms();
+  for (std::int32_t frame = kFirstFrame; frame < kFirstFrame + clip_frames_; ++frame) {
+    context.frame = frame;
+    Shot shot;
+    const Stopwatch plan;
+    shot.map = make_sampling_map(settings, view_, direction, context);
+    traced.plan_ms += plan.elapsed_ms() / clip_frames_;
+    const Stopwatch rays;
+    shot.sparse = tracer_.trace(camera_, frame, shot.map, trace);
+    traced.trace_ms += rays.elapsed_ms() / clip_frames_;
+    traced.frames.push_back(std::move(shot));
+  }
   return traced;
 }
 
 Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
-  Picture picture;
   const bool needs_guides = filter_needs_guides(filter);
   if (needs_guides && !guides_) {
     const Stopwatch watch;
     guides_ = tracer_.guides(camera_, view_.width_px, view_.height_px, {.edge_rays = kEdgeRays});
     guides_ms_ = watch.elapsed_ms();
   }
+  const bool accumulates = traced.frames.size() > 1;
+  if (accumulates && !motion_) {
+    const Stopwatch watch;
+    motion_ = tracer_.surface_motion(camera_, view_.width_px, view_.height_px, {camera_, 0});
+    motion_ms_ = watch.elapsed_ms();
+  }
+  Picture picture;
   picture.guides_ms = needs_guides ? guides_ms_ : 0;
-  const Stopwatch watch;
-  picture.light = reconstruct(traced.sparse, traced.map, filter, 0, needs_guides ? &*guides_ : nullptr).radiance;
-  picture.reconstruct_ms = watch.elapsed_ms();
+  picture.temporal_ms = accumulates ? motion_ms_ : 0;
+  TemporalHistory history;
+  for (std::size_t i = 0; i < traced.frames.size(); ++i) {
+    const auto& [map, sparse] = traced.frames[i];
+    const Stopwatch watch;
+    Frame frame = reconstruct(sparse, map, filter, 0, needs_guides ? &*guides_ : nullptr);
+    picture.reconstruct_ms += watch.elapsed_ms() / clip_frames_;
+    if (accumulates) {
+      FrameRequest request;
+      request.frame = kFirstFrame + static_cast<std::int32_t>(i);
+      request.camera = camera_;
+      const Stopwatch past;
+      frame = reproject(std::move(frame), map, *motion_, request, AccumulateSettings{}, history, 0);
+      picture.temporal_ms += past.elapsed_ms() / clip_frames_;
+    }
+    picture.light = std::move(frame.radiance);
+  }
   return picture;
 }
 

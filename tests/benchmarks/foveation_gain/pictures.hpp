@@ -12,6 +12,7 @@
 #include "gazetrace/color.hpp"
 #include "gazetrace/guides.hpp"
 #include "gazetrace/reconstruct.hpp"
+#include "gazetrace/temporal.hpp"
 #include "gazetrace/trace.hpp"
 #include "world.hpp"
 
@@ -23,36 +24,48 @@ struct Gaze {
 };
 
 // Samples of one map, once traced; each filter makes a picture of them.
-struct Traced {
+struct Shot {
   SamplingMap map;
   SparseFrame sparse;
-  double plan_ms = 0, trace_ms = 0;
-  [[nodiscard]] double spp() const;
 };
+// A still is one shot; a clip is several of other samples, in which nothing moves.
+struct Traced {
+  std::vector<Shot> frames;
+  double plan_ms = 0, trace_ms = 0;  // a frame, by the mean
+  [[nodiscard]] double spp() const;  // the same
+};
+// The still, or the last frame of a clip.
 struct Picture {
   ImageRgb light;
-  double guides_ms = 0, reconstruct_ms = 0;
+  double guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0;  // a frame, by the mean
 };
 
 // Traces and filters. The frame fills the paper's display.
 class Renderer {
  public:
-  Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size);
+  // Pictures are the last ones of clips of so many frames; from 2 on they accumulate by reprojection.
+  Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames);
 
   // `surfaces`: for filters that need guides. Empty gaze: for maps that need none.
   [[nodiscard]] Traced trace(const FoveationSettings& settings, const std::optional<Gaze>& gaze, int seed,
                              bool surfaces) const;
-  // First hits are the same for every map: they are traced once, and their time is that of the first time.
+  // First hits are the same for every map and frame: they are traced once, and their time is that of the first time,
+  // in every frame; so is that of where surfaces were seen before.
   Picture filtered(const Traced& traced, const std::string& filter);
-  void forget_guides() { guides_.reset(); }
+  void forget_first_hits() {
+    guides_.reset();
+    motion_.reset();
+  }
   [[nodiscard]] const PlanarView& view() const { return view_; }
 
  private:
   const PathTracer& tracer_;
   Camera camera_;
   PlanarView view_;
+  int clip_frames_ = 1;
   std::optional<Guides> guides_;
-  double guides_ms_ = 0;
+  std::optional<SurfaceMotion> motion_;
+  double guides_ms_ = 0, motion_ms_ = 0;
 };
 
 // A model of `falloffs()` scaled to an average count. Cut-off frequencies are relative to the fovea: measured against

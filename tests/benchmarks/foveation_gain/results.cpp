@@ -41,7 +41,7 @@ StageTimes median_of(const std::vector<Row>& rounds) {
     return median(std::move(values));
   };
   return {of(&StageTimes::plan_ms), of(&StageTimes::guides_ms), of(&StageTimes::trace_ms),
-          of(&StageTimes::reconstruct_ms)};
+          of(&StageTimes::reconstruct_ms), of(&StageTimes::temporal_ms)};
 }
 
 // Errors fall as powers of samples and of time; JOD is kept as it is.

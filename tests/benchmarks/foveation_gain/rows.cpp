@@ -16,7 +16,7 @@
 namespace gazetrace::gain {
 namespace {
 
-constexpr std::size_t kPlainFields = 13;
+constexpr std::size_t kPlainFields = 14;
 constexpr std::size_t kFields = kPlainFields + kColumns * (1 + kMetrics);
 
 // Empty where there is no such file.
@@ -28,7 +28,7 @@ std::string text_of(const std::string& path) {
 }
 
 std::string header() {
-  std::string line = "kind,scene,arm,filter,gaze,u,v,seed,spp,plan_ms,guides_ms,trace_ms,reconstruct_ms";
+  std::string line = "kind,scene,arm,filter,gaze,u,v,seed,spp,plan_ms,guides_ms,trace_ms,reconstruct_ms,temporal_ms";
   for (std::size_t c = 0; c < kColumns; ++c) {
     line += ",share_" + column_name(c);
   }
@@ -41,9 +41,10 @@ std::string header() {
 }
 
 std::string line_of(const Row& row) {
-  std::string line = fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{:.9g},{:.4f},{:.4f},{:.4f},{:.4f}", row.kind,
-                                 row.scene, row.arm, row.filter, row.gaze, row.u, row.v, row.seed, row.spp,
-                                 row.time.plan_ms, row.time.guides_ms, row.time.trace_ms, row.time.reconstruct_ms);
+  std::string line =
+      fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{:.9g},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", row.kind, row.scene,
+                  row.arm, row.filter, row.gaze, row.u, row.v, row.seed, row.spp, row.time.plan_ms, row.time.guides_ms,
+                  row.time.trace_ms, row.time.reconstruct_ms, row.time.temporal_ms);
   const auto add = [&](const ByColumn& values) {
     for (const double value : values) {
       line += std::isfinite(value) ? fmt::format(",{:.9g}", value) : ",";
@@ -84,7 +85,7 @@ Row row_of(const std::vector<std::string>& fields, const std::string& place) {
   };
   Row row{fields[0], fields[1], fields[2], fields[3], fields[4], number(5), number(6), 0, number(8), {}, {}, {}};
   row.seed = static_cast<int>(number(7));
-  row.time = {number(9), number(10), number(11), number(12)};
+  row.time = {number(9), number(10), number(11), number(12), number(13)};
   for (std::size_t c = 0; c < kColumns; ++c) {
     row.share.at(c) = number(kPlainFields + c);
     for (std::size_t m = 0; m < kMetrics; ++m) {

@@ -29,9 +29,9 @@ inline constexpr ByColumn kNothing = [] {
   return nothing;
 }();
 
-struct StageTimes {
-  double plan_ms = 0, guides_ms = 0, trace_ms = 0, reconstruct_ms = 0;
-  [[nodiscard]] double sum_ms() const { return plan_ms + guides_ms + trace_ms + reconstruct_ms; }
+struct StageTimes {  // of a frame
+  double plan_ms = 0, guides_ms = 0, trace_ms = 0, reconstruct_ms = 0, temporal_ms = 0;
+  [[nodiscard]] double sum_ms() const { return plan_ms + guides_ms + trace_ms + reconstruct_ms + temporal_ms; }
 };
 
 // kind   setup: `arm` says how the scene's errors came about, "timed" how its times did: frame, budget, view, gazes,

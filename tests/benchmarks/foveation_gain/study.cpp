@@ -62,14 +62,24 @@ std::string short_digest(const Settings& settings) {
   return digest_settings(settings).substr(0, 12);
 }
 
+// Of stills nothing is said, as in files from before there were clips.
+std::string clip_text(int frames) {
+  return frames > 1 ? fmt::format(" clips of {} frames", frames) : std::string();
+}
+
+StageTimes stage_times(const Traced& traced, const Picture& picture) {
+  return {traced.plan_ms, picture.guides_ms, traced.trace_ms, picture.reconstruct_ms, picture.temporal_ms};
+}
+
 class Study {
  public:
   explicit Study(const StudySettings& settings)
       : settings_(settings),
         world_(load(settings)),
         tracer_(world_.scene, {}),
-        renderer_(tracer_, world_.camera, settings.size),
-        small_(tracer_, world_.camera, {(settings.size.width_px + 1) / 2, (settings.size.height_px + 1) / 2}),
+        renderer_(tracer_, world_.camera, settings.size, settings.clip_frames),
+        small_(tracer_, world_.camera, {(settings.size.width_px + 1) / 2, (settings.size.height_px + 1) / 2},
+               settings.clip_frames),
         rows_(settings.csv) {
     for (const FalloffInfo& info : falloffs()) {
       if (info.name != "uniform" &&
@@ -157,7 +167,7 @@ void Study::arm(Judge& judge, Renderer& renderer, const std::string& name, int s
     for (auto& [g, row] : missing) {
       judge.score(maps, g, row);
       row.spp = traced->spp();
-      row.time = {traced->plan_ms, picture.guides_ms, traced->trace_ms, picture.reconstruct_ms};
+      row.time = stage_times(*traced, picture);
       rows_.add(row);
     }
     score_ms += scoring.elapsed_ms();
@@ -214,8 +224,9 @@ void Study::errors_of_seed(Judge& judge, int seed) {
 void Study::measure_errors() {
   Judge judge(settings_.reference, renderer_.view(), settings_.ev, settings_.gazes, settings_.metrics);
   const std::string setup =
-      fmt::format("{}x{} budget {} ev {} references {} inputs {}", settings_.size.width_px, settings_.size.height_px,
-                  settings_.budget_spp, judge.ev(), settings_.reference.size(), short_digest(judgement_of(settings_)));
+      fmt::format("{}x{}{} budget {} ev {} references {} inputs {}", settings_.size.width_px, settings_.size.height_px,
+                  clip_text(settings_.clip_frames), settings_.budget_spp, judge.ev(), settings_.reference.size(),
+                  short_digest(judgement_of(settings_)));
   fmt::print("{}: {}, {:.2f} pixels per degree\n", world_.name, setup, judge.pixels_per_degree());
   rows_.claim("setup", world_.name, setup);
   for (Row& row : judge.floor()) {
@@ -250,13 +261,13 @@ void Study::time_arm(const std::string& name, const Gaze& gaze, const FoveationS
     }
     const Picture picture = renderer_.filtered(*of_filter, filter);
     row.spp = of_filter->spp();
-    row.time = {of_filter->plan_ms, picture.guides_ms, of_filter->trace_ms, picture.reconstruct_ms};
+    row.time = stage_times(*of_filter, picture);
     rows_.add(row);
   }
 }
 
 void Study::times_of_round(int round, const std::vector<Gaze>& gazes) {
-  renderer_.forget_guides();
+  renderer_.forget_first_hits();
   for (const double rate : kUniformRates) {
     time_arm(uniform_arm(rate), {kAnyGaze, {0.5, 0.5}}, uniform_settings(rate * settings_.budget_spp), round);
   }
@@ -278,8 +289,8 @@ void Study::measure_times() {
     gazes.push_back(settings_.gazes.front());
   }
   rows_.claim("timed", world_.name,
-              fmt::format("{}x{} budget {} inputs {}", settings_.size.width_px, settings_.size.height_px,
-                          settings_.budget_spp, short_digest(view_of(settings_))));
+              fmt::format("{}x{}{} budget {} inputs {}", settings_.size.width_px, settings_.size.height_px,
+                          clip_text(settings_.clip_frames), settings_.budget_spp, short_digest(view_of(settings_))));
   // Memory that the first frame asks the system for is there afterwards.
   renderer_.filtered(renderer_.trace(uniform_settings(settings_.budget_spp), std::nullopt, 0, surfaces_),
                      settings_.filters.back());
