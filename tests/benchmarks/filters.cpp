@@ -9,7 +9,7 @@
 // given exposure; FLIP at --ppd, FovVideoVDP on the paper's display with the gaze in the centre, relative MSE on linear
 // light. "prototype" is the plain guided filter that others are measured by: guides of 2 rays a pixel, block means
 // divided by block albedo, 5x5 blocks, bilateral in normal and depth. "linear, equal time" has as many more samples as
-// the time of guided's whole frame allows.
+// the time of guided's whole frame allows. JOD of a band is 10 less the mean of its local differences.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -224,6 +224,7 @@ Frame prototype(const SparseFrame& sparse, const SamplingMap& map, const Guides&
 }
 
 constexpr std::array<double, 7> kBandEdgesDeg{0, 2.6, 5.2, 8.5, 17, 30, 60};
+constexpr double kNoDifferenceJod = 10;
 
 struct Run {
   double trace_ms = 1e30, guides_ms = 0, filter_ms = 1e30;
@@ -235,9 +236,15 @@ void print_scores(const Bench& bench, const std::string& name, const Run& run) {
   const ImageRgb test = shown(run.frame.radiance, bench.options.ev);
   const ImageGray flip = flip_map(bench.reference_shown, test, bench.options.ppd);
   const MetricMap relative = measure("relmse", {bench.reference, {}}, {run.frame.radiance, {}}, {});
-  std::array<double, kBandEdgesDeg.size()> flip_sum{};
-  std::array<double, kBandEdgesDeg.size()> relative_sum{};
-  std::array<double, kBandEdgesDeg.size()> pixels{};
+  FovVideoVdpSettings settings;
+  settings.geometry = fovvideovdp_geometry(display_by_name("paper"));
+  FovVideoVdp vdp(settings, bench.options.width_px, bench.options.height_px);
+  const FovVideoVdpFrame seen =
+      vdp.add(linear_luminance(bench.reference_shown, 200), linear_luminance(test, 200), std::nullopt, true);
+  struct Band {
+    double flip = 0, relative = 0, seen_jod = 0, pixels = 0;
+  };
+  std::array<Band, kBandEdgesDeg.size()> bands;  // the first one is the frame
   for (std::size_t i = 0; i < flip.pixels.size(); ++i) {
     const double e = static_cast<double>(bench.eccentricity_deg.pixels[i]);
     std::size_t band = 1;
@@ -245,15 +252,12 @@ void print_scores(const Bench& bench, const std::string& name, const Run& run) {
       ++band;
     }
     for (const std::size_t b : {std::size_t{0}, band}) {
-      flip_sum[b] += static_cast<double>(flip.pixels[i]);
-      relative_sum[b] += static_cast<double>(relative.values.pixels[i]);
-      pixels[b] += 1;
+      bands[b].flip += static_cast<double>(flip.pixels[i]);
+      bands[b].relative += static_cast<double>(relative.values.pixels[i]);
+      bands[b].seen_jod += static_cast<double>(seen.map.pixels[i]);
+      bands[b].pixels += 1;
     }
   }
-  FovVideoVdpSettings settings;
-  settings.geometry = fovvideovdp_geometry(display_by_name("paper"));
-  FovVideoVdp vdp(settings, bench.options.width_px, bench.options.height_px);
-  const double q = vdp.add(linear_luminance(bench.reference_shown, 200), linear_luminance(test, 200), std::nullopt).q;
   const double mean_ratio = [&] {
     Vec3d a;
     Vec3d b;
@@ -265,11 +269,12 @@ void print_scores(const Bench& bench, const std::string& name, const Run& run) {
   }();
   fmt::print("{:<22} {:5.2f} spp {:7.1f} {:6.1f} {:6.1f} ms | FLIP {:.4f} relMSE {:.4f} JOD {:.3f} mean {:.4f} |", name,
              run.samples / static_cast<double>(flip.pixels.size()), run.trace_ms, run.guides_ms, run.filter_ms,
-             flip_sum[0] / pixels[0], relative_sum[0] / pixels[0], fovvideovdp_jod(q), mean_ratio);
-  for (std::size_t b = 1; b < pixels.size(); ++b) {
-    if (pixels[b] > 0) {
-      fmt::print(" {}-{}: {:.4f} {:.4f}", kBandEdgesDeg[b - 1], kBandEdgesDeg[b], flip_sum[b] / pixels[b],
-                 relative_sum[b] / pixels[b]);
+             bands[0].flip / bands[0].pixels, bands[0].relative / bands[0].pixels, fovvideovdp_jod(seen.q), mean_ratio);
+  for (std::size_t b = 1; b < bands.size(); ++b) {
+    const Band& band = bands.at(b);
+    if (band.pixels > 0) {
+      fmt::print(" {}-{}: {:.4f} {:.4f} {:.3f}", kBandEdgesDeg.at(b - 1), kBandEdgesDeg.at(b), band.flip / band.pixels,
+                 band.relative / band.pixels, kNoDifferenceJod - (band.seen_jod / band.pixels));
     }
   }
   fmt::print("\n");
@@ -336,7 +341,7 @@ int run(int argc, char** argv) {
   if (!options.pictures.empty()) {
     write_png(options.pictures + "/reference.png", bench.reference_shown);
   }
-  fmt::print("filter, samples a pixel, ms of trace, guides, filter | of the frame | FLIP and relMSE by degrees\n");
+  fmt::print("filter, samples a pixel, ms of trace, guides, filter | of the frame | FLIP, relMSE and JOD by degrees\n");
   const SamplingMap map = map_of(bench, options.map, 1);
   std::vector<std::string> filters{"linear", "tent", "push-pull"};
   if (options.map == "half") {
