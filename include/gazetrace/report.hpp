@@ -58,6 +58,7 @@ struct ReportRow {
   std::optional<Estimate> time_s;
   std::optional<double> samples, spp_mean, rays, peak_mib, efficiency;
   std::optional<Estimate> speed_up;  // t_uniform / t_foveated
+  std::optional<double> end_to_end;  // the same with the output; none without pictures, or of an older sweep
   std::optional<Estimate> reached;   // of an equal-time row: its time over the test's
   std::map<std::string, std::vector<ReportScore>> scores;
   std::vector<ReportPublished> published;

@@ -50,10 +50,10 @@ std::string report_methods(const ReportData& data) {
   add(text, "Metrics: ", list_text(metrics));
   add(text, "Bands of eccentricity about the true gaze, in degrees: ", list_text(data.bands));
   text +=
-      " Speed-up is the time of uniform sampling at the reference rate over that of the foveated run. Intervals are at "
+      " Speed-up is the time of uniform sampling at the reference rate over that of the foveated run; end-to-end is "
+      "the same ratio with exposure, view and writing of the pictures, without reading the scene. Intervals are at "
       "95 %; values whose intervals overlap are not told apart. Scores under the difference of the reference from "
-      "itself "
-      "are unresolved.";
+      "itself are unresolved.";
   return text;
 }
 

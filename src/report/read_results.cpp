@@ -209,6 +209,7 @@ ReportRow row_of(const Node& node) {
   row.settings = settings_of(node, "settings");
   row.time_s = estimate_at(node, "time_s");
   row.speed_up = estimate_at(node, "speed_up");
+  row.end_to_end = number_or_none(node, "end_to_end");
   row.reached = estimate_at(node, "reached");
   row.samples = number_or_none(node, "samples");
   row.spp_mean = number_or_none(node, "spp_mean");

@@ -109,7 +109,8 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
     html.add("<p class=\"small\">{}: {}</p>\n", escaped(scene_gaze_text(both)), escaped(shares));
   }
   html.begin_table(scene_gaze_text(both));
-  std::vector<std::string> names{"run", "time<small>s a frame</small>", "speed-up", "efficiency"};
+  std::vector<std::string> names{"run", "time<small>s a frame</small>", "speed-up",
+                                 "end-to-end<small>with output</small>", "efficiency"};
   for (const ReportMetric& metric : data.metrics) {
     names.push_back(metric_head(metric));
   }
@@ -121,6 +122,7 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
     html.add("{}", row_head(*row));
     html.estimate(row->time_s);
     html.estimate(row->speed_up);
+    html.cell(value_text(row->end_to_end));
     html.cell(value_text(row->efficiency));
     for (const ReportMetric& metric : data.metrics) {
       html.score(find_score(*row, metric.name, "whole"));
@@ -135,7 +137,7 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
   for (const ReportScene* const scene : scenes) {
     html.add(
         "<tr class=\"role-floor\"><th scope=\"row\">{} from itself<small>floor</small></th>"
-        "<td></td><td></td><td></td>",
+        "<td></td><td></td><td></td><td></td>",
         escaped(reference_text(*scene, scenes.size())));
     for (const ReportMetric& metric : data.metrics) {
       html.cell(value_text(find_floor(scene, both.gaze, metric.name, "whole")));

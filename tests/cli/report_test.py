@@ -93,6 +93,10 @@ class Report(harness.CliTest):
         with open(self.folder / "out.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 3 * len(small_results.METRICS) * 8)
+        ratios = {row["id"]: row["end_to_end"] for row in self.results["rows"]}
+        for row in rows:
+            self.assertNotIn(None, row, "more values than columns")
+            self.assertAlmostEqual(float(row["end_to_end"]) / ratios[row["id"]], 1, 7)
 
     def test_the_limit_is_kept_and_said(self):
         shutil.rmtree(self.folder)

@@ -46,7 +46,7 @@ def make(folder, size="64x36", frames=3):
         row = {"id": name, "scene": "box", "gaze": "glide", "role": role, "of": of, "label": label, "settings": {"options": " ".join(options)},
                "time_s": {**around(seconds, 0.05), "values": [seconds]}, "samples": sum(int(row["samples"]) for row in timing),
                "spp_mean": sum(int(row["samples"]) for row in timing) / frames / width / height, "rays": None, "peak_mib": None,
-               "speed_up": around(1, 0.05), "efficiency": None, "scores": {}, "frames": []}
+               "speed_up": around(1, 0.05), "end_to_end": None, "efficiency": None, "scores": {}, "frames": []}
         for score in scores["sequence"][0]["scores"]:
             parts = {"whole": score["value"], **score["bands"]}
             row["scores"][score["metric"]] = {
@@ -61,6 +61,7 @@ def make(folder, size="64x36", frames=3):
     uniform = rows[1]["time_s"]["mean"]
     for row in rows:
         row["speed_up"] = around(uniform / row["time_s"]["mean"], 0.05)
+        row["end_to_end"] = (uniform + 0.01) / (row["time_s"]["mean"] + 0.01)
     rows[0]["baselines"] = {"uniform-reference-rate": "uni", "equal-samples": "few"}
     results = {
         "format": "gazetrace-sweep-1", "title": "Box & <glide>", "plan_file": "box.toml", "build": {"version": "0.1.0"}, "machine": {"threads": 2},

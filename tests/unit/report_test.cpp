@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "gazetrace/output.hpp"
 #include "report/fill.hpp"
@@ -113,6 +115,73 @@ TEST(ReportTables, PublishedSpeedUpsStandBesideOurs) {
   EXPECT_THAT(page, HasSubstr("Speed-up beside what was published"));
   EXPECT_THAT(page, HasSubstr("57.25"));
   EXPECT_THAT(page, HasSubstr("Table &lt;2&gt;"));
+}
+
+std::size_t count(const std::string& text, const std::string& words) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1)) {
+    ++n;
+  }
+  return n;
+}
+
+// Cells of a line of the CSV; none of these holds a comma.
+std::vector<std::string> cells(const std::string& csv, std::size_t line) {
+  std::istringstream lines(csv);
+  std::string text;
+  for (std::size_t i = 0; i <= line; ++i) {
+    std::getline(lines, text);
+  }
+  std::istringstream values(text + ",");
+  std::vector<std::string> result;
+  for (std::string value; std::getline(values, value, ',');) {
+    result.push_back(value);
+  }
+  return result;
+}
+
+TEST(ReportTables, EndToEndStandsAfterTheSpeedUp) {
+  ordered_json test = row("t", "test", score(0.1, 0.09, 0.11));
+  test["end_to_end"] = 2.125;
+  test["efficiency"] = 0.75;
+  const ReportData data = read(results({test}));
+  EXPECT_EQ(data.rows[0].end_to_end, 2.125);
+  const std::string html = tables_html(data);
+  EXPECT_THAT(html, HasSubstr("speed-up</th><th scope=\"col\">end-to-end<small>with output</small></th>"
+                              "<th scope=\"col\">efficiency</th>"));
+  EXPECT_THAT(html, HasSubstr("<td>4<small>3.8 to 4.2</small></td><td>2.125</td><td>0.75</td>"));
+  // Heads, the run and the floor have as many cells each.
+  const std::string runs = html.substr(0, html.find("</table>"));
+  const std::size_t columns = count(runs, "<th scope=\"col\">");
+  EXPECT_EQ(count(runs, "<tr "), 2U);
+  EXPECT_EQ(count(runs, "<td>"), 2 * (columns - 1));  // the first is a head of its own
+  const std::string csv = report_csv(data);
+  EXPECT_EQ(cells(csv, 1).size(), cells(csv, 0).size());
+  const std::vector<std::string> names = cells(csv, 0);
+  const auto at = std::find(names.begin(), names.end(), "end_to_end");
+  ASSERT_NE(at, names.end());
+  EXPECT_EQ(*(at - 1), "speed_up_high");
+  EXPECT_EQ(cells(csv, 1).at(static_cast<std::size_t>(at - names.begin())), "2.125");
+  // What it is: in the methods, and above the tables where a sweep's own methods may say nothing of it.
+  const char* const words = "end-to-end is the same ratio with exposure, view and writing of the pictures";
+  EXPECT_THAT(report_methods(data), HasSubstr(words));
+  ordered_json told = results({test});
+  told["methods"] = "As ever.";
+  EXPECT_THAT(page_of(read(told)), HasSubstr(words));
+}
+
+// Results of earlier builds do not have it; of sweeps that wrote no pictures it is null.
+TEST(ReportTables, EndToEndMayBeMissing) {
+  for (const bool is_null : {false, true}) {
+    ordered_json test = row("t", "test", score(0.1, 0.09, 0.11));
+    if (is_null) {
+      test["end_to_end"] = nullptr;
+    }
+    const ReportData data = read(results({test}));
+    EXPECT_FALSE(data.rows[0].end_to_end);
+    EXPECT_THAT(tables_html(data), HasSubstr("<td>4<small>3.8 to 4.2</small></td><td>–</td><td>–</td>"));
+    EXPECT_THAT(report_csv(data), HasSubstr(",4,3.8,4.2,,,flip,whole,"));
+  }
 }
 
 TEST(ReportFill, OnlyTheTemplateIsLookedAt) {
