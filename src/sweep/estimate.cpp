@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much there is to do, before anything is rendered.
+#include <set>
+
+#include "sweep/rows.hpp"
+
+namespace gazetrace {
+
+SweepEstimate estimate_sweep(const SweepPlan& plan) {
+  SweepEstimate estimate;
+  const auto add = [&](const PlannedRow& row, double spp) {
+    double pixels = 0;
+    for (const FrameRequest& request : row.plan.frames) {
+      pixels += static_cast<double>(request.width_px) * request.height_px;
+    }
+    estimate.rows.push_back({row.row.id, row.row.scene + "/" + row.row.gaze + " " + row.row.label,
+                             to_string(row.row.role), spp * pixels, plan.measure.repeats});
+    estimate.samples += spp * pixels * plan.measure.repeats;
+  };
+  for (const SweepReference& reference : plan.references) {
+    PlannedRow row;
+    row.row.id = "reference";
+    row.row.label = reference.key;
+    row.row.scene = plan.scenes[reference.scene].name;
+    row.plan = reference.plan;
+    add(row, reference.pipeline.foveation.uniform_spp);
+    estimate.rows.back().role = "reference";
+    estimate.rows.back().repeats = static_cast<int>(reference.seeds.size());
+    estimate.samples += estimate.rows.back().samples * (estimate.rows.back().repeats - plan.measure.repeats);
+  }
+  std::set<std::string> known;
+  for (std::size_t t = 0; t < plan.tests.size(); ++t) {
+    const PlannedRow test = test_row(plan, t);
+    const double spp = planned_spp(test);
+    add(test, spp);
+    std::vector<std::string> notes;
+    std::vector<PlannedRow> rows = baselines_known_before(plan, test, notes);
+    std::vector<PlannedRow> more = baselines_of_samples(plan, test, spp);
+    if (plan.measure.baselines.equal_time && is_foveated(plan.tests[t])) {
+      more.push_back(uniform_row(plan, test, SweepRole::equal_time, spp));
+      more.back().row.label = "uniform, equal time: about so many samples";
+    }
+    rows.insert(rows.end(), more.begin(), more.end());
+    for (const PlannedRow& row : rows) {
+      if (row.row.role == SweepRole::equal_time || known.insert(row.digest + row.row.reference).second) {
+        add(row, planned_spp(row));
+      }
+    }
+  }
+  return estimate;
+}
+
+}  // namespace gazetrace
