@@ -33,7 +33,7 @@ std::string to_string(SweepRole role);  // "test", "uniform-reference-rate", ...
 struct SweepScene {
   std::string name;
   std::string description;                             // its settings, for the paragraph on methods
-  std::function<std::shared_ptr<const Scene>()> load;  // called once, when the scene's turn comes
+  std::function<std::shared_ptr<const Scene>()> load;  // called when the scene's turn comes
   TracerOptions tracer;
 };
 
@@ -265,11 +265,12 @@ void check_scoring(const SweepMeasure& measure, const SweepTest& test);
 // Renders what is not yet finished in the directory, in rounds over all rows of a scene, and puts together the tables.
 SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer);
 
-// Rows that the plan will measure and the camera samples that they take, without rendering.
+// Rows that the plan will measure and the camera samples that they take, without rendering. Loads a scene that is seen
+// from one place in several frames: whether its reference is one picture or many depends on what moves in it.
 struct SweepEstimate {
   struct Row {
     std::string id, label, role;
-    double samples = 0;  // one repeat, all frames
+    double samples = 0;  // one repeat, all frames that are rendered
     int repeats = 0;
   };
   std::vector<Row> rows;

@@ -1,10 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much there is to do, before anything is rendered.
+#include <memory>
 #include <set>
 
+#include "sweep/reference.hpp"
 #include "sweep/rows.hpp"
 
 namespace gazetrace {
+namespace {
+
+// What is rendered of each. References of a scene follow each other, so that it is loaded once and none beside it.
+std::vector<FramePlan> pictures_of_references(const SweepPlan& plan) {
+  std::vector<FramePlan> pictures;
+  std::shared_ptr<const Scene> scene;
+  std::size_t loaded = plan.scenes.size();
+  for (const SweepReference& reference : plan.references) {
+    if (!scene_decides_pictures(reference)) {
+      pictures.push_back(reference.plan);
+      continue;
+    }
+    if (loaded != reference.scene) {
+      scene.reset();
+      scene = plan.scenes[reference.scene].load();
+      loaded = reference.scene;
+    }
+    pictures.push_back(only_frames(reference.plan, reference_pictures(reference, *scene)));
+  }
+  return pictures;
+}
+
+}  // namespace
 
 SweepEstimate estimate_sweep(const SweepPlan& plan) {
   SweepEstimate estimate;
@@ -17,12 +42,14 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
                              to_string(row.row.role), spp * pixels, plan.measure.repeats});
     estimate.samples += spp * pixels * plan.measure.repeats;
   };
-  for (const SweepReference& reference : plan.references) {
+  const std::vector<FramePlan> pictures = pictures_of_references(plan);
+  for (std::size_t r = 0; r < pictures.size(); ++r) {
+    const SweepReference& reference = plan.references[r];
     PlannedRow row;
     row.row.id = "reference";
     row.row.label = reference.key;
     row.row.scene = plan.scenes[reference.scene].name;
-    row.plan = reference.plan;
+    row.plan = pictures[r];
     add(row, reference.pipeline.foveation.uniform_spp);
     estimate.rows.back().role = "reference";
     estimate.rows.back().repeats = static_cast<int>(reference.seeds.size());

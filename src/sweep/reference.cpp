@@ -23,14 +23,6 @@ std::string scrambling_folder(const std::string& directory, std::size_t scrambli
   return directory + fmt::format("/scrambling-{}", scrambling + 1);
 }
 
-FramePlan only(const FramePlan& plan, const std::vector<std::int32_t>& frames) {
-  FramePlan part = plan;
-  std::erase_if(part.frames, [&](const FrameRequest& request) {
-    return std::find(frames.begin(), frames.end(), request.frame) == frames.end();
-  });
-  return part;
-}
-
 void render_scrambling(PathTracer& tracer, const SweepReference& reference, const std::vector<std::int32_t>& pictures,
                        const ColorPipeline& color, const std::string& directory, std::size_t scrambling) {
   PipelineSettings settings = reference.pipeline;
@@ -43,7 +35,7 @@ void render_scrambling(PathTracer& tracer, const SweepReference& reference, cons
   settings.settings_digest =
       digest_settings({{"reference", reference.digest}, {"seed", std::to_string(settings.trace.seed)}});
   fs::create_directories(settings.output.run_directory);
-  render_sequence(tracer, only(reference.plan, pictures), color, settings, {});
+  render_sequence(tracer, only_frames(reference.plan, pictures), color, settings, {});
 }
 
 void write_mean(const std::string& path, const Frame& frame, const FrameRequest& request,
@@ -139,23 +131,34 @@ std::string CertifiedReference::mean_path(std::int32_t frame) const {
   return frame_file_name(directory + "/" + kMean, frame);
 }
 
-std::vector<std::int32_t> reference_pictures(const SweepReference& reference, const Scene& scene) {
+bool scene_decides_pictures(const SweepReference& reference) {
   const std::vector<FrameRequest>& frames = reference.plan.frames;
   const auto is_like_first = [&](const FrameRequest& request) {
     const Camera& a = frames.front().camera;
     const Camera& b = request.camera;
     return a.pose == b.pose && a.projection == b.projection && a.lens == b.lens && b.shutter_poses.empty();
   };
-  if (scene.motions.empty() && scene.deformations.empty() &&
-      reference.pipeline.accumulate.mode == AccumulateMode::off &&
-      std::all_of(frames.begin(), frames.end(), is_like_first)) {
-    return {frames.front().frame};
+  return frames.size() > 1 && reference.pipeline.accumulate.mode == AccumulateMode::off &&
+         std::all_of(frames.begin(), frames.end(), is_like_first);
+}
+
+std::vector<std::int32_t> reference_pictures(const SweepReference& reference, const Scene& scene) {
+  if (scene_decides_pictures(reference) && scene.motions.empty() && scene.deformations.empty()) {
+    return {reference.plan.frames.front().frame};
   }
   std::vector<std::int32_t> all;
-  for (const FrameRequest& request : frames) {
+  for (const FrameRequest& request : reference.plan.frames) {
     all.push_back(request.frame);
   }
   return all;
+}
+
+FramePlan only_frames(const FramePlan& plan, const std::vector<std::int32_t>& frames) {
+  FramePlan part = plan;
+  std::erase_if(part.frames, [&](const FrameRequest& request) {
+    return std::find(frames.begin(), frames.end(), request.frame) == frames.end();
+  });
+  return part;
 }
 
 std::string reference_folder(const SweepReference& reference) {

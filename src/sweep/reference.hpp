@@ -25,6 +25,9 @@ std::string reference_folder(const SweepReference& reference);  // within the sw
 // The frames of a reference that are rendered: all, or the first for all of them where neither camera nor scene moves.
 // A clip of a standing picture is then known as well as its one frame.
 std::vector<std::int32_t> reference_pictures(const SweepReference& reference, const Scene& scene);
+// Whether reference_pictures() depends on the scene: of frames that are seen alike and gather nothing over time.
+bool scene_decides_pictures(const SweepReference& reference);
+FramePlan only_frames(const FramePlan& plan, const std::vector<std::int32_t>& frames);  // the plan of these
 
 // Renders what is missing: each scrambling by itself, frame by frame, then the means of the two halves and of all.
 CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, const SweepReference& reference,

@@ -205,8 +205,37 @@ class Sweep(harness.CliTest):
         text = self.run_ok("sweep", "plan.toml", "--dry-run").stdout
         self.assertEqual(self.files(), before)
         self.assertIn("box-moving-2", text)
-        reference = next(line for line in text.splitlines() if line.startswith("reference"))
-        self.assertIn(str(64 * 36 * 3 * 16), reference)
+        self.assertEqual(self.estimated(text)["reference"], [64 * 36 * 16])  # one picture stands for the three frames
+
+    def estimated(self, text):
+        """Samples of one repeat of a dry run's rows, by role."""
+        samples = {}
+        for line in text.splitlines()[1:-1]:
+            row = re.match(r"\S+ +(\S+) +(\d+) +\d+  ", line)
+            samples.setdefault(row[1], []).append(int(row[2]))
+        return samples
+
+    def test_dry_run_counts_the_pictures_of_the_reference(self):
+        """One where nothing moves, which only the scene tells where the camera stands elsewhere, and all otherwise."""
+        moving = harness.box_gltf(camera_seconds=1)
+        self.write("camera.gltf", json.dumps(moving))
+        moving["animations"][0]["channels"][0]["target"]["node"] = 0
+        self.write("moving.gltf", json.dumps(moving))
+        eye = "eye = [0, 0.5, 4]\ntarget = [0, 0.5, 0]\n"
+        one = PLAN.replace("[[16, 4, 4], [8, 2, 1]]", "[[8, 2, 1]]").replace("uniform-rates = [1, 4]", "")
+        one = one.replace("repeats = 2", 'repeats = 1\nbaselines = ["none"]\ncontrols = false')
+        one = one.replace('metrics = ["mse", "flip", "fovvideovdp"]\nquality = ["flip=0.05", "fovvideovdp=9.5"]', 'metrics = ["mse"]')
+        for scene, more, frames in (("box", eye, 1), ("moving", "", 3), ("moving", eye, 3), ("camera", "", 3), ("camera", eye, 1),
+                                    ("box", 'accumulate = "running"\n', 1)):  # references gather nothing over time
+            with self.subTest(scene=scene, more=more):
+                self.plan(one.replace('path = "box.gltf"\n', f'path = "{scene}.gltf"\n{more}'))
+                text = self.run_ok("sweep", "plan.toml", "--dry-run").stdout
+                self.assertEqual(self.estimated(text)["reference"], [64 * 36 * 16 * frames])
+                tests = sum(self.estimated(text)["test"])
+                whole = float(re.search(r"rows, (\S+) samples", text.splitlines()[-1])[1])
+                self.assertAlmostEqual(whole / (4 * 64 * 36 * 16 * frames + tests), 1, delta=0.005)  # three digits are told
+                self.run_ok("sweep", "plan.toml", "-o", "out", "--quiet", "--restart")
+                self.assertEqual(self.results("out")["scenes"][0]["reference"]["frames_rendered"], frames)
 
     def test_the_paper_again(self):
         """examples/paper.toml, small: its settings, samples and the table beside what was printed."""
