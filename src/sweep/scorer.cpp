@@ -133,6 +133,19 @@ ScoreTable Scorer::over_scored_frames() const {
   return table;
 }
 
+MetricDirection direction_of(const std::string& metric) {
+  for (const MetricInfo& info : comparison_metrics()) {
+    if (info.name == metric) {
+      return info.better;
+    }
+  }
+  return MetricDirection::lower;
+}
+
+bool is_better(const std::string& metric, double a, double b) {
+  return direction_of(metric) == MetricDirection::lower ? a < b : a > b;
+}
+
 bool is_squared_error(const std::string& metric) {
   return metric == "mse" || metric == "rmse" || metric == "relmse";
 }

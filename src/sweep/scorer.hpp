@@ -38,6 +38,9 @@ class Scorer {
   std::unique_ptr<Comparison> comparison_;
 };
 
+// Of any metric that can be scored; unknown ones: lower.
+MetricDirection direction_of(const std::string& metric);
+bool is_better(const std::string& metric, double a, double b);  // a than b
 // A metric that squares the error, so that a noisy reference adds its variance.
 bool is_squared_error(const std::string& metric);
 // A squared error's mean with the reference's variance, a quarter of the halves' `floor`, taken off; never below 0.

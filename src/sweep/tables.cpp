@@ -4,12 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <map>
-#include <set>
-#include <string_view>
 
+#include "sweep/quality_over_time.hpp"
 #include "sweep/scorer.hpp"
 
 namespace gazetrace {
@@ -17,23 +13,10 @@ namespace {
 
 constexpr const char* kFovVideoVdp = "fovvideovdp";
 
-MetricDirection direction_of(const std::string& metric) {
-  for (const MetricInfo& info : comparison_metrics()) {
-    if (info.name == metric) {
-      return info.better;
-    }
-  }
-  return MetricDirection::lower;
-}
-
 bool needs_gaze(const std::string& metric) {
   const std::vector<MetricInfo> known = comparison_metrics();
   return std::any_of(known.begin(), known.end(),
                      [&](const MetricInfo& info) { return info.name == metric && info.needs_gaze; });
-}
-
-bool is_better(const std::string& metric, double a, double b) {
-  return direction_of(metric) == MetricDirection::lower ? a < b : a > b;
 }
 
 std::vector<double> times_of(const SweepRow& row) {
@@ -61,31 +44,6 @@ const SweepRow* row_by_id(const std::vector<SweepRow>& rows, const std::string& 
   return found == rows.end() ? nullptr : &*found;
 }
 
-bool is_uniform(SweepRole role) {
-  return role == SweepRole::uniform_reference_rate || role == SweepRole::equal_samples ||
-         role == SweepRole::equal_time || role == SweepRole::uniform_rate;
-}
-
-// On the curves of uniform and of foveated rendering; what is rendered on fewer pixels is on neither.
-bool is_on_uniform_curve(const SweepRow& row) {
-  return row.resolution_scale == 1 && (is_uniform(row.role) || (row.role == SweepRole::test && !row.is_foveated));
-}
-bool is_on_foveated_curve(const SweepRow& row) {
-  return row.resolution_scale == 1 && row.role == SweepRole::test && row.is_foveated;
-}
-
-std::optional<QualityAtTime> point_of(const SweepRow& row, const std::string& metric) {
-  const auto parts = row.scores.find(metric);
-  if (parts == row.scores.end() || !parts->second.contains("whole")) {
-    return std::nullopt;
-  }
-  return QualityAtTime{row.time_s.mean, parts->second.at("whole").value.mean};
-}
-
-std::string place_of(const SweepRow& row) {
-  return row.scene + "/" + row.gaze;
-}
-
 std::string reference_rate_of(const SweepRow& row, const std::vector<SweepRow>& rows) {
   for (const SweepRow& other : rows) {
     if (other.role == SweepRole::uniform_reference_rate && other.scene == row.scene && other.gaze == row.gaze &&
@@ -109,116 +67,6 @@ void add_ratios(std::vector<SweepRow>& rows) {
     if (row.role == SweepRole::equal_time) {
       if (const SweepRow* test = row_by_id(rows, row.of)) {
         row.reached = ratio_interval(times_of(row), times_of(*test));
-      }
-    }
-  }
-}
-
-void add_fronts(const std::vector<std::string>& metrics, SweepResults& results) {
-  std::map<std::string, std::set<std::string>> references;  // by place
-  for (const SweepRow& row : results.rows) {
-    references[place_of(row)].insert(row.reference);
-  }
-  const auto front_of = [&](const SweepRow& row) {
-    const std::string place = place_of(row);
-    return references.at(place).size() == 1 ? place : place + "/" + row.reference;
-  };
-  for (const std::string& metric : metrics) {
-    std::map<std::string, std::pair<std::vector<QualityAtTime>, std::vector<std::string>>> by_place;
-    for (const SweepRow& row : results.rows) {
-      const auto point = point_of(row, metric);
-      if (point && row.role != SweepRole::wrong_gaze) {
-        auto& [points, ids] = by_place[front_of(row)];
-        points.push_back(*point);
-        ids.push_back(row.id);
-      }
-    }
-    for (const auto& [place, points] : by_place) {
-      for (const std::size_t i : pareto_front(points.first, direction_of(metric))) {
-        results.pareto[metric][place].push_back(points.second[i]);
-      }
-    }
-  }
-}
-
-std::optional<double> floor_of(const SweepResults& results, const SweepRow& row, const std::string& metric) {
-  for (const SweepReferenceResult& reference : results.references) {
-    if (reference.key == row.reference) {
-      for (const SweepFloor& floor : reference.floors) {
-        if (floor.gaze == row.gaze && floor.scores.contains(metric) && floor.scores.at(metric).contains("whole")) {
-          return floor.scores.at(metric).at("whole");
-        }
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-// What a row varies but how many samples it takes: rows alike in it climb one curve.
-std::string family_of(const SweepRow& row) {
-  static constexpr std::array<std::string_view, 4> kRates{"spp", "region-samples", "budget-spp", "budget-samples"};
-  std::string text;
-  for (const auto& [option, value] : row.settings) {
-    if (std::find(kRates.begin(), kRates.end(), option) == kRates.end()) {
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", option, value);
-    }
-  }
-  return text;
-}
-
-// A uniform curve and the foveated ones that share all but the sampling with it.
-struct QualityCurves {
-  struct Foveated {
-    std::vector<QualityAtTime> points;
-    const SweepRow* any = nullptr;
-  };
-  std::vector<QualityAtTime> uniform;
-  std::map<std::string, Foveated> foveated;  // by family
-};
-
-// Where no family has a second rate, what varies is itself what trades time for quality: one curve.
-void join_single_points(QualityCurves& curves) {
-  const bool all_single = std::all_of(curves.foveated.begin(), curves.foveated.end(),
-                                      [](const auto& family) { return family.second.points.size() == 1; });
-  if (!all_single || curves.foveated.size() < 2) {
-    return;
-  }
-  QualityCurves::Foveated joined;
-  for (const auto& [family, one] : curves.foveated) {
-    joined.points.push_back(one.points.front());
-    joined.any = one.any;
-  }
-  curves.foveated = {{std::string(), joined}};
-}
-
-void add_fixed_quality(const SweepMeasure& measure, SweepResults& results) {
-  for (const auto& [metric, level] : measure.fixed_quality) {
-    std::map<std::string, QualityCurves> places;
-    for (const SweepRow& row : results.rows) {
-      QualityCurves& curves = places[place_of(row) + "/" + row.reference + "/" + row.curve];
-      const auto point = point_of(row, metric);
-      if (point && is_on_uniform_curve(row)) {
-        curves.uniform.push_back(*point);
-      } else if (point && is_on_foveated_curve(row)) {
-        QualityCurves::Foveated& foveated = curves.foveated[family_of(row)];
-        foveated.points.push_back(*point);
-        foveated.any = &row;
-      }
-    }
-    for (auto& [name, curves] : places) {
-      if (curves.uniform.empty()) {
-        continue;
-      }
-      join_single_points(curves);
-      for (const auto& [family, foveated] : curves.foveated) {
-        SweepFixedQuality one{metric, foveated.any->scene, foveated.any->gaze, family, level, {}};
-        const auto floor = floor_of(results, *foveated.any, metric);
-        if (floor && is_better(metric, level, *floor)) {
-          one.result.why = fmt::format("the reference itself is only known to {:.4g}", *floor);
-        } else {
-          one.result = speed_up_at_quality(curves.uniform, foveated.points, direction_of(metric), level);
-        }
-        results.fixed_quality.push_back(std::move(one));
       }
     }
   }
@@ -369,8 +217,8 @@ void complete_tables(const SweepPlan& plan, SweepResults& results) {
     }
   }
   add_ratios(results.rows);
-  add_fronts(plan.measure.comparison.metrics, results);
-  add_fixed_quality(plan.measure, results);
+  results.pareto = pareto_fronts(plan.measure.comparison.metrics, results.rows);
+  results.fixed_quality = speed_ups_at_quality(plan.measure, results);
   add_controls(plan.measure.comparison.metrics, results);
   add_notes(plan, results);
   std::vector<std::string> notes;
