@@ -12,6 +12,7 @@
 #include "cli/exit_codes.hpp"
 #include "cli/idle_options.hpp"
 #include "cli/inputs.hpp"
+#include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "cli/summary.hpp"
 #include "cli/toml_config.hpp"
@@ -153,6 +154,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
       pixels += pixel_report(request, frame, *job.only_pixel);
     };
   }
+  keep_freed_memory();
   const SequenceResult result = render_sequence(tracer, inputs.plan, color, settings, observer, std::move(history));
   progress.finish();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -11,6 +11,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "cli/sweep_jobs.hpp"
 #include "gazetrace/error.hpp"
@@ -65,6 +66,7 @@ int run_sweep_command(const SweepArguments& arguments) {
   if (!arguments.quiet) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
+  keep_freed_memory();
   const SweepResults results = run_sweep(plan, observer);
   write_text_atomically(plan.directory + "/results.csv", sweep_csv(plan, results));
   write_text_atomically(plan.directory + "/methods.txt", sweep_methods(plan, results));
