@@ -4,9 +4,9 @@
 namespace gazetrace {
 
 // From now on large blocks that were freed stay with the program. Otherwise each image of a frame comes from the system
-// page by page, cleared, and goes back to it: at 4K more than half of the time of accumulation. For commands that make
-// frame after frame; not for those that read long files into growing memory, which would keep every step of its growth.
-// Does nothing where the C library is not glibc.
+// page by page, cleared, and goes back to it: at 4K that was a good part of the time of accumulation
+// (tests/benchmarks/README.md). For commands that make frame after frame; not for those that read long files into
+// growing memory, which would keep every step of its growth. Does nothing where the C library is not glibc.
 void keep_freed_memory();
 
 }  // namespace gazetrace
