@@ -114,12 +114,14 @@ class Smoother {
         total_(cells.cells.size()),
         orientations_(cells.cells.size()),
         flows_(map.tiles.size()) {
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-      const SurfaceCell& cell = cells.cells[i];
-      lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance};
-      samples_[i] = cell.samples;
-      orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
-    }
+    for_each_tile([&](std::size_t t) {
+      for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
+        const SurfaceCell& cell = cells.cells[i];
+        lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance};
+        samples_[i] = cell.samples;
+        orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
+      }
+    });
   }
 
   // The surfaces of blocks that lie `step` blocks apart, eight of them and the own. `found`: what it holds is lost.
@@ -197,13 +199,15 @@ class Smoother {
   }
 
   void store() const {
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-      SurfaceCell& cell = lattice_.cells[i];
-      cell.reflected = lights_[i].reflected;
-      cell.albedo = lights_[i].albedo;
-      cell.light = lights_[i].light;
-      cell.variance = lights_[i].variance;
-    }
+    for_each_tile([&](std::size_t t) {
+      for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
+        SurfaceCell& cell = lattice_.cells[i];
+        cell.reflected = lights_[i].reflected;
+        cell.albedo = lights_[i].albedo;
+        cell.light = lights_[i].light;
+        cell.variance = lights_[i].variance;
+      }
+    });
   }
 
  private:
@@ -253,6 +257,11 @@ class Smoother {
     out.resize(end);
   }
 
+  [[nodiscard]] std::size_t first_cell(std::size_t t) const { return lattice_.first[map_.tiles[t].first_site]; }
+  [[nodiscard]] std::size_t end_cell(std::size_t t) const {
+    return lattice_.first[map_.tiles[t].first_site + map_.tiles[t].site_count];
+  }
+
   template <class Visit>
   void for_each_tile(const Visit& visit) const {
     parallel_for(map_.tiles.size(), threads_, visit);
@@ -262,7 +271,7 @@ class Smoother {
   template <class Visit>
   void for_each_cell(const std::vector<TileTies>& ties, std::size_t t, const Visit& visit) const {
     const TileTies& of_tile = ties[t];
-    const std::size_t first = lattice_.first[map_.tiles[t].first_site];
+    const std::size_t first = first_cell(t);
     std::size_t begin = 0;
     for (std::size_t k = 0; k < of_tile.end.size(); ++k) {
       visit(first + k, of_tile.ties.data() + begin, of_tile.ties.data() + of_tile.end[k], begin);

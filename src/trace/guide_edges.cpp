@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "trace/crossed_pixels.hpp"
 #include "trace/sampler.hpp"
 
 namespace gazetrace {
 namespace {
 
 constexpr int kRowsPerTask = 32;
-constexpr float kEdgeNormal = 0.906F;  // cosine of 25 degrees
-constexpr float kEdgeDepth = 0.02F;
 constexpr float kSamePlanePixels = 0.5F;  // off a surface's plane, in what a pixel covers there
 
 struct EdgeFrame {
@@ -26,40 +25,6 @@ struct EdgeFrame {
   float pixel_m;              // what a pixel covers at 1 m (perspective), or anywhere
   std::vector<Vec2f> inside;  // where in a pixel each of its rays goes
 };
-
-// Whether two pixels see different things.
-bool parts(const EdgeFrame& frame, std::size_t a, std::size_t b) {
-  const Guides& guides = frame.guides;
-  return guides.object.pixels[a] != guides.object.pixels[b] || guides.material.pixels[a] != guides.material.pixels[b] ||
-         guides.kind.pixels[a] != guides.kind.pixels[b] ||
-         (guides.kind.pixels[a] != SurfaceKind::miss &&
-          facing(frame.smooth.pixels[a], frame.smooth.pixels[b]) < kEdgeNormal);
-}
-
-// Depth (orthographic) or its inverse (perspective) is linear over a plane.
-bool bends(const Guides& guides, std::size_t before, std::size_t at, std::size_t after) {
-  const auto linear = [&](std::size_t i) {
-    return guides.camera.perspective ? 1.0F / guides.depth_m.pixels[i] : guides.depth_m.pixels[i];
-  };
-  return std::fabs(linear(before) + linear(after) - 2 * linear(at)) > kEdgeDepth * std::fabs(linear(at));
-}
-
-bool may_be_crossed(const EdgeFrame& frame, int x, int y) {
-  const Guides& guides = frame.guides;
-  const int w = guides.kind.width_px;
-  const int h = guides.kind.height_px;
-  const std::size_t i = guides.kind.index(x, y);
-  const auto stride = static_cast<std::size_t>(w);
-  if ((x > 0 && parts(frame, i, i - 1)) || (x + 1 < w && parts(frame, i, i + 1)) ||
-      (y > 0 && parts(frame, i, i - stride)) || (y + 1 < h && parts(frame, i, i + stride))) {
-    return true;
-  }
-  if (guides.kind.pixels[i] == SurfaceKind::miss) {
-    return false;
-  }
-  return (x > 0 && x + 1 < w && bends(guides, i - 1, i, i + 1)) ||
-         (y > 0 && y + 1 < h && bends(guides, i - stride, i, i + stride));
-}
 
 // What a ray meets, as far as it is known before its material is read.
 struct EdgeHit {
@@ -236,9 +201,11 @@ EdgeRows trace_rows(const EdgeFrame& frame, TraceBatch trace, int y0, int y1, Gu
     trace(frame, batch, work);
     keep(frame, batch, work);
   };
+  CrossedPixels pixels(frame.guides, frame.smooth, y0);
   for (int y = y0; y < y1; ++y) {
+    const std::vector<std::uint8_t>& crossed = pixels.next_row();
     for (int x = 0; x < frame.guide.width_px; ++x) {
-      if (!may_be_crossed(frame, x, y)) {
+      if (crossed[static_cast<std::size_t>(x)] == 0) {
         continue;
       }
       if (work.count + per_pixel > kBatchSize) {

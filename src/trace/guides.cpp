@@ -88,7 +88,19 @@ Identity most_frequent(const FirstHit* hits, std::size_t spp) {
   return best;
 }
 
-void store_pixel(const FirstHit* hits, std::size_t spp, std::size_t pixel, Guides& out, RoughNormal& smooth) {
+// Of the one ray that goes through the pixel's centre.
+void store_only(const FirstHit& hit, std::size_t pixel, Guides& out, RoughNormal& smooth) {
+  out.albedo.pixels[pixel] = hit.albedo;
+  out.normal.pixels[pixel] = hit.normal;
+  out.emission.pixels[pixel] = hit.emission;
+  out.depth_m.pixels[pixel] = hit.depth_m;
+  out.object.pixels[pixel] = hit.object;
+  out.material.pixels[pixel] = hit.material;
+  out.kind.pixels[pixel] = hit.kind;
+  smooth = hit.smooth;
+}
+
+void store_mean(const FirstHit* hits, std::size_t spp, std::size_t pixel, Guides& out, RoughNormal& smooth) {
   Vec3f albedo;
   Vec3f normal;
   Vec3f emission;
@@ -171,7 +183,11 @@ Guides trace_guides(const RenderScene& scene, const LightSampler& lights, const 
         for (int x = x0; x < std::min(x0 + kTilePx, width_px); ++x) {
           const auto place = static_cast<std::size_t>((y - y0) * kTilePx + (x - x0));
           const std::size_t pixel = out.albedo.index(x, y);
-          store_pixel(&work->found[place * spp], spp, pixel, out, smooth.pixels[pixel]);
+          if (spp == 1) {
+            store_only(work->found[place], pixel, out, smooth.pixels[pixel]);
+          } else {
+            store_mean(&work->found[place * spp], spp, pixel, out, smooth.pixels[pixel]);
+          }
         }
       }
     }
