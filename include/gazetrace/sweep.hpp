@@ -156,7 +156,8 @@ struct SweepRun {
   std::optional<double> output_s;
   double samples = 0, rays = 0, pixels = 0;  // of all frames
   double lost_samples = 0;                   // rejected rays and samples that were not finite
-  double peak_mib = 0;  // of the process while the frames were rendered, scene and the metrics' state with it
+  double peak_mib = 0;  // of the process while the frames were rendered: with the scene, the metrics' state and what
+                        // the row's earlier frames have freed, if the program keeps that
   double trace_reconstruct_ms = 0;  // of all frames
   std::map<std::string, double> region_samples;
   ScoreTable scores;  // over the scored frames
@@ -265,8 +266,9 @@ void check_scoring(const SweepMeasure& measure, const SweepTest& test);
 // Renders what is not yet finished in the directory, in rounds over all rows of a scene, and puts together the tables.
 SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer);
 
-// Rows that the plan will measure and the camera samples that they take, without rendering. Loads a scene that is seen
-// from one place in several frames: whether its reference is one picture or many depends on what moves in it.
+// Rows that the plan will measure and the camera samples that they take, without rendering; the search for the rate of
+// equal time and what warms up are left out. Loads a scene that is seen from one place in several frames: whether its
+// reference is one picture or many depends on what moves in it.
 struct SweepEstimate {
   struct Row {
     std::string id, label, role;

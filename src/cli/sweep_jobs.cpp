@@ -91,7 +91,9 @@ class JobMaker {
     // One scene stays as it is; several take turns in memory.
     const std::shared_ptr<const Scene> kept = file_.scenes.size() == 1 ? loaded : nullptr;
     jobs_.plan.scenes.push_back(
-        {scene.name, options_text(scene.options), [job, kept] { return kept ? kept : load(*job); }, tracer});
+        {scene.name, options_text(scene.options),
+         [job, kept, place = scene.place] { return kept ? kept : with_place(*job, place, [&] { return load(*job); }); },
+         tracer});
   }
 
   static std::shared_ptr<const Scene> load(const Job& job) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much there is to do, before anything is rendered.
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "sweep/reference.hpp"
@@ -33,14 +34,14 @@ std::vector<FramePlan> pictures_of_references(const SweepPlan& plan) {
 
 SweepEstimate estimate_sweep(const SweepPlan& plan) {
   SweepEstimate estimate;
-  const auto add = [&](const PlannedRow& row, double spp) {
+  const auto add = [&](const PlannedRow& row, double spp, int repeats) {
     double pixels = 0;
     for (const FrameRequest& request : row.plan.frames) {
       pixels += static_cast<double>(request.width_px) * request.height_px;
     }
     estimate.rows.push_back({row.row.id, row.row.scene + "/" + row.row.gaze + " " + row.row.label,
-                             to_string(row.row.role), spp * pixels, plan.measure.repeats});
-    estimate.samples += spp * pixels * plan.measure.repeats;
+                             to_string(row.row.role), spp * pixels, repeats});
+    estimate.samples += spp * pixels * repeats;
   };
   const std::vector<FramePlan> pictures = pictures_of_references(plan);
   for (std::size_t r = 0; r < pictures.size(); ++r) {
@@ -50,16 +51,18 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     row.row.label = reference.key;
     row.row.scene = plan.scenes[reference.scene].name;
     row.plan = pictures[r];
-    add(row, reference.pipeline.foveation.uniform_spp);
+    add(row, reference.pipeline.foveation.uniform_spp, static_cast<int>(reference.seeds.size()));
     estimate.rows.back().role = "reference";
-    estimate.rows.back().repeats = static_cast<int>(reference.seeds.size());
-    estimate.samples += estimate.rows.back().samples * (estimate.rows.back().repeats - plan.measure.repeats);
   }
   std::set<std::string> known;
   for (std::size_t t = 0; t < plan.tests.size(); ++t) {
     const PlannedRow test = test_row(plan, t);
     const double spp = planned_spp(test);
-    add(test, spp);
+    add(test, spp, plan.measure.repeats);
+    if (const std::optional<PlannedRow> cost = cost_row(plan, test)) {
+      add(*cost, planned_spp(*cost), 1);
+      estimate.rows.back().role = "cost by region";
+    }
     std::vector<std::string> notes;
     std::vector<PlannedRow> rows = baselines_known_before(plan, test, notes);
     std::vector<PlannedRow> more = baselines_of_samples(plan, test, spp);
@@ -70,7 +73,7 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     rows.insert(rows.end(), more.begin(), more.end());
     for (const PlannedRow& row : rows) {
       if (row.row.role == SweepRole::equal_time || known.insert(row.digest + row.row.reference).second) {
-        add(row, planned_spp(row));
+        add(row, planned_spp(row), plan.measure.repeats);
       }
     }
   }

@@ -5,12 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "core/stopwatch.hpp"
 #include "sweep/pictures.hpp"
 #include "sweep/scorer.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace gazetrace {
 namespace {
@@ -20,6 +25,12 @@ namespace fs = std::filesystem;
 // Linux, proc(5): the high-water mark of resident memory, and setting it back.
 void restart_peak_memory() {
   std::ofstream("/proc/self/clear_refs") << "5";
+}
+// A program that keeps freed memory would count that of earlier rows, scenes and references as this row's.
+void give_back_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 double peak_memory_since_mib() {
   constexpr double kKibPerMib = 1024;
@@ -148,6 +159,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
   if (write) {
     fs::create_directories(fs::path(directory) / folder);
   }
+  give_back_freed_memory();
   RunSum sum;
   std::vector<GazeScorer> scorers;
   std::vector<std::vector<ScoreTable>> frame_scores;

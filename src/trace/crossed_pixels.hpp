@@ -15,12 +15,12 @@ namespace gazetrace {
 
 inline constexpr float kEdgeNormal = 0.906F;  // cosine of 25 degrees
 
-// Row after row from `first_row` on: neighbours are compared once, and in vectors.
+// Row after row from `first_row` on, to the last one at most. Guides and normals, of the same size, must outlive it.
 class CrossedPixels {
  public:
   CrossedPixels(const Guides& guides, const Image<RoughNormal>& smooth, int first_row);
 
-  // Of each pixel of the row: 0 or not. Valid until the next call.
+  // Of each pixel of the row: not 0 where an edge may cross it. Valid until the next call.
   const std::vector<std::uint8_t>& next_row();
 
  private:

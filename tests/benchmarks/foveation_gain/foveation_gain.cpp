@@ -14,20 +14,21 @@
 // The frame fills the paper's display (70.848 x 39.852 cm at 60 cm). Every model is scaled to --budget samples a pixel;
 // cut-off frequencies count relative to the fovea. Its rivals go through the same filter:
 //   equal samples   uniform with as many samples in all (fractional counts)
-//   equal time      what uniform would reach in the time of the model's plan, guides, trace and reconstruction: the
-//                   logarithm of its errors (JOD as they are), between rates of 0.25 to 2.8 budgets, linear in the
-//                   logarithm of their times
+//   equal time      what uniform would reach in the time of the model's plan, guides, trace, reconstruction and
+//                   accumulation: the logarithm of its errors (JOD as they are), between rates of 0.25 to 2.8 budgets,
+//                   linear in the logarithm of their times
 //   low resolution  uniform with as many samples in all in a frame of half the width and height, enlarged bilinearly
 //   in blocks       uniform with as many samples in all in blocks of 8 samples and more, as models have them in the
 //                   periphery: what a filter does to a single pixel with a sample is not what it does to a block
-// With --clip every picture is the last of so many frames at rest, each of --budget samples a pixel, for models and
-// rivals alike: accumulated by reprojection after the filter. Times are those of a frame, by the mean.
-// Models and rivals share no samples, nor do gazes. The reference is the mean of the files, each of a seed of its own;
+// With --clip every picture is the last of so many frames at rest, each of --budget samples a pixel ("paper"
+// and "foveal rate" of their own), for models and rivals alike: accumulated by reprojection after the filter. Times are
+// those of a frame, by the mean. Models and rivals share no samples, nor do gazes. The reference is the mean of the
+// files, each of a seed of its own;
 // --ev, by default what brings its log-average luminance to 0.18, is the exposure. relMSE (the library's) is that of
 // linear light at the exposure; FLIP and FovVideoVDP see the plain sRGB view in 8 bits. The floor is the score of one
 // half of the files against the other: nothing beneath it is claimed (*). Tables take off relMSE what the reference's
 // own noise adds: the error of one half against the mean of both. "paper" is 32 / 16 / 8 with its own count, "foveal
-// rate" uniform with 32: the fovea of both must score the same.
+// rate" uniform with 32: the fovea of both must score the same, unless the filter smooths uniform frames of any rate.
 #include <fmt/format.h>
 
 #include <algorithm>

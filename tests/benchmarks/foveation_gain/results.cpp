@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "gazetrace/error.hpp"
+
 namespace gazetrace::gain {
 namespace {
 
@@ -81,7 +83,14 @@ std::string verdict(const Comparison& comparison, Metric metric) {
 Results::Results(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
     if (row.kind == "setup" || row.kind == "timed") {
-      setups_.push_back(row.scene + (row.kind == "timed" ? ", times: " : ": ") + row.arm);
+      const std::string about = row.scene + (row.kind == "timed" ? ", times: " : ": ");
+      for (const std::string& other : setups_) {
+        if (other.rfind(about, 0) == 0 && other != about + row.arm) {
+          throw Error(ErrorKind::usage, "--tables", "made in two ways: " + other + "; " + row.arm,
+                      "give files of one view, frame, clip and budget a scene");
+        }
+      }
+      add_once(setups_, about + row.arm);
     } else if (row.kind == "time") {
       times_[joined(row.scene, row.arm, row.filter, row.gaze)].push_back(row);
       add_once(timed_gazes_[joined(row.scene, row.arm, row.filter, "")], row.gaze);

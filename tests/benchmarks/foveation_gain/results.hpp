@@ -29,7 +29,7 @@ struct Comparison {
 };
 // "wins", "loses", "even": the interval lies on one side or not; "floor": beneath it nothing is claimed; "few": of less
 // than kFewestGazes no interval is to be trusted; "beyond": most of it lies beyond the measured times.
-inline constexpr std::size_t kFewestGazes = 4;
+inline constexpr std::size_t kFewestGazes = 6;
 std::string verdict(const Comparison& comparison, Metric metric);
 
 class Results {

@@ -35,9 +35,9 @@ struct StageTimes {  // of a frame
 };
 
 // kind   setup: `arm` says how the scene's errors came about, "timed" how its times did: frame, budget, view, gazes,
-//        metrics and the references' bytes. Rows that differ in these never share a file; which program measured them
-//        is for its user to know floor: of the reference. `arm` "halves": one half of its files against the other;
-//        "own": the relative MSE that
+//               metrics and the references' bytes. Rows that differ in these never share a file or a table; which
+//               program measured them is for its user to know
+//        floor: of the reference. `arm` "halves": one half of its files against the other; "own": the relative MSE that
 //               its own noise adds to every picture's
 //        score: an arm's errors at a gaze
 //        time:  what an arm took in round `seed`; `gaze` is "-" where it does not matter

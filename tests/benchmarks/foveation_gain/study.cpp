@@ -62,7 +62,7 @@ std::string short_digest(const Settings& settings) {
   return digest_settings(settings).substr(0, 12);
 }
 
-// Of stills nothing is said, as in files from before there were clips.
+// Of stills nothing is said.
 std::string clip_text(int frames) {
   return frames > 1 ? fmt::format(" clips of {} frames", frames) : std::string();
 }

@@ -2,6 +2,7 @@
 #include "temporal/changes.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -12,6 +13,13 @@ namespace gazetrace::temporal {
 namespace {
 
 constexpr std::array kAfter{0, 1, 2, 4, 8, 16};
+
+// Filters that need guides always come before accumulation.
+std::vector<Variant> variants_of(const std::string& filter) {
+  std::vector<Variant> variants = make_variants();
+  std::erase_if(variants, [&](const Variant& variant) { return variant.orders && filter_needs_guides(filter); });
+  return variants;
+}
 
 double mean_of(const std::vector<float>& values) {
   double sum = 0;
@@ -26,7 +34,7 @@ Luminances across_a_change(PathTracer& before, PathTracer& after, const Bench& b
                            const std::string& filter, int first_after) {
   PipelineSettings settings = bench.settings_of(variant.accumulate, filter);
   settings.checkpoint = (std::string(std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "/tmp") +
-                         "/gazetrace_temporal_benchmark.bin");
+                         fmt::format("/gazetrace_temporal_benchmark_{}.bin", getpid()));
   (void)render(before, bench.plan(false, 1, first_after - 1), settings);
   settings.resume_from = settings.checkpoint;
   settings.checkpoint.clear();
@@ -50,14 +58,14 @@ void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench, 
     fmt::print(" {} |", after);
   }
   fmt::print("\n| --- |{}\n", " --- | --- | --- | --- | --- | --- |");
-  for (const Variant& variant : make_variants()) {
+  const Luminances alone =
+      render(dark_tracer, bench.plan(false, kFirst, kFirst + kAfter.back()), bench.settings_of({}, filter));
+  double level = 0;
+  for (const auto& frame : alone) {
+    level += mean_of(frame) / static_cast<double>(alone.size());
+  }
+  for (const Variant& variant : variants_of(filter)) {
     const Luminances frames = across_a_change(tracer, dark_tracer, bench, variant, filter, kFirst);
-    const Luminances alone =
-        render(dark_tracer, bench.plan(false, kFirst, kFirst + kAfter.back()), bench.settings_of({}, filter));
-    double level = 0;
-    for (const auto& frame : alone) {
-      level += mean_of(frame) / static_cast<double>(alone.size());
-    }
     fmt::print("| {} |", variant.name);
     for (const int after : kAfter) {
       fmt::print(" {:.1f} % |", 100 * (mean_of(frames[static_cast<std::size_t>(after)]) - level) / (9 * level));
@@ -67,7 +75,6 @@ void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench, 
   }
 }
 
-// A board that stands before the camera is gone: where it was seen, and where its shadow or light was.
 void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, const Options& options,
                   const std::string& filter) {
   constexpr int kFirst = 33;
@@ -118,7 +125,7 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
       fmt::print(" {} |", after);
     }
     fmt::print("\n| --- |{}\n", " --- | --- | --- | --- | --- | --- |");
-    for (const Variant& variant : make_variants()) {
+    for (const Variant& variant : variants_of(filter)) {
       const Luminances frames = across_a_change(board_tracer, tracer, bench, variant, filter, kFirst);
       fmt::print("| {} |", variant.name);
       for (const int after : kAfter) {

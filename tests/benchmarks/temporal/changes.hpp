@@ -6,7 +6,7 @@
 
 namespace gazetrace::temporal {
 
-// A tenth of the sky from one frame to the next.
+// The sky falls to a tenth from one frame to the next.
 void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench, const std::string& filter);
 // A board that stands before the camera is gone: where it was seen, and where its shadow or light was.
 void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, const Options& options,

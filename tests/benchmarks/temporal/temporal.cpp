@@ -17,6 +17,8 @@
 // and what a run that begins with frames rendered before its first differs from the whole one.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <string_view>
@@ -58,6 +60,13 @@ Options parse(int argc, char** argv) {
     } else {
       throw Error(ErrorKind::usage, name, "is not known");
     }
+  }
+  if (options.frames < 1 || options.height_px < 1) {
+    throw Error(ErrorKind::usage, options.frames < 1 ? "--frames" : "--height", "must be 1 or more");
+  }
+  const std::array<std::string_view, 5> parts{"", "seams", "light", "body", "sequences"};
+  if (std::find(parts.begin(), parts.end(), options.only) == parts.end()) {
+    throw Error(ErrorKind::usage, "--only", options.only + " is no part", "seams, light, body or sequences");
   }
   if (files.size() != 3) {
     throw Error(ErrorKind::usage, "", "give a scene, a sky and a gaze log");
