@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """What foveation saves and how much of the saving arrives: a uniform frame beside foveated ones, in one run.
 
-  foveation_efficiency.py GAZETRACE SCENE --frame 24 [--rounds N] [--samples 32,16,8 32,8,4] [--filters linear guided]
-                          [--accumulate off reproject] [options of `gazetrace render` ...]
+  foveation_efficiency.py GAZETRACE SCENE --frame 24 [--rounds N] [--before N] [--samples 32,16,8 32,8,4]
+                          [--filters linear guided] [--accumulate off reproject] [options of `gazetrace render` ...]
 
 Renders the frame with the same rate everywhere (regions of equal rate and 1 x 1 blocks, so that the time of each region is
-known) and with every combination of the foveated settings, one after another, and reads their timing.csv. Accumulating
-runs render the frame before as well, so that there is a past to look up; the frame's own time counts. Prints a line each:
+known) and with every combination of the foveated settings, one after another, and reads their timing.csv. Foveated runs
+render the two frames before as well (--before), so that there is a past to look up and memory that a run has asked the
+system for only once; the frame's own time counts. The uniform frame stands alone: it takes minutes, of which memory is
+nothing. Prints a line each:
 
   samples     how many times less samples were traced than in the uniform frame
   speed-up    t_uniform / t_foveated: guides + trace + reconstruct + accumulate, and end to end
@@ -67,6 +69,7 @@ def main():
     parser.add_argument("--accumulate", nargs="+", default=["off"])
     parser.add_argument("--blocks", default="2,4")
     parser.add_argument("--spp", default="32", help="of the uniform frame")
+    parser.add_argument("--before", type=int, default=2, help="frames rendered before a foveated one")
     parser.add_argument("--outputs", default="exr,png", help="file types to write, comma separated")
     arguments, extra = parser.parse_known_args()
     outputs = [suffix for suffix in arguments.outputs.split(",") if suffix]
@@ -74,7 +77,7 @@ def main():
     settings = {"uniform": ["--region-samples", ",".join([arguments.spp] * 3), "--region-blocks", "1,1",
                             "--frames", str(arguments.frame)]}
     for samples, name, accumulate in itertools.product(arguments.samples, arguments.filters, arguments.accumulate):
-        first = arguments.frame - (0 if accumulate == "off" else 1)
+        first = arguments.frame - arguments.before
         settings[f"{samples} {name}{'' if accumulate == 'off' else ' ' + accumulate}"] = [
             "--region-samples", samples, "--region-blocks", arguments.blocks, "--filter", name, "--accumulate", accumulate,
             "--frames", f"{first}-{arguments.frame}"]
