@@ -61,7 +61,7 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     add(test, spp, plan.measure.repeats);
     if (const std::optional<PlannedRow> cost = cost_row(plan, test)) {
       add(*cost, planned_spp(*cost), 1);
-      estimate.rows.back().role = "cost by region";
+      estimate.rows.back().role = "cost-by-region";
     }
     std::vector<std::string> notes;
     std::vector<PlannedRow> rows = baselines_known_before(plan, test, notes);

@@ -231,7 +231,10 @@ class Sweep(harness.CliTest):
                 self.plan(one.replace('path = "box.gltf"\n', f'path = "{scene}.gltf"\n{more}'))
                 text = self.run_ok("sweep", "plan.toml", "--dry-run").stdout
                 self.assertEqual(self.estimated(text)["reference"], [64 * 36 * 16 * frames])
-                tests = sum(self.estimated(text)["test"])
+                estimated = self.estimated(text)
+                # Regions are timed apart, once a test, one for either gaze, at the plan's efficiency-spp.
+                self.assertEqual(estimated["cost-by-region"], [64 * 36 * 2 * 3] * 2)
+                tests = sum(estimated["test"] + estimated["cost-by-region"])
                 whole = float(re.search(r"rows, (\S+) samples", text.splitlines()[-1])[1])
                 self.assertAlmostEqual(whole / (4 * 64 * 36 * 16 * frames + tests), 1, delta=0.005)  # three digits are told
                 self.run_ok("sweep", "plan.toml", "-o", "out", "--quiet", "--restart")
