@@ -33,6 +33,12 @@ std::vector<Variant> make_variants() {
   return variants;
 }
 
+std::vector<Variant> variants_of(const std::string& filter) {
+  std::vector<Variant> variants = make_variants();
+  std::erase_if(variants, [&](const Variant& variant) { return variant.orders && filter_needs_guides(filter); });
+  return variants;
+}
+
 Luminances render(PathTracer& tracer, const FramePlan& plan, const PipelineSettings& settings, double* temporal_ms) {
   const ColorPipeline color(ColorSettings{});
   Luminances frames;

@@ -31,6 +31,8 @@ struct Variant {
   bool orders = false;  // one of two that differ in their order alone
 };
 std::vector<Variant> make_variants();
+// Without those of order for filters that need guides, which always come before accumulation.
+std::vector<Variant> variants_of(const std::string& filter);
 
 class Bench {
  public:

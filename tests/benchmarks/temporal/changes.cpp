@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::array kAfter{0, 1, 2, 4, 8, 16};
 
-// Filters that need guides always come before accumulation.
-std::vector<Variant> variants_of(const std::string& filter) {
-  std::vector<Variant> variants = make_variants();
-  std::erase_if(variants, [&](const Variant& variant) { return variant.orders && filter_needs_guides(filter); });
-  return variants;
-}
-
 double mean_of(const std::vector<float>& values) {
   double sum = 0;
   for (const float value : values) {

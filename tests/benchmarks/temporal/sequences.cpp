@@ -73,10 +73,7 @@ void compare_variants(PathTracer& tracer, const Bench& bench, const FramePlan& p
       "\nFilter {}\n\n| accumulation | relmse | bias | local | flicker | seen | seen beyond {} deg | ms a frame |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
       filter, benchmark::kPeriphery_deg);
-  for (const Variant& variant : make_variants()) {
-    if (variant.orders && filter_needs_guides(filter)) {
-      continue;
-    }
+  for (const Variant& variant : variants_of(filter)) {
     double temporal_ms = 0;
     const Luminances frames = render(tracer, plan, bench.settings_of(variant.accumulate, filter), &temporal_ms);
     print_row(variant.name, plan, frames, reference, temporal_ms);
