@@ -30,8 +30,8 @@ std::vector<FilterInfo> reconstruction_filters();
 bool filter_needs_guides(const std::string& filter);  // false for unknown names
 
 // A site without samples takes its value from its neighbours; pixels of a 1x1 site pass through bit-equal.
-// "guided" changes the sites that NeedsFiltering names and no others. `guides`: of the map's size; nullptr unless the
-// filter needs them. Error(usage) for an unknown name, Error(runtime) for inputs that do not belong together.
+// "guided" changes the sites that needs_filtering() names and no others. `guides`: of the map's size; nullptr unless
+// the filter needs them. Error(usage) for an unknown name, Error(runtime) for inputs that do not belong together.
 Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads = 0,
                   const Guides* guides = nullptr);
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <regex>
 
 #include "gazetrace/error.hpp"
 
@@ -70,9 +71,14 @@ void print_result(const std::string& text) {
   }
 }
 
+std::string with_flags(const std::string& text) {
+  static const std::regex kSetting("`([a-z][a-z0-9]*(?:-[a-z0-9]+)*)`");
+  return std::regex_replace(text, kSetting, "--$1");
+}
+
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
-    std::fprintf(stderr, "gazetrace: warning: %s\n", warning.c_str());
+    std::fprintf(stderr, "gazetrace: warning: %s\n", with_flags(warning).c_str());
   }
 }
 

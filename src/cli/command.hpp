@@ -40,6 +40,9 @@ void check_output_file(const std::string& path, bool overwrite);
 
 // Writes a result to stdout. A reader that has gone away (head, a closed pager) is no error.
 void print_result(const std::string& text);
+// Messages of the library name settings in back quotes; the program's users know them as flags: `gaze-start` becomes
+// --gaze-start.
+std::string with_flags(const std::string& text);
 void print_warnings(const std::vector<std::string>& warnings);
 
 }  // namespace gazetrace

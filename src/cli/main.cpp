@@ -20,7 +20,7 @@ namespace gazetrace {
 namespace {
 
 int report(const std::string& message, int exit_code) {
-  std::string line = message;
+  std::string line = with_flags(message);
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fprintf(stderr, "gazetrace: error: %s\n", line.c_str());
   return exit_code;

@@ -19,7 +19,7 @@ constexpr const char* kBuiltinDisplay = "sRGB";
 constexpr const char* kAcesView = "ACES SDR";
 
 // Linear Rec.709 (D65) -> ACES2065-1 (AP0, its own white), Bradford adaptation. Derived from the primaries in
-// tests/unit/color_builtin_test.cpp; the same figures stand in the public ACES configurations.
+// tests/unit/color_view_test.cpp; the same figures stand in the public ACES configurations.
 ocio::MatrixTransformRcPtr rec709_to_aces() {
   constexpr std::array<double, 16> kMatrix{0.439632981919,
                                            0.382988698152,

@@ -11,12 +11,12 @@
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/trace.hpp"
-#include "trace/guides.hpp"
-#include "trace/kernel.hpp"
-#include "trace/sample_list.hpp"
-#include "trace/sample_sums.hpp"
-#include "trace/surface_motion.hpp"
-#include "trace/surface_sums.hpp"
+#include "trace/guides/guides.hpp"
+#include "trace/kernel/kernel.hpp"
+#include "trace/motion/surface_motion.hpp"
+#include "trace/samples/sample_list.hpp"
+#include "trace/samples/sample_sums.hpp"
+#include "trace/samples/surface_sums.hpp"
 
 namespace gazetrace {
 namespace {

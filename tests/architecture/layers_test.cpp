@@ -50,10 +50,10 @@ const std::map<std::string, std::string> kPublicHeader = {
 
 // Which files may meet which dependency.
 const std::vector<std::pair<std::string, std::string>> kDependency = {
-    {R"(embree[34]/)", R"(src/trace/embree(_\w+)?\.(hpp|cpp))"},
-    {R"(tiny_gltf\.h)", R"(src/scene/gltf\.cpp)"},
-    {R"(meshoptimizer\.h)", R"(src/scene/gltf_meshopt\.cpp)"},
-    {R"(draco/)", R"(src/scene/gltf_draco\.cpp)"},
+    {R"(embree[34]/)", R"(src/trace/rays/embree(_\w+)?\.(hpp|cpp))"},
+    {R"(tiny_gltf\.h)", R"(src/scene/gltf/document\.cpp)"},
+    {R"(meshoptimizer\.h)", R"(src/scene/gltf/meshopt\.cpp)"},
+    {R"(draco/)", R"(src/scene/gltf/draco\.cpp)"},
     {R"(OpenImageDenoise/)", R"(src/reconstruct/open_image_denoise\.cpp)"},
     {R"(OpenImageIO/)", R"(src/core/image_io\.cpp)"},
     {R"(OpenColorIO/)", R"(src/color/ocio\.cpp)"},
@@ -61,7 +61,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(tbb/|oneapi/)", R"(src/core/parallel\.cpp)"},
     {R"(CLI/)", R"(src/cli/.*)"},
     {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_tree\.cpp)"},
-    {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf_walker\.hpp))"},
+    {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp))"},
     {R"(pugixml)", R"(src/gaze/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
     {R"(zlib\.h)", R"(src/(gaze/gzip|core/png_file)\.cpp)"},

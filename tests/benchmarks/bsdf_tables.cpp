@@ -19,7 +19,7 @@
 #include "core/fast_math.hpp"
 #include "material/layered_bsdf.hpp"
 #include "support/layered_kinds.hpp"
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace {
 

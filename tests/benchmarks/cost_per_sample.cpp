@@ -15,8 +15,8 @@
 #include "benchmark_main.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
-#include "trace/kernel.hpp"
-#include "trace/sample_list.hpp"
+#include "trace/kernel/kernel.hpp"
+#include "trace/samples/sample_list.hpp"
 
 namespace {
 

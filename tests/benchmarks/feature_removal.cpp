@@ -20,7 +20,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "pixel_statistics.hpp"
-#include "trace/kernel.hpp"
+#include "trace/kernel/kernel.hpp"
 
 namespace {
 

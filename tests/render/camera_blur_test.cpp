@@ -8,7 +8,7 @@
 
 #include "render/tracer_scenes.hpp"
 #include "support/chi2.hpp"
-#include "trace/camera_rays.hpp"
+#include "trace/rays/camera_rays.hpp"
 
 namespace gazetrace {
 namespace {

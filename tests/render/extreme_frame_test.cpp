@@ -11,8 +11,8 @@
 
 #include "gazetrace/reconstruct.hpp"
 #include "render/tracer_scenes.hpp"
-#include "trace/kernel.hpp"
-#include "trace/sample_list.hpp"
+#include "trace/kernel/kernel.hpp"
+#include "trace/samples/sample_list.hpp"
 
 namespace gazetrace {
 namespace {

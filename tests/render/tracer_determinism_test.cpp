@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "render/tracer_scenes.hpp"
-#include "trace/kernel.hpp"
-#include "trace/sample_list.hpp"
+#include "trace/kernel/kernel.hpp"
+#include "trace/samples/sample_list.hpp"
 
 namespace gazetrace {
 namespace {

@@ -8,7 +8,7 @@
 #include "material/bsdf.hpp"
 #include "support/chi2.hpp"
 #include "support/reference_bsdf.hpp"
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace gazetrace {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "core/hash.hpp"
 #include "support/chi2.hpp"
-#include "trace/light_sampling.hpp"
-#include "trace/sampler.hpp"
+#include "trace/lights/light_sampling.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree over many lights: what it chooses against what it says, what it must never overlook, and whether its bounds
 // hold what they say.
-#include "trace/light_tree.hpp"
+#include "trace/lights/light_tree.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "core/hash.hpp"
 #include "support/chi2.hpp"
-#include "trace/light_sampling.hpp"
+#include "trace/lights/light_sampling.hpp"
 
 namespace gazetrace {
 namespace {

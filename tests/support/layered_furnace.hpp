@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "material/layered_bsdf.hpp"
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace gazetrace::test {
 

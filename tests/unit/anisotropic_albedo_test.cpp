@@ -11,7 +11,7 @@
 #include <string>
 
 #include "support/layered_kinds.hpp"
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace gazetrace {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "support/reference_bsdf.hpp"
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels that an edge may cross, against the definition of Guides::edge_rays written down pixel by pixel.
-#include "trace/crossed_pixels.hpp"
+#include "trace/guides/crossed_pixels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,8 +14,8 @@
 #include "gazetrace/error.hpp"
 #include "scene/texture.hpp"
 #include "support/png_bytes.hpp"
-#include "trace/emission_average.hpp"
-#include "trace/texture.hpp"
+#include "trace/lights/emission_average.hpp"
+#include "trace/scene/texture.hpp"
 
 namespace gazetrace {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "support/layered_furnace.hpp"
 #include "support/layered_kinds.hpp"
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "trace/sampler.hpp"
+#include "trace/samples/sampler.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "core/hash.hpp"
 #include "gazetrace/scene.hpp"
-#include "trace/texture.hpp"
+#include "trace/scene/texture.hpp"
 
 namespace gazetrace {
 namespace {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "material/lobes/clearcoat.hpp"
-#include "trace/first_hit.hpp"
+#include "trace/guides/first_hit.hpp"
+#include "trace/kernel/layered_hit.hpp"
 #include "trace/kernel/path_kernel.hpp"
-#include "trace/layered_hit.hpp"
-#include "trace/surface_hit.hpp"
+#include "trace/kernel/surface_hit.hpp"
 
 namespace gazetrace {
 

@@ -11,8 +11,8 @@
 
 #include "material/layered_bsdf.hpp"
 #include "material/lobes/volume.hpp"
+#include "trace/kernel/layered_hit.hpp"
 #include "trace/kernel/path_kernel.hpp"
-#include "trace/layered_hit.hpp"
 
 namespace gazetrace {
 

@@ -14,8 +14,8 @@
 #include "core/hash.hpp"
 #include "core/instruction_sets.hpp"
 #include "material/bsdf.hpp"
-#include "trace/chunk.hpp"
-#include "trace/kernel.hpp"
+#include "trace/kernel/chunk.hpp"
+#include "trace/kernel/kernel.hpp"
 
 namespace gazetrace {
 

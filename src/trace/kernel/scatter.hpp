@@ -10,7 +10,7 @@
 #include "core/hash.hpp"
 #include "material/bsdf.hpp"
 #include "trace/kernel/path_kernel.hpp"
-#include "trace/shading_frame.hpp"
+#include "trace/kernel/shading_frame.hpp"
 
 namespace gazetrace {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "trace/first_hit.hpp"
+#include "trace/guides/first_hit.hpp"
 #include "trace/kernel/path_kernel.hpp"
-#include "trace/surface_hit.hpp"
+#include "trace/kernel/surface_hit.hpp"
 
 namespace gazetrace {
 

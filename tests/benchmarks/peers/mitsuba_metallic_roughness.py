@@ -6,7 +6,7 @@
   rough_glass          white bodies: the facets of src/material/lobes/dielectric.hpp and ggx.hpp with what they lose put
                        back as src/material/lobes/dielectric_albedo.hpp has it
   surface_sides        around any BSDF: a shading normal is bent until its mirror direction stays above the triangle, and
-                       light must lie on the same side of shading normal and triangle (src/trace/shading_frame.hpp).
+                       light must lie on the same side of shading normal and triangle (src/trace/kernel/shading_frame.hpp).
                        Mitsuba itself has neither rule
   alpha_cutoff         a mask's opacity: 1 where the interpolated alpha reaches the cutoff
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials, and the textures they turn out to need.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "gazetrace/scene.hpp"
+#include "scene/gltf/document.hpp"
+#include "scene/texture.hpp"
+
+namespace gazetrace {
+
+// Hands out indices of Scene::textures; one entry per picture, sampler and use. Pictures are decoded once each, however
+// many entries and glTF images share them.
+class TextureTable {
+ public:
+  explicit TextureTable(const GltfDocument& document) : document_(document) {}
+
+  // -1 (with a warning, once per glTF texture) where the file names no picture that could be read.
+  std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
+
+  [[nodiscard]] std::size_t picture_count() const { return pictures_.size(); }
+  // Decodes everything requested so far; `picture_done` is called for each picture, from several threads. Error(input)
+  // names the glTF file, the image and the picture file.
+  std::vector<Texture> load(int threads, const std::function<void()>& picture_done) const;
+
+ private:
+  struct Entry {
+    int picture = 0;
+    GltfSampler sampler;
+    TextureUse use = TextureUse::color;
+  };
+  struct Picture {
+    int image = 0;     // the first glTF image that shows it
+    std::string path;  // empty: in the file itself
+    std::vector<std::size_t> entries;
+  };
+  int picture_of_image(int image);
+  ImageRgba decode(const Picture& picture, const std::string& place) const;
+
+  const GltfDocument& document_;
+  std::vector<Entry> entries_;
+  std::vector<Picture> pictures_;
+  std::map<std::tuple<int, int, int, bool, TextureUse>, std::int32_t> known_;
+  std::map<std::string, int> picture_by_path_;
+  std::map<int, int> picture_by_image_;
+  std::map<int, bool> warned_;
+};
+
+std::vector<Material> make_materials(const GltfDocument& document, TextureTable& textures, Warnings& warnings);
+
+// MASK and BLEND cost a test at every hit. Materials whose alpha can never let anything through (no transparent texel,
+// vertex or factor) become opaque, which looks the same.
+void drop_needless_alpha(const std::vector<Texture>& textures, const std::vector<Mesh>& meshes,
+                         std::vector<Material>& materials);
+
+// What a material reads from a vertex.
+struct VertexNeeds {
+  bool uv0 = false, uv1 = false, tangents = false;
+};
+VertexNeeds vertex_needs(const Material& material);
+
+}  // namespace gazetrace

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/gltf/skin.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "gazetrace/error.hpp"
+#include "scene/gltf/accessor.hpp"
+#include "scene/gltf/animation.hpp"
+
+namespace gazetrace {
+namespace {
+
+// The joints of a skin with all their parents, each after its own parent.
+struct Skeleton {
+  std::vector<AnimatedNode> nodes;
+  std::vector<std::ptrdiff_t> parent;  // index into nodes; -1: a root
+  std::vector<std::size_t> joint;      // index into nodes
+  std::vector<Affine> inverse_bind;    // one a joint
+};
+
+std::vector<Affine> joints_at(const Skeleton& skeleton, std::int64_t t_ns) {
+  std::vector<Affine> world(skeleton.nodes.size());
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    const Affine local = transform_of_node(skeleton.nodes[i], t_ns);
+    world[i] = skeleton.parent[i] < 0 ? local : world[static_cast<std::size_t>(skeleton.parent[i])] * local;
+  }
+  std::vector<Affine> joints(skeleton.joint.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    joints[j] = world[skeleton.joint[j]] * skeleton.inverse_bind[j];
+  }
+  return joints;
+}
+
+std::vector<Affine> read_inverse_bind(const GltfDocument& document, const GltfSkin& skin, const std::string& place) {
+  std::vector<Affine> matrices(skin.joints.size());
+  if (skin.inverse_bind_matrices < 0) {
+    return matrices;
+  }
+  const std::vector<float> m = read_floats(document, skin.inverse_bind_matrices, 16, place + ".inverseBindMatrices");
+  if (m.size() < 16 * matrices.size()) {
+    throw Error(ErrorKind::input, place + ".inverseBindMatrices",
+                std::to_string(m.size() / 16) + " matrices for " + std::to_string(matrices.size()) + " joints",
+                "export the file again");
+  }
+  for (std::size_t j = 0; j < matrices.size(); ++j) {
+    const float* c = &m[16 * j];  // column by column; the last row is 0 0 0 1
+    matrices[j] = {{c[0], c[1], c[2]}, {c[4], c[5], c[6]}, {c[8], c[9], c[10]}, {c[12], c[13], c[14]}};
+  }
+  return matrices;
+}
+
+Skeleton make_skeleton(const GltfDocument& document, int skin_index, const std::vector<int>& parents,
+                       const std::string& label, Warnings& warnings) {
+  const GltfSkin& skin = document.skins[static_cast<std::size_t>(skin_index)];
+  std::vector<int> order;
+  std::vector<std::ptrdiff_t> place_of(document.nodes.size(), -1);
+  Skeleton skeleton;
+  for (const int joint : skin.joints) {
+    for (const int node : chain_to(joint, parents)) {
+      auto& place = place_of[static_cast<std::size_t>(node)];
+      if (place < 0) {
+        place = static_cast<std::ptrdiff_t>(order.size());
+        const int parent = parents[static_cast<std::size_t>(node)];
+        skeleton.parent.push_back(parent < 0 ? -1 : place_of[static_cast<std::size_t>(parent)]);
+        order.push_back(node);
+      }
+    }
+    skeleton.joint.push_back(static_cast<std::size_t>(place_of[static_cast<std::size_t>(joint)]));
+  }
+  skeleton.nodes = animated_chain(document, order, "the skin of " + label, warnings);
+  skeleton.inverse_bind =
+      read_inverse_bind(document, skin, document.path + ": skins[" + std::to_string(skin_index) + "]");
+  return skeleton;
+}
+
+// JOINTS_n of every vertex lie within the skin's joints.
+void check_influences(const GltfDocument& document, int node, const Mesh& mesh, std::size_t joints) {
+  const int mesh_index = document.nodes[static_cast<std::size_t>(node)].mesh;
+  for (const Geometry& geometry : mesh.geometries) {
+    const JointInfluences& influences = geometry.influences;
+    const std::string place = document.path + ": meshes[" + std::to_string(mesh_index) + "]";
+    if (influences.per_vertex == 0) {
+      throw Error(ErrorKind::input, place,
+                  "a primitive has no JOINTS_0 and WEIGHTS_0, and nodes[" + std::to_string(node) + "] gives it a skin",
+                  "bind it to the skin, or take the skin from the node, and export again");
+    }
+    for (std::size_t k = 0; k < influences.joints.size(); ++k) {
+      if (influences.joints[k] >= joints) {
+        throw Error(ErrorKind::input, place,
+                    "vertex " + std::to_string(k / influences.per_vertex) + " follows joint " +
+                        std::to_string(influences.joints[k]) + "; the skin of nodes[" + std::to_string(node) +
+                        "] has " + std::to_string(joints),
+                    "export the file again");
+      }
+    }
+  }
+}
+
+std::size_t target_count(const Mesh& mesh) {
+  std::size_t count = 0;
+  for (const Geometry& geometry : mesh.geometries) {
+    count = std::max(count, geometry.morph_targets.size());
+  }
+  return count;
+}
+
+std::vector<double> resting_weights(const GltfDocument& document, int node_index, std::size_t targets) {
+  const GltfNode& node = document.nodes[static_cast<std::size_t>(node_index)];
+  const GltfMesh& mesh = document.meshes[static_cast<std::size_t>(node.mesh)];
+  std::vector<double> weights = node.weights.empty() ? mesh.weights : node.weights;
+  if (!weights.empty() && weights.size() != targets) {
+    throw Error(ErrorKind::input, document.path + ": nodes[" + std::to_string(node_index) + "].weights",
+                std::to_string(weights.size()) + " weights for " + std::to_string(targets) + " morph targets",
+                "export the file again");
+  }
+  weights.resize(targets, 0.0);
+  return weights;
+}
+
+bool any_moves(const Skeleton& skeleton) {
+  return std::any_of(skeleton.nodes.begin(), skeleton.nodes.end(), [](const AnimatedNode& node) {
+    return node.translation_track || node.rotation_track || node.scale_track;
+  });
+}
+
+}  // namespace
+
+NodeDeformation deformation_of_node(const GltfDocument& document, int node, const std::vector<int>& parents,
+                                    const Mesh& mesh, const std::string& label, Warnings& warnings) {
+  const int skin = document.nodes[static_cast<std::size_t>(node)].skin;
+  const std::size_t targets = target_count(mesh);
+  if (skin < 0 && targets == 0) {
+    return {};
+  }
+  std::shared_ptr<const Skeleton> skeleton;
+  if (skin >= 0) {
+    check_influences(document, node, mesh, document.skins[static_cast<std::size_t>(skin)].joints.size());
+    skeleton = std::make_shared<const Skeleton>(make_skeleton(document, skin, parents, label, warnings));
+  }
+  MeshPose rest;
+  rest.morph_weights = resting_weights(document, node, targets);
+  std::optional<WeightTrack> track;
+  if (targets > 0) {
+    track = animated_weights(document, node, targets, label, warnings);
+  }
+  const bool moves = skeleton && any_moves(*skeleton);
+  if (skeleton) {
+    // What is at rest has no animation: the nodes' own places.
+    Skeleton still = *skeleton;
+    for (AnimatedNode& of_skeleton : still.nodes) {
+      of_skeleton.translation_track.reset();
+      of_skeleton.rotation_track.reset();
+      of_skeleton.scale_track.reset();
+    }
+    rest.joints = joints_at(still, 0);
+  }
+
+  NodeDeformation result;
+  if (!moves && !track) {
+    const bool is_plain = !skeleton && std::all_of(rest.morph_weights.begin(), rest.morph_weights.end(),
+                                                   [](double weight) { return weight == 0; });
+    if (!is_plain) {
+      result.fixed = std::move(rest);
+    }
+    return result;
+  }
+  const std::int64_t end_ns =
+      std::max(skeleton ? last_key_ns(skeleton->nodes) : 0, track ? track->times_ns.back() : std::int64_t{0});
+  result.animated = Deformation{[skeleton, track, rest](std::int64_t t_ns) {
+                                  MeshPose pose;
+                                  pose.morph_weights = track ? weights_at(*track, t_ns) : rest.morph_weights;
+                                  if (skeleton) {
+                                    pose.joints = joints_at(*skeleton, t_ns);
+                                  }
+                                  return pose;
+                                },
+                                rest, end_ns};
+  return result;
+}
+
+}  // namespace gazetrace

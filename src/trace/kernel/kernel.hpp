@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kernel's interface: one batch of paths, from camera rays to radiance per sample.
+#pragma once
+
+#include <cstdint>
+
+#include "gazetrace/scene.hpp"
+#include "gazetrace/trace.hpp"
+#include "trace/kernel/path_batch.hpp"
+#include "trace/lights/light_sampling.hpp"
+#include "trace/rays/camera_rays.hpp"
+#include "trace/scene/render_scene.hpp"
+
+namespace gazetrace {
+
+// What a kernel can handle beyond plain triangles with constant materials under any light.
+struct KernelFeatures {
+  bool textures = false;   // colours, roughness, normals, from textures
+  bool instances = false;  // hits inside shared meshes
+  bool emission = false;   // surfaces that shine: emissive triangles and unlit materials
+  bool extras = false;     // vertex colours, textures with coordinates of their own
+  bool layers = false;     // materials with extensions: lobes beyond metallic-roughness, bodies that light passes
+};
+
+struct FrameContext {
+  const Scene* source = nullptr;
+  const RenderScene* scene = nullptr;
+  const LightSampler* lights = nullptr;
+  const CameraRays* camera = nullptr;
+  TraceSettings settings;
+  bool last_ray_finds_light = false;    // the ray after the last scattering event can still add something
+  bool last_ray_needs_surface = false;  // ... on a surface, so that visibility of the sky is not enough
+  RayRecorder* recorder = nullptr;      // measurements only
+};
+
+FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,
+                                const CameraRays& camera, const TraceSettings& settings);
+
+struct KernelCounts {
+  std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0, rejected = 0;
+};
+
+// Traces the first `count` entries of workspace.samples into workspace.radiance (and guides).
+using Kernel = void (*)(const FrameContext&, Workspace&, int count, KernelCounts&);
+
+struct NamedKernel {
+  const char* name;
+  KernelFeatures features;
+  Kernel burley, lambert, matte;
+};
+
+KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene);
+// The smallest variant that covers the features; `all`: the last one, which covers everything.
+const NamedKernel& choose_kernel(const KernelFeatures& features, bool all);
+// Every variant, smallest first.
+struct KernelList {
+  const NamedKernel* begin_;
+  const NamedKernel* end_;
+  [[nodiscard]] const NamedKernel* begin() const { return begin_; }
+  [[nodiscard]] const NamedKernel* end() const { return end_; }
+};
+KernelList kernels();
+
+}  // namespace gazetrace

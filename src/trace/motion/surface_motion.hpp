@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// First hits of a whole frame, and where they were before.
+#pragma once
+
+#include "gazetrace/motion.hpp"
+#include "gazetrace/scene.hpp"
+#include "trace/rays/camera_rays.hpp"
+#include "trace/scene/render_scene.hpp"
+
+namespace gazetrace {
+
+SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
+                                   int width_px, int height_px, const EarlierView& earlier, int threads);
+
+}  // namespace gazetrace

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/samples/sample_list.hpp"
+
+#include <algorithm>
+
+#include "core/instruction_sets.hpp"
+
+namespace gazetrace {
+
+GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBatch& out) {
+  const float half_width = 0.5F * static_cast<float>(map_->width_px);
+  const float half_height = 0.5F * static_cast<float>(map_->height_px);
+  int filled = 0;
+  while (filled < kBatchSize && site_ < end_) {
+    const Site& site = map_->sites[site_];
+    const std::uint32_t last = std::min(site.samples, range_.end);
+    if (sample_ >= last) {
+      ++site_;
+      sample_ = range_.begin;
+      continue;
+    }
+    const int block = map_->regions[site.region].block_px;
+    const bool whole = site.pixels == block * block;
+    int first_x = site.block_x * block;
+    int first_y = site.block_y * block;
+    if (!whole) {
+      pixels_of_site(*map_, site, pixels_);
+      first_x = pixels_[0].x;
+      first_y = pixels_[0].y;
+    }
+    // Every pixel belongs to one site, so a site's first pixel names it.
+    const SampleKey key = make_sample_key(
+        seed_, frame_, (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x));
+    const auto left = static_cast<int>(std::min<std::uint32_t>(last - sample_, kBatchSize));
+    const int count = std::min(left, kBatchSize - filled);
+    const auto size = static_cast<float>(block);
+    const auto pixel_count = static_cast<float>(site.pixels);
+    for (int k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(filled + k);
+      const std::uint32_t index = sample_ + static_cast<std::uint32_t>(k);
+      const Vec2f u = sample_2d(key, index, dimension_of(PathDimension::pixel));
+      int px = first_x;
+      int py = first_y;
+      Vec2f inside = u;
+      if (!whole) {
+        // One number chooses the pixel, and what is left of it the place inside.
+        const float at = u.x * pixel_count;
+        const auto chosen = std::min(static_cast<std::size_t>(at), pixels_.size() - 1);
+        inside.x = std::min(at - static_cast<float>(chosen), 0x1.fffffep-1F);
+        px = pixels_[chosen].x;
+        py = pixels_[chosen].y;
+      } else if (block > 1) {
+        const float x = u.x * size;
+        const float y = u.y * size;
+        const int dx = std::min(static_cast<int>(x), block - 1);
+        const int dy = std::min(static_cast<int>(y), block - 1);
+        inside = {x - static_cast<float>(dx), y - static_cast<float>(dy)};
+        px += dx;
+        py += dy;
+      }
+      const Vec2f offset = filter.offset(inside.x, inside.y);
+      out.site[i] = site_;
+      out.sample[i] = index;
+      out.key[i] = key;
+      out.x[i] = (static_cast<float>(px) - half_width) + (0.5F + offset.x);
+      out.y[i] = (static_cast<float>(py) - half_height) + (0.5F + offset.y);
+      out.pixel_x[i] = static_cast<std::uint16_t>(px);
+      out.pixel_y[i] = static_cast<std::uint16_t>(py);
+    }
+    filled += count;
+    sample_ += static_cast<std::uint32_t>(count);
+  }
+  return filled;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// A site's samples, sorted by the surface that they fall on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/trace.hpp"
+#include "trace/kernel/path_batch.hpp"
+
+namespace gazetrace {
+
+// A sample joins the first surface of its kind whose normal is within acos(kSameNormal) and whose plane it lies in, up
+// to `kPlanePixels` times what a pixel covers there.
+inline constexpr float kSameNormal = 0.8F;
+inline constexpr float kPlanePixels = 2.0F;
+
+class SurfaceSorter {
+ public:
+  // pixel_m: what a pixel covers at 1 m (perspective), or anywhere.
+  SurfaceSorter(float pixel_m, bool perspective) : pixel_m_(pixel_m), perspective_(perspective) {}
+
+  // `radiance` is finite. Samples that miss, and those on surfaces that reflect nothing, are left out.
+  void add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance);
+  // Appends the site's surfaces and starts a new site.
+  void finish_site(std::vector<SurfaceSums>& out);
+
+ private:
+  struct Surface {
+    Vec3d reflected, albedo, normal, place;
+    double square = 0;
+    std::uint32_t count = 0;
+    SurfaceKind kind = SurfaceKind::diffuse;
+    Vec3f first_normal, first_place;
+    float reach = 0;  // how far from the plane of its first sample others may lie, m
+  };
+  Surface& surface_of(SurfaceKind kind, const Vec3f& normal, const Vec3f& place);
+
+  float pixel_m_;
+  bool perspective_;
+  std::size_t used_ = 0;
+  std::array<Surface, kMostSurfaces> surfaces_;
+};
+
+}  // namespace gazetrace
