@@ -31,7 +31,7 @@ std::vector<double> rings_of(const FoveationSettings& foveation, const PlanarVie
   std::vector<double> rings;
   if (foveation.falloff == "regions" && view.step_x > 0) {
     for (const double angle : foveation.region_angles_deg) {
-      const double eccentricity = foveation.reading == AngleReading::full_angle ? angle / 2 : angle;
+      const double eccentricity = eccentricity_share(foveation.reading) * angle;
       if (eccentricity < 90) {
         rings.push_back(std::tan(eccentricity * kRadPerDeg) / view.step_x);
       }
