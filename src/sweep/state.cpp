@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 namespace {
