@@ -611,7 +611,7 @@ void Reader::times(const char* key, std::optional<Interval>& interval, std::vect
 void check_format(const Node& root) {
   const std::string format = root.has("format") ? root.at("format").text() : std::string();
   if (format.empty()) {
-    root.fail("is no results file: it has no 'format'");
+    root.fail(fmt::format("is no {} file: it has no 'format'", kFormat));
   }
   if (format != kFormat) {
     root.fail(fmt::format("is of the format '{}', and this version reads {} only", format, kFormat));

@@ -340,7 +340,7 @@ SweepDirectory prepare_sweep(const SweepPlan& plan) {
   std::filesystem::create_directories(plan.directory, problem);
   if (!std::filesystem::is_directory(plan.directory)) {
     throw Error(ErrorKind::input, plan.directory, "the folder cannot be made: " + problem.message(),
-                "choose another --output folder");
+                "choose another `output` folder");
   }
   SweepDirectory directory(plan.directory);
   if (plan.restart) {

@@ -346,7 +346,7 @@ TEST(ReportResults, ComplaintsNameThePlace) {
   EXPECT_THAT(complaint(json), HasSubstr("is of the format 'gazetrace-sweep-2', and this version reads "
                                          "gazetrace-sweep-1 only"));
   json.erase("format");
-  EXPECT_THAT(complaint(json), HasSubstr("is no results file"));
+  EXPECT_THAT(complaint(json), HasSubstr("is no gazetrace-sweep-1 file"));
 }
 
 }  // namespace

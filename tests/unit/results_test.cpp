@@ -21,6 +21,7 @@ namespace gazetrace {
 namespace {
 
 using nlohmann::ordered_json;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -140,7 +141,42 @@ TEST(Results, WhatIsWrittenIsReadAgainToTheBit) {
   EXPECT_EQ(read.fixed_quality.at(0).result.bound, ">");
 }
 
-// A key that only one of writer and reader knew would be lost on the way, or be missing here.
+std::vector<std::string> keys_of(const ordered_json& json) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) {
+    keys.push_back(key);
+  }
+  return keys;
+}
+
+// What scripts rely on: where one of these changes, the version of the file changes.
+TEST(Results, TheKeysOfVersionOne) {
+  const ordered_json json = ordered_json::parse(results_json(results_with_everything()));
+  EXPECT_THAT(keys_of(json),
+              ElementsAre("format", "title", "plan_file", "build", "machine", "viewing", "color", "common_settings",
+                          "varied", "repeats", "bands_deg", "regions_deg", "band_pixel_share", "shares", "metrics",
+                          "scenes", "rows", "pareto", "fixed_quality", "controls", "notes", "methods"));
+  const ordered_json& row = json.at("rows").at(0);
+  EXPECT_THAT(keys_of(row), ElementsAre("id", "scene", "gaze", "role", "of", "label", "curve", "wrong", "baselines",
+                                        "settings", "resolution_scale", "reference", "time_s", "output_s", "samples",
+                                        "spp_mean", "rays", "peak_mib", "speed_up", "end_to_end", "efficiency",
+                                        "published", "reached", "scores", "frames"));
+  EXPECT_THAT(keys_of(row.at("time_s")), ElementsAre("mean", "low", "high", "values"));
+  EXPECT_THAT(keys_of(row.at("scores").at("flip").at("whole")), ElementsAre("mean", "low", "high", "resolved"));
+  EXPECT_THAT(keys_of(row.at("frames").at(0)),
+              ElementsAre("index", "t_s", "time_s", "event", "gaze_px", "rings_px", "png", "flip_png", "scores"));
+  EXPECT_THAT(keys_of(json.at("scenes").at(0).at("reference")),
+              ElementsAre("key", "spp", "frames_rendered", "seeds", "scramblings", "directory", "png", "floor",
+                          "floor_by_gaze", "band_pixel_share_by_gaze", "shares_by_gaze"));
+  EXPECT_THAT(keys_of(json.at("viewing")),
+              ElementsAre("size_px", "ppd", "width_deg", "peak_cd_m2", "contrast", "ambient_lux"));
+  EXPECT_THAT(keys_of(json.at("fixed_quality").at(0)),
+              ElementsAre("metric", "at", "scene", "gaze", "curve", "speed_up", "bound", "why"));
+  EXPECT_THAT(keys_of(json.at("controls").at(0)),
+              ElementsAre("scene", "gaze", "metric", "of", "wrong", "right_score", "wrong_score", "sensitive", "why"));
+}
+
+// The results that are written hold something under every key, so that a key that is not read is found by the texts.
 TEST(Results, EveryKeyOfTheFileIsRead) {
   const ordered_json json = ordered_json::parse(results_json(results_with_everything()));
   const ordered_json blank = ordered_json::parse(results_json(Results()));
@@ -190,7 +226,7 @@ TEST(Results, FilesOfAnotherVersionAreRefused) {
   json["format"] = 2;
   EXPECT_THAT(complaint(), HasSubstr("format: is no text"));
   json.erase("format");
-  EXPECT_THAT(complaint(), HasSubstr("is no results file: it has no 'format'"));
+  EXPECT_THAT(complaint(), HasSubstr("is no gazetrace-sweep-1 file: it has no 'format'"));
 }
 
 TEST(Results, WholeNumbersMustBeWhole) {
