@@ -37,7 +37,7 @@ void check_gaze(const Vec3d& direction) {
   }
 }
 
-// A budget in samples a frame, or nothing.
+// The budget in samples per frame, if there is one.
 std::optional<double> budget_of(const FoveationSettings& settings, const PlanarView& view) {
   if (settings.budget_samples) {
     return static_cast<double>(*settings.budget_samples);
@@ -48,10 +48,10 @@ std::optional<double> budget_of(const FoveationSettings& settings, const PlanarV
   return std::nullopt;
 }
 
-// A uniform frame has no fovea: who asks for a filter there wants all of it smoothed, however many samples there are.
+// A uniform frame has no fovea, so a filter is meant to smooth all of it, however many samples there are.
 constexpr std::uint32_t kNoneIsEnough = std::numeric_limits<std::uint32_t>::max();
 
-// For a map about a gaze. Below 8 samples a pixel smoothing is worth more than a fovea as it was traced.
+// For a map about a gaze. Below 8 samples per pixel a filtered fovea is better than one that is shown as traced.
 std::uint32_t enough_samples(double full_rate_spp) {
   constexpr double kLeast = 8;
   constexpr std::uint32_t kAlways = 16;
