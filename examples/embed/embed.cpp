@@ -39,7 +39,7 @@ int render(const std::string& scene_path, const std::string& exr_path, double u,
   const SamplingMap map = make_sampling_map({}, view, gaze);
   const PathTracer tracer(scene, {});
   const SparseFrame sparse = tracer.trace(camera, 1, map, {});
-  const Frame frame = reconstruct(sparse, map, "linear");
+  const Frame frame = Reconstruction({"linear", {}}).frame(sparse, map);
 
   FrameHeader header;
   header.frame = 1;

@@ -89,10 +89,6 @@ struct FoveationSettings {
   double saccade_density = 1;     // while the eye is in flight
   // 0: off; 1: where a first look at the frame shows no contrast, a quarter of the density is left.
   double contrast_strength = 0;
-
-  // Pixels with at least so many samples of their own keep their mean in every filter; 0: none does. Empty: those of a
-  // fovea at its full rate, where that is 8 or more, and all from 16 on; none in uniform frames.
-  std::optional<std::uint64_t> pass_through_samples;
 };
 
 // What a map depends on beside settings, view and gaze.
@@ -170,10 +166,8 @@ struct SamplingMap {
   // Where rates are not whole: what each site's count is on average over the seeds, also where it is 0 now. An unbiased
   // estimate divides a site's sum by it. Empty where every count is certain.
   std::vector<float> expected_samples;
-  double full_rate_spp = 0;  // samples a pixel where the density is 1; 0 for layouts
-  // Sites of one pixel with at least so many samples keep their own mean in every filter; others may be smoothed. See
-  // FoveationSettings::pass_through_samples.
-  std::uint32_t enough_samples = 16;
+  // Samples a pixel where the density is 1, and in the fovea of a layout; 0 in frames that are uniform.
+  double full_rate_spp = 0;
   [[nodiscard]] double expected(std::size_t site) const {
     return expected_samples.empty() ? sites[site].samples : static_cast<double>(expected_samples[site]);
   }

@@ -22,9 +22,9 @@ namespace gazetrace {
 struct PipelineSettings {
   FoveationSettings foveation;
   TraceSettings trace;
-  std::string filter = "linear";
+  ReconstructionSettings reconstruction;
   AccumulateSettings accumulate;
-  double enhance_contrast = 0;  // enhance.hpp; after accumulation and the choice of an exposure
+  double enhance_contrast = 0;  // enhance_contrast(), after accumulation and the choice of an exposure
   ExposureSettings exposure;
   OutputSettings output;  // without any pattern nothing is written, timing and run record included
   FrameRate fps;

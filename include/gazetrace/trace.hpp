@@ -43,9 +43,10 @@ struct TraceSettings {
   double pixel_cone = 0;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
-  bool guides = false;                   // collect albedo, normal and depth of the first hit
-  bool surfaces = false;                 // sums per surface of sites that needs_filtering names
-  std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
+  bool guides = false;    // collect albedo, normal and depth of the first hit
+  bool surfaces = false;  // collect sums per surface of the sites that PassThrough leaves to filters
+  std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
+  std::optional<PixelIndex> only_pixel;               // trace only the site that holds this pixel
   // Only these samples of every site; what they sum up to is kept in SparseFrame::unrounded, too. Rays go one by one,
   // so that a sample does not depend on those beside it: without, one in 1e7 or so meets the other of two surfaces that
   // share an edge. About an eighth slower.
@@ -133,11 +134,26 @@ void add_sums(const SampleSums& from, SampleSums& to);
 // sums of another map.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
-// Whether a guided filter changes a site. Sites of several pixels are, and single pixels that expect fewer samples than
-// the map's enough_samples: uniform frames, and what a small budget leaves even where one looks. Not by whole counts:
-// of pixels that are to have 15.5 samples half have 16, others in every frame. All others keep their own mean, bit by
-// bit.
-bool needs_filtering(const SamplingMap& map, std::size_t site);
+// Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
+// samples than are enough. All others keep the mean of their own samples, bit by bit. What counts is the expectation
+// and not the whole number of samples: of pixels that expect 15.5 samples half have 16, and others in every frame.
+class PassThrough {
+ public:
+  // `samples`: so many are enough; 0: no number is. Empty: as many as the fovea has, where that is at least 8 and below
+  // 16, and otherwise 16, since below 8 samples smoothing is worth more than a fovea as it was traced. In a uniform
+  // frame there is no fovea, and no number is enough: whoever asks for such a filter there wants all of it smoothed.
+  // Keeps a reference to `map`, which must outlive it.
+  PassThrough(const SamplingMap& map, const std::optional<std::uint64_t>& samples);
+
+  [[nodiscard]] std::uint32_t enough_samples() const { return enough_samples_; }
+  [[nodiscard]] bool needs_filtering(std::size_t site) const {
+    return map_->regions[map_->sites[site].region].block_px > 1 || map_->expected(site) < enough_samples_;
+  }
+
+ private:
+  const SamplingMap* map_;
+  std::uint32_t enough_samples_;
+};
 
 // When the shutter opens and closes, video time; equal: an instant.
 struct ShutterTimes {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "gazetrace/enhance.hpp"
 #include "gazetrace/version.hpp"
 
 namespace gazetrace {

@@ -130,8 +130,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (uses_history(settings)) {
     return "frames depend on those before them";
   }
-  if (filter_needs_guides(settings.filter)) {
-    return fmt::format("the filter '{}' looks at every sample", settings.filter);
+  const Reconstruction reconstruction(settings.reconstruction);
+  if (reconstruction.needs().surfaces) {
+    return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);
   }
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";
@@ -167,7 +168,8 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
     rendered.map = timed(row.plan_ms, [&] { return map_of(request); });
     const SampleSums sums = join_sums(found[i], request.frame, settings);
     rendered.frame = timed(row.reconstruct_ms, [&] {
-      return reconstruct(sparse_frame_of(sums, rendered.map), rendered.map, settings.filter, settings.threads);
+      return Reconstruction(settings.reconstruction)
+          .frame(sparse_frame_of(sums, rendered.map), rendered.map, nullptr, settings.threads);
     });
     expose(request, settings, none, rendered, row);
     write_frame_files(request, plan, rendered, color, settings, row, written);

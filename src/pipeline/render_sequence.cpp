@@ -19,8 +19,6 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kEdgeRays = 4;  // measured in tests/benchmarks/filters.cpp
-
 void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row) {
   row.samples = stats.samples;
   row.rays_primary = stats.rays_primary;
@@ -54,17 +52,11 @@ void count_first_look(const TraceStats& stats, TimingRow& row) {
   }
 }
 
-// One ray stands for a pixel: texture of less than a pixel's width would be noise, which no sample averages.
-GuideSettings guide_settings(const TraceSettings& trace) {
-  return {.pixel_cone = std::max(trace.pixel_cone, GuideSettings{}.pixel_cone),
-          .diffuse = trace.diffuse,
-          .edge_rays = kEdgeRays};
-}
-
 Frame plain_frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides, const FrameRequest& request,
                   const PipelineSettings& settings, TemporalHistory& history, TimingRow& row) {
-  Frame dense =
-      timed(row.reconstruct_ms, [&] { return reconstruct(sparse, map, settings.filter, settings.threads, guides); });
+  Frame dense = timed(row.reconstruct_ms, [&] {
+    return Reconstruction(settings.reconstruction).frame(sparse, map, guides, settings.threads);
+  });
   return timed(row.temporal_ms,
                [&] { return accumulate(std::move(dense), request, settings.accumulate, history, settings.threads); });
 }
@@ -72,12 +64,12 @@ Frame plain_frame(const SparseFrame& sparse, const SamplingMap& map, const Guide
 Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, const SamplingMap& map,
                         const Guides* guides, const FrameRequest& request, const PipelineSettings& settings,
                         TemporalHistory& history, TimingRow& row) {
-  // A filter that works on surfaces takes the samples apart by them, which a frame cannot give back.
-  const bool before = settings.accumulate.order == AccumulateOrder::before && guides == nullptr;
-  const auto filtered = [&](const SparseFrame& sites, const std::string& filter) {
-    return timed(row.reconstruct_ms, [&] { return reconstruct(sites, map, filter, settings.threads, guides); });
+  const Reconstruction reconstruction(settings.reconstruction);
+  const bool before = settings.accumulate.order == AccumulateOrder::before && !reconstruction.needs().surfaces;
+  const auto filtered = [&](const SparseFrame& sites, const Reconstruction& by) {
+    return timed(row.reconstruct_ms, [&] { return by.frame(sites, map, guides, settings.threads); });
   };
-  Frame dense = filtered(sparse, before ? "none" : settings.filter);
+  Frame dense = filtered(sparse, before ? Reconstruction({"none", {}}) : reconstruction);
   Frame merged = timed(row.temporal_ms, [&] {
     const EarlierView earlier{history.camera.value_or(request.camera),
                               history.camera ? history.t_video_ns : request.t_video_ns};
@@ -85,7 +77,7 @@ Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, con
     return reproject(std::move(dense), map, motion, request, settings.accumulate, history, settings.threads);
   });
   if (before) {
-    merged = filtered(sites_of_frame(merged, sparse, map), settings.filter);
+    merged = filtered(sites_of_frame(merged, sparse, map), reconstruction);
   }
   return merged;
 }
@@ -111,8 +103,7 @@ TracedFrame trace_frame(PathTracer& tracer, const FrameRequest& request, const P
   }
   traced.map = timed(
       row.plan_ms, [&] { return make_sampling_map(foveation, request.view, request.gaze_direction_render, context); });
-  TraceSettings trace = settings.trace;
-  trace.surfaces = filter_needs_guides(settings.filter);
+  const TraceSettings trace = Reconstruction(settings.reconstruction).trace_settings(settings.trace);
   traced.sparse = timed(row.trace_ms, [&] {
     tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
     return tracer.trace(request.camera, request.frame, traced.map, trace);
@@ -128,10 +119,9 @@ RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, cons
                            TemporalHistory& history, TimingRow& row, SequenceResult& result) {
   TracedFrame traced = trace_frame(tracer, request, settings, row, result);
   std::optional<Guides> guides;
-  if (filter_needs_guides(settings.filter)) {
-    guides = timed(row.guides_ms, [&] {
-      return tracer.guides(request.camera, request.width_px, request.height_px, guide_settings(settings.trace));
-    });
+  if (const auto wanted = Reconstruction(settings.reconstruction).guide_settings(settings.trace)) {
+    guides = timed(row.guides_ms,
+                   [&] { return tracer.guides(request.camera, request.width_px, request.height_px, *wanted); });
   }
   const Guides* of_filter = guides ? &*guides : nullptr;
   RenderedFrame rendered;

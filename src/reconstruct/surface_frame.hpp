@@ -8,6 +8,9 @@
 
 namespace gazetrace {
 
+// The number of edge rays was measured in tests/benchmarks/filters.cpp.
+inline constexpr ReconstructionNeeds kSurfaceNeeds{.guides = true, .edge_rays = 4, .surfaces = true};
+
 using SmoothSurfaces = void (*)(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings,
                                 int threads);
 Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth);

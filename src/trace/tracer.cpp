@@ -176,6 +176,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
                                    TileResult& tile, SparseFrame& out) const {
   tile.regions.resize(map.regions.size());
   const bool surfaces = context.settings.surfaces;
+  const PassThrough pass_through(map, context.settings.pass_through_samples);
   SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
                        context.camera->is_perspective());
   const auto finish_site = [&](std::size_t site) {
@@ -226,7 +227,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         continue;
       }
       add_light({r, g, b}, sum.light);
-      if (surfaces && needs_filtering(map, current)) {
+      if (surfaces && pass_through.needs_filtering(current)) {
         sorter.add(work.surfaces, i, {r, g, b});
       }
     }

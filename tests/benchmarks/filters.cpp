@@ -159,7 +159,7 @@ ImageRgb reference_of(const Bench& bench) {
   TraceSettings settings;
   settings.seed = 12345;
   const SamplingMap map = map_of(bench, std::to_string(o.reference_spp), 1);
-  image = reconstruct(bench.tracer.trace(bench.camera, 0, map, settings), map, "none").radiance;
+  image = Reconstruction({"none", {}}).frame(bench.tracer.trace(bench.camera, 0, map, settings), map).radiance;
   std::ofstream(o.reference, std::ios::binary).write(reinterpret_cast<const char*>(image.pixels.data()), bytes);
   return image;
 }
@@ -297,7 +297,8 @@ auto timed(double& ms, const Function& function) {
 Run run_filter(const Bench& bench, const std::string& filter, const SamplingMap& map) {
   const bool proto = filter == "prototype";
   TraceSettings settings;
-  settings.surfaces = filter_needs_guides(filter);
+  const Reconstruction reconstruction({proto ? "none" : filter, {}});
+  settings = reconstruction.trace_settings(settings);
   Run best;
   for (int round = 0; round < bench.options.rounds; ++round) {
     Run run;
@@ -310,7 +311,7 @@ Run run_filter(const Bench& bench, const std::string& filter, const SamplingMap&
                      [&] { return bench.tracer.guides(bench.camera, map.width_px, map.height_px, guide_settings); });
     }
     run.frame = timed(run.filter_ms, [&] {
-      return proto ? prototype(sparse, map, guides) : reconstruct(sparse, map, filter, 0, &guides);
+      return proto ? prototype(sparse, map, guides) : reconstruction.frame(sparse, map, &guides);
     });
     if (run.trace_ms + run.guides_ms + run.filter_ms < best.trace_ms + best.guides_ms + best.filter_ms) {
       best = std::move(run);

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/reconstruct.hpp"
 #include "render/tracer_scenes.hpp"
+#include "support/reconstruct.hpp"
 #include "trace/kernel/kernel.hpp"
 #include "trace/samples/sample_list.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "gazetrace/reconstruct.hpp"
 #include "render/tracer_scenes.hpp"
+#include "support/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {

@@ -17,7 +17,6 @@ namespace {
 
 // As the program's own frames have it: an arm is what `gazetrace render` makes with its seed.
 constexpr std::int32_t kFirstFrame = 1;
-constexpr int kEdgeRays = 4;
 constexpr double kNoDifferenceJod = 10;
 
 ColorSettings plain_view() {
@@ -105,10 +104,11 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
 }
 
 Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
-  const bool needs_guides = filter_needs_guides(filter);
-  if (needs_guides && !guides_) {
+  const Reconstruction reconstruction({filter, {}});
+  const std::optional<GuideSettings> wanted = reconstruction.guide_settings({});
+  if (wanted && !guides_) {
     const Stopwatch watch;
-    guides_ = tracer_.guides(camera_, view_.width_px, view_.height_px, {.edge_rays = kEdgeRays});
+    guides_ = tracer_.guides(camera_, view_.width_px, view_.height_px, *wanted);
     guides_ms_ = watch.elapsed_ms();
   }
   const bool accumulates = traced.frames.size() > 1;
@@ -118,13 +118,13 @@ Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
     motion_ms_ = watch.elapsed_ms();
   }
   Picture picture;
-  picture.guides_ms = needs_guides ? guides_ms_ : 0;
+  picture.guides_ms = wanted ? guides_ms_ : 0;
   picture.temporal_ms = accumulates ? motion_ms_ : 0;
   TemporalHistory history;
   for (std::size_t i = 0; i < traced.frames.size(); ++i) {
     const auto& [map, sparse] = traced.frames[i];
     const Stopwatch watch;
-    Frame frame = reconstruct(sparse, map, filter, 0, needs_guides ? &*guides_ : nullptr);
+    Frame frame = reconstruction.frame(sparse, map, wanted ? &*guides_ : nullptr);
     picture.reconstruct_ms += watch.elapsed_ms() / clip_frames_;
     if (accumulates) {
       FrameRequest request;

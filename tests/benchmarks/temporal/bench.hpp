@@ -66,7 +66,7 @@ class Bench {
 
   [[nodiscard]] PipelineSettings settings_of(const AccumulateSettings& accumulate, const std::string& filter) const {
     PipelineSettings settings;
-    settings.filter = filter;
+    settings.reconstruction.filter = filter;
     settings.accumulate = accumulate;
     settings.history_digest = "none";
     settings.trace.seed = 1;
