@@ -22,7 +22,7 @@ namespace gazetrace {
 struct PipelineSettings {
   FoveationSettings foveation;
   TraceSettings trace;
-  ReconstructionSettings reconstruction;
+  ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
   AccumulateSettings accumulate;
   double enhance_contrast = 0;  // enhance_contrast(), after accumulation and the choice of an exposure
   ExposureSettings exposure;

@@ -41,7 +41,9 @@ struct FilterInfo {
 std::vector<FilterInfo> reconstruction_filters();
 
 struct ReconstructionSettings {
-  std::string filter = "linear";                      // one of reconstruction_filters()
+  // One of reconstruction_filters(). There is no default that suits every job: choose_filter() names one for the job at
+  // hand.
+  std::string filter;
   std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only filters that need surfaces heed it
 };
 

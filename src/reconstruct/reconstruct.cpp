@@ -37,6 +37,10 @@ std::vector<NamedFilter> named_filters() {
 }
 
 NamedFilter filter_named(const std::string& name) {
+  if (name.empty()) {
+    throw Error(ErrorKind::usage, "filter", "no reconstruction filter is named",
+                "name one of `reconstruction_filters`, for example what `choose_filter` chooses");
+  }
   const std::vector<NamedFilter> filters = named_filters();
   const auto found = std::find_if(filters.begin(), filters.end(), [&](const auto& f) { return f.name == name; });
   if (found == filters.end()) {

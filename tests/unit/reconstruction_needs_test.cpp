@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What filters state of themselves, what the tracer is told of it, and which filter suits a job.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "gazetrace/error.hpp"
 #include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace {
@@ -47,6 +49,16 @@ TEST(ReconstructionNeeds, GuidesFollowTheSamples) {
   EXPECT_EQ(narrow.edge_rays, guided.needs().edge_rays);
   trace.pixel_cone = 2.5;
   EXPECT_EQ(guided.guide_settings(trace).value().pixel_cone, 2.5);
+}
+
+TEST(ReconstructionNeeds, AFilterMustBeNamed) {
+  try {
+    const Reconstruction none{ReconstructionSettings{}};
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::usage);
+    EXPECT_THAT(e.what(), testing::HasSubstr("no reconstruction filter is named"));
+  }
 }
 
 TEST(ChooseFilter, GuidedForWhatIsFoveatedAndNothingElse) {

@@ -81,6 +81,7 @@ class Bench {
     PipelineSettings settings;
     settings.foveation.falloff = "uniform";
     settings.foveation.uniform_spp = reference_spp(still) / 2;
+    settings.reconstruction.filter = "linear";
     settings.trace.seed = seed;
     return settings;
   }
