@@ -25,8 +25,8 @@ struct Frame {
 
 // What a filter must be given besides the sums of every site. Each filter states it in its own file.
 struct ReconstructionNeeds {
-  bool guides = false;  // the first hits of every pixel (guides.hpp)
-  int edge_rays = 0;    // of these guides: GuideSettings::edge_rays
+  // The first hits of every pixel, traced with these settings (but see Reconstruction::guide_settings); empty: none.
+  std::optional<GuideSettings> guides = std::nullopt;
   // Sums per surface (SparseFrame::surfaces). Only samples can be sorted by surface: an accumulated frame and the sums
   // of a part of the samples do not hold them.
   bool surfaces = false;
@@ -60,7 +60,8 @@ class Reconstruction {
 
   // The settings under which the tracer collects what the filter needs: sums per surface of the sites that it changes.
   [[nodiscard]] TraceSettings trace_settings(TraceSettings settings) const;
-  // The settings of the guides that the filter needs, for samples that are traced with `trace`; empty: it needs none.
+  // The settings of the guides that the filter needs, for samples that are traced with `trace`: their materials are
+  // those of the samples, and a ray's cone is at least as wide as a sample's. Empty: the filter needs no guides.
   [[nodiscard]] std::optional<GuideSettings> guide_settings(const TraceSettings& trace) const;
 
   // A site without samples takes its value from its neighbours. The pixels of a site that PassThrough keeps have the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path tracer: a scene, a camera and a sampling map in, sums per site out.
+// The path tracer: it takes a scene, a camera and a sampling map, and returns sums per site.
 #pragma once
 
 #include <cstdint>
@@ -25,18 +25,19 @@ enum class BvhQuality : std::uint8_t { high, medium };
 
 struct TraceSettings {
   int max_bounces = 3;  // scattering events on a path; 0 shows emission only
-  // From the third scattering event on, paths go on with probability sqrt(throughput), and carry on as much more.
+  // From the third scattering event on, a path goes on with probability sqrt(throughput), and is weighted by its
+  // inverse.
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
-  // Light samples of the environment go where it exceeds half its mean (MIS compensation); heeded with mis only. Less
-  // noise in the open, more where most of the sky is hidden.
+  // Light samples of the environment go only where it exceeds half its mean (MIS compensation); used with mis only.
+  // This gives less noise in the open and more where most of the sky is hidden.
   bool compensate_environment = false;
-  // Upper bound of what one sample may add after more than one scattering event, on its largest channel; takes away
-  // fireflies and the light they stand for. 0: off, no bias.
+  // Upper bound of what one sample may add after more than one scattering event, on its largest channel. It takes away
+  // fireflies together with the light that they stand for. 0: off, no bias.
   double clamp_indirect = 0;
-  // Ray cones open by this angle (times 1 / sqrt(pi pdf): once for a diffuse bounce, hardly for a mirror), so that hits
-  // after a bounce read coarser texture levels. 0: full resolution.
+  // Ray cones open by this angle times 1 / sqrt(pi pdf), which is about 1 for a diffuse bounce and about 0 for a
+  // mirror, so that hits after a bounce read coarser texture levels. 0: full resolution.
   double bounce_cone_rad = 0.15;
   // Width of a camera ray's cone in pixels, for texture levels at first hits. 0: full resolution, which the pixel's
   // samples average; levels save no time worth their blur (Sponza at 960 x 540: 12 % root mean square a pixel).
@@ -47,14 +48,14 @@ struct TraceSettings {
   bool surfaces = false;  // collect sums per surface of the sites that PassThrough leaves to filters
   std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
   std::optional<PixelIndex> only_pixel;               // trace only the site that holds this pixel
-  // Only these samples of every site; what they sum up to is kept in SparseFrame::unrounded, too. Rays go one by one,
-  // so that a sample does not depend on those beside it: without, one in 1e7 or so meets the other of two surfaces that
-  // share an edge. About an eighth slower.
+  // Only these samples of every site; their exact sums are kept in SparseFrame::unrounded as well. Rays are traced one
+  // by one, so that a sample does not depend on those beside it: in packets, about one ray in 1e7 meets the other one
+  // of two surfaces that share an edge. This is about an eighth slower.
   std::optional<SampleRange> samples;
 };
 
-// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each may do to the
-// shaded point. automatic: the tree from a measured number of lights on.
+// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light may
+// contribute to the shaded point. automatic: the tree, from a measured number of lights on.
 enum class LightChoice : std::uint8_t { automatic, power, tree };
 
 // How the tree over a mesh that changes its shape follows it. refit: the boxes of the tree that was built at rest are
@@ -67,7 +68,7 @@ struct TracerOptions {
   BvhQuality bvh_quality = BvhQuality::high;
   MeshUpdate mesh_update = MeshUpdate::refit;
   LightChoice light_choice = LightChoice::automatic;
-  // For measurements: use the kernel variant with everything compiled in.
+  // For measurements: uses the kernel variant with everything compiled in.
   bool all_features = false;
 };
 
@@ -78,10 +79,10 @@ struct GuideSums {
   std::uint32_t hits = 0;
 };
 
-// What a site's samples found on one surface: first hits of one kind, facing one way, about in one plane. A site's
-// samples fall on at most kMostSurfaces; what is left joins the one it is nearest to.
+// What a site's samples found on one surface: first hits of one kind that face one way and lie about in one plane. A
+// site has at most kMostSurfaces; samples on further ones join the surface that is most like theirs.
 struct SurfaceSums {
-  Vec3f reflected;   // radiance but what the first hit itself shines, sum
+  Vec3f reflected;   // radiance without what the first hit itself emits, sum
   Vec3f albedo;      // as Guides::albedo, sum
   Vec3f normal;      // shading normals, sum
   Vec3f place_m;     // relative to the eye, world axes, sum
@@ -107,7 +108,7 @@ struct TraceStats {
   std::uint64_t samples = 0;
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
-  std::uint64_t non_finite_samples = 0;  // counted as black, never silently
+  std::uint64_t non_finite_samples = 0;  // they count as black samples
   std::vector<BadSample> bad_samples;    // the first 16, in pixel order
   std::vector<RegionTraceStats> regions;
   std::string kernel;  // name of the variant used
@@ -120,8 +121,8 @@ struct SparseFrame {
   std::vector<float> sum_square_luminance;  // of samples' luminance (Rec.709), for variance; at most float's largest
   std::vector<std::uint32_t> count;
   std::vector<GuideSums> guides;  // empty unless TraceSettings::guides
-  // Those of site i are surfaces[first_surface[i]] up to, not including, first_surface[i + 1]; samples that miss are on
-  // none. Both empty unless TraceSettings::surfaces.
+  // Those of site i are surfaces[first_surface[i]] up to, not including, surfaces[first_surface[i + 1]]. Samples that
+  // miss everything are on none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
   SampleSums unrounded;  // empty unless TraceSettings::samples
@@ -130,8 +131,8 @@ struct SparseFrame {
 
 // Adds the sums of other samples of the same sites. Error(runtime) where they are not as many.
 void add_sums(const SampleSums& from, SampleSums& to);
-// What trace() returns for the samples that were added up, to the bit; without surfaces and stats. Error(runtime) for
-// sums of another map.
+// What PosedScene::trace() returns for the samples that were added up, to the bit, but without surfaces and stats.
+// Error(runtime) for sums of another map.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
 // Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
@@ -158,12 +159,15 @@ class PassThrough {
 // When the shutter opens and closes, video time; equal: an instant.
 struct ShutterTimes {
   std::int64_t open_ns = 0, close_ns = 0;
+  friend bool operator==(const ShutterTimes&, const ShutterTimes&) = default;
 };
 
 struct TracerMemory {
   std::uint64_t bvh_bytes = 0;  // as Embree reports it to the device's memory monitor
   double build_s = 0;
 };
+
+class PosedScene;
 
 class PathTracer {
  public:
@@ -175,30 +179,50 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // Puts everything that moves where it is at that time, and whatever deforms into its shape: with an open shutter,
-  // over the whole way, taken as even within each sixteenth of it (or less of it, where that keeps vertices on their
-  // way to a thousandth of the mesh). Until it is called, all is at rest. Costs nothing in a scene without motions.
+  // The scene at a time: everything that moves is where it is then, and whatever deforms has its shape. With an open
+  // shutter, bodies and shapes go their whole way, taken as even within each sixteenth of it (or less of it, where that
+  // keeps vertices on their way to a thousandth of the mesh). Costs nothing in a scene without motions.
   // Emitters that move are found by rays only: LightSampling::light_only does not see them.
-  void move_to(const ShutterTimes& times);
-
-  // A pure function of its arguments and the last move_to: same bits for any thread count. `frame` seeds the samples.
-  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
-                                  const TraceSettings& settings) const;
-
-  // First hits of every pixel, for filters and reprojection. A pure function of its arguments and the last move_to.
-  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
-
-  // What the pixels' centres see as things are now, and where that was in an earlier view.
-  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
-                                             const EarlierView& earlier) const;
+  [[nodiscard]] PosedScene at(const ShutterTimes& times);
+  // The scene as its file places it when no animation plays.
+  [[nodiscard]] PosedScene at_rest();
 
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.
   [[nodiscard]] std::string ray_library() const;
 
  private:
+  friend class PosedScene;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+// A scene in one pose. Rays can only be traced through it, so that no picture is ever of a pose that nobody named.
+//
+// It names the pose and holds no copy of the scene: the tracer, which must outlive it, has one ray tracing tree. That
+// tree is put into the pose when it is asked for, and back into it where another pose was used in between. So what
+// these functions return depends on the pose and their arguments alone, and has the same bits for any number of
+// threads. The tree cannot be in two poses at once: threads of the caller may share one pose, but must not use two at a
+// time.
+class PosedScene {
+ public:
+  // `frame` seeds the samples.
+  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
+                                  const TraceSettings& settings) const;
+
+  // First hits of every pixel, for filters and reprojection.
+  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
+
+  // What the pixels' centres see in this pose, and where that was in an earlier view.
+  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
+                                             const EarlierView& earlier) const;
+
+ private:
+  friend class PathTracer;
+  PosedScene(PathTracer::Impl& tracer, const std::optional<ShutterTimes>& times);
+
+  PathTracer::Impl* tracer_;
+  std::optional<ShutterTimes> times_;  // empty: at rest
 };
 
 }  // namespace gazetrace

@@ -319,10 +319,6 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.fps = job.fps;
   settings.threads = job.threads;
   settings.is_part = job.part;
-  const auto& aovs = job.exr.aovs;
-  settings.trace.guides = std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
-    return aov == "albedo" || aov == "normal" || aov == "depth";
-  });
   check_output_settings(settings.output, frames.size() > 1);
   return settings;
 }

@@ -39,7 +39,7 @@ std::vector<NamedFilter> named_filters() {
 NamedFilter filter_named(const std::string& name) {
   if (name.empty()) {
     throw Error(ErrorKind::usage, "filter", "no reconstruction filter is named",
-                "name one of `reconstruction_filters`, for example what `choose_filter` chooses");
+                "name one of reconstruction_filters(), most often the one that choose_filter() chooses");
   }
   const std::vector<NamedFilter> filters = named_filters();
   const auto found = std::find_if(filters.begin(), filters.end(), [&](const auto& f) { return f.name == name; });
@@ -93,13 +93,12 @@ TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
 }
 
 std::optional<GuideSettings> Reconstruction::guide_settings(const TraceSettings& trace) const {
-  if (!filter_.needs.guides) {
-    return std::nullopt;
+  std::optional<GuideSettings> settings = filter_.needs.guides;
+  if (settings) {
+    settings->pixel_cone = std::max(trace.pixel_cone, settings->pixel_cone);
+    settings->diffuse = trace.diffuse;
   }
-  // One ray stands for a pixel: texture finer than a pixel would be noise, which no sample averages.
-  return GuideSettings{.pixel_cone = std::max(trace.pixel_cone, GuideSettings{}.pixel_cone),
-                       .diffuse = trace.diffuse,
-                       .edge_rays = filter_.needs.edge_rays};
+  return settings;
 }
 
 Frame Reconstruction::frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides,

@@ -101,7 +101,7 @@ Options parse(int argc, char** argv) {
 struct Bench {
   Options options;
   PlanarView view;
-  PathTracer tracer;
+  PosedScene scene;
   Camera camera;
   ImageRgb reference, reference_shown;
   ImageGray eccentricity_deg;
@@ -159,7 +159,7 @@ ImageRgb reference_of(const Bench& bench) {
   TraceSettings settings;
   settings.seed = 12345;
   const SamplingMap map = map_of(bench, std::to_string(o.reference_spp), 1);
-  image = Reconstruction({"none", {}}).frame(bench.tracer.trace(bench.camera, 0, map, settings), map).radiance;
+  image = Reconstruction({"none", {}}).frame(bench.scene.trace(bench.camera, 0, map, settings), map).radiance;
   std::ofstream(o.reference, std::ios::binary).write(reinterpret_cast<const char*>(image.pixels.data()), bytes);
   return image;
 }
@@ -302,13 +302,13 @@ Run run_filter(const Bench& bench, const std::string& filter, const SamplingMap&
   Run best;
   for (int round = 0; round < bench.options.rounds; ++round) {
     Run run;
-    const SparseFrame sparse = timed(run.trace_ms, [&] { return bench.tracer.trace(bench.camera, 0, map, settings); });
+    const SparseFrame sparse = timed(run.trace_ms, [&] { return bench.scene.trace(bench.camera, 0, map, settings); });
     run.samples = static_cast<double>(sparse.stats.samples);
     Guides guides;
     if (proto || settings.surfaces) {
       const GuideSettings guide_settings{.spp = proto ? 2 : 1, .edge_rays = proto ? 0 : bench.options.edge_rays};
       guides = timed(run.guides_ms,
-                     [&] { return bench.tracer.guides(bench.camera, map.width_px, map.height_px, guide_settings); });
+                     [&] { return bench.scene.guides(bench.camera, map.width_px, map.height_px, guide_settings); });
     }
     run.frame = timed(run.filter_ms, [&] {
       return proto ? prototype(sparse, map, guides) : reconstruction.frame(sparse, map, &guides);
@@ -326,9 +326,10 @@ int run(int argc, char** argv) {
   if (!options.sky.empty()) {
     scene.environment = options.sky == "sky" ? builtin_sky() : load_environment(options.sky);
   }
+  PathTracer tracer(scene, {});
   Bench bench{options,
               view_of_display(display_by_name("paper"), {}, options.width_px, options.height_px),
-              PathTracer(scene, {}),
+              tracer.at_rest(),
               {},
               {},
               {},

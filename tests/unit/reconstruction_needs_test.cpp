@@ -16,9 +16,8 @@ TEST(ReconstructionNeeds, OnlyGuidedFiltersNeedMoreThanSums) {
   for (const FilterInfo& info : reconstruction_filters()) {
     SCOPED_TRACE(info.name);
     const bool guided = info.name == "guided" || info.name == "oidn";
-    EXPECT_EQ(info.needs.guides, guided);
+    EXPECT_EQ(info.needs.guides.has_value(), guided);
     EXPECT_EQ(info.needs.surfaces, guided);
-    EXPECT_EQ(info.needs.edge_rays > 0, guided);
     EXPECT_EQ(info.blurs_blocks, !guided && info.name != "none");
     EXPECT_EQ(Reconstruction({info.name, {}}).filter().name, info.name);
   }
@@ -46,7 +45,7 @@ TEST(ReconstructionNeeds, GuidesFollowTheSamples) {
   const GuideSettings narrow = guided.guide_settings(trace).value();
   EXPECT_EQ(narrow.pixel_cone, 1);
   EXPECT_EQ(narrow.diffuse, DiffuseModel::lambert);
-  EXPECT_EQ(narrow.edge_rays, guided.needs().edge_rays);
+  EXPECT_EQ(narrow.edge_rays, guided.needs().guides.value().edge_rays);
   trace.pixel_cone = 2.5;
   EXPECT_EQ(guided.guide_settings(trace).value().pixel_cone, 2.5);
 }

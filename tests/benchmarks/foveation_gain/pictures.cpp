@@ -71,7 +71,7 @@ double Traced::spp() const {
   return samples / pixels;
 }
 
-Renderer::Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames)
+Renderer::Renderer(PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames)
     : tracer_(tracer),
       camera_(camera),
       view_(view_of_display(display_by_name("paper"), {}, size.width_px, size.height_px)),
@@ -96,7 +96,7 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
     shot.map = make_sampling_map(settings, view_, direction, context);
     traced.plan_ms += plan.elapsed_ms() / clip_frames_;
     const Stopwatch rays;
-    shot.sparse = tracer_.trace(camera_, frame, shot.map, trace);
+    shot.sparse = tracer_.at_rest().trace(camera_, frame, shot.map, trace);
     traced.trace_ms += rays.elapsed_ms() / clip_frames_;
     traced.frames.push_back(std::move(shot));
   }
@@ -108,13 +108,13 @@ Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
   const std::optional<GuideSettings> wanted = reconstruction.guide_settings({});
   if (wanted && !guides_) {
     const Stopwatch watch;
-    guides_ = tracer_.guides(camera_, view_.width_px, view_.height_px, *wanted);
+    guides_ = tracer_.at_rest().guides(camera_, view_.width_px, view_.height_px, *wanted);
     guides_ms_ = watch.elapsed_ms();
   }
   const bool accumulates = traced.frames.size() > 1;
   if (accumulates && !motion_) {
     const Stopwatch watch;
-    motion_ = tracer_.surface_motion(camera_, view_.width_px, view_.height_px, {camera_, 0});
+    motion_ = tracer_.at_rest().surface_motion(camera_, view_.width_px, view_.height_px, {camera_, 0});
     motion_ms_ = watch.elapsed_ms();
   }
   Picture picture;
