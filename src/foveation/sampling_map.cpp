@@ -48,16 +48,6 @@ std::optional<double> budget_of(const FoveationSettings& settings, const PlanarV
   return std::nullopt;
 }
 
-// A uniform frame has no fovea, so a filter is meant to smooth all of it, however many samples there are.
-constexpr std::uint32_t kNoneIsEnough = std::numeric_limits<std::uint32_t>::max();
-
-// For a map about a gaze. Below 8 samples per pixel a filtered fovea is better than one that is shown as traced.
-std::uint32_t enough_samples(double full_rate_spp) {
-  constexpr double kLeast = 8;
-  constexpr std::uint32_t kAlways = 16;
-  return full_rate_spp >= kLeast && full_rate_spp < kAlways ? static_cast<std::uint32_t>(full_rate_spp) : kAlways;
-}
-
 SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, const MapContext& context) {
   const bool about_gaze = layout.regions.size() > 1;
   const double fovea_spp = layout.regions.front().tau;
@@ -71,7 +61,7 @@ SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, co
     scale = rate_of_budget(map, weights, *budget, kMaxSpp);
     set_whole_counts(map, weights, scale, kMaxSpp, context.seed, context.frame);
   }
-  map.enough_samples = about_gaze ? enough_samples(fovea_spp * scale) : kNoneIsEnough;
+  map.full_rate_spp = about_gaze ? fovea_spp * scale : 0;
   return map;
 }
 
@@ -89,7 +79,6 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
     rate = rate_of_budget(blocks.map, blocks.weights, *budget, kMaxSpp);
   }
   blocks.map.full_rate_spp = std::min(rate, kMaxSpp);
-  blocks.map.enough_samples = enough_samples(rate);
   set_whole_counts(blocks.map, blocks.weights, rate, kMaxSpp, context.seed, context.frame);
   return std::move(blocks.map);
 }
@@ -125,14 +114,7 @@ SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarVie
                               const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
   check_foveation(settings);
   check_view(view);
-  SamplingMap map = map_of_falloff(settings, view, gaze_direction, context);
-  if (settings.pass_through_samples) {
-    map.enough_samples =
-        *settings.pass_through_samples == 0
-            ? kNoneIsEnough
-            : static_cast<std::uint32_t>(std::min<std::uint64_t>(*settings.pass_through_samples, kNoneIsEnough));
-  }
-  return map;
+  return map_of_falloff(settings, view, gaze_direction, context);
 }
 
 std::optional<ImageGray> falloff_density(const FoveationSettings& settings, const PlanarView& view,

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "gazetrace/plan.hpp"
-#include "gazetrace/plan_join.hpp"
 #include "plan/gaze_geometry.hpp"
 #include "plan/gaze_motion.hpp"
 
