@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: tiles in parallel, batches in order, sums without rounding.
+// PathTracer: traces tiles in parallel and the batches of a tile in order, and adds up samples without rounding.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,9 +27,9 @@ constexpr std::size_t kReportedBadSamples = 16;
 struct TileResult {
   KernelCounts counts;
   std::uint64_t samples = 0, non_finite = 0;
-  std::vector<BadSample> bad;  // the first ones in pixel order
+  std::vector<BadSample> bad;  // the first ones, in pixel order
   std::vector<RegionTraceStats> regions;
-  std::vector<SurfaceSums> surfaces;  // of the tile's sites, one after the other
+  std::vector<SurfaceSums> surfaces;  // of all sites of the tile, in their order
 };
 
 bool before(const BadSample& a, const BadSample& b) {
@@ -43,7 +43,8 @@ void keep_first(std::vector<BadSample>& list, BadSample sample) {
   }
 }
 
-// One site at a time: its samples are neighbours in the list, possibly over several batches.
+// The sums of one site. Sites are finished one at a time, since the samples of a site follow each other in the list,
+// possibly over several batches.
 struct SiteSum {
   SiteSums light;
   SiteGuideSums guides;
@@ -65,7 +66,8 @@ void add_light(const Vec3f& radiance, SiteSums& sums) {
   sums.green.add(static_cast<double>(radiance.y));
   sums.blue.add(static_cast<double>(radiance.z));
   const double shone = luminance(to_double(radiance));
-  // A float, as all terms of an ExactSum. It saturates: squares leave float's range at a radiance of 1.8e19.
+  // Rounded to float, as all terms of an ExactSum must be. It saturates, since squares exceed float's range from a
+  // radiance of 1.8e19 on.
   constexpr double kMost = std::numeric_limits<float>::max();
   sums.square_luminance.add(static_cast<double>(static_cast<float>(std::min(shone * shone, kMost))));
 }
@@ -80,7 +82,7 @@ void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
   }
 }
 
-// Workspaces are handed from tile to tile: a thread never waits for memory twice.
+// Workspaces are reused from tile to tile, so that memory is allocated only once per thread.
 class WorkspacePool {
  public:
   std::unique_ptr<Workspace> take() {
@@ -108,7 +110,8 @@ struct SiteRange {
   std::uint32_t first = 0, count = 0;
 };
 
-// Tiles' surfaces in the order of the sites; first_surface holds each site's number of them before.
+// Puts the surfaces of all tiles into the order of the sites. On entry first_surface holds the number of surfaces of
+// each site.
 void join_surfaces(const std::vector<SiteRange>& ranges, std::vector<TileResult>& tiles, SparseFrame& out) {
   std::uint32_t total = 0;
   for (std::uint32_t& entry : out.first_surface) {
@@ -122,7 +125,7 @@ void join_surfaces(const std::vector<SiteRange>& ranges, std::vector<TileResult>
   }
 }
 
-// The one site that holds a pixel; an empty range outside the frame.
+// The site that contains a pixel, as a range of one; an empty range where the pixel is outside the frame.
 SiteRange site_of_pixel(const SamplingMap& map, const PixelIndex& pixel) {
   if (pixel.x >= map.width_px || pixel.y >= map.height_px) {
     return {};
@@ -158,7 +161,8 @@ struct PathTracer::Impl {
     is_posed = true;
   }
 
-  // Compensated tables are made when they are first asked for; only MIS finds what they leave out.
+  // Compensated tables are made when they are first needed. They are used with MIS only, which finds what they leave
+  // out.
   const LightSampler& lights_for(const TraceSettings& settings) {
     if (!settings.compensate_environment || settings.light_sampling != LightSampling::mis ||
         !scene->environment.present()) {

@@ -447,7 +447,7 @@ TEST(BrokenContainers, MissingFileFolderAndNonsense) {
   EXPECT_THAT(error_of(folder.file(".")), HasSubstr("is a folder"));
   EXPECT_THAT(error_of(folder.write("empty.gltf", "")), HasSubstr("not valid JSON"));
   EXPECT_THAT(error_of(folder.write("cut.gltf", R"({"asset": {"ver)")), HasSubstr("not valid JSON"));
-  EXPECT_THAT(error_of(folder.write("array.gltf", "[]")), HasSubstr("no object"));
+  EXPECT_THAT(error_of(folder.write("array.gltf", "[]")), HasSubstr("not an object"));
   EXPECT_THAT(error_of(folder.write("deep.gltf", std::string(1000000, '['))), HasSubstr("nested"));
   EXPECT_THAT(error_of(folder.write("no-utf8.gltf", "{\"asset\":{\"version\":\"2.0\",\"generator\":\"\xff\"}}")),
               HasSubstr("not valid JSON"));

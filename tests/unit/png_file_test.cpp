@@ -192,7 +192,7 @@ const WrongPng kWrong[] = {
      "order of rows"},
     {"NoPalette", [] { return with_header(header(9, 3, 8, 3)); }, "no palette"},
     {"SecondHeader", [] { return with_second(header(9, 3, 8, 2)); }, "second header"},
-    {"UnknownCritical", [] { return with_second(chunk("QQQQ", {1})); }, "PNG does not know"},
+    {"UnknownCritical", [] { return with_second(chunk("QQQQ", {1})); }, "unknown to PNG"},
     {"Transparency",
      [] {
        return with_second(chunk("tRNS", {0, 1}));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three regions about the gaze, after "Foveated Path Tracing with Configurable Sampling and Block-Based Rendering".
 //
-//   fovea         e <= e_f        tau1 samples a pixel
-//   intermediate  e_f < e <= e_i  tau2 samples a block of n x n pixels
-//   periphery     e_i < e         tau3 samples a block of m x m pixels
+//   fovea         e <= e_f        tau1 samples per pixel
+//   intermediate  e_f < e <= e_i  tau2 samples per block of n x n pixels
+//   periphery     e_i < e         tau3 samples per block of m x m pixels
 //
 // cone: e is the angle at the eye between gaze and pixel centre, by atan2, and ends at a/2 (full_angle) or a
 // (eccentricity). disc: pixels whose centre is within r of the gaze point, with eq. (1) of the paper,
@@ -93,7 +93,7 @@ double smoothstep(double t) {
   return u * u * (3 - 2 * u);
 }
 
-// Samples a pixel of each region.
+// The samples per pixel of each region.
 std::array<double, 3> rates_of(const FoveationSettings& settings) {
   const bool per_block = settings.unit == SampleUnit::per_block;
   std::array<double, 3> rates{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances that move: from frame to frame, and while the shutter is open.
+// Instances that move from frame to frame, and while the shutter is open.
 #include <algorithm>
 
 #include "trace/scene/instance_transform.hpp"
@@ -8,11 +8,12 @@
 namespace gazetrace {
 namespace {
 
-// A motion need not be even while the shutter is open: it is taken at this many steps, and as a straight line between.
-// A body that turns by half a turn meanwhile shrinks by 0.5 % in the middle of a step.
+// A motion need not be even while the shutter is open, so it is sampled at this many steps, and linear in between. A
+// body that makes half a turn meanwhile shrinks by 0.5 % in the middle of a step.
 constexpr int kSteps = 16;
 
-// One place where the instance stands still; none where it cannot be told from a point or a plane.
+// The transforms at all steps; a single one where the instance stands still, and none where the ray library cannot take
+// one of them.
 std::vector<Affine> way_of(const Scene& scene, const Instance& instance, const std::optional<ShutterTimes>& at) {
   if (!at) {
     return can_be_instanced(instance.to_world) ? std::vector<Affine>{instance.to_world} : std::vector<Affine>{};
@@ -90,7 +91,7 @@ ShadingInstance RenderScene::instance_at(std::uint32_t index, float time) const 
   for (const Vec3d& n : normals) {
     largest = std::max({largest, std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
   }
-  // Their length does not matter, only their signs: see corner_normal.
+  // Only the signs of these axes matter, not their length: see corner_normal.
   const double scale = (determinant(now) < 0 ? -1.0 : 1.0) / largest;
   for (std::size_t k = 0; k < 3; ++k) {
     instance.normal_axes[k] = to_float(normals[k] * scale);
