@@ -100,11 +100,11 @@ FoveationSettings less_first_look(const FoveationSettings& settings, const Frame
   const double pixels = static_cast<double>(request.width_px) * request.height_px;
   const double budget = in_all ? static_cast<double>(*settings.budget_samples) : *settings.budget_spp * pixels;
   if (!(budget > static_cast<double>(taken))) {
-    throw Error(ErrorKind::usage, in_all ? "--budget-samples" : "--budget-spp",
-                fmt::format("the first look of --contrast-strength takes {} samples of a frame of {} x {} pixels, the "
+    throw Error(ErrorKind::usage, in_all ? "`budget-samples`" : "`budget-spp`",
+                fmt::format("the first look of `contrast-strength` takes {} samples of a frame of {} x {} pixels, the "
                             "budget is {:.0f}",
                             taken, request.width_px, request.height_px, budget),
-                "give more, or leave out --contrast-strength");
+                "give more, or leave out `contrast-strength`");
   }
   FoveationSettings rest = settings;
   if (in_all) {
@@ -115,7 +115,7 @@ FoveationSettings less_first_look(const FoveationSettings& settings, const Frame
   return rest;
 }
 
-ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
+ContrastPrepass trace_contrast(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
                                double strength) {
   FoveationSettings uniform;
   uniform.uniform_spp = kSpp;
@@ -125,7 +125,7 @@ ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& req
   own.guides = false;
   own.surfaces = false;
   own.only_pixel.reset();
-  SparseFrame sparse = tracer.trace(request.camera, request.frame, map, own);
+  SparseFrame sparse = scene.trace(request.camera, request.frame, map, own);
   return {contrast_multiplier(local_contrast(sparse, map), strength), std::move(sparse.stats)};
 }
 

@@ -18,7 +18,7 @@ struct ContrastPrepass {
 // Traces the request's picture at an eighth of its size with 4 samples a pixel (a sixteenth of a sample for each pixel
 // of the frame), under a seed of its own: the density does not depend on the samples that it places, and estimates stay
 // unbiased.
-ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
+ContrastPrepass trace_contrast(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
                                double strength);
 
 // The settings for the frame itself: a budget less the samples of the first look, which count among the frame's. Others

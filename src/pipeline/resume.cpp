@@ -51,11 +51,6 @@ bool checkpoint_is_there(const FramePlan& plan, const PipelineSettings& settings
 
 }  // namespace
 
-bool uses_history(const PipelineSettings& settings) {
-  return settings.accumulate.mode != AccumulateMode::off ||
-         (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
-}
-
 RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
                                  const TemporalHistory& history) {
   RecordedHistory recorded;

@@ -41,7 +41,7 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
     }
     while (k < std::min((task + 1) * kRaysPerTask, rays.size())) {
       const std::uint32_t pixel = rays[k].pixel;
-      const bool changed = needs_filtering(input.map, site_of_pixel.pixels[pixel]);
+      const bool changed = input.pass_through.needs_filtering(site_of_pixel.pixels[pixel]);
       PixelValue sum{frame.radiance.pixels[pixel], frame.variance.pixels[pixel]};
       float count = 1;
       for (; k < rays.size() && rays[k].pixel == pixel; ++k) {

@@ -8,9 +8,9 @@
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
-#include "gazetrace/enhance.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/math.hpp"
+#include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reconstruction filter is: from the values of the sites to every pixel.
+// What a reconstruction filter is: it states what it needs, and goes from the values of the sites to every pixel.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,19 @@ struct FilterInput {
   const SparseFrame& sparse;
   const SiteValues& values;
   const SamplingMap& map;
+  const PassThrough& pass_through;
   const Guides* guides;  // of the map's size where the filter needs them
   int threads;
 };
 
-// One function `filter_<name>` per line of filters.def.
-#define FILTER(name, needs_guides, description) Frame filter_##name(const FilterInput& input);
+struct FilterDefinition {
+  ReconstructionNeeds needs = {};  // reconstruct.cpp checks that they are met
+  bool blurs_blocks = true;        // as in FilterInfo
+  Frame (*frame)(const FilterInput& input);
+};
+
+// One definition `filter_<name>` per line of filters.def.
+#define FILTER(name, description) extern const FilterDefinition filter_##name;
 #include "reconstruct/filters.def"
 #undef FILTER
 

@@ -28,7 +28,7 @@ void check(OIDNDevice device) {
   const char* message = nullptr;
   if (oidnGetDeviceError(device, &message) != OIDN_ERROR_NONE) {
     throw Error(ErrorKind::runtime, "filter oidn", message != nullptr ? message : "the library reports an error",
-                "render with another --filter");
+                "render with another `filter`");
   }
 }
 

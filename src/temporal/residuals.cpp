@@ -20,6 +20,11 @@ constexpr double kCaution = 4;
 }  // namespace
 
 double Residuals::share_kept(const SurfaceMotion& motion, double count, double past_count, int x, int y) const {
+  // One sample does not tell its own variance, and the deviations below divide by what it lacks. Nothing can be held
+  // against a past that is not there.
+  if (!(count > 1) || !(past_count > 0)) {
+    return 1;
+  }
   const std::uint32_t object = motion.object(x, y);
   double squares = 0;
   double squares_before = 0;

@@ -16,7 +16,9 @@ struct Residuals {
   const ImageGray& noise;   // variance of the frame, as its samples tell; in truth well-spread samples have less
 
   // A squared bias b^2, beside a variance v of one sample, makes n samples worth n / (1 + n b^2 / v); less where the
-  // bias is far above the noise. The pixel itself has no say: what is kept must not hang on whether it came out bright.
+  // bias is far above the noise. The pixel itself has no say: what is kept must not depend on whether it came out
+  // bright. `count` and `past_count` are the samples of the frame and of the past at the pixel. All is kept of a past
+  // beside a frame of one sample or less, which does not know its own noise.
   [[nodiscard]] double share_kept(const SurfaceMotion& motion, double count, double past_count, int x, int y) const;
 };
 

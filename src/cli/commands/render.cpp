@@ -17,7 +17,6 @@
 #include "cli/summary.hpp"
 #include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/plan_join.hpp"
 #include "gazetrace/version.hpp"
 
 namespace gazetrace {

@@ -124,9 +124,10 @@ void denoise_surfaces(SurfaceCells& cells, const SamplingMap& map, const Smoothi
 
 }  // namespace
 
-Frame filter_oidn(const FilterInput& input) {
-  return frame_from_surfaces(input, denoise_surfaces);
-}
+const FilterDefinition filter_oidn{
+    .needs = kSurfaceNeeds, .blurs_blocks = false, .frame = [](const FilterInput& input) {
+      return frame_from_surfaces(input, denoise_surfaces);
+    }};
 
 }  // namespace gazetrace
 

@@ -114,12 +114,10 @@ class CellShares {
   std::vector<Share> shares_;
 };
 
-}  // namespace
-
-Frame filter_push_pull(const FilterInput& input) {
+Frame fill_from_pyramid(const FilterInput& input) {
   const SamplingMap& map = input.map;
   // AOVs, variances and counts are those of the linear filter; the light is put in its place.
-  Frame frame = filter_linear(input);
+  Frame frame = filter_linear.frame(input);
   std::vector<PyramidLevel> levels = empty_pyramid(map.width_px, map.height_px);
   CellShares shares;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
@@ -170,5 +168,9 @@ Frame filter_push_pull(const FilterInput& input) {
   });
   return frame;
 }
+
+}  // namespace
+
+const FilterDefinition filter_push_pull{.frame = fill_from_pyramid};
 
 }  // namespace gazetrace

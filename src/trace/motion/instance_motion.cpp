@@ -13,7 +13,12 @@ namespace {
 constexpr int kSteps = 16;
 
 // One place where the instance stands still; none where it cannot be told from a point or a plane.
-std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
+std::vector<Affine> way_of(const Scene& scene, const Instance& instance, const std::optional<ShutterTimes>& at) {
+  if (!at) {
+    return can_be_instanced(instance.to_world) ? std::vector<Affine>{instance.to_world} : std::vector<Affine>{};
+  }
+  const Motion& motion = scene.motions[static_cast<std::size_t>(instance.motion)];
+  const ShutterTimes& times = *at;
   std::vector<Affine> way;
   const int steps = times.close_ns > times.open_ns ? kSteps : 0;
   for (int i = 0; i <= steps; ++i) {
@@ -22,7 +27,7 @@ std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
       return {};
     }
   }
-  if (std::all_of(way.begin(), way.end(), [&](const Affine& at) { return at == way.front(); })) {
+  if (std::all_of(way.begin(), way.end(), [&](const Affine& place) { return place == way.front(); })) {
     way.resize(1);
   }
   return way;
@@ -30,7 +35,7 @@ std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
 
 }  // namespace
 
-void RenderScene::move_to(const Scene& scene, const ShutterTimes& times) {
+void RenderScene::move_to(const Scene& scene, const std::optional<ShutterTimes>& times) {
   if (moving_.empty() && deforming_.empty()) {
     return;
   }
@@ -38,7 +43,7 @@ void RenderScene::move_to(const Scene& scene, const ShutterTimes& times) {
   ways.clear();
   for (const MovingInstance& moving : moving_) {
     const Instance& source = scene.instances[moving.scene_instance];
-    const std::vector<Affine> places = way_of(scene.motions[static_cast<std::size_t>(source.motion)], times);
+    const std::vector<Affine> places = way_of(scene, source, times);
     InstanceWay way;
     std::transform(places.begin(), places.end(), std::back_inserter(way), ray_transform);
     rays->place_instance(first_instance_id + moving.instance, way);

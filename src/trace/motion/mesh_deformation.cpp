@@ -33,8 +33,12 @@ MeshShape shape_of(const Scene& scene, const Mesh& mesh, const MeshPose& pose, i
   return shape;
 }
 
-// The pose at every step of the open shutter; an instant has one.
-std::vector<MeshPose> poses_of(const Deformation& deformation, const ShutterTimes& times) {
+// The pose at every step of the open shutter; an instant has one, and so has the mesh at rest.
+std::vector<MeshPose> poses_of(const Deformation& deformation, const std::optional<ShutterTimes>& at) {
+  if (!at) {
+    return {deformation.rest};
+  }
+  const ShutterTimes& times = *at;
   std::vector<MeshPose> poses;
   const int steps = times.close_ns > times.open_ns ? kSteps : 0;
   for (int i = 0; i <= steps; ++i) {
@@ -153,7 +157,7 @@ bool RenderScene::is_in_pose(std::uint32_t scene_instance, const MeshPose& pose)
   });
 }
 
-void RenderScene::deform_meshes(const Scene& scene, const ShutterTimes& times) {
+void RenderScene::deform_meshes(const Scene& scene, const std::optional<ShutterTimes>& times) {
   for (std::size_t d = 0; d < deforming_.size(); ++d) {
     DeformingInstance& deforming = deforming_[d];
     const Instance& source = scene.instances[deforming.scene_instance];

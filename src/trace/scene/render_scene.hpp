@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gazetrace/scene.hpp"
@@ -61,8 +62,8 @@ class RenderScene : private AlphaSource {
   RenderScene(const RenderScene&) = delete;  // the BVH's alpha test points here
   RenderScene& operator=(const RenderScene&) = delete;
 
-  // Puts what moves to where it is then; see PathTracer::move_to.
-  void move_to(const Scene& scene, const ShutterTimes& times);
+  // Puts what moves to where it is then, or at rest without times; see PathTracer::at.
+  void move_to(const Scene& scene, const std::optional<ShutterTimes>& times);
   // Whether a deforming instance (of Scene::instances) stands in that pose now.
   [[nodiscard]] bool is_in_pose(std::uint32_t scene_instance, const MeshPose& pose) const;
   // `time`: 0..1 while the shutter is open.
@@ -91,7 +92,7 @@ class RenderScene : private AlphaSource {
   // The mesh of an instance that deforms, at rest; returns the ray library's mesh.
   std::uint32_t add_deforming(const Scene& scene, std::size_t scene_instance, std::uint32_t instance,
                               const TracerOptions& options);
-  void deform_meshes(const Scene& scene, const ShutterTimes& times);
+  void deform_meshes(const Scene& scene, const std::optional<ShutterTimes>& times);
 
   struct MovingInstance {
     std::uint32_t instance = 0, scene_instance = 0;
