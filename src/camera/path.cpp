@@ -46,7 +46,7 @@ const CameraFormat& choose_format(const CameraFile& file, const std::string& nam
   if (!(best->sniff(file) > 0)) {
     const bool scene = file.text.starts_with("glTF") || file.text.find("\"asset\"") != std::string::npos;
     throw Error(ErrorKind::input, file.path, "is not a camera path of a known format",
-                scene ? "the cameras of a glTF scene, animated or not, are chosen with --camera"
+                scene ? "the cameras of a glTF scene, animated or not, are chosen with `camera`"
                       : fmt::format("known are {}; CSV has a header `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, TUM lines "
                                     "`t tx ty tz qx qy qz qw`",
                                     fmt::join(names, ", ")));

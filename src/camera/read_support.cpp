@@ -75,7 +75,7 @@ std::int64_t frame_time_at(std::int64_t number, std::int64_t first, const Camera
     throw Error(ErrorKind::input, place,
                 fmt::format("frame {} at {}/{} a second lies beyond int64 nanoseconds", number, options.fps.numerator,
                             options.fps.denominator),
-                "check the frame's number and --camera-fps");
+                "check the frame's number and `camera-fps`");
   }
   return *t_ns;
 }
@@ -112,9 +112,9 @@ std::optional<double> one_field_of_view(const std::vector<double>& yfovs_rad, co
   // Sizes and focal lengths far apart give angles that round to these.
   if (!(*least > 0 && *most < kPi)) {
     throw Error(ErrorKind::input, path,
-                fmt::format("its picture sizes and focal lengths make a vertical field of view of {} degrees",
+                fmt::format("its picture sizes and focal lengths give a vertical field of view of {} degrees",
                             (*least > 0 ? *most : *least) * kDegPerRad),
-                "correct them, or take them out and give --yfov");
+                "correct them, or take them out and give `yfov`");
   }
   if ((*most - *least) * kDegPerRad > 1e-3) {
     warnings.push_back(

@@ -197,7 +197,7 @@ void check_looks(const ocio::Config& config, const std::string& looks, const std
     known.emplace_back(config.getLookNameByIndex(i));
   }
   if (known.empty()) {
-    throw Error(ErrorKind::usage, place, "unknown look '" + looks + "'; this config has none", "leave --look out");
+    throw Error(ErrorKind::usage, place, "unknown look '" + looks + "'; this config has none", "leave `look` out");
   }
   std::size_t begin = 0;
   while (begin <= looks.size()) {
@@ -231,7 +231,7 @@ std::string enter_config(const LoadedConfig& loaded, const ColorSettings& settin
   if (!config.hasRole(ocio::ROLE_INTERCHANGE_SCENE)) {
     throw Error(ErrorKind::input, loaded.path,
                 "the config has no role aces_interchange, so linear Rec.709 has no way in",
-                "name its linear Rec.709 color space with --ocio-input");
+                "name its linear Rec.709 color space with `ocio-input`");
   }
   group.appendTransform(rec709_to_aces());
   return config.getColorSpace(ocio::ROLE_INTERCHANGE_SCENE)->getName();

@@ -30,7 +30,7 @@ MetricInfo known_metric(const std::string& name) {
     }
     names.push_back(info.name);
   }
-  throw Error(ErrorKind::usage, "--metrics", unknown_name_message("metric", name, names));
+  throw Error(ErrorKind::usage, "`metrics`", unknown_name_message("metric", name, names));
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ struct Comparison::Impl {
       if (infos.back().needs_gaze && !settings.view) {
         throw Error(
             ErrorKind::usage, name, "needs the screen's size and distance",
-            "give --screen NAME, or --screen-px, --screen-cm and --screen-distance-cm, or leave the metric out");
+            "give `screen` NAME, or `screen-px`, `screen-cm` and `screen-distance-cm`, or leave the metric out");
       }
       over_time.push_back(is_sequence_metric(name) ? make_sequence_metric(name, settings, width_px, height_px)
                                                    : nullptr);

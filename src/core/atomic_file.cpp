@@ -17,7 +17,7 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, const char* what, int error) {
   throw Error(ErrorKind::runtime, path, std::string(what) + ": " + std::generic_category().message(error),
-              error == ENOSPC ? "free some space and run again (a render: with --resume)" : "check the folder");
+              error == ENOSPC ? "free some space and run again (a render: with `resume`)" : "check the folder");
 }
 
 constexpr int kMaxAttempts = 1000;

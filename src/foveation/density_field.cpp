@@ -29,7 +29,7 @@ double density_per_cpd2(const FoveationSettings& settings, const PlanarView& vie
   if (settings.parameters.normalization == FalloffNormalization::relative) {
     const double foveal = model.value({});
     if (!(foveal > 0) || !std::isfinite(foveal)) {
-      throw Error(ErrorKind::usage, "--falloff-normalisation",
+      throw Error(ErrorKind::usage, "`falloff-normalisation`",
                   "the model's cut-off at the gaze itself is " + std::string(foveal > 0 ? "infinite" : "zero"),
                   "normalise to the display");
     }

@@ -84,7 +84,7 @@ int frames_of_a_second(double frames_per_second) {
   constexpr double kMostRate = 1000;
   if (!(frames_per_second >= kLeastRate && frames_per_second <= kMostRate)) {
     throw Error(ErrorKind::usage, "flicker", fmt::format("{:g} frames a second", frames_per_second),
-                fmt::format("it is told of {:g} to {:g} frames a second: give --fps, or leave the metric out",
+                fmt::format("it can be measured at {:g} to {:g} frames a second: give `fps`, or leave the metric out",
                             kLeastRate, kMostRate));
   }
   return static_cast<int>(std::lround(frames_per_second));

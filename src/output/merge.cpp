@@ -90,7 +90,7 @@ MergeResult merge_runs(const std::string& directory, bool allow_missing, bool ov
   const std::string record_path = run_record_file_name(directory, "", false);
   for (const std::string& path : {timing_path, record_path}) {
     if (!overwrite && std::filesystem::exists(path)) {
-      throw Error(ErrorKind::usage, path, "exists already", "give --overwrite to replace it");
+      throw Error(ErrorKind::usage, path, "exists already", "give `overwrite` to replace it");
     }
   }
   const std::vector<RunPart> parts = read_run_parts(directory);
@@ -115,7 +115,7 @@ MergeResult merge_runs(const std::string& directory, bool allow_missing, bool ov
   if (!missing.empty()) {
     const std::string problem = "frames are missing: " + format_frame_list(missing);
     if (!allow_missing) {
-      throw Error(ErrorKind::input, directory, problem, "render them, or give --allow-missing");
+      throw Error(ErrorKind::input, directory, problem, "render them, or give `allow-missing`");
     }
     result.warnings.push_back(problem);
   }

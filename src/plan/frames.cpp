@@ -55,7 +55,7 @@ void append_range(std::string_view item, std::vector<std::int32_t>& frames) {
                                std::numeric_limits<std::int32_t>::max()));
   }
   if (*first < 1 || *last < 1) {
-    bad_list(item, "is not there: frames are numbered from 1");
+    bad_list(item, "does not exist: frames are numbered from 1");
   }
   if (*last < *first) {
     bad_list(item, "counts backwards");
@@ -77,7 +77,7 @@ FrameRate parse_frame_rate(std::string_view text) {
     const auto numerator = integer_from<std::int64_t>(trim(trimmed.substr(0, slash)));
     const auto denominator = integer_from<std::int64_t>(trim(trimmed.substr(slash + 1)));
     if (!numerator || !denominator) {
-      bad_rate(text, "is not a quotient of two whole numbers");
+      bad_rate(text, "is not a fraction of two whole numbers");
     }
     rate = {*numerator, *denominator};
   } else {

@@ -11,16 +11,16 @@ namespace {
 constexpr double kSameSize = 0.02;  // of size over distance
 
 const DisplayGeometry& display_for_screen_log(const GazeLog& log, const PlanSettings& settings) {
-  constexpr std::string_view kRemedy = "give --screen NAME, or --screen-px W,H --screen-cm W,H --screen-distance-cm D";
+  constexpr std::string_view kRemedy = "give `screen` NAME, or `screen-px` W,H `screen-cm` W,H `screen-distance-cm` D";
   if (!settings.display) {
-    throw Error(ErrorKind::input, log.source, "gaze on a screen means no angle without the screen's size and distance",
-                kRemedy);
+    throw Error(ErrorKind::input, log.source,
+                "gaze on a screen cannot be turned into angles without the screen's size and distance", kRemedy);
   }
   try {
     check_display(*settings.display);
   } catch (const Error& error) {
     throw Error(ErrorKind::input, log.source,
-                fmt::format("gaze on a screen means no angle without its geometry: {}", error.what()), kRemedy);
+                fmt::format("gaze on a screen cannot be turned into angles: {}", error.what()), kRemedy);
   }
   return *settings.display;
 }
@@ -70,7 +70,7 @@ std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometr
   if (!known) {
     if (how == GazeTransfer::angle) {
       throw Error(ErrorKind::input, log.source, "the size and distance of the recording's screen are not known",
-                  "give --recording-screen to carry gaze over by angle");
+                  "give `recording-screen` to carry gaze over by angle");
     }
     return std::nullopt;
   }
@@ -83,8 +83,8 @@ std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometr
                                        width_deg(recording), width_deg(display));
   if (!how) {
     throw Error(ErrorKind::input, log.source, what,
-                fmt::format("choose with --gaze-transfer: fraction keeps places on the display (angles near its center "
-                            "change by a factor of {:.2f}), angle keeps angles",
+                fmt::format("choose with `gaze-transfer`: fraction keeps positions on the display (angles near its "
+                            "center change by a factor of {:.2f}), angle keeps angles",
                             gain));
   }
   if (*how == GazeTransfer::fraction) {
@@ -117,8 +117,8 @@ GazeGeometry::GazeGeometry(const CameraPath& camera, const GazeLog* log, const P
   }
   if (log != nullptr && log->kind == GazeKind::scene_camera) {
     throw Error(ErrorKind::input, log->source,
-                "gaze on a scene camera's picture is no place on a display, and no direction either",
-                "use a log mapped to a surface, or --gaze-frame head");
+                "gaze on a scene camera's picture is neither a position on a display nor a direction from the eye",
+                "use a log mapped to a surface, or `gaze-frame` head");
   }
   const bool on_screen = log != nullptr && !directions;
   if (on_screen) {

@@ -122,11 +122,11 @@ void warn_about_latency(const PlanSettings& settings, Warnings& warnings) {
     return;
   }
   const double half_ms = 0.5e-6 * frame_ns(settings);
-  warnings.push_back(
-      fmt::format("a latency of {:.4g} ms is {:.1f} frames at {} fps: while a frame is shown, the age of its gaze runs "
-                  "over {:.1f} to {:.1f} ms; a study of latency needs --fps {:.0f} or more",
-                  latency_ns * 1e-6, frames, to_string(settings.fps), latency_ns * 1e-6 - half_ms,
-                  latency_ns * 1e-6 + half_ms, std::ceil(kFramesOfLatency * 1e9 / latency_ns)));
+  warnings.push_back(fmt::format(
+      "a latency of {:.4g} ms is {:.1f} frames at {} fps: while a frame is shown, the age of its gaze grows "
+      "from {:.1f} to {:.1f} ms; a study of latency needs `fps` {:.0f} or more",
+      latency_ns * 1e-6, frames, to_string(settings.fps), latency_ns * 1e-6 - half_ms, latency_ns * 1e-6 + half_ms,
+      std::ceil(kFramesOfLatency * 1e9 / latency_ns)));
 }
 
 GazeUncertainty uncertainty_of(const GazeLog& log) {

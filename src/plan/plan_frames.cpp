@@ -20,23 +20,23 @@ std::int64_t frame_time_ns(const PlanSettings& settings, std::int32_t frame) {
   const auto t_ns = mid_frame_ns(frame, settings.fps, settings.start_ns);
   if (!t_ns) {
     throw Error(ErrorKind::usage, "", fmt::format("frame {} lies beyond int64 nanoseconds", frame),
-                "check --frames, --fps and --start");
+                "check `frames`, `fps` and `start`");
   }
   return *t_ns;
 }
 
 void check_settings(const PlanSettings& settings) {
   if (settings.frames.empty()) {
-    throw Error(ErrorKind::usage, "", "there is no frame to render", "give --frames");
+    throw Error(ErrorKind::usage, "", "there is no frame to render", "give `frames`");
   }
   if (settings.fps.numerator <= 0 || settings.fps.denominator <= 0) {
     throw Error(ErrorKind::usage, "", fmt::format("a frame rate of {} is not positive", to_string(settings.fps)));
   }
   if (*std::min_element(settings.frames.begin(), settings.frames.end()) < 1) {
-    throw Error(ErrorKind::usage, "", "frames are numbered from 1", "give --frames");
+    throw Error(ErrorKind::usage, "", "frames are numbered from 1", "give `frames`");
   }
   if (settings.gaze_latency_ns < 0) {
-    throw Error(ErrorKind::usage, "", "a negative gaze latency would look ahead", "give --gaze-latency of 0 or more");
+    throw Error(ErrorKind::usage, "", "a negative gaze latency would look ahead", "give `gaze-latency` of 0 or more");
   }
 }
 
@@ -89,7 +89,7 @@ void check_coverage(const CameraPath& camera, const PlanSettings& settings, Warn
                   seconds(camera.end_ns), first, seconds(frame_time_ns(settings, first)),
                   outside > 1 ? fmt::format(" ({} of {} frames are outside)", outside, settings.frames.size()) : "");
   if (settings.camera_extrapolation == CameraExtrapolation::error) {
-    throw Error(ErrorKind::input, camera.source, what, "render other frames, or use --camera-extrapolation hold");
+    throw Error(ErrorKind::input, camera.source, what, "render other frames, or use `camera-extrapolation` hold");
   }
   warnings.push_back(fmt::format("{}: {}; its first or last pose is held", camera.source, what));
 }

@@ -49,14 +49,14 @@ VideoColor video_color_by_name(const std::string& name) {
     }
     known.push_back(color.name);
   }
-  throw Error(ErrorKind::usage, "--color", unknown_name_message("color", name, known));
+  throw Error(ErrorKind::usage, "`color`", unknown_name_message("color", name, known));
 }
 
 VideoColor video_color_of_view(const std::string& description) {
   const auto [display, view] = names_of(description);
   for (const char* const hdr : {"2100", "2084", "pq", "hlg", "hdr"}) {
     if (has(display, hdr) || has(view, hdr)) {
-      throw Error(ErrorKind::usage, "'" + description + "'", "is of high dynamic range, which 8 bits do not hold",
+      throw Error(ErrorKind::usage, "'" + description + "'", "is of high dynamic range, which 8 bits cannot hold",
                   "render through a view of standard range");
     }
   }
@@ -72,8 +72,8 @@ VideoColor video_color_of_view(const std::string& description) {
   if (has(display, "display p3") || has(display, "display-p3")) {
     return video_color_by_name("display-p3");
   }
-  throw Error(ErrorKind::usage, "'" + description + "'", "it is not known how a video says this of its colors",
-              "give --color srgb, rec709 or display-p3");
+  throw Error(ErrorKind::usage, "'" + description + "'", "it is not known how a video file states these colors",
+              "give `color` srgb, rec709 or display-p3");
 }
 
 }  // namespace gazetrace

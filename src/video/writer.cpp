@@ -93,13 +93,13 @@ void check_video_settings(const std::string& path, const VideoSettings& settings
     throw Error(ErrorKind::usage, path, "a video ends in .mp4, .mov or .mkv", "give it such a name");
   }
   if (settings.codec == VideoCodec::ffv1 && suffix != ".mkv") {
-    throw Error(ErrorKind::usage, path, "FFV1 is written into .mkv files", "give it such a name, or take --codec h264");
+    throw Error(ErrorKind::usage, path, "FFV1 is written into .mkv files", "give it such a name, or take `codec` h264");
   }
   if (settings.crf < 0 || settings.crf > 51) {
-    throw Error(ErrorKind::usage, "--crf", std::to_string(settings.crf) + " is not possible", "give 0 to 51");
+    throw Error(ErrorKind::usage, "`crf`", std::to_string(settings.crf) + " is not possible", "give 0 to 51");
   }
   if (settings.fps.numerator <= 0 || settings.fps.denominator <= 0) {
-    throw Error(ErrorKind::usage, "--fps", "the frame rate must be positive");
+    throw Error(ErrorKind::usage, "`fps`", "the frame rate must be positive");
   }
 }
 
@@ -214,7 +214,7 @@ struct VideoWriter::Impl {
       child = -1;
       throw Error(ErrorKind::input, program,
                   error == ENOENT ? "the program is not found" : "cannot be started: " + system_message(error),
-                  "install it (apt-get install ffmpeg), or name it with --ffmpeg");
+                  "install it (apt-get install ffmpeg), or name it with `ffmpeg`");
     }
   }
 };

@@ -146,19 +146,19 @@ TEST_F(CameraFormats, NerfErrors) {
     return "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": " + matrix + "}]}";
   };
   EXPECT_THAT(refusal("a.json", one("[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]")),
-              HasSubstr("a.json: frames[0]: the columns of its transform_matrix are no rotation"));
+              HasSubstr("a.json: frames[0]: the columns of its transform_matrix are not a rotation"));
   EXPECT_THAT(refusal("b.json", one("[[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]")), HasSubstr("a mirror image"));
   EXPECT_THAT(refusal("c.json", one("[[1,0,0,0],[0,1,0,0],[0,0,1,null],[0,0,0,1]]")),
               HasSubstr("no finite number at row 3, column 4"));
   EXPECT_THAT(refusal("d.json", one("[[1,0,0],[0,1,0],[0,0,1],[0,0,0]]")), HasSubstr("row 1"));
   EXPECT_THAT(refusal("e.json", one("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]")), HasSubstr("the last row"));
   EXPECT_THAT(refusal("f.json", "{\"frames\": [], \"x\": \"transform_matrix\"}"), HasSubstr("f.json: holds no pose"));
-  EXPECT_THAT(refusal("g.json", "{\"frames\": [{\"transform_matrix\": "), HasSubstr("is not the JSON"));
+  EXPECT_THAT(refusal("g.json", "{\"frames\": [{\"transform_matrix\": "), HasSubstr("is not a JSON object"));
   const std::string ahead = "\"frames\": [{\"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}";
   EXPECT_THAT(refusal("wide.json", "{\"fl_y\": 691, \"h\": 9e22, " + ahead), HasSubstr("field of view of 180 degrees"));
   EXPECT_THAT(refusal("thin.json", "{\"fl_y\": 1e300, \"h\": 1e-300, " + ahead),
               HasSubstr("field of view of 0 degrees"));
-  EXPECT_THAT(refusal("scene.gltf", "{\"asset\": {\"version\": \"2.0\"}}"), HasSubstr("chosen with --camera"));
+  EXPECT_THAT(refusal("scene.gltf", "{\"asset\": {\"version\": \"2.0\"}}"), HasSubstr("chosen with `camera`"));
 }
 
 // x_camera = R x_world + t. Without rotation and with t = (1, 2, 3) the camera stands at (-1, -2, -3) and looks along

@@ -138,7 +138,7 @@ TEST(ScreenLogs, HaveNoAnglesWithoutSizeAndDistance) {
   log.recording_geometry.reset();
   PlanSettings settings = settings_for(kSmall);
   settings.display.reset();
-  EXPECT_THAT(refusal(log, settings), HasSubstr("means no angle without the screen's size and distance"));
+  EXPECT_THAT(refusal(log, settings), HasSubstr("cannot be turned into angles without the screen's size and distance"));
   settings.display = DisplayGeometry{.width_px = 1920, .height_px = 1080, .width_cm = 40, .height_cm = 22.5};
   EXPECT_THAT(refusal(log, settings), HasSubstr("distance from the eye in cm is not stated"));
 }

@@ -213,7 +213,7 @@ void keep_animation(GltfDocument& document, const std::string& name) {
   }
   if (!chosen) {
     throw Error(
-        ErrorKind::usage, "--animation",
+        ErrorKind::usage, "`animation`",
         names.empty() ? "'" + name + "': the scene has no animations" : unknown_name_message("animation", name, names));
   }
   for (std::size_t a = 0; a < document.animations.size(); ++a) {
