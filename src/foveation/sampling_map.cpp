@@ -37,7 +37,7 @@ void check_gaze(const Vec3d& direction) {
   }
 }
 
-// A budget in samples a frame, or nothing.
+// The budget in samples per frame, if there is one.
 std::optional<double> budget_of(const FoveationSettings& settings, const PlanarView& view) {
   if (settings.budget_samples) {
     return static_cast<double>(*settings.budget_samples);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What settings are allowed.
+// Checks settings, and widens regions for an uncertain gaze.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kMaxBlockPx = 64;  // a site counts its pixels in 16 bits
+constexpr int kMaxBlockPx = 64;  // since a site counts its pixels in 16 bits
 constexpr int kMaxDensityBlockPx = 16;
 constexpr std::uint32_t kMaxSamples = 1'000'000;  // times 64 x 64 pixels still fits 32 bits
 
@@ -88,7 +88,7 @@ void check_density(const FoveationSettings& settings) {
                   "the share of the density that a saccade leaves");
 }
 
-// What multiplies a density has nothing to multiply in a layout of whole rates.
+// Terms multiply a density, which a layout of whole rates does not have.
 void check_terms(const FoveationSettings& settings) {
   const bool hard_regions = settings.falloff == "regions" && settings.border_blend_deg == 0;
   if (!hard_regions && settings.falloff != "uniform") {

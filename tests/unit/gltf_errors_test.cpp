@@ -78,8 +78,8 @@ const BrokenFile kBroken[] = {
     {"MinVersion", [](auto& b) { b.json["asset"]["minVersion"] = "2.1"; }, {"asset", "2.1"}},
     {"NoAsset", [](auto& b) { b.json.erase("asset"); }, {"'asset' is missing"}},
     // types
-    {"MeshesNoArray", [](auto& b) { b.json["meshes"] = 3; }, {"meshes", "is no JSON array"}},
-    {"NodeNoObject", [](auto& b) { b.json["nodes"][0] = "x"; }, {"nodes[0]", "is no JSON object"}},
+    {"MeshesNoArray", [](auto& b) { b.json["meshes"] = 3; }, {"meshes", "is not a JSON array"}},
+    {"NodeNoObject", [](auto& b) { b.json["nodes"][0] = "x"; }, {"nodes[0]", "is not a JSON object"}},
     {"NegativeIndex", [](auto& b) { b.json["nodes"][0]["mesh"] = -1; }, {"nodes[0].mesh", "-1 is not an index"}},
     {"FractionalIndex", [](auto& b) { b.json["nodes"][0]["mesh"] = 0.5; }, {"nodes[0].mesh", "0.5"}},
     {"ShortMatrix",

@@ -210,7 +210,7 @@ const WrongPng kWrong[] = {
        png.resize(png.size() - end.size());
        return joined({png, chunk("tEXt", {'a', 0}), chunk("IDAT", {}), end});
      },
-     "follow each other"},
+     "consecutive"},
     // Nothing is asked for that the file cannot fill: 14 GB, and a quarter of one.
     {"HugeHeader", [] { return with_header(header(60000, 60000, 8, 2)); }, "60000 x 60000 pixels is too large"},
     {"LargeHeader", [] { return with_header(header(8192, 8192, 8, 2)); }, "bytes cannot hold 8192 x 8192 pixels"},

@@ -191,8 +191,8 @@ TEST(DisplayFile, HasTheNamesOfTheFields) {
     }
     return std::string("accepted");
   };
-  EXPECT_THAT(refusal_of("[1]"), HasSubstr("bad.json: is not the JSON of a display"));
-  EXPECT_THAT(refusal_of("{"), HasSubstr("bad.json: is not the JSON of a display"));
+  EXPECT_THAT(refusal_of("[1]"), HasSubstr("bad.json: is not a JSON object that describes a display"));
+  EXPECT_THAT(refusal_of("{"), HasSubstr("bad.json: is not a JSON object that describes a display"));
   EXPECT_THAT(refusal_of(R"({"width_pix": 3})"), HasSubstr("unknown key 'width_pix'; did you mean 'width_px'?"));
   EXPECT_THAT(refusal_of(R"({"width_px": 3.5})"), HasSubstr("'width_px' is not a whole number of pixels"));
   EXPECT_THAT(refusal_of(R"({"width_px": 30, "height_px": 20, "width_cm": "a"})"),
