@@ -29,11 +29,12 @@ struct GuideSettings {
   int edge_rays = 0;  // further rays through each pixel that an edge may cross, 0..64: Guides::edge_rays
 };
 
-// From pixels to places, along the guides' rays.
+// The camera of the guides' rays: turns a pixel and its depth into a point in space. World axes.
 struct GuideCamera {
   bool perspective = true;
-  Vec3f forward, right_step, up_step;  // a step is one pixel wide, at depth 1 m (perspective) or at any depth
-  // The place seen at continuous pixel coordinates from the frame's centre (x right, y down), relative to the eye, m.
+  Vec3f forward;              // unit, along the view axis
+  Vec3f right_step, up_step;  // one pixel to the right and up: at depth 1 m (perspective) or at any depth, in m
+  // The point (m, relative to the camera) at continuous pixel coordinates from the frame's centre, x right and y down.
   [[nodiscard]] Vec3f place(float x, float y, float depth_m) const {
     const Vec3f across = right_step * x - up_step * y;
     return perspective ? (forward + across) * depth_m : forward * depth_m + across;

@@ -127,7 +127,7 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
 // and `settings` are those that the plan was made of.
 void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings);
 
-// "50.0 ms in the median, mean 50.1, ...": one line.
+// One line: "50.0 ms in the median, mean 50.1, ...".
 std::string gaze_ages_text(const GazeAges& ages);
 std::string plan_as_table(const FramePlan& plan);
 std::string plan_as_json(const FramePlan& plan);

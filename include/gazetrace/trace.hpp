@@ -48,17 +48,18 @@ struct TraceSettings {
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
   bool guides = false;    // collect albedo, normal and depth of the first hit
-  bool surfaces = false;  // collect sums per surface of the sites that PassThrough leaves to filters
+  bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
   std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
   std::optional<PixelIndex> only_pixel;               // trace only the site that holds this pixel
-  // Only these samples of every site; their exact sums are kept in SparseFrame::unrounded as well. Rays are traced one
-  // by one, so that a sample does not depend on those beside it: in packets, about one ray in 1e7 meets the other one
-  // of two surfaces that share an edge. This is about an eighth slower.
+  // Traces only these samples of every site, and keeps their exact sums in SparseFrame::unrounded as well. Rays are
+  // then traced one by one instead of in packets, so that a sample does not depend on its neighbours in the packet:
+  // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
+  // slower.
   std::optional<SampleRange> samples;
 };
 
-// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light may
-// contribute to the shaded point. automatic: the tree, from a measured number of lights on.
+// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light can
+// contribute to the shaded point. automatic: the tree from four small lights on, where it was measured to pay.
 enum class LightChoice : std::uint8_t { automatic, power, tree };
 
 // How the BVH of a mesh that changes its shape is kept up to date. refit: the boxes of the BVH that was built at rest
@@ -136,8 +137,8 @@ struct SparseFrame {
 
 // Adds the sums of other samples of the same sites. Error(runtime) where the numbers of sites differ.
 void add_sums(const SampleSums& from, SampleSums& to);
-// What PosedScene::trace() returns for the samples that were added up, to the bit, but without surfaces and stats.
-// Error(runtime) for sums of another map.
+// What PosedScene::trace() would have returned for the samples that were added up, bit for bit, but without surfaces
+// and stats. Error(runtime) where the number of sums is not the map's number of sites.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
 // Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
@@ -184,10 +185,10 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // The scene at a time: everything that moves is where it is then, and whatever deforms has its shape. With an open
-  // shutter, bodies and shapes go their whole way, taken as even within each sixteenth of it (or less of it, where that
-  // keeps vertices on their way to a thousandth of the mesh). Costs nothing in a scene without motions.
-  // Emitters that move are found by rays only: LightSampling::light_only does not see them.
+  // The scene at a time: everything that moves is where it is then, and everything that deforms has its shape. With an
+  // open shutter, rays see the whole motion, as straight lines between 17 equally spaced times; a deforming mesh uses 5
+  // or 2 times where that keeps its vertices within a thousandth of the mesh's size. It costs nothing in a scene
+  // without motions. Emitters that move are found by rays only, so LightSampling::light_only does not see them.
   [[nodiscard]] PosedScene at(const ShutterTimes& times);
   // The scene as its file places it when no animation plays.
   [[nodiscard]] PosedScene at_rest();
@@ -211,11 +212,11 @@ class PathTracer {
 // time.
 class PosedScene {
  public:
-  // `frame` seeds the samples.
+  // TraceSettings::seed and `frame` together seed the samples.
   [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                                   const TraceSettings& settings) const;
 
-  // First hits of every pixel, for filters and reprojection.
+  // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
 
   // What the pixels' centres see in this pose, and where that was in an earlier view.

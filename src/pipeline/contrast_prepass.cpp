@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // After the idea of Stengel et al. 2016 ("Adaptive image-space sampling for gaze-contingent real-time rendering") and
 // Tursun et al. 2019 ("Luminance-contrast-aware foveated rendering") that a picture without contrast needs less detail.
-// The multiplier's shape and constants are choices made here: their models need the picture at full resolution.
+// The shape and the constants of the multiplier are choices made here, since the models of both papers need the picture
+// at full resolution.
 #include "pipeline/contrast_prepass.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ Luminance luminance_of(const SparseFrame& sparse, std::size_t site) {
   return {mean, n > 1 ? std::max(0.0, square - mean * mean) / (n - 1) : 0.0};
 }
 
-// What is pictured is the same: a frame's rays follow from its height and the camera's field of view.
+// It pictures the same as the frame does, since a frame's rays follow from its height and the camera's field of view.
 PlanarView small_view(const FrameRequest& request) {
   PlanarView view = request.view;
   view.height_px = (request.height_px + kReduction - 1) / kReduction;

@@ -52,7 +52,7 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   if (wants_eccentricity && request.gaze_direction_true) {
     eccentricity = eccentricity_image(request.view, *request.gaze_direction_true);
   } else if (wants_eccentricity) {
-    // Without gaze there is none, and a sequence keeps its channels through a gap.
+    // Without gaze there is no eccentricity; the channel stays, so that a sequence has the same ones in every frame.
     eccentricity = ImageGray(request.width_px, request.height_px, std::numeric_limits<float>::quiet_NaN());
   }
   const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;

@@ -6,7 +6,8 @@
 
 namespace gazetrace {
 
-// The map first and the linear picture last: the file that says a frame is there comes when everything else is.
+// Writes the map first and the linear picture last, so that the file that marks a frame as complete appears when all
+// others are there.
 void write_frame_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
                        const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row,
                        SequenceResult& result);

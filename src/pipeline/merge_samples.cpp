@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the samples -> sums of all -> what render_sequence() does after tracing.
+// Adds up parts of the samples, and does with the sums what render_sequence() does after tracing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ SampleRange range_of(const RunPart& part) {
   return range;
 }
 
-// By sample.
+// In the order of their samples.
 std::vector<FramePart> parts_of_frame(const std::vector<RunPart>& parts, std::int32_t frame) {
   std::vector<FramePart> found;
   for (const RunPart& part : parts) {
@@ -56,7 +56,7 @@ std::uint32_t most_samples_of_a_site(const SamplingMap& map) {
   return most;
 }
 
-// Every sample that a site has is there once.
+// Checks that every sample that a site has is there, and only once.
 void check_ranges(const std::vector<FramePart>& parts, std::int32_t frame, std::uint32_t samples) {
   std::uint32_t done = 0;
   for (const FramePart& part : parts) {
@@ -92,7 +92,7 @@ SampleSums join_sums(const std::vector<FramePart>& parts, std::int32_t frame, co
   return sums;
 }
 
-// What tracing took, in all parts.
+// Adds what a part says of its tracing: times, counts and rays.
 void add_traced(const TimingRow& part, TimingRow& whole) {
   whole.trace_ms += part.trace_ms;
   whole.trace_cpu_ms += part.trace_cpu_ms;

@@ -53,7 +53,7 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
         }
       }
       if (changed) {
-        // Variance at most: they may share their samples.
+        // An upper bound of the variance: the values may share their samples.
         blended[task].push_back({pixel, {sum.radiance / count, sum.variance / count}});
       }
     }

@@ -33,8 +33,8 @@ struct FilterDefinition {
 // A frame of the map's size; guide images only where `guides` is set.
 Frame make_frame(const SamplingMap& map, bool guides);
 
-// Gives every pixel of a site the site's own values. Pixels of 1x1 sites take this way in every filter, so that
-// they are bit-equal whichever filter is used.
+// Gives every pixel of a site the site's own values. Every filter uses it for the pixels of 1x1 sites that it does not
+// change, so that these have the same bits whichever filter is used.
 void paint_site(Frame& frame, const SamplingMap& map, const SiteValues& values, std::size_t site);
 
 }  // namespace gazetrace

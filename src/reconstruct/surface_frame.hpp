@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What "guided" does, with its own smoothing (smooth_surfaces) or another: light on surfaces, taken up by every pixel.
+// What the filter "guided" does, with its own smoothing (smooth_surfaces) or another one: light is smoothed on
+// surfaces, and every pixel takes it from those that are like the one it sees.
 #pragma once
 
 #include "reconstruct/filter.hpp"

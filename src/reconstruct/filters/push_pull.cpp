@@ -2,9 +2,8 @@
 // A pyramid (Gortler et al., "The Lumigraph", SIGGRAPH 1996, section 3.4; Grossman and Dally 1998). A site enters at
 // the level of its block's size, or the next finer one, with weight min(1, samples / kFullSamples); one whose block is
 // no power of two enters every cell that it covers, in proportion to the covered area.
-//   push: a coarser cell is the weighted mean of its four children and of the sites that enter there, its weight the
-//   sum
-//         of theirs, at most 1
+//   push: a coarser cell is the weighted mean of its four children and of the sites that enter there; its weight is the
+//         sum of theirs, at most 1
 //   pull: from the coarsest level down, value = w value + (1 - w) (coarser level, bilinear)
 // Pixels of 1x1 sites with samples are left alone.
 #include <algorithm>
@@ -137,7 +136,7 @@ Frame fill_from_pyramid(const FilterInput& input) {
       enter(site.block_x * side >> level, site.block_y * side >> level, weight);
       continue;
     }
-    // What a block has at a border stands for all of it, as it does for a power of two.
+    // At a border the part of a block that is there stands for the whole block, as with powers of two.
     const auto side = static_cast<float>(block);
     const float cells = side * side / static_cast<float>(std::size_t{1} << (2 * level));
     for (const CellShares::Share& share : shares.of(map, site, level)) {
