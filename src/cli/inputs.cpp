@@ -177,7 +177,7 @@ void hide_times_of_day(GazeLog& log, JobSettings& job) {
 
 // Of first hits, which filters with guides see through a pinhole in the middle of the frame's time.
 std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
-  if (!filter_needs_guides(filter_of(job))) {
+  if (!needs_of_filter(job).guides) {
     return {};
   }
   const bool moves =
@@ -391,7 +391,7 @@ Inputs load_inputs(const JobSettings& given, InputScope scope,
         "is missing there, --filter linear or tent keep it",
         job.filter, lost));
   }
-  if (job.trace.filter != PixelFilter::box && filter_needs_guides(filter_of(job))) {
+  if (job.trace.filter != PixelFilter::box && needs_of_filter(job).guides) {
     inputs.warnings.push_back(
         fmt::format("--filter {} takes edges, texture and what shines from a box of one pixel: --pixel-filter "
                     "blackman-harris is missing there, --filter linear or tent keep it",

@@ -52,6 +52,7 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
 // --filter, or what its "auto" stands for: "guided" for foveated frames; "linear", which passes single pixels through,
 // for uniform ones, where lens or shutter blur what guided takes from first hits, and for what guided does not go with.
 std::string filter_of(const JobSettings& job);
+ReconstructionNeeds needs_of_filter(const JobSettings& job);
 // The pattern and range checks alone, for before anything is loaded.
 void check_settings(const JobSettings& job);
 // Error(input) naming the first output that exists, unless --overwrite or --resume; then makes the folders and tries

@@ -163,7 +163,7 @@ void check_history_options(const JobSettings& job) {
     }
   }
   if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
-      filter_needs_guides(filter_of(job))) {
+      needs_of_filter(job).surfaces) {
     throw Error(ErrorKind::usage, "--accumulate-order",
                 fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
                 "give after, or another --filter");
@@ -186,7 +186,7 @@ void check_sample_range(const JobSettings& job) {
   }
   PipelineSettings settings;
   settings.foveation = job.foveation;
-  settings.filter = filter_of(job);
+  settings.reconstruction.filter = filter_of(job);
   settings.accumulate = job.accumulate;
   settings.exposure = job.exposure;
   settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
@@ -213,7 +213,7 @@ void check_settings(const JobSettings& job) {
   if (!(job.enhance_contrast >= 0 && job.enhance_contrast <= 1)) {
     throw Error(ErrorKind::usage, "--enhance-contrast", fmt::format("{} is outside 0..1", job.enhance_contrast));
   }
-  if (job.enhance_contrast > 0 && (job.filter == "none" || filter_needs_guides(job.filter))) {
+  if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job), {}}).filter().blurs_blocks) {
     throw Error(ErrorKind::usage, "--enhance-contrast",
                 fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
                 "give --filter linear, push-pull or tent");
@@ -290,10 +290,16 @@ std::string filter_of(const JobSettings& job) {
   const bool blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs();
   const bool accumulates_sites =
       job.accumulate.mode == AccumulateMode::reproject && job.accumulate.order == AccumulateOrder::before;
-  return !has_gaze || job.foveation.falloff == "uniform" || blurs || accumulates_sites || job.enhance_contrast > 0 ||
-                 job.trace.samples
-             ? "linear"
-             : "guided";
+  return choose_filter({.foveated = has_gaze && job.foveation.falloff != "uniform",
+                        .blurs = blurs,
+                        .accumulates_sites = accumulates_sites,
+                        .enhances_contrast = job.enhance_contrast > 0,
+                        .part_of_samples = job.trace.samples.has_value()})
+      .name;
+}
+
+ReconstructionNeeds needs_of_filter(const JobSettings& job) {
+  return Reconstruction({filter_of(job), {}}).needs();
 }
 
 PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames) {
@@ -301,7 +307,7 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.foveation = job.foveation;
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
-  settings.filter = filter_of(job);
+  settings.reconstruction = {filter_of(job), job.pass_through_samples};
   settings.enhance_contrast = job.enhance_contrast;
   settings.accumulate = job.accumulate;
   settings.checkpoint = job.checkpoint;
@@ -313,10 +319,6 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.fps = job.fps;
   settings.threads = job.threads;
   settings.is_part = job.part;
-  const auto& aovs = job.exr.aovs;
-  settings.trace.guides = std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
-    return aov == "albedo" || aov == "normal" || aov == "depth";
-  });
   check_output_settings(settings.output, frames.size() > 1);
   return settings;
 }

@@ -158,7 +158,7 @@ void add_reconstruction_options(OptionTable& table, JobSettings& job) {
       "shutter",
       kPixels);
   table.value(
-      "--pass-through", job.foveation.pass_through_samples, "SPP",
+      "--pass-through", job.pass_through_samples, "SPP",
       "Pixels with at least so many samples keep their own mean in every filter; 0: guided and oidn smooth all; "
       "default: in a fovea of 8 and more its full rate, at most 16; none in uniform frames",
       kPixels);

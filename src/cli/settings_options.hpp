@@ -95,6 +95,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   TraceSettings trace;
   BvhQuality bvh = BvhQuality::high;
   std::string filter = "auto";  // filter_of() says which
+  std::optional<std::uint64_t> pass_through_samples;
   double enhance_contrast = 0;
   AccumulateSettings accumulate;
   std::string checkpoint, resume_from;

@@ -7,6 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "cli/command.hpp"
 #include "cli/progress.hpp"
 
 namespace gazetrace {
@@ -92,8 +93,8 @@ std::string summary_json(const SequenceResult& result, const Inputs& inputs, con
   json["rays"] = totals.rays;
   json["pixels"] = totals.pixels;
   json["peak_memory_mib"] = totals.peak_memory_mib;
-  json["warnings"] = inputs.warnings;
-  for (const std::string& warning : result_warnings(result, inputs.plan)) {
+  json["warnings"] = with_flags(inputs.warnings);
+  for (const std::string& warning : with_flags(result_warnings(result, inputs.plan))) {
     json["warnings"].push_back(warning);
   }
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

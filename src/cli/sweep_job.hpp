@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/command.hpp"
 #include "cli/option_table.hpp"
 #include "cli/settings_options.hpp"
 #include "cli/sweep_file.hpp"
@@ -67,8 +68,9 @@ auto with_place(const Job& job, const std::string& otherwise, const Check& check
   try {
     return check();
   } catch (const Error& error) {
+    const std::string text = with_flags(error.what());
     throw Error(error.kind() == ErrorKind::usage ? ErrorKind::input : error.kind(),
-                place_of_error(job, otherwise, error.what()), error.what());
+                place_of_error(job, otherwise, text), text);
   }
 }
 

@@ -68,7 +68,7 @@ std::string light_of_references(const SweepPlan& plan) {
                     trace.max_bounces, trace.pixel_cone, trace.bounce_cone_rad,
                     trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
                                              : "indirect light not clamped",
-                    trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.filter));
+                    trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.reconstruction.filter));
   }
   return each_once(texts);
 }

@@ -37,16 +37,15 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
 
 // The module of each public header.
 const std::map<std::string, std::string> kPublicHeader = {
-    {"math", "core"},           {"image", "core"},        {"error", "core"},          {"version", "core"},
-    {"display", "display"},     {"gaze", "gaze"},         {"gaze_log", "gaze"},       {"camera", "camera"},
-    {"material", "material"},   {"scene", "scene"},       {"plan", "plan"},           {"foveation", "foveation"},
-    {"trace", "trace"},         {"guides", "trace"},      {"sample_sums", "trace"},   {"reconstruct", "reconstruct"},
-    {"enhance", "reconstruct"}, {"temporal", "temporal"}, {"color", "color"},         {"output", "output"},
-    {"pipeline", "pipeline"},   {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
-    {"compare", "compare"},     {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
-    {"gaze_synth", "gaze"},     {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
-    {"report", "report"},       {"video", "video"},       {"sweep", "sweep"},         {"results", "results"},
-    {"plan_join", "plan"},
+    {"math", "core"},         {"image", "core"},        {"error", "core"},          {"version", "core"},
+    {"display", "display"},   {"gaze", "gaze"},         {"gaze_log", "gaze"},       {"camera", "camera"},
+    {"material", "material"}, {"scene", "scene"},       {"plan", "plan"},           {"foveation", "foveation"},
+    {"trace", "trace"},       {"guides", "trace"},      {"sample_sums", "trace"},   {"reconstruct", "reconstruct"},
+    {"temporal", "temporal"}, {"color", "color"},       {"output", "output"},       {"frame_renderer", "pipeline"},
+    {"pipeline", "pipeline"}, {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
+    {"compare", "compare"},   {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
+    {"gaze_synth", "gaze"},   {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
+    {"report", "report"},     {"video", "video"},       {"sweep", "sweep"},         {"results", "results"},
 };
 
 // Which files may meet which dependency.

@@ -17,7 +17,6 @@
 #include "cli/summary.hpp"
 #include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/plan_join.hpp"
 #include "gazetrace/version.hpp"
 
 namespace gazetrace {
@@ -54,7 +53,7 @@ RunRecord start_record(const RenderArguments& arguments, const Invocation& invoc
   record.frames = format_frame_list(inputs.frames);
   record.is_part = settings.is_part || settings.trace.samples.has_value();
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
-  record.warnings = inputs.warnings;
+  record.warnings = with_flags(inputs.warnings);
   for (const auto& [name, text] : inputs.decisions) {
     record.facts[name] = text;
   }
@@ -132,7 +131,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   if (!files.empty()) {
     if (job.resume) {
       warn_of_other_machine(files.front(), record, inputs.warnings);
-      record.warnings = inputs.warnings;
+      record.warnings = with_flags(inputs.warnings);
     }
     // Written now and at the end: a killed run has a record, too.
     write_text_atomically(files.front(), run_record_json(record));
@@ -159,7 +158,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   progress.finish();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  const Warnings late = result_warnings(result, inputs.plan);
+  const Warnings late = with_flags(result_warnings(result, inputs.plan));
   if (!files.empty()) {
     record.facts["state"] = "done";
     record.facts["wall_s"] = fmt::format("{:.3f}", wall_s);
