@@ -3,7 +3,6 @@
 // are made from it. Values that do not exist or are not finite are null in the file, and empty after reading.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -148,7 +147,7 @@ struct ResultMachine {
   std::optional<int> threads;
 };
 struct ResultViewing {
-  std::optional<std::array<int, 2>> size_px;
+  std::vector<int> size_px;  // width and height; empty: not known
   std::optional<double> pixels_per_degree, width_deg, peak_cd_m2, contrast, ambient_lux;
 };
 

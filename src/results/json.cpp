@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// results.json. One schema, said once: `describe` names the fields of a type with their keys, and is walked by a Writer
-// and by a Reader alike. What does not fit that form has its `written` and its `read` side by side. Whatever changes
-// the meaning of a field, or what must be there, changes kFormat too.
+// results.json. The schema is said once: `describe` names the fields of a type with their keys, and a Writer and a
+// Reader walk through it. Whatever changes the meaning of a field, or what must be there, changes kFormat, too.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <filesystem>
@@ -119,16 +119,52 @@ class Node {
   std::string file_, path_;
 };
 
-// Values, as they are written and read everywhere: a number that is not finite is null, and null is no value.
+// Values of each kind, as they are written and read. A number that is not finite is null.
+Json written(RowRole role) {
+  return to_string(role);
+}
+void read(const Node& node, RowRole& role) {
+  const std::optional<RowRole> found = row_role(node.text());
+  if (!found) {
+    node.fail("is no role of a row: '" + node.text() + "'");
+  }
+  role = *found;
+}
+Json written(const Vec2d& at) {
+  return {at.x, at.y};
+}
+void read(const Node& node, Vec2d& at) {
+  const std::vector<Node> items = node.items();
+  if (items.size() != 2) {
+    node.fail("is no pair of numbers");
+  }
+  at = {items[0].number(), items[1].number()};
+}
+// Settings are texts; anything else in the file is taken as a person would read it.
+Json written(const NamedValues& values) {
+  Json json = Json::object();
+  for (const auto& [name, value] : values) {
+    json[name] = value;
+  }
+  return json;
+}
+void read(const Node& node, NamedValues& values) {
+  for (const auto& [name, value] : node.members()) {
+    values.emplace_back(name, value.shown());
+  }
+}
+Json written(const Interval& interval);
+void read(const Node& node, std::optional<Interval>& interval);
 template <class T>
 Json written(const T& value);
 template <class T>
 void read(const Node& node, T& value);
 
-// The fields of a type.
+// Two walks through the fields of a type. A `required` field must be in the file; another one that is missing or null
+// keeps its value when it is read.
 class Writer {
  public:
-  explicit Writer(Json& json) : json_(json) {}
+  explicit Writer(Json& json) : json_(json) { json_ = Json::object(); }
   template <class T>
   void required(const char* key, const T& value) {
     json_[key] = written(value);
@@ -137,19 +173,37 @@ class Writer {
   void field(const char* key, const T& value) {
     json_[key] = written(value);
   }
-  // Null where it is empty.
-  void text_or_null(const char* key, const std::string& text) { json_[key] = text.empty() ? Json() : Json(text); }
-  // Left out where it is empty.
   template <class T>
   void if_there(const char* key, const std::optional<T>& value) {
     if (value) {
-      json_[key] = written(value);
+      json_[key] = written(*value);
     }
   }
-  // A field of an object that holds nothing else.
-  void inside(const char* object, const char* key, const std::string& text) { json_[object][key] = text; }
-  // An interval that has the values of the repeats beside its bounds.
-  void times(const char* key, const std::optional<Interval>& interval, const std::vector<double>& values);
+  void text_or_null(const char* key, const std::string& text) { json_[key] = text.empty() ? Json() : Json(text); }
+  void choice(const char* key, bool is_first, const char* first, const char* second) {
+    json_[key] = is_first ? first : second;
+  }
+  void derived(const char* key, std::size_t count) { json_[key] = count; }
+  template <class Fields>
+  void object(const char* key, const Fields& fields) {
+    Writer inner(json_[key]);
+    fields(inner);
+  }
+  void bounds(const std::optional<Interval>& interval) {
+    json_["mean"] = interval ? written(interval->mean) : Json();
+    json_["low"] = interval ? written(interval->low) : Json();
+    json_["high"] = interval ? written(interval->high) : Json();
+  }
+  template <class T>
+  void by_gaze(const char* key, const std::vector<ResultFloor>& floors, T ResultFloor::*member) {
+    Json& json = json_[key] = Json::object();
+    for (const ResultFloor& floor : floors) {
+      json[floor.gaze] = written(floor.*member);
+    }
+  }
+  void any_floor(const char* key, const std::vector<ResultFloor>& floors) {
+    json_[key] = floors.empty() ? Json::object() : written(floors.front().scores);
+  }
 
  private:
   Json& json_;
@@ -162,25 +216,70 @@ class Reader {
   void required(const char* key, T& value) {
     read(node_.at(key), value);
   }
-  // What is missing or null stays as it is.
   template <class T>
   void field(const char* key, T& value) {
     if (node_.has(key)) {
       read(node_.at(key), value);
     }
   }
-  void text_or_null(const char* key, std::string& text) { field(key, text); }
   template <class T>
   void if_there(const char* key, std::optional<T>& value) {
     field(key, value);
   }
-  void inside(const char* object, const char* key, std::string& text) {
-    if (node_.has(object)) {
-      const Node inner = node_.at(object);
-      Reader(inner).field(key, text);
+  void text_or_null(const char* key, std::string& text) { field(key, text); }
+  void choice(const char* key, bool& is_first, const char* first, const char* second) {
+    std::string text = first;
+    field(key, text);
+    if (text != first && text != second) {
+      node_.at(key).fail(fmt::format("is neither '{}' nor '{}'", first, second));
+    }
+    is_first = text == first;
+  }
+  void derived(const char* /*key*/, std::size_t /*count*/) {}
+  template <class Fields>
+  void object(const char* key, const Fields& fields) {
+    if (node_.has(key)) {
+      const Node inner = node_.at(key);
+      Reader reader(inner);
+      fields(reader);
     }
   }
-  void times(const char* key, std::optional<Interval>& interval, std::vector<double>& values);
+  // A number alone is a mean without bounds, and a mean that is null is no value.
+  void bounds(std::optional<Interval>& interval) {
+    interval.reset();
+    if (node_.is_number()) {
+      interval = Interval{node_.number(), std::nullopt, std::nullopt};
+    } else if (node_.has("mean")) {
+      interval = Interval{node_.at("mean").number(), std::nullopt, std::nullopt};
+      if (node_.has("low") && node_.has("high")) {
+        interval->low = node_.at("low").number();
+        interval->high = node_.at("high").number();
+        if (*interval->low > *interval->high) {
+          node_.fail("has its low above its high");
+        }
+      }
+    }
+  }
+  template <class T>
+  void by_gaze(const char* key, std::vector<ResultFloor>& floors, T ResultFloor::*member) {
+    if (!node_.has(key)) {
+      return;
+    }
+    for (const auto& [gaze, value] : node_.at(key).members()) {
+      auto floor = std::find_if(floors.begin(), floors.end(),
+                                [&, &name = gaze](const ResultFloor& one) { return one.gaze == name; });
+      if (floor == floors.end()) {
+        floor = floors.insert(floors.end(), {gaze, {}, {}, {}});
+      }
+      read(value, *floor.*member);
+    }
+  }
+  // Of files that do not tell gazes apart.
+  void any_floor(const char* key, std::vector<ResultFloor>& floors) {
+    if (!node_.has("floor_by_gaze") && node_.has(key)) {
+      field(key, floors.emplace_back().scores);
+    }
+  }
 
  private:
   const Node& node_;
@@ -208,6 +307,38 @@ void describe(Io& io, T& viewing) {
   io.field("peak_cd_m2", viewing.peak_cd_m2);
   io.field("contrast", viewing.contrast);
   io.field("ambient_lux", viewing.ambient_lux);
+}
+
+template <class Io, Either<ResultMetric> T>
+void describe(Io& io, T& metric) {
+  io.required("name", metric.name);
+  io.field("unit", metric.unit);
+  io.choice("better", metric.is_lower_better, "lower", "higher");
+  io.field("note", metric.note);
+}
+
+template <class Io, Either<ResultReference> T>
+void describe(Io& io, T& reference) {
+  io.required("name", reference.scene);
+  io.object("reference", [&](auto& inner) {
+    inner.field("key", reference.key);
+    inner.field("spp", reference.spp);
+    inner.field("frames_rendered", reference.pictures);
+    inner.field("seeds", reference.seeds);
+    inner.derived("scramblings", reference.seeds.size());
+    inner.field("directory", reference.directory);
+    inner.field("png", reference.png);
+    inner.any_floor("floor", reference.floors);
+    inner.by_gaze("floor_by_gaze", reference.floors, &ResultFloor::scores);
+    inner.by_gaze("band_pixel_share_by_gaze", reference.floors, &ResultFloor::band_pixel_share);
+    inner.by_gaze("shares_by_gaze", reference.floors, &ResultFloor::event_shares);
+  });
+}
+
+template <class Io, Either<ResultScore> T>
+void describe(Io& io, T& score) {
+  io.bounds(score.value);
+  io.field("resolved", score.is_resolved);
 }
 
 template <class Io, Either<ResultFrame> T>
@@ -243,7 +374,10 @@ void describe(Io& io, T& row) {
   io.field("settings", row.settings);
   io.field("resolution_scale", row.resolution_scale);
   io.field("reference", row.reference);
-  io.times("time_s", row.time_s, row.times_s);
+  io.object("time_s", [&](auto& inner) {
+    inner.bounds(row.time_s);
+    inner.field("values", row.times_s);
+  });
   io.field("output_s", row.output_s);
   io.field("samples", row.samples);
   io.field("spp_mean", row.spp_mean);
@@ -290,7 +424,7 @@ void describe(Io& io, T& results) {
   io.field("build", results.build);
   io.field("machine", results.machine);
   io.field("viewing", results.viewing);
-  io.inside("color", "view", results.view);
+  io.object("color", [&](auto& inner) { inner.field("view", results.view); });
   io.field("common_settings", results.common_settings);
   io.field("varied", results.varied);
   io.field("repeats", results.repeats);
@@ -308,303 +442,83 @@ void describe(Io& io, T& results) {
   io.field("methods", results.methods);
 }
 
-// What follows are the kinds of values: how each is written, and how it is read.
+Json written(const Interval& interval) {
+  Json json;
+  Writer(json).bounds(interval);
+  return json;
+}
+void read(const Node& node, std::optional<Interval>& interval) {
+  Reader(node).bounds(interval);
+}
 
 template <class T>
-concept Described = requires(Writer& writer, Reader& reader, const T& written_value, T& read_value) {
-  describe(writer, written_value);
-  describe(reader, read_value);
-};
-
-template <class T>
-struct Value;  // of one kind: written(value), read(node, value)
-
-template <Described T>
-struct Value<T> {
-  static Json written(const T& value) {
-    Json json = Json::object();
-    Writer writer(json);
-    describe(writer, value);
-    return json;
-  }
-  static void read(const Node& node, T& value) {
-    Reader reader(node);
-    describe(reader, value);
-  }
-};
-
-template <>
-struct Value<double> {
-  static Json written(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-  static void read(const Node& node, double& value) {
-    value = node.is_null() ? std::numeric_limits<double>::quiet_NaN() : node.number();
-  }
-};
-template <>
-struct Value<bool> {
-  static Json written(bool value) { return value; }
-  static void read(const Node& node, bool& value) { value = node.truth(); }
-};
-template <std::integral T>
-struct Value<T> {
-  static Json written(T value) { return value; }
-  static void read(const Node& node, T& value) { value = node.whole_number<T>(); }
-};
-template <>
-struct Value<std::string> {
-  static Json written(const std::string& value) { return value; }
-  static void read(const Node& node, std::string& value) { value = node.text(); }
-};
-template <>
-struct Value<RowRole> {
-  static Json written(RowRole value) { return to_string(value); }
-  static void read(const Node& node, RowRole& value) {
-    const std::optional<RowRole> role = row_role(node.text());
-    if (!role) {
-      node.fail("is no role of a row: '" + node.text() + "'");
-    }
-    value = *role;
-  }
+concept Described = requires(Writer& writer, Reader& reader, const T& given, T& taken) {
+  describe(writer, given);
+  describe(reader, taken);
 };
 template <class T>
-struct Value<std::optional<T>> {
-  static Json written(const std::optional<T>& value) { return value ? gazetrace::written(*value) : Json(); }
-  static void read(const Node& node, std::optional<T>& value) {
-    value.reset();
-    if (!node.is_null()) {
-      gazetrace::read(node, value.emplace());
-    }
-  }
-};
+concept Optional = std::same_as<T, std::optional<typename T::value_type>>;
 template <class T>
-struct Value<std::vector<T>> {
-  static Json written(const std::vector<T>& values) {
-    Json json = Json::array();
-    for (const T& value : values) {
-      json.push_back(gazetrace::written(value));
-    }
-    return json;
-  }
-  static void read(const Node& node, std::vector<T>& values) {
-    values.clear();
-    for (const Node& item : node.items()) {
-      gazetrace::read(item, values.emplace_back());
-    }
-  }
-};
+concept Map = std::same_as<T, std::map<std::string, typename T::mapped_type>>;
 template <class T>
-struct Value<std::map<std::string, T>> {
-  static Json written(const std::map<std::string, T>& values) {
-    Json json = Json::object();
-    for (const auto& [name, value] : values) {
-      json[name] = gazetrace::written(value);
-    }
-    return json;
-  }
-  static void read(const Node& node, std::map<std::string, T>& values) {
-    values.clear();
-    for (const auto& [name, value] : node.members()) {
-      gazetrace::read(value, values[name]);
-    }
-  }
-};
-// Parts of a score; one that is null is left out.
-template <>
-struct Value<ScoreParts> {
-  static Json written(const ScoreParts& parts) {
-    Json json = Json::object();
-    for (const auto& [part, value] : parts) {
-      json[part] = gazetrace::written(value);
-    }
-    return json;
-  }
-  static void read(const Node& node, ScoreParts& parts) {
-    parts.clear();
-    for (const auto& [part, value] : node.members()) {
-      if (!value.is_null()) {
-        parts[part] = value.number();
-      }
-    }
-  }
-};
-// Settings are texts; what else stands in the file is taken as a person would read it.
-template <>
-struct Value<NamedValues> {
-  static Json written(const NamedValues& values) {
-    Json json = Json::object();
-    for (const auto& [name, value] : values) {
-      json[name] = value;
-    }
-    return json;
-  }
-  static void read(const Node& node, NamedValues& values) {
-    values.clear();
-    for (const auto& [name, value] : node.members()) {
-      values.emplace_back(name, value.shown());
-    }
-  }
-};
-template <>
-struct Value<std::optional<Vec2d>> {
-  static Json written(const std::optional<Vec2d>& at) { return at ? Json{at->x, at->y} : Json(); }
-  static void read(const Node& node, std::optional<Vec2d>& at) {
-    std::vector<double> numbers;
-    gazetrace::read(node, numbers);
-    at.reset();
-    if (numbers.size() == 2) {
-      at = Vec2d{numbers[0], numbers[1]};
-    }
-  }
-};
-template <>
-struct Value<std::array<int, 2>> {
-  static Json written(const std::array<int, 2>& size) { return {size[0], size[1]}; }
-  static void read(const Node& node, std::array<int, 2>& size) {
-    std::vector<int> numbers;
-    gazetrace::read(node, numbers);
-    if (numbers.size() != 2) {
-      node.fail("is no pair of numbers");
-    }
-    size = {numbers[0], numbers[1]};
-  }
-};
-
-// A mean that is null is no value. Bounds come in pairs; a number alone is a mean without them.
-template <>
-struct Value<Interval> {
-  static Json written(const Interval& interval) {
-    return {{"mean", gazetrace::written(interval.mean)},
-            {"low", gazetrace::written(interval.low)},
-            {"high", gazetrace::written(interval.high)}};
-  }
-};
-template <>
-struct Value<std::optional<Interval>> {
-  static Json written(const std::optional<Interval>& value) { return value ? gazetrace::written(*value) : Json(); }
-  static void read(const Node& node, std::optional<Interval>& value) {
-    value.reset();
-    if (node.is_number()) {
-      value = Interval{node.number(), std::nullopt, std::nullopt};
-    } else if (node.has("mean")) {
-      Interval& interval = value.emplace(Interval{node.at("mean").number(), std::nullopt, std::nullopt});
-      if (node.has("low") && node.has("high")) {
-        interval.low = node.at("low").number();
-        interval.high = node.at("high").number();
-        if (*interval.low > *interval.high) {
-          node.fail("has its low above its high");
-        }
-      }
-    }
-  }
-};
-
-const Interval kNothing{std::numeric_limits<double>::quiet_NaN(), std::nullopt, std::nullopt};
-
-template <>
-struct Value<ResultScore> {
-  static Json written(const ResultScore& score) {
-    Json json = gazetrace::written(score.value.value_or(kNothing));
-    json["resolved"] = score.is_resolved;
-    return json;
-  }
-  static void read(const Node& node, ResultScore& score) {
-    gazetrace::read(node, score.value);
-    score.is_resolved = !node.has("resolved") || node.at("resolved").truth();
-  }
-};
-
-template <>
-struct Value<ResultMetric> {
-  static Json written(const ResultMetric& metric) {
-    return {{"name", metric.name},
-            {"unit", metric.unit},
-            {"better", metric.is_lower_better ? "lower" : "higher"},
-            {"note", metric.note}};
-  }
-  static void read(const Node& node, ResultMetric& metric) {
-    Reader reader(node);
-    std::string better;
-    reader.required("name", metric.name);
-    reader.field("unit", metric.unit);
-    reader.field("better", better);
-    reader.field("note", metric.note);
-    metric.is_lower_better = better != "higher";
-  }
-};
-
-// A scene and the reference that it is measured against. What is known by gaze stands in one object for each kind;
-// "floor" is that of the first gaze, and of all where the file does not tell them apart.
-template <>
-struct Value<ResultReference> {
-  static Json written(const ResultReference& reference) {
-    Json floors = Json::object();
-    Json bands = Json::object();
-    Json events = Json::object();
-    for (const ResultFloor& floor : reference.floors) {
-      bands[floor.gaze] = gazetrace::written(floor.band_pixel_share);
-      events[floor.gaze] = gazetrace::written(floor.event_shares);
-      floors[floor.gaze] = gazetrace::written(floor.scores);
-    }
-    const Json first = floors.empty() ? Json::object() : floors.begin().value();
-    return {{"name", reference.scene},
-            {"reference",
-             {{"key", reference.key},
-              {"spp", gazetrace::written(reference.spp)},
-              {"frames_rendered", reference.pictures},
-              {"seeds", gazetrace::written(reference.seeds)},
-              {"scramblings", reference.seeds.size()},
-              {"directory", reference.directory},
-              {"png", reference.png},
-              {"floor", first},
-              {"floor_by_gaze", std::move(floors)},
-              {"band_pixel_share_by_gaze", std::move(bands)},
-              {"shares_by_gaze", std::move(events)}}}};
-  }
-  static void read(const Node& node, ResultReference& reference) {
-    reference.scene = node.at("name").text();
-    if (!node.has("reference")) {
-      return;
-    }
-    const Node inner = node.at("reference");
-    Reader reader(inner);
-    reader.field("key", reference.key);
-    reader.field("spp", reference.spp);
-    reader.field("frames_rendered", reference.pictures);
-    reader.field("seeds", reference.seeds);
-    reader.field("directory", reference.directory);
-    reader.field("png", reference.png);
-    std::map<std::string, std::vector<double>> bands;
-    std::map<std::string, std::map<std::string, double>> events;
-    reader.field("band_pixel_share_by_gaze", bands);
-    reader.field("shares_by_gaze", events);
-    if (inner.has("floor_by_gaze")) {
-      for (const auto& [gaze, scores] : inner.at("floor_by_gaze").members()) {
-        ResultFloor& floor = reference.floors.emplace_back(ResultFloor{gaze, {}, bands[gaze], events[gaze]});
-        gazetrace::read(scores, floor.scores);
-      }
-    } else if (inner.has("floor")) {
-      gazetrace::read(inner.at("floor"), reference.floors.emplace_back().scores);
-    }
-  }
-};
+concept List = std::same_as<T, std::vector<typename T::value_type>>;
 
 template <class T>
 Json written(const T& value) {
-  return Value<T>::written(value);
-}
-template <class T>
-void read(const Node& node, T& value) {
-  Value<T>::read(node, value);
+  if constexpr (Described<T>) {
+    Json json;
+    Writer writer(json);
+    describe(writer, value);
+    return json;
+  } else if constexpr (Optional<T>) {
+    return value ? written(*value) : Json();
+  } else if constexpr (Map<T>) {
+    Json json = Json::object();
+    for (const auto& [name, one] : value) {
+      json[name] = written(one);
+    }
+    return json;
+  } else if constexpr (List<T>) {
+    Json json = Json::array();
+    for (const auto& one : value) {
+      json.push_back(written(one));
+    }
+    return json;
+  } else if constexpr (std::floating_point<T>) {
+    return std::isfinite(value) ? Json(value) : Json();
+  } else {
+    return value;
+  }
 }
 
-void Writer::times(const char* key, const std::optional<Interval>& interval, const std::vector<double>& values) {
-  json_[key] = written(interval.value_or(kNothing));
-  json_[key]["values"] = written(values);
-}
-void Reader::times(const char* key, std::optional<Interval>& interval, std::vector<double>& values) {
-  field(key, interval);
-  if (node_.has(key) && node_.at(key).has("values")) {
-    read(node_.at(key).at("values"), values);
+template <class T>
+void read(const Node& node, T& value) {
+  if constexpr (Described<T>) {
+    Reader reader(node);
+    describe(reader, value);
+  } else if constexpr (Optional<T>) {
+    value.reset();
+    if (!node.is_null()) {
+      read(node, value.emplace());
+    }
+  } else if constexpr (Map<T>) {
+    for (const auto& [name, one] : node.members()) {
+      if (!one.is_null() || Optional<typename T::mapped_type>) {
+        read(one, value[name]);
+      }
+    }
+  } else if constexpr (List<T>) {
+    for (const Node& item : node.items()) {
+      read(item, value.emplace_back());
+    }
+  } else if constexpr (std::floating_point<T>) {
+    value = node.is_null() ? std::numeric_limits<T>::quiet_NaN() : node.number();
+  } else if constexpr (std::same_as<T, bool>) {
+    value = node.truth();
+  } else if constexpr (std::integral<T>) {
+    value = node.whole_number<T>();
+  } else {
+    value = node.text();
   }
 }
 

@@ -131,8 +131,7 @@ NamedValues facts_of(const ResultMachine& machine) {
 
 NamedValues facts_of(const ResultViewing& viewing) {
   NamedValues facts;
-  const auto& size = viewing.size_px;
-  add_fact(facts, "size_px", size ? fmt::format("{}, {}", (*size)[0], (*size)[1]) : std::string());
+  add_fact(facts, "size_px", fmt::format("{}", fmt::join(viewing.size_px, ", ")));
   add_fact(facts, "ppd", viewing.pixels_per_degree);
   add_fact(facts, "width_deg", viewing.width_deg);
   add_fact(facts, "peak_cd_m2", viewing.peak_cd_m2);

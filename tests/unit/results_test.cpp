@@ -106,8 +106,8 @@ Results results_with_everything() {
   reference.spp = 64;
   reference.pictures = 1;
   reference.seeds = {1, std::numeric_limits<std::uint64_t>::max()};  // more than a double can hold
-  reference.floors = {{"left", {{"flip", {{"whole", 0.01}}}}, {0.25, 0.5, 0.25}, {{"fixation", 0.75}}},
-                      {"right", {{"flip", {{"whole", 0.02}}}}, {}, {{"fixation", 1}}}};
+  reference.floors = {{"right", {{"flip", {{"whole", 0.02}}}}, {}, {{"fixation", 1}}},
+                      {"left", {{"flip", {{"whole", 0.01}}}}, {0.25, 0.5, 0.25}, {{"fixation", 0.75}}}};
   results.references = {reference};
   results.rows = {row_with_everything()};
   results.pareto = {{"flip", {{"box/left", {"a", "b"}}}}};
@@ -134,7 +134,7 @@ TEST(Results, WhatIsWrittenIsReadAgainToTheBit) {
   EXPECT_FALSE(row.scores.at("flip").at("0-2.6").is_resolved);
   EXPECT_EQ(row.frames.at(0).gaze_px->y, 1.0 / 3);
   EXPECT_EQ(read.references.at(0).seeds, written.references[0].seeds);
-  EXPECT_EQ(read.references.at(0).floors.at(1).gaze, "right");
+  EXPECT_EQ(read.references.at(0).floors.at(0).gaze, "right");  // as they were, not by name
   EXPECT_EQ(read.machine.threads, 8);
   EXPECT_EQ(read.view, "ACES SDR");
   EXPECT_EQ(read.controls.at(0).wrong_score, 0.2);

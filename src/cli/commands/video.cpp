@@ -98,7 +98,7 @@ std::vector<double> ring_angles_deg(const JobSettings* run) {
   std::vector<double> angles;
   if (run != nullptr && run->foveation.falloff == "regions") {
     for (const double angle : run->foveation.region_angles_deg) {
-      angles.push_back(run->foveation.reading == AngleReading::full_angle ? angle / 2 : angle);
+      angles.push_back(eccentricity_share(run->foveation.reading) * angle);
     }
   }
   return angles;
