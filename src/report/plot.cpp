@@ -69,10 +69,10 @@ double PlotScale::within(double value) const {
   return std::clamp(at(value), std::min(axis_.begin, axis_.end), std::max(axis_.begin, axis_.end));
 }
 
-std::vector<double> plotted_range(const std::vector<Estimate>& estimates) {
+std::vector<double> plotted_range(const std::vector<Interval>& estimates) {
   std::vector<double> values;
   values.reserve(3 * estimates.size());
-  for (const Estimate& estimate : estimates) {
+  for (const Interval& estimate : estimates) {
     values.push_back(estimate.mean);
   }
   if (values.empty()) {
@@ -82,7 +82,7 @@ std::vector<double> plotted_range(const std::vector<Estimate>& estimates) {
   const double high = *std::max_element(values.begin(), values.end());
   const double room = std::max(0.5 * (high - low), 0.1 * std::fabs(high));
   const double least = low >= 0 ? std::max(low / 2, low - room) : low - room;
-  for (const Estimate& estimate : estimates) {
+  for (const Interval& estimate : estimates) {
     if (estimate.low) {
       values.push_back(std::max(*estimate.low, least));
       values.push_back(std::min(*estimate.high, high + room));

@@ -35,7 +35,7 @@ class PlotScale {
 bool wants_log(const std::vector<double>& values);
 
 // What a scale should hold of measured values: all means, and intervals as far as they do not make the means small.
-std::vector<double> plotted_range(const std::vector<Estimate>& estimates);
+std::vector<double> plotted_range(const std::vector<Interval>& estimates);
 
 class PlotSvg {
  public:
@@ -61,8 +61,8 @@ double legend_height(std::size_t entries);
 std::string plot_file_name(const std::vector<std::string>& parts);  // letters, digits, . _ -
 
 // One for each scene, gaze and metric; for each test row and metric.
-std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& both, const ReportMetric& metric);
-std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
-std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
+std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both, const ResultMetric& metric);
+std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test, const ResultMetric& metric);
+std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, const ResultMetric& metric);
 
 }  // namespace gazetrace

@@ -8,7 +8,7 @@
 namespace gazetrace {
 
 // HTML: runs of each scene and gaze with the bands below, speed-up at fixed quality, wrong-gaze controls.
-std::string tables_html(const ReportData& data);
+std::string tables_html(const Results& data);
 std::string findings_html(const ReportFindings& findings);
 std::string list_html(const std::vector<std::string>& items);
 

@@ -67,12 +67,12 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     std::vector<PlannedRow> rows = baselines_known_before(plan, test, notes);
     std::vector<PlannedRow> more = baselines_of_samples(plan, test, spp);
     if (plan.measure.baselines.equal_time && is_foveated(plan.tests[t])) {
-      more.push_back(uniform_row(plan, test, SweepRole::equal_time, spp));
+      more.push_back(uniform_row(plan, test, RowRole::equal_time, spp));
       more.back().row.label = "uniform, equal time: about so many samples";
     }
     rows.insert(rows.end(), more.begin(), more.end());
     for (const PlannedRow& row : rows) {
-      if (row.row.role == SweepRole::equal_time || known.insert(row.digest + row.row.reference).second) {
+      if (row.row.role == RowRole::equal_time || known.insert(row.digest + row.row.reference).second) {
         add(row, planned_spp(row), plan.measure.repeats);
       }
     }

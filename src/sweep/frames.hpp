@@ -11,12 +11,12 @@
 namespace gazetrace {
 
 // Events are gaze_class_of() gaze_true; a gaze that never moves fixates.
-std::vector<SweepFrame> sweep_frames(const FramePlan& plan, const FoveationSettings& foveation, double leave_out_s);
+std::vector<ResultFrame> sweep_frames(const FramePlan& plan, const FoveationSettings& foveation, double leave_out_s);
 // Which frames make the headline: fixations where there are any, else all that have gaze, else all; never those of the
 // start.
-std::vector<bool> scored_frames(const std::vector<SweepFrame>& frames);
+std::vector<bool> scored_frames(const std::vector<ResultFrame>& frames);
 // Share of each event in the frames; "start" is left out.
-std::map<std::string, double> event_shares(const std::vector<SweepFrame>& frames);
+std::map<std::string, double> event_shares(const std::vector<ResultFrame>& frames);
 
 struct RasterSize {
   int width_px = 0, height_px = 0;

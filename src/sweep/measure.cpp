@@ -283,7 +283,7 @@ RateSearch find_rate(double target_s, const std::vector<std::pair<double, double
   return search;
 }
 
-std::string scoring_digest(const SweepMeasure& measure, const std::vector<SweepFrame>& frames) {
+std::string scoring_digest(const SweepMeasure& measure, const std::vector<ResultFrame>& frames) {
   const ComparisonSettings& c = measure.comparison;
   const auto optional = [](const auto& value) { return value ? fmt::format("{}", *value) : std::string("auto"); };
   NamedValues parts{{"metrics", fmt::format("{}", fmt::join(c.metrics, ","))},
@@ -297,9 +297,9 @@ std::string scoring_digest(const SweepMeasure& measure, const std::vector<SweepF
                                                c.photometry.ambient_lux, c.photometry.reflectivity)},
                     {"original border", c.original_border ? "yes" : "no"},
                     {"pictures", fmt::format("{} {}", measure.write_png, measure.write_exr)}};
-  for (const SweepFrame& frame : frames) {
+  for (const ResultFrame& frame : frames) {
     parts.emplace_back(
-        std::to_string(frame.frame),
+        std::to_string(frame.index),
         frame.gaze_px ? fmt::format("{} {} {}", frame.event, frame.gaze_px->x, frame.gaze_px->y) : frame.event);
   }
   return digest_settings(parts);

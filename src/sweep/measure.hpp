@@ -34,6 +34,6 @@ RateSearch find_rate(double target_s, const std::vector<std::pair<double, double
                      double most_spp, const std::function<double(double spp)>& time_s);
 
 // What scores depend on beside the pictures, as text.
-std::string scoring_digest(const SweepMeasure& measure, const std::vector<SweepFrame>& frames);
+std::string scoring_digest(const SweepMeasure& measure, const std::vector<ResultFrame>& frames);
 
 }  // namespace gazetrace

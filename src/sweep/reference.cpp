@@ -204,7 +204,7 @@ CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, cons
 }
 
 ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline& color,
-                        const ComparisonSettings& settings, const std::vector<SweepFrame>& frames,
+                        const ComparisonSettings& settings, const std::vector<ResultFrame>& frames,
                         const std::string& digest) {
   const std::string path = reference.directory + "/floor-" + digest + ".json";
   if (auto kept = load_scores(path)) {
@@ -212,14 +212,14 @@ ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline
   }
   const int threads = settings.metric.threads;
   std::unique_ptr<Scorer> scorer;
-  for (const SweepFrame& frame : frames) {
-    const double ev = reference.ev.at(frame.frame);
-    const MetricPicture a = metric_picture(read_exr_rgb(reference.half_path(0, frame.frame)), color, ev, threads);
-    const MetricPicture b = metric_picture(read_exr_rgb(reference.half_path(1, frame.frame)), color, ev, threads);
+  for (const ResultFrame& frame : frames) {
+    const double ev = reference.ev.at(frame.index);
+    const MetricPicture a = metric_picture(read_exr_rgb(reference.half_path(0, frame.index)), color, ev, threads);
+    const MetricPicture b = metric_picture(read_exr_rgb(reference.half_path(1, frame.index)), color, ev, threads);
     if (!scorer) {
       // The exposures that tests are scored with, those of the whole reference's first frame.
       ComparisonSettings fixed = settings;
-      fix_flip_exposures(fixed, read_exr_rgb(reference.mean_path(frame.frame)));
+      fix_flip_exposures(fixed, read_exr_rgb(reference.mean_path(frame.index)));
       scorer = std::make_unique<Scorer>(fixed, frames, a.light.width_px, a.light.height_px);
     }
     scorer->add(a, b);

@@ -34,9 +34,9 @@ CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, cons
                                     const ColorPipeline& color, const std::string& sweep_directory,
                                     const SweepObserver& observer);
 
-// The halves against each other, see SweepFloor. Kept as well, by what it depends on.
+// The halves against each other, see ResultFloor. Kept as well, by what it depends on.
 ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline& color,
-                        const ComparisonSettings& settings, const std::vector<SweepFrame>& frames,
+                        const ComparisonSettings& settings, const std::vector<ResultFrame>& frames,
                         const std::string& digest);
 
 MetricPicture metric_picture(ImageRgb light, const ColorPipeline& color, double ev, int threads);

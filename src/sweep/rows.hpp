@@ -9,13 +9,14 @@
 
 #include "gazetrace/sweep.hpp"
 #include "sweep/frames.hpp"
+#include "sweep/runs.hpp"
 
 namespace gazetrace {
 
 // A row with all that it takes to render it. Rows of equal `digest` and reference show the same pixels: they are
 // rendered once, and scored with the gaze of each.
 struct PlannedRow {
-  SweepRow row;
+  MeasuredRow row;
   PipelineSettings pipeline;
   FramePlan plan;        // of the size that is rendered
   RasterSize size;       // that is compared
@@ -34,7 +35,7 @@ std::vector<PlannedRow> baselines_known_before(const SweepPlan& plan, const Plan
 // Rows that follow from the samples of the test: the same number everywhere, and at the full rate on fewer pixels.
 // `spp` is the test's mean over all frames.
 std::vector<PlannedRow> baselines_of_samples(const SweepPlan& plan, const PlannedRow& test, double spp);
-PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, SweepRole role, double spp);
+PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, RowRole role, double spp);
 
 // Regions of one rate everywhere, whose times tell what a sample costs in each; only of tests with regions.
 std::optional<PlannedRow> cost_row(const SweepPlan& plan, const PlannedRow& test);

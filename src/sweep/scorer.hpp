@@ -13,7 +13,7 @@ namespace gazetrace {
 
 // `settings` with the view and rate of a plan; without gaze there are no bands and no FovVideoVDP.
 ComparisonSettings comparison_of(const ComparisonSettings& settings, const FramePlan& plan,
-                                 const std::vector<SweepFrame>& frames, const FrameRate& fps);
+                                 const std::vector<ResultFrame>& frames, const FrameRate& fps);
 
 // What each frame rate of the tests that are scored for flicker lets it tell, and what not: "flicker at 24 frames a
 // second: from 1 to 12 Hz, ...".
@@ -22,7 +22,7 @@ std::vector<std::string> flicker_ranges(const SweepPlan& plan);
 class Scorer {
  public:
   // `frames` are those that will be added, in their order.
-  Scorer(const ComparisonSettings& settings, const std::vector<SweepFrame>& frames, int width_px, int height_px);
+  Scorer(const ComparisonSettings& settings, const std::vector<ResultFrame>& frames, int width_px, int height_px);
   // Light and code values of both pictures. Returns the frame's own scores.
   ScoreTable add(const MetricPicture& reference, const MetricPicture& test);
   // Of the frame added last; nullptr unless the settings want maps and the metric has one.
@@ -30,7 +30,7 @@ class Scorer {
   [[nodiscard]] ScoreTable over_scored_frames() const;
 
  private:
-  const std::vector<SweepFrame>& frames_;
+  const std::vector<ResultFrame>& frames_;
   std::vector<bool> scored_;
   bool scores_gaze_ = false;  // the scored frames have gaze
   std::size_t next_ = 0;

@@ -30,9 +30,9 @@ MetricPicture small_picture(int width_px, int height_px) {
 }  // namespace
 
 void check_scoring(const SweepMeasure& sweep, const SweepTest& test) {
-  const std::vector<SweepFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, sweep.leave_out_s);
+  const std::vector<ResultFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, sweep.leave_out_s);
   const ComparisonSettings settings = comparison_of(sweep.comparison, test.plan, frames, test.pipeline.fps);
-  if (std::all_of(frames.begin(), frames.end(), [](const SweepFrame& frame) { return frame.event == "start"; })) {
+  if (std::all_of(frames.begin(), frames.end(), [](const ResultFrame& frame) { return frame.event == "start"; })) {
     throw Error(
         ErrorKind::usage, "leave-out",
         fmt::format("all {} frames lie in the first {:g} s, and none is scored", frames.size(), sweep.leave_out_s),

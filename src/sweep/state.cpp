@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "gazetrace-sweep-state-1";
 constexpr const char* kStateFile = "/state.json";
-constexpr const char* kOtherFolder = "give another --output folder, or --restart to measure all again";
+constexpr const char* kOtherFolder = "give another `output` folder, or `restart` to measure all again";
 
 // Numbers come back to the bit; what JSON cannot hold is null.
 Json number(double value) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/sweep.hpp"
+#include "sweep/runs.hpp"
 
 namespace gazetrace {
 

@@ -17,12 +17,12 @@
 #include "compare/eccentricity_bands.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
+#include "sweep/conclude.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/reference.hpp"
 #include "sweep/rows.hpp"
 #include "sweep/scorer.hpp"
 #include "sweep/state.hpp"
-#include "sweep/tables.hpp"
 
 namespace gazetrace {
 namespace {
@@ -36,8 +36,8 @@ std::string digest_of_reference(const SweepReference& reference) {
 
 class SceneSweep {
  public:
-  SceneSweep(const SweepPlan& plan, std::size_t scene, SweepResults& results, const SweepObserver& observer)
-      : plan_(plan), scene_(scene), results_(results), observer_(observer) {}
+  SceneSweep(const SweepPlan& plan, std::size_t scene, Measurements& measured, const SweepObserver& observer)
+      : plan_(plan), scene_(scene), measured_(measured), observer_(observer) {}
 
   void run() {
     plan_rows();
@@ -69,7 +69,7 @@ class SceneSweep {
   // equal time of its own, whose time is held against that test's.
   std::string add(PlannedRow row) {
     for (const PlannedRow& other : rows_) {
-      if (row.row.role != SweepRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
+      if (row.row.role != RowRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
           other.row.reference == row.row.reference) {
         return other.row.id;
       }
@@ -79,9 +79,9 @@ class SceneSweep {
   }
   void add_baselines(std::size_t test, std::vector<PlannedRow> rows) {
     for (PlannedRow& row : rows) {
-      const SweepRole role = row.row.role;
+      const RowRole role = row.row.role;
       const std::string id = add(std::move(row));
-      if (role != SweepRole::wrong_gaze && role != SweepRole::uniform_rate) {
+      if (role != RowRole::wrong_gaze && role != RowRole::uniform_rate) {
         rows_[test].row.baselines[to_string(role)] = id;
       }
     }
@@ -95,7 +95,7 @@ class SceneSweep {
     }
     tests_ = rows_.size();
     for (std::size_t t = 0; t < tests_; ++t) {
-      add_baselines(t, baselines_known_before(plan_, rows_[t], results_.notes));
+      add_baselines(t, baselines_known_before(plan_, rows_[t], measured_.notes));
     }
   }
 
@@ -214,8 +214,8 @@ class SceneSweep {
       for (const PlannedRow& row : rows_) {
         const bool same = row.uniform == of.uniform && row.row.reference == of.row.reference &&
                           row.row.gaze == of.row.gaze && !row.row.runs.empty();
-        const bool is_uniform = row.row.role == SweepRole::equal_samples || row.row.role == SweepRole::uniform_rate ||
-                                row.row.role == SweepRole::uniform_reference_rate;
+        const bool is_uniform = row.row.role == RowRole::equal_samples || row.row.role == RowRole::uniform_rate ||
+                                row.row.role == RowRole::uniform_reference_rate;
         if (same && is_uniform) {
           const SweepRun& run = row.row.runs.front();
           known.emplace_back(run.samples / run.pixels, run.time_s);
@@ -223,7 +223,7 @@ class SceneSweep {
       }
       search = find_rate(of.row.runs.front().time_s, known, kLeastSpp, 4.0 * plan_.measure.baselines.reference_spp,
                          [&](double spp) {
-                           const PlannedRow row = uniform_row(plan_, of, SweepRole::equal_time, spp);
+                           const PlannedRow row = uniform_row(plan_, of, RowRole::equal_time, spp);
                            const StoredRun run = time_row(*tracer_, colors_.at(row.row.reference), row, 0);
                            return run.by_gaze.begin()->second.time_s;
                          });
@@ -231,7 +231,7 @@ class SceneSweep {
       tell(fmt::format("{}: equal time at {:.4g} samples a pixel, {} rates tried", of.row.id, search->spp,
                        search->tried.size()));
     }
-    return uniform_row(plan_, of, SweepRole::equal_time, search->spp);
+    return uniform_row(plan_, of, RowRole::equal_time, search->spp);
   }
 
   // Expected over measured time: the samples of each region times what one costs there at an even rate.
@@ -261,7 +261,7 @@ class SceneSweep {
   void hand_over() {
     for (const auto& [key, reference] : references_) {
       const CertifiedReference& certified = certified_.at(key);
-      SweepReferenceResult result;
+      ResultReference result;
       result.scene = plan_.scenes[scene_].name;
       result.key = key;
       result.directory = reference_folder(*reference);
@@ -282,18 +282,18 @@ class SceneSweep {
                                    band_shares(row.row, plan), event_shares(row.row.frames)});
         }
       }
-      results_.references.push_back(std::move(result));
+      measured_.references.push_back(std::move(result));
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (i < tests_) {
         rows_[i].row.efficiency = efficiency_of(i);
       }
-      results_.rows.push_back(std::move(rows_[i].row));
+      measured_.rows.push_back(std::move(rows_[i].row));
     }
   }
 
   // Of the pixels of frames with gaze; empty without.
-  [[nodiscard]] std::vector<double> band_shares(const SweepRow& row, const FramePlan& plan) const {
+  [[nodiscard]] std::vector<double> band_shares(const MeasuredRow& row, const FramePlan& plan) const {
     std::vector<double> shares(kEccentricityBandsDeg.size());
     double pixels = 0;
     for (std::size_t f = 0; f < row.frames.size(); ++f) {
@@ -318,7 +318,7 @@ class SceneSweep {
 
   const SweepPlan& plan_;
   std::size_t scene_;
-  SweepResults& results_;
+  Measurements& measured_;
   const SweepObserver& observer_;
   std::deque<PlannedRow> rows_;  // tests first; rows keep their place
   std::size_t tests_ = 0;
@@ -340,7 +340,7 @@ SweepDirectory prepare_sweep(const SweepPlan& plan) {
   std::filesystem::create_directories(plan.directory, problem);
   if (!std::filesystem::is_directory(plan.directory)) {
     throw Error(ErrorKind::input, plan.directory, "the folder cannot be made: " + problem.message(),
-                "choose another --output folder");
+                "choose another `output` folder");
   }
   SweepDirectory directory(plan.directory);
   if (plan.restart) {
@@ -350,15 +350,13 @@ SweepDirectory prepare_sweep(const SweepPlan& plan) {
   return directory;
 }
 
-SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
-  SweepResults results;
-  results.build = build_digest();
-  results.machine = machine_description();
-  results.threads = resolve_threads(plan.tests.front().pipeline.threads);
+Results run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
+  Measurements measured;
   for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
-    SceneSweep(plan, scene, results, observer).run();
+    SceneSweep(plan, scene, measured, observer).run();
   }
-  complete_tables(plan, results);
+  Results results = conclude(facts_of_plan(plan), plan, measured);
+  results.methods = sweep_methods(plan, results);
   return results;
 }
 

@@ -19,10 +19,10 @@ const fs::path kSource = GAZETRACE_SOURCE_DIR;
 
 // A module may include modules of a smaller number, and itself.
 const std::map<std::string, int> kLayer = {
-    {"core", 0},    {"display", 1}, {"camera", 1},    {"material", 1},    {"gaze", 1},
-    {"scene", 2},   {"plan", 2},    {"foveation", 2}, {"trace", 3},       {"temporal", 4},
-    {"color", 4},   {"output", 4},  {"metrics", 4},   {"reconstruct", 4}, {"pipeline", 5},
-    {"compare", 5}, {"sweep", 6},   {"report", 6},    {"video", 6},       {"cli", 7},
+    {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},    {"scene", 2},
+    {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4},   {"output", 4},
+    {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"results", 5}, {"sweep", 6},
+    {"report", 6},  {"video", 6},       {"cli", 7},
 };
 
 // Within a layer, the order of the data: what may be seen sideways.
@@ -45,7 +45,7 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"pipeline", "pipeline"}, {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
     {"compare", "compare"},   {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
     {"gaze_synth", "gaze"},   {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
-    {"report", "report"},     {"video", "video"},       {"sweep", "sweep"},
+    {"report", "report"},     {"video", "video"},       {"sweep", "sweep"},         {"results", "results"},
 };
 
 // Which files may meet which dependency.

@@ -4,12 +4,12 @@
 
 #include <string>
 
-#include "gazetrace/sweep.hpp"
+#include "sweep/runs.hpp"
 
 namespace gazetrace {
 
-inline SweepRow row_of_box(const std::string& id, double time_s) {
-  SweepRow row;
+inline MeasuredRow row_of_box(const std::string& id, double time_s) {
+  MeasuredRow row;
   row.id = id;
   row.scene = "box";
   row.gaze = "left";

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "gazetrace/version.hpp"
+#include "sweep/conclude.hpp"
 #include "sweep/scorer.hpp"
 
 namespace gazetrace {
@@ -135,17 +136,17 @@ std::string metric_settings(const SweepPlan& plan) {
 }
 
 // Of clips whose reference is one picture.
-std::string standing_pictures(const SweepResults& results) {
+std::string standing_pictures(const Results& results) {
   const bool stands = std::any_of(results.references.begin(), results.references.end(),
-                                  [](const SweepReferenceResult& reference) { return reference.pictures == 1; });
+                                  [](const ResultReference& reference) { return reference.pictures == 1; });
   const bool is_clip =
-      std::any_of(results.rows.begin(), results.rows.end(), [](const SweepRow& row) { return row.frames.size() > 1; });
+      std::any_of(results.rows.begin(), results.rows.end(), [](const ResultRow& row) { return row.frames.size() > 1; });
   return stands && is_clip ? ", once for all frames where neither camera nor scene moves" : "";
 }
 
 }  // namespace
 
-std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
+std::string sweep_methods(const SweepPlan& plan, const Results& results) {
   const SweepMeasure& m = plan.measure;
   const FrameRequest& request = plan.tests.front().plan.frames.front();
   const SweepReference& reference = plan.references.front();
@@ -155,9 +156,9 @@ std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
       "pixels per degree in the middle of the view. Scenes: {}. Gaze: {}. Settings that did not vary: {}; options that "
       "are "
       "not named were at the defaults of this version (results.json lists them). Measured settings: {}. ",
-      kVersion, build_description(), instruction_set(), results.build.substr(0, 12), results.machine, results.threads,
-      request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad), scenes_of(plan), list_of(plan.gazes),
-      list_of(plan.stated_settings), settings_of(plan));
+      kVersion, build_description(), instruction_set(), results.build.digest.substr(0, 12), results.machine.cpu,
+      results.machine.threads.value_or(0), request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad),
+      scenes_of(plan), list_of(plan.gazes), list_of(plan.stated_settings), settings_of(plan));
   text += fmt::format("Pictures were shown and scored through the view {}. ", views_of(plan));
   text += fmt::format(
       "The reference of each scene is the mean of {} renderings of {} samples per pixel with independent scramblings "
