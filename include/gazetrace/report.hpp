@@ -22,21 +22,21 @@ struct ReportPlot {
 };
 std::vector<ReportPlot> report_plots(const Results& results);
 
-// In words, from the numbers. Two values differ where their intervals do not overlap.
+// Findings in words, made from the numbers. Two values count as different where their intervals do not overlap.
 struct ReportFindings {
-  std::vector<std::string> summary;  // a sentence or two for each test row
-  std::string tally;                 // how many comparisons with baselines of the same cost came out how
+  std::vector<std::string> summary;  // one or two sentences for each test row
+  std::string tally;                 // how the comparisons with baselines of the same cost came out
   std::vector<std::string> losses;   // where a baseline is better or faster
   std::vector<std::string> caveats;  // what the measurements cannot say
 };
 ReportFindings report_findings(const Results& results);
 
 struct ReportSettings {
-  double max_mib = 24;  // of the page; pictures are reduced, then left out, to stay below
-  int threads = 0;
+  double max_mib = 24;  // limit of the page; to stay below it, pictures are reduced and then left out
+  int threads = 0;      // 0: as many as the machine has
 };
 
-// The page: one file without anything outside it. Pictures that cannot be read become warnings.
+// The page: one file that needs nothing else. Pictures that cannot be read become warnings.
 struct ReportPage {
   std::string html;
   Warnings warnings;

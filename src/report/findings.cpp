@@ -118,7 +118,7 @@ bool has_scores(const Results& data, const ResultRow& row) {
   return false;
 }
 
-// What sweep/frames.cpp has scored: fixations where there are any.
+// Which frames a sweep has scored: those with a fixation where there are any.
 std::string scored_frames_sentence(const Results& data, const std::string& gaze) {
   const auto shares = data.event_shares.find(gaze);
   if (shares == data.event_shares.end()) {
@@ -145,7 +145,7 @@ std::string control_sentence(const Results& data, const ResultControl& control) 
          ", and it supports no claim about foveation.";
 }
 
-// Of whole frames, in the order of Verdict.
+// How many comparisons of whole frames came out how, in the order of Verdict.
 using Tally = std::array<int, 5>;
 
 void count(const Results& data, const ResultRow& test, const ResultRow& baseline, Tally& tally) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page from its template: texts and tables as HTML, diagrams and pictures as data for its script.
+// Fills the template of the page: texts and tables as HTML, diagrams and pictures as data for its script.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,13 +36,13 @@ std::string set_id(const SceneGaze& both) {
 // What the viewer offers of a scene and gaze: the reference and every run that has pictures.
 struct ViewerRun {
   std::string label;
-  const ResultRow* row = nullptr;                // empty: the reference
+  const ResultRow* row = nullptr;                // nullptr: the reference
   std::map<std::int32_t, std::string> pictures;  // frame -> path
   std::map<std::int32_t, std::string> maps;      // of FLIP
 };
 struct ViewerSet {
   SceneGaze both;
-  std::vector<const ResultFrame*> frames;  // in the order of time; of the run that has most
+  std::vector<const ResultFrame*> frames;  // in the order of time, of the run that has the most frames
   std::vector<ViewerRun> runs;
 };
 
@@ -126,7 +126,7 @@ const ResultFrame* find_frame(const ResultRow* row, std::int32_t index) {
   return found == row->frames.end() ? nullptr : &*found;
 }
 
-// Gaze and rings as fractions of the frame's width and height: pictures may be reduced.
+// Gaze and rings become fractions of the frame's width and height, because pictures may be reduced.
 Json frame_json(const ResultFrame& frame, const EmbeddedPicture* picture) {
   Json json{{"index", frame.index},
             {"t_s", number(frame.t_s)},
@@ -199,7 +199,7 @@ Json set_json(const ViewerSet& set, PictureList& pictures) {
             {"name", scene_gaze_text(set.both)},
             {"frames", Json::array()},
             {"runs", Json::array()}};
-  std::vector<const ResultFrame*> shown;  // frames of which some picture found room
+  std::vector<const ResultFrame*> shown;  // the frames of which at least one picture found room
   for (const ResultFrame* const frame : set.frames) {
     const EmbeddedPicture* any = nullptr;
     for (const ViewerRun& run : set.runs) {
@@ -271,7 +271,7 @@ ReportPage report_page(const Results& data, const ReportSettings& settings) {
   for (const auto& [name, value] : values) {
     other_bytes += static_cast<double>(value.size());
   }
-  // Frames' gaze, times and scores come to so much each; the page must stay below its limit with them.
+  // The gaze, times and scores of each frame take about this much; with them the page must stay below its limit.
   constexpr double kBytesOfFrame = 400;
   const std::vector<std::vector<std::string>> paths = paths_of_frames(sets);
   for (const std::vector<std::string>& of_frame : paths) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLegendLine = 19;
 constexpr std::size_t kLegendLetters = 46;
 
-// Cuts at a letter, not inside one of several bytes.
+// Cuts a text between letters, never inside a letter of several bytes.
 std::string shortened(const std::string& words, std::size_t most) {
   if (words.size() <= most) {
     return words;
@@ -51,7 +51,7 @@ PlotScale::PlotScale(const std::vector<double>& values, double begin, double end
     low = std::min(low, 0.0);
     high = std::max(high, 0.0);
   }
-  // A single value gets room about it; the smallest room keeps ticks apart in a double's digits.
+  // A single value gets room on both sides. The least room keeps ticks apart within the digits of a double.
   const double least = std::max(1e-9 * std::max(std::fabs(low), std::fabs(high)), log_ ? 0.05 : 1e-12);
   const double room = high - low > least ? 0.08 * (high - low) : std::max(0.1 * std::fabs(high), 10 * least);
   const bool at_zero = from_zero && !log_ && low == 0;

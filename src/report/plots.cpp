@@ -22,7 +22,7 @@ std::vector<ReportPlot> report_plots(const Results& data) {
       add(bands_plot(data, *test, metric));
     }
   }
-  // Names that differ only in letters that a file name cannot hold get a number.
+  // Names that differ only in letters that a file name cannot hold are told apart by a number.
   std::set<std::string> names;
   for (ReportPlot& plot : plots) {
     std::string name = plot.name;

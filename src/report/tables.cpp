@@ -78,7 +78,7 @@ std::string shares_text(const Results& data, const std::string& gaze) {
   return shares.empty() ? std::string() : "Frames: " + list_text(shares) + ".";
 }
 
-// What belongs to no single test, then every test with its own baselines.
+// The rows of a scene and gaze: first those that belong to no single test, then every test with its own baselines.
 std::vector<const ResultRow*> rows_of(const Results& data, const SceneGaze& both) {
   std::map<std::string, int> tests_of;  // baseline -> how many tests stand beside it
   for (const ResultRow* const test : test_rows(data)) {
@@ -257,7 +257,7 @@ std::string tables_html(const Results& data) {
 }
 
 std::string list_html(const std::vector<std::string>& items) {
-  constexpr std::size_t kShown = 10;  // the rest is folded away
+  constexpr std::size_t kShown = 10;  // further items are folded away
   const auto list = [&](std::size_t begin, std::size_t end) {
     std::string text = "<ul>\n";
     for (std::size_t i = begin; i < end; ++i) {

@@ -123,10 +123,10 @@ namespace {
 
 struct ControlledScore {
   const ResultMetric* metric = nullptr;
-  const ResultScore* right = nullptr;  // of the run that the control belongs to
+  const ResultScore* right = nullptr;  // the score of the run that the control belongs to
 };
 
-// A control is named by its metric, and by the part where that is not the whole frame.
+// A control names its metric, followed by the part where that is not the whole frame.
 ControlledScore controlled_score(const Results& data, const ResultControl& control) {
   for (const ResultMetric& metric : data.metrics) {
     const bool is_whole = control.metric == metric.name;

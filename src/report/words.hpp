@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How values, runs and metrics are called on the page, in diagrams and in sentences.
+// What values, runs and metrics are called on the page, in diagrams and in sentences.
 #pragma once
 
 #include <optional>
@@ -17,27 +17,27 @@ struct ReportRole {
 const std::vector<ReportRole>& report_roles();
 const ReportRole& report_role(RowRole role);
 
-// Three to four digits that say something; "–" for what is missing.
+// A value with four significant digits; "–" where it is missing.
 std::string value_text(const std::optional<double>& value);
 std::string mean_text(const std::optional<Interval>& value);
 std::string interval_text(const std::optional<Interval>& value);  // "0.11 to 0.13"; empty without an interval
 std::string with_interval(const std::optional<Interval>& value);  // "0.12 (0.11 to 0.13)"
 std::string count_text(const std::optional<double>& value);       // "1.23 M"
 std::string part_text(const std::string& part);                   // "2.6-5.2 degrees", "the fovea"
-// Parts of the picture that some run has scores of: bands from the gaze outwards, retinal regions, "weighted".
+// The parts of the picture that some run has scores of: bands from the gaze outwards, retinal regions, "weighted".
 std::vector<std::string> scored_parts(const Results& data);
 std::string metric_text(const ResultMetric& metric);  // "flip", with its unit
 
-// A test row and its baselines, the test first, in the order of the roles: those that it names, and those that name it.
+// A test row, followed by its baselines in the order of the roles: those that it names, and those that name it.
 std::vector<const ResultRow*> family_of(const Results& data, const ResultRow& test);
-// The same for diagrams: without controls about a wrong gaze, which are no settings to choose from.
+// The same without controls with a wrong gaze, for diagrams: nobody could choose those as a setting.
 std::vector<const ResultRow*> plotted_family(const Results& data, const ResultRow& test);
 
 // "reference", with its key where there are others.
 std::string reference_text(const ResultReference& scene, std::size_t references);
 
-// Whether a metric noticed that the gaze was wrong. undecided: the wrong gaze was measured once, or scores worse by no
-// more than repeats differ.
+// Whether a metric noticed that the gaze was wrong. It is undecided where the gaze was measured only once, and where
+// the wrong gaze scores worse by no more than repeats differ.
 enum class ControlVerdict { sensitive, insensitive, undecided };
 ControlVerdict control_verdict(const Results& data, const ResultControl& control);
 bool was_measured_once(const Results& data, const ResultControl& control);

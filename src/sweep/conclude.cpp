@@ -30,7 +30,7 @@ std::vector<double> times_of(const MeasuredRow& row) {
   return times;
 }
 
-// With what the first repeat's pictures took.
+// The times of all repeats, each with the time that writing the pictures took in the first one.
 std::optional<std::vector<double>> times_with_output(const MeasuredRow& row) {
   if (row.runs.empty() || !row.runs.front().output_s) {
     return std::nullopt;
@@ -123,7 +123,7 @@ std::vector<ResultControl> controls_of(const std::vector<std::string>& metrics, 
     if (right == nullptr) {
       continue;
     }
-    // Others know nothing of the gaze but by their weighting.
+    // Metrics that do not take the gaze know of it only through the weighting of their map.
     for (const std::string& metric : metrics) {
       const std::string part = needs_gaze(metric) ? "whole" : "weighted";
       if (!parts_by_run(*right, metric, part).empty()) {
@@ -134,7 +134,7 @@ std::vector<ResultControl> controls_of(const std::vector<std::string>& metrics, 
   return controls;
 }
 
-// Those of the measurements, and what a reader of the tables must know; each once.
+// The notes of the measurements and what a reader of the tables must know, each of them once.
 std::vector<std::string> notes_of(const SweepPlan& plan, const Measurements& measured) {
   std::vector<std::string> notes;
   const auto add = [&](const std::string& note) {
@@ -185,7 +185,8 @@ double mean_of_runs(const MeasuredRow& row, double SweepRun::*member) {
   return sum;
 }
 
-// Pictures stand in one folder, that of the frame with the map of its error beside it.
+// The time of a frame is the mean over the repeats; its scores and pictures are those of the first repeat. The map of
+// FLIP lies in the same folder as the picture.
 void complete_frame(const MeasuredRow& row, std::size_t index, ResultFrame& frame) {
   double time_s = 0;
   for (const SweepRun& run : row.runs) {
@@ -207,7 +208,7 @@ void complete_frame(const MeasuredRow& row, std::size_t index, ResultFrame& fram
   }
 }
 
-// What the runs of a row say without looking at other rows.
+// Fills in what follows from the runs of a row alone.
 void complete_row(const std::vector<ResultReference>& references, MeasuredRow& row) {
   row.times_s = times_of(row);
   row.time_s = geometric_interval(row.times_s);
@@ -233,7 +234,7 @@ void complete_row(const std::vector<ResultReference>& references, MeasuredRow& r
   }
 }
 
-// By gaze, where every reference says the same of it: clips of another length or picture look at other things.
+// What the references say of each gaze, where they agree: clips of another length or picture look at other things.
 template <class T>
 std::map<std::string, T> agreed(const std::vector<ResultReference>& references, T ResultFloor::*member) {
   std::map<std::string, T> values;
@@ -299,7 +300,7 @@ Results conclude(Results facts, const SweepPlan& plan, const Measurements& measu
   results.fixed_quality = speed_ups_at_quality(plan.measure, measured.references, rows);
   results.controls = controls_of(metrics, rows);
   results.notes = notes_of(plan, measured);
-  results.rows.assign(rows.begin(), rows.end());  // without their runs
+  results.rows.assign(rows.begin(), rows.end());  // the runs themselves are left behind
   return results;
 }
 

@@ -10,7 +10,8 @@
 namespace gazetrace {
 namespace {
 
-// What is rendered of each. References of a scene follow each other, so that it is loaded once and none beside it.
+// The frames of each reference that are rendered. References of one scene follow each other, so that each scene is
+// loaded once and only one is in memory.
 std::vector<FramePlan> pictures_of_references(const SweepPlan& plan) {
   std::vector<FramePlan> pictures;
   std::shared_ptr<const Scene> scene;

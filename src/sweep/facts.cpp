@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What results say of a sweep before anything is measured.
+// What the results state of a sweep that is known before anything is measured.
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +28,7 @@ std::string unit_of(const std::string& metric) {
   return metric == "psnr" ? "dB" : metric == "fovvideovdp" ? "JOD" : "";
 }
 
-// In the plan's order.
+// In the order of the plan, which is that of all tables.
 std::vector<ResultMetric> metrics_of(const SweepPlan& plan) {
   const std::vector<MetricInfo> known = comparison_metrics();
   std::vector<ResultMetric> metrics;

@@ -26,7 +26,7 @@ bool is_still(const FramePlan& plan) {
                      [&](const FrameRequest& request) { return request.gaze_direction_true == first; });
 }
 
-// By the angles along a row through the middle of the view.
+// Radii of the region borders in pixels, measured along a row of pixels through the middle of the view.
 std::vector<double> rings_of(const FoveationSettings& foveation, const PlanarView& view) {
   std::vector<double> rings;
   if (foveation.falloff == "regions" && view.step_x > 0) {
@@ -68,7 +68,7 @@ FramePlan shuffled(const FramePlan& plan) {
   std::stable_sort(order.begin(), order.end(), [](std::size_t a, std::size_t b) { return hash64(a) < hash64(b); });
   FramePlan result = plan;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    // One step on along a cycle through all frames: none keeps its own gaze.
+    // Each frame takes the gaze of the next one in a cycle through all frames, so that none keeps its own.
     steer_by(plan.frames[order[(i + 1) % order.size()]], result.frames[order[i]]);
   }
   return result;

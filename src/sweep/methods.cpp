@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paragraph for a paper: whatever a number of the sweep depends on.
+// The paragraph for a paper: it states everything that a number of the sweep depends on.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::string scenes_of(const SweepPlan& plan) {
   return text;
 }
 
-// Of the tests, each once.
+// The settings of the tests, each of them once.
 std::string settings_of(const SweepPlan& plan) {
   std::vector<std::string> settings;
   for (const SweepTest& test : plan.tests) {
@@ -39,7 +39,7 @@ std::string settings_of(const SweepPlan& plan) {
   return fmt::format("{}", fmt::join(settings, "; "));
 }
 
-// Each once, in their order.
+// The texts in their order, each of them once.
 std::string each_once(const std::vector<std::string>& texts) {
   std::vector<std::string> result;
   for (const std::string& text : texts) {
@@ -58,17 +58,17 @@ std::string views_of(const SweepPlan& plan) {
   return each_once(views);
 }
 
-// How the light of a reference was found, which is not always how that of a test was.
+// How the light of the references was computed, which may differ from how that of the tests was.
 std::string light_of_references(const SweepPlan& plan) {
   std::vector<std::string> texts;
   for (const SweepReference& reference : plan.references) {
     const TraceSettings& trace = reference.pipeline.trace;
-    texts.push_back(
-        fmt::format("{} bounces, a pixel cone of {:g} pixels, a bounce cone of {:g} rad, {}, {}, filter {}",
-                    trace.max_bounces, trace.pixel_cone, trace.bounce_cone_rad,
-                    trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
-                                             : "indirect light not clamped",
-                    trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.reconstruction.filter));
+    texts.push_back(fmt::format(
+        "{} bounces, a pixel cone of {:g} pixels, a bounce cone of {:g} rad, {}, {}, filter {}", trace.max_bounces,
+        trace.pixel_cone, trace.bounce_cone_rad,
+        trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
+                                 : "indirect light not clamped",
+        trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.reconstruction.filter));
   }
   return each_once(texts);
 }
@@ -111,7 +111,7 @@ std::string exposures_of(const FlipExposureSettings& flip) {
                      place(flip.stop_ev));
 }
 
-// What single metrics were told.
+// The settings of single metrics.
 std::string metric_settings(const SweepPlan& plan) {
   const ComparisonSettings& c = plan.measure.comparison;
   const auto has = [&](const char* name) {
@@ -135,7 +135,7 @@ std::string metric_settings(const SweepPlan& plan) {
   return texts.empty() ? std::string() : fmt::format(" ({})", fmt::join(texts, "; "));
 }
 
-// Of clips whose reference is one picture.
+// Said of clips whose reference is a single picture.
 std::string standing_pictures(const Results& results) {
   const bool stands = std::any_of(results.references.begin(), results.references.end(),
                                   [](const ResultReference& reference) { return reference.pictures == 1; });

@@ -19,7 +19,8 @@ bool is_uniform(RowRole role) {
          role == RowRole::uniform_rate;
 }
 
-// On the curves of uniform and of foveated rendering; what is rendered on fewer pixels is on neither.
+// Whether a row is a point of the curve of uniform or of foveated rendering. What is rendered on fewer pixels is on
+// neither.
 bool is_on_uniform_curve(const MeasuredRow& row) {
   return row.resolution_scale == 1 && (is_uniform(row.role) || (row.role == RowRole::test && !row.is_foveated));
 }
@@ -46,7 +47,7 @@ std::optional<double> floor_of(const std::vector<ResultReference>& references, c
   return found == references.end() ? std::nullopt : find_floor(&*found, row.gaze, metric, "whole");
 }
 
-// What a row varies but how many samples it takes: rows alike in it climb one curve.
+// Everything that a row varies except how many samples it takes: rows that agree in it lie on one curve.
 std::string family_of(const MeasuredRow& row) {
   static constexpr std::array<std::string_view, 4> kRates{"spp", "region-samples", "budget-spp", "budget-samples"};
   std::string text;
@@ -58,7 +59,7 @@ std::string family_of(const MeasuredRow& row) {
   return text;
 }
 
-// A uniform curve and the foveated ones that share all but the sampling with it.
+// A curve of uniform rendering, and the foveated ones that share everything but the sampling with it.
 struct QualityCurves {
   struct Foveated {
     std::vector<QualityAtTime> points;
@@ -68,7 +69,8 @@ struct QualityCurves {
   std::map<std::string, Foveated> foveated;  // by family
 };
 
-// Where no family has a second rate, what varies is itself what trades time for quality: one curve.
+// Where no family has a second rate, what the rows vary is itself what trades time for quality: then all of them
+// together are one curve.
 void join_single_points(QualityCurves& curves) {
   const bool all_single = std::all_of(curves.foveated.begin(), curves.foveated.end(),
                                       [](const auto& family) { return family.second.points.size() == 1; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of a place as points of quality over time: which no other beats, and how much later uniform rendering gets
-// to a level than foveated rendering. The curves themselves: curves.cpp.
+// The rows of a scene and gaze as points of quality over time: which of them no other beats, and how much later uniform
+// rendering reaches a level of quality than foveated rendering. The curves themselves are in curves.cpp.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace gazetrace {
 
-// As Results::pareto, of rows that have their times and scores.
+// What Results::pareto holds, from rows that have their times and scores.
 std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto_fronts(
     const std::vector<std::string>& metrics, const std::vector<MeasuredRow>& rows);
 

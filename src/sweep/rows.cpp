@@ -25,7 +25,7 @@ PlannedRow beside(const PlannedRow& test, RowRole role, const std::string& suffi
   result.row.label = label;
   result.row.baselines.clear();
   result.row.published.clear();
-  result.row.runs.clear();  // it is measured by itself
+  result.row.runs.clear();  // it has measurements of its own
   return result;
 }
 
@@ -33,7 +33,7 @@ std::string digest_of(const std::string& base, const std::string& what) {
   return digest_settings({{"base", base}, {"what", what}});
 }
 
-// Of the full size, unless its plan is of another.
+// Makes a row uniform. It is rendered at full size unless its plan has another.
 void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   FoveationSettings& foveation = row.pipeline.foveation;
   foveation.falloff = "uniform";
@@ -55,8 +55,8 @@ void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   for (ResultFrame& frame : row.row.frames) {
     frame.rings_px.clear();
   }
-  // A row of equal time is rendered apart from rows of other roles even where their rates are the same: its time is
-  // measured anew, not taken from the row that its rate was found by.
+  // A row of equal time is rendered apart from rows of other roles even where their rates are the same: its time must
+  // be measured anew, and not be taken from the row by which its rate was found.
   const char* purpose = row.row.role == RowRole::equal_time ? "equal time, " : "";
   const RasterSize size = size_of(row.plan);
   row.digest =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured, before anything is concluded from it: single renderings of a row's frames.
+// What is measured, before anything is concluded from it: single renderings of the frames of a row.
 #pragma once
 
 #include <map>
@@ -13,19 +13,20 @@ namespace gazetrace {
 
 struct SweepFrameRun {
   double time_s = 0;
-  ScoreTable scores;  // "whole" only
+  ScoreTable scores;  // of the whole frame only
 };
 
 // One rendering of all frames of a row.
 struct SweepRun {
-  double time_s = 0;  // a frame, mean: plan, trace, guides, reconstruct, temporal, upscaling
-  // A frame, mean: exposure, view and the files of its picture. Of the repeat whose pictures are kept; else unknown.
+  double time_s = 0;  // mean time of a frame: plan, trace, guides, reconstruct, temporal, upscaling
+  // Mean time of a frame for exposure, view and writing its pictures. Known only of the repeat whose pictures are kept.
   std::optional<double> output_s;
-  double samples = 0, rays = 0, pixels = 0;  // of all frames
+  double samples = 0, rays = 0, pixels = 0;  // sums over all frames
   double lost_samples = 0;                   // rejected rays and samples that were not finite
-  double peak_mib = 0;  // of the process while the frames were rendered: with the scene, the metrics' state and what
-                        // the row's earlier frames have freed, if the program keeps that
-  double trace_reconstruct_ms = 0;  // of all frames
+  // Peak memory of the process while the frames were rendered. It includes the scene, the state of the metrics and, if
+  // the program keeps freed memory, what earlier frames of the row have freed.
+  double peak_mib = 0;
+  double trace_reconstruct_ms = 0;  // sum over all frames
   std::map<std::string, double> region_samples;
   ScoreTable scores;  // over the scored frames
   std::vector<SweepFrameRun> frames;

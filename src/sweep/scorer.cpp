@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kVarianceOfHalves = 4;  // of their difference, over that of their mean
+constexpr double kVarianceOfHalves = 4;  // the variance of their difference over that of their mean
 
 ScoreParts parts_of(const Scores& scores) {
   ScoreParts parts;
@@ -35,7 +35,7 @@ ScoreParts parts_of(const Scores& scores) {
   return parts;
 }
 
-// Scored frames are told from the others by the class: what else the eye did is not asked for.
+// Comparison tells frames apart by what the eye did. Here the class only tells scored frames from the others.
 GazeClass class_of(const ResultFrame& frame, bool is_scored) {
   if (is_scored) {
     return frame.gaze_px ? GazeClass::fixation : GazeClass::no_gaze;
@@ -71,7 +71,7 @@ std::vector<std::string> flicker_ranges(const SweepPlan& plan) {
     const std::vector<ResultFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, plan.measure.leave_out_s);
     const ComparisonSettings settings = comparison_of(plan.measure.comparison, test.plan, frames, test.pipeline.fps);
     if (std::find(settings.metrics.begin(), settings.metrics.end(), "flicker") == settings.metrics.end()) {
-      continue;  // without gaze
+      continue;  // it has no gaze
     }
     const FlickerRange range = flicker_range(settings.frames_per_second, settings.photometry.peak_cd_m2 / 2);
     const std::string text =

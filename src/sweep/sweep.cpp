@@ -4,7 +4,7 @@
 //                 -> the rates of equal time, found by measuring -> those rows
 //   other rounds  every row once, forwards and backwards in turn, so that a machine that grows slower or faster does so
 //                 for all of them
-// Whatever is finished lies in a file, and is not done again.
+// Whatever has been finished is in a file, and is not done again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,8 +65,8 @@ class SceneSweep {
     }
   }
 
-  // Adds a row, unless one of the same pixels stands there for the same gaze. Returns its id. Every test has a row of
-  // equal time of its own, whose time is held against that test's.
+  // Adds a row unless there is one with the same pixels, gaze and reference, and returns the id of the row that is
+  // there. Every test has its own row of equal time, whose time is compared with that of the test.
   std::string add(PlannedRow row) {
     for (const PlannedRow& other : rows_) {
       if (row.row.role != RowRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
@@ -110,7 +110,7 @@ class SceneSweep {
     }
   }
 
-  // Rows that show the same pixels as this one, itself among them, in their order.
+  // All rows that show the same pixels as this one, itself among them, in the order of the rows.
   [[nodiscard]] std::vector<const PlannedRow*> sharing(const PlannedRow& row) const {
     std::vector<const PlannedRow*> rows;
     for (const PlannedRow& other : rows_) {
@@ -121,8 +121,8 @@ class SceneSweep {
     return rows;
   }
 
-  // By what these rows show, how it is scored and what its time depends on: the same work has the same key in a longer
-  // plan, unless that has more rows of these pixels.
+  // A key from what these rows show, how they are scored and what their time depends on. The same work has the same key
+  // in a longer plan, unless that plan has further rows with these pixels.
   [[nodiscard]] std::string key_of(const std::vector<const PlannedRow*>& rows) const {
     NamedValues parts{{"pixels", rows.front()->digest},
                       {"reference", digest_of_reference(*references_.at(rows.front()->row.reference))},
@@ -234,7 +234,8 @@ class SceneSweep {
     return uniform_row(plan_, of, RowRole::equal_time, search->spp);
   }
 
-  // Expected over measured time: the samples of each region times what one costs there at an even rate.
+  // Expected over measured time. The expected time is that of the samples of each region at what a sample costs there
+  // when all regions have the same rate.
   [[nodiscard]] std::optional<double> efficiency_of(std::size_t test) const {
     const auto found = costs_.find(test);
     if (found == costs_.end() || !(found->second.trace_cpu_ms > 0)) {
@@ -257,7 +258,7 @@ class SceneSweep {
     return sum / static_cast<double>(rows_[test].row.runs.size());
   }
 
-  // Floors of every gaze, then the rows.
+  // Hands over the references with the floor of every gaze, then the rows.
   void hand_over() {
     for (const auto& [key, reference] : references_) {
       const CertifiedReference& certified = certified_.at(key);
@@ -292,7 +293,7 @@ class SceneSweep {
     }
   }
 
-  // Of the pixels of frames with gaze; empty without.
+  // The share of the pixels in each band of eccentricity, over the frames with gaze; empty without any.
   [[nodiscard]] std::vector<double> band_shares(const MeasuredRow& row, const FramePlan& plan) const {
     std::vector<double> shares(kEccentricityBandsDeg.size());
     double pixels = 0;
@@ -320,7 +321,7 @@ class SceneSweep {
   std::size_t scene_;
   Measurements& measured_;
   const SweepObserver& observer_;
-  std::deque<PlannedRow> rows_;  // tests first; rows keep their place
+  std::deque<PlannedRow> rows_;  // tests first; a row keeps its address when others are added
   std::size_t tests_ = 0;
   PathTracer* tracer_ = nullptr;
   std::map<std::string, const SweepReference*> references_;

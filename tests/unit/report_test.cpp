@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "report/fill.hpp"
 #include "report/plot.hpp"
@@ -32,9 +33,20 @@ TEST(ReportWords, BandsAndLists) {
   EXPECT_EQ(with_interval(Interval{0.5, std::nullopt, std::nullopt}), "0.5");
 }
 
-// Regions and weighted scores stand beside the bands, in tables and diagrams, only where some run has them.
-// Cells of a line of the CSV; none of these holds a comma.
-// Results of earlier builds do not have it; of sweeps that wrote no pictures it is null.
+TEST(ReportWords, EveryRoleIsCalledAndDrawnInItsOwnWay) {
+  std::set<std::string> words;
+  std::set<std::string> looks;
+  for (const RowRole role :
+       {RowRole::test, RowRole::uniform_reference_rate, RowRole::equal_samples, RowRole::equal_time,
+        RowRole::low_resolution, RowRole::uniform_rate, RowRole::wrong_gaze}) {
+    const ReportRole& shown = report_role(role);
+    EXPECT_EQ(shown.name, to_string(role));
+    EXPECT_TRUE(words.insert(shown.words).second) << shown.words;
+    EXPECT_TRUE(looks.insert(shown.color).second) << shown.words;
+  }
+  EXPECT_EQ(words.size(), report_roles().size());
+}
+
 TEST(ReportFill, OnlyTheTemplateIsLookedAt) {
   EXPECT_EQ(fill_template("a {{x}} b {{y}}{{x}}", {{"x", "{{y}}"}, {"y", "2"}}), "a {{y}} b 2{{y}}");
   EXPECT_EQ(fill_template("no place", {}), "no place");

@@ -33,8 +33,8 @@ std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test,
   plot.title = fmt::format("{} by eccentricity and region, {}: {}", metric.name,
                            scene_gaze_text({test.scene, test.gaze}), test.label);
 
-  // Bars begin at 0, which a logarithmic scale has not: a range of better-is-higher values close to each other is shown
-  // as points without bars instead.
+  // Bars begin at 0, which a logarithmic scale does not have. Values of metrics where higher is better lie close to
+  // each other and far from 0: they are shown as points without bars.
   const bool bars = metric.is_lower_better && !wants_log(values);
   constexpr double kLeft = 84, kTop = 34, kBottom = 320;
   const double right = kPlotWidth - 26;
@@ -54,7 +54,7 @@ std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test,
   bool any_unresolved = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const double begin = kLeft + part_width * static_cast<double>(p);
-    if (p == data.bands_deg.size()) {  // regions contain bands
+    if (p == data.bands_deg.size()) {  // a line sets the regions apart, which contain several bands
       svg.add(fmt::format("<path class=\"line\" stroke=\"#8a8a8a\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", begin,
                           kTop, kBottom));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time and error of every frame over video time, one above the other, with what the eye did below.
+// Time and error of every frame over video time in two diagrams, one above the other, and what the eye did below them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::optional<double> frame_score(const ResultFrame& frame, const std::string& m
   return found == frame.scores.end() ? std::nullopt : found->second;
 }
 
-// Lines break where a value is missing.
+// The line of a series; it breaks where a value is missing.
 void draw(PlotSvg& svg, const Series& series, const PlotScale& x, const PlotScale& y) {
   const ReportRole role = report_role(series.row->role);
   std::string path;
@@ -112,7 +112,7 @@ std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, 
   for (const Series& series : scores) {
     draw(svg, series, x, y_score);
   }
-  // What the eye did: from a frame's time to the next one's.
+  // What the eye did, from the time of a frame to that of the next.
   std::vector<std::string> events;
   const double strip = kBottom + 26;
   for (std::size_t i = 0; i < test.frames.size(); ++i) {

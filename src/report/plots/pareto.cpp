@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against time: every run of a scene and gaze, with intervals, Pareto fronts and the reference's own noise.
+// Error over time: every run of a scene and gaze with its intervals, the Pareto fronts, and the reference's own noise.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,13 +28,14 @@ std::vector<Point> points_of(const Results& data, const SceneGaze& both, const s
   return points;
 }
 
-// The points of a front that the sweep found, in the order of time.
+// The points of a front that the sweep has found, in the order of time.
 struct Front {
   std::vector<const Point*> points;
-  std::string name;  // of its reference, where the place has several
+  std::string name;  // of its reference, where the scene and gaze have several
 };
 
-// Scores against different references do not compare: each has a front of its own, under the place and its key.
+// Scores against different references are not comparable, so each reference has a front of its own; its name is that of
+// the scene and gaze followed by the key of the reference.
 std::vector<Front> fronts_of(const Results& data, const SceneGaze& both, const std::string& metric,
                              const std::vector<Point>& points) {
   std::vector<Front> fronts;
