@@ -14,19 +14,6 @@
 
 namespace gazetrace {
 
-// Times in the log's own nanoseconds. A gap is a step of more than three median steps.
-struct GazeTiming {
-  std::int64_t first_ns = 0, last_ns = 0;
-  double nominal_rate_hz = 0;  // stated by the log; 0: it does not
-  double median_rate_hz = 0;   // one over the median step
-  double mean_rate_hz = 0;     // of the steps that are no gaps
-  double step_q1_ns = 0, step_q3_ns = 0;
-  double jitter_ns = 0;  // standard deviation of the steps that are no gaps
-  std::size_t gaps = 0;
-  std::int64_t longest_gap_ns = 0;  // 0: none
-  std::int64_t gaps_total_ns = 0;
-};
-
 // Which samples can be used. Time without usable gaze goes from one usable sample to the next, less one median step.
 struct GazeLoss {
   std::size_t samples = 0, usable = 0;

@@ -26,9 +26,14 @@ enum class GazeKind : std::uint8_t { screen, direction, scene_camera };
 enum class GazeValidity : std::uint8_t { ok, low_confidence, blink, lost, off_screen, interpolated };
 enum class Eye : std::uint8_t { left, right, cyclopean };
 
+// What a log was recorded with. Methods publish their constants for one of both; data of one kind are never measured
+// with the constants of the other.
+enum class GazeDevice : std::uint8_t { desktop, head_mounted };
+
 std::string_view to_string(GazeKind kind);
 std::string_view to_string(GazeValidity validity);
 std::string_view to_string(Eye eye);
+std::string_view to_string(GazeDevice device);
 
 struct GazeSample {
   std::int64_t t_ns = 0;
@@ -175,6 +180,19 @@ struct GazeLog {
   std::optional<RecurringPlace> recurring_place;  // the one with most rows; only after GazeReadOptions::for_inspection
   std::vector<GazeWitness> witnesses;
   std::vector<GazeFault> faults;  // empty but after GazeReadOptions::for_inspection
+};
+
+// Times in the log's own nanoseconds. A gap is a step of more than three median steps.
+struct GazeTiming {
+  std::int64_t first_ns = 0, last_ns = 0;
+  double nominal_rate_hz = 0;  // stated by the log; 0: it does not
+  double median_rate_hz = 0;   // one over the median step
+  double mean_rate_hz = 0;     // of the steps that are no gaps
+  double step_q1_ns = 0, step_q3_ns = 0;
+  double jitter_ns = 0;  // standard deviation of the steps that are no gaps
+  std::size_t gaps = 0;
+  std::int64_t longest_gap_ns = 0;  // 0: none
+  std::int64_t gaps_total_ns = 0;
 };
 
 }  // namespace gazetrace

@@ -19,15 +19,21 @@ const fs::path kSource = GAZETRACE_SOURCE_DIR;
 
 // A module may include modules of a smaller number, and itself.
 const std::map<std::string, int> kLayer = {
-    {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},    {"scene", 2},
-    {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4},   {"output", 4},
-    {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"results", 5}, {"sweep", 6},
-    {"report", 6},  {"video", 6},       {"cli", 7},
+    {"core", 0},                                                                            //
+    {"display", 1},  {"camera", 1},  {"material", 1},  {"gazelog", 1}, {"gaze", 1},         //
+    {"scene", 2},    {"plan", 2},    {"foveation", 2},                                      //
+    {"trace", 3},                                                                           //
+    {"temporal", 4}, {"color", 4},   {"output", 4},    {"metrics", 4}, {"reconstruct", 4},  //
+    {"pipeline", 5}, {"compare", 5}, {"results", 5},                                        //
+    {"sweep", 6},    {"report", 6},  {"video", 6},                                          //
+    {"cli", 7},
 };
 
 // Within a layer, the order of the data: what may be seen sideways.
 const std::set<std::pair<std::string, std::string>> kSideways = {
-    {"gaze", "display"},          // logs carry the geometry of their recording
+    {"gazelog", "display"},       // logs carry the geometry of their recording
+    {"gaze", "gazelog"},          // what is done with gaze begins with a log
+    {"gaze", "display"},          // gaze on a display is an angle
     {"camera", "display"},        // a camera's image plane is a view
     {"temporal", "reconstruct"},  // accumulates frames
     {"color", "temporal"},        // smoothed exposure is history
@@ -37,15 +43,43 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
 
 // The module of each public header.
 const std::map<std::string, std::string> kPublicHeader = {
-    {"math", "core"},         {"image", "core"},        {"error", "core"},          {"version", "core"},
-    {"display", "display"},   {"gaze", "gaze"},         {"gaze_log", "gaze"},       {"camera", "camera"},
-    {"material", "material"}, {"scene", "scene"},       {"plan", "plan"},           {"foveation", "foveation"},
-    {"trace", "trace"},       {"guides", "trace"},      {"sample_sums", "trace"},   {"reconstruct", "reconstruct"},
-    {"temporal", "temporal"}, {"color", "color"},       {"output", "output"},       {"frame_renderer", "pipeline"},
-    {"pipeline", "pipeline"}, {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
-    {"compare", "compare"},   {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
-    {"gaze_synth", "gaze"},   {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
-    {"report", "report"},     {"video", "video"},       {"sweep", "sweep"},         {"results", "results"},
+    {"math", "core"},
+    {"image", "core"},
+    {"error", "core"},
+    {"version", "core"},     //
+    {"display", "display"},  //
+    {"camera", "camera"},
+    {"motion", "camera"},      //
+    {"material", "material"},  //
+    {"gaze_log", "gazelog"},
+    {"gaze_read", "gazelog"},
+    {"gaze_write", "gazelog"},  //
+    {"gaze", "gaze"},
+    {"gaze_inspect", "gaze"},
+    {"gaze_events", "gaze"},
+    {"gaze_process", "gaze"},  //
+    {"gaze_synth", "gaze"},    //
+    {"scene", "scene"},
+    {"deformation", "scene"},    //
+    {"plan", "plan"},            //
+    {"foveation", "foveation"},  //
+    {"trace", "trace"},
+    {"guides", "trace"},
+    {"sample_sums", "trace"},        //
+    {"reconstruct", "reconstruct"},  //
+    {"temporal", "temporal"},        //
+    {"color", "color"},              //
+    {"output", "output"},            //
+    {"metrics", "metrics"},
+    {"fovvideovdp", "metrics"},
+    {"flicker", "metrics"},  //
+    {"pipeline", "pipeline"},
+    {"frame_renderer", "pipeline"},  //
+    {"compare", "compare"},          //
+    {"results", "results"},          //
+    {"sweep", "sweep"},              //
+    {"report", "report"},            //
+    {"video", "video"},
 };
 
 // Which files may meet which dependency.
@@ -62,9 +96,9 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(CLI/)", R"(src/cli/.*)"},
     {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_tree\.cpp)"},
     {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp))"},
-    {R"(pugixml)", R"(src/gaze/formats/xdf\.cpp)"},
+    {R"(pugixml)", R"(src/gazelog/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
-    {R"(zlib\.h)", R"(src/(gaze/gzip|core/png_file)\.cpp)"},
+    {R"(zlib\.h)", R"(src/(gazelog/gzip|core/png_file)\.cpp)"},
 };
 
 std::vector<fs::path> sources(const std::vector<std::string>& folders) {

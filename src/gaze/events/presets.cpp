@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazetrace/gaze_events.hpp"
 
-#include "gaze/facts.hpp"
+#include "gazelog/facts.hpp"
 
 namespace gazetrace {
 
@@ -43,10 +43,6 @@ GazeDevice recorded_device(const GazeLog& log) {
 
 std::string_view to_string(GazeSpace space) {
   return space == GazeSpace::head ? "head" : "world";
-}
-
-std::string_view to_string(GazeDevice device) {
-  return device == GazeDevice::desktop ? "desktop" : "head-mounted";
 }
 
 std::string_view to_string(EyeMovement movement) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <regex>
 
+#include "gazelog/timing.hpp"
+
 namespace gazetrace {
 namespace {
 

@@ -32,7 +32,6 @@ class GazePlane {
   std::string unit_ = "deg";
 };
 
-GazeTiming measure_timing(const GazeLog& log);
 GazeLoss measure_loss(const GazeLog& log, double median_step_ns);
 GazeFrozen measure_frozen(const GazeLog& log);
 std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePlane& plane, double median_step_ns);

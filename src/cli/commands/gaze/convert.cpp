@@ -10,8 +10,8 @@
 #include "cli/exit_codes.hpp"
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/gaze_bids.hpp"
 #include "gazetrace/gaze_inspect.hpp"
+#include "gazetrace/gaze_write.hpp"
 
 namespace gazetrace {
 namespace {

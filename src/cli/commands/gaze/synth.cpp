@@ -7,6 +7,7 @@
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_synth.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "gazetrace/gaze_read.hpp"
+
+namespace gazetrace {
+
+// Makes one gaze of the rows of one time, as options.eye says, and keeps both eyes in `log.eyes`. The rows are ordered,
+// and there is at most one of each eye at a time.
+void choose_eyes(GazeLog& log, const GazeReadOptions& options);
+
+// How the samples of a log with both eyes relate to one of them.
+struct ChosenEye {
+  std::optional<Eye> eye;  // left or right: the samples are that eye's, by GazeSample::eye; empty: of both
+  bool is_alone = false;   // ... and nothing but its rows: the other never stood in, nothing was processed
+};
+ChosenEye chosen_eye(const GazeLog& log);
+
+}  // namespace gazetrace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// gazetrace CSV. Preamble `# gazetrace-gaze 1` with `# display_px W H`, `# display_mm W H`, `# distance_mm D` and
+// `# clock TEXT`; header with units, `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`, with a head's pose
+// `hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw` (position and quaternion; empty in rows without one). What is no row stands in
+// the preamble, see mapped_table.hpp.
+#include <fmt/format.h>
+
+#include "gazelog/facts.hpp"
+#include "gazelog/mapped_table.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+
+double sniff_gaze_gazetrace_csv(const GazeFile& file) {
+  constexpr std::string_view kMark = "# gazetrace-gaze";
+  if (file.text.starts_with(kMark)) {
+    return 1.0;
+  }
+  const auto has = [line = head_of(file).substr(0, file.text.find('\n'))](std::string_view text) {
+    return line.find(text) != std::string_view::npos;
+  };
+  return has("t[ns],") && (has("u[1],v[1]") || has("dx,dy,dz")) ? 0.9 : 0.0;
+}
+
+GazeLog read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& options) {
+  const DelimitedTable table = open_table(file);
+  const GazetracePreamble preamble = read_preamble(file, table);
+  if (preamble.version.value_or(1) != 1) {
+    throw Error(ErrorKind::input, file.path,
+                fmt::format("is gazetrace CSV of version {}; this program reads version 1", *preamble.version),
+                "use a newer gazetrace");
+  }
+  GazeColumns columns = options.columns;
+  if (columns.head_x.empty() && columns.head_rotation_x.empty() &&
+      table.has_all({"hx[m]", "hy[m]", "hz[m]", "hqx", "hqy", "hqz", "hqw"})) {
+    columns.head_x = "hx[m]";
+    columns.head_y = "hy[m]";
+    columns.head_z = "hz[m]";
+    columns.head_rotation_x = "hqx";
+    columns.head_rotation_y = "hqy";
+    columns.head_rotation_z = "hqz";
+    columns.head_rotation_w = "hqw";
+  }
+  const bool names = options.columns.valid_values.empty() && options.columns.valid_mask == 0;
+  GazeLog log = read_mapped_table(file, table, options, columns, names ? ValidityStyle::names : ValidityStyle::any);
+  log.nominal_rate_hz = preamble.nominal_rate_hz;
+  log.sample_age_unknown = preamble.sample_age_unknown;
+  if (preamble.eye) {
+    add_fact(log, kStatedEye, std::string(to_string(*preamble.eye)), Evidence::header,
+             "chosen before it was converted");
+  }
+  if (!preamble.device.empty()) {
+    add_fact(log, kDevice, preamble.device, Evidence::header);
+  }
+  log.events = preamble.events;
+  log.calibrations = preamble.calibrations;
+  if (!preamble.head.empty()) {
+    log.head.insert(log.head.end(), preamble.head.begin(), preamble.head.end());
+    finish_head(log);
+  }
+  return log;
+}
+
+}  // namespace gazetrace
