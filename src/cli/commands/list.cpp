@@ -9,10 +9,9 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/presets.hpp"
-#include "cli/settings_options.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/job.hpp"
 
 namespace gazetrace {
 namespace {
@@ -20,7 +19,6 @@ namespace {
 struct ListArguments {
   std::string family;
   ColorSettings color;
-  OptionTable table;
   bool json = false;
 };
 
@@ -157,11 +155,11 @@ Command add_list_command(CLI::App& app, const Invocation& /*invocation*/) {
     names += (names.empty() ? "" : "|") + family.name;
   }
   app.add_option("family", arguments->family, "What to list; default: everything")->type_name(names);
-  arguments->table.group("Options");
-  add_ocio_config_options(arguments->table, arguments->color);
-  bind_options(app, arguments->table);
+  const auto options = std::make_shared<CommandOptions<ColorSettings>>(
+      color_config_schema().with_headings([](const Option&) { return "Options"; }));
+  options->bind(app, arguments->color);
   app.add_flag("--json", arguments->json, "As JSON");
-  return {[arguments] { return run_list(*arguments); }, nullptr};
+  return {[arguments, options] { return run_list(*arguments); }, {}};
 }
 
 }  // namespace gazetrace
