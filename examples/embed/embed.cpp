@@ -37,9 +37,9 @@ int render(const std::string& scene_path, const std::string& exr_path, double u,
   const Vec3d gaze = view.direction(u * kWidth, v * kHeight);
 
   const SamplingMap map = make_sampling_map({}, view, gaze);
-  const PathTracer tracer(scene, {});
-  const SparseFrame sparse = tracer.trace(camera, 1, map, {});
-  const Frame frame = reconstruct(sparse, map, "linear");
+  PathTracer tracer(scene, {});
+  const SparseFrame sparse = tracer.at_rest().trace(camera, 1, map, {});
+  const Frame frame = Reconstruction({"linear", {}}).frame(sparse, map);
 
   FrameHeader header;
   header.frame = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exposure, and the viewing transform through OpenColorIO.
+// Exposure, and the viewing transform from linear Rec.709 radiance to display code values by OpenColorIO.
 #pragma once
 
 #include <cstdint>
@@ -17,29 +17,29 @@ enum class ExposureMode { fixed, log_average };
 
 struct ExposureSettings {
   ExposureMode mode = ExposureMode::fixed;
-  double ev = 0;           // stops; fixed: the exposure. log_average: added to the measured one
-  double key = 0.18;       // log_average: luminance that the log-average is brought to (Reinhard 2002, eq. 1-2)
-  double smoothing_s = 0;  // time constant of exponential smoothing over video time; 0: off
+  double ev = 0;           // stops; fixed: the exposure; log_average: added to the measured exposure
+  double key = 0.18;       // log_average: the luminance that the log-average is brought to (Reinhard 2002, eq. 1-2)
+  double smoothing_s = 0;  // time constant of the exponential smoothing over video time; 0: off
 };
 
-// The exposure of a frame in stops. The log-average is taken over means of blocks of at least 16 x 16 pixels: that of a
-// noisy frame's pixels is biased low. Smoothing keeps its state in `history`.
+// The exposure of a frame in stops. The log-average is taken over the means of blocks of at least 16 x 16 pixels, since
+// over the pixels of a noisy frame it would be biased low. Smoothing keeps its state in `history`.
 double choose_exposure_ev(const ImageRgb& radiance, std::int64_t t_video_ns, const ExposureSettings& settings,
                           TemporalHistory& history);
 
-// How 8-bit pictures are made; 16 bits are always exact.
+// How 8-bit pictures are computed; 16-bit pictures are always exact.
 enum class ViewPrecision {
-  automatic,  // baked for the built-in ACES view on frames of at least 250,000 pixels, exact for all else
-  exact,      // OpenColorIO's own arithmetic for every pixel: about 240 ms of CPU a megapixel for ACES
-  baked,      // a table for the pixels where it is within half a code value of that: 20 to 70 ms a megapixel
+  automatic,  // baked for the built-in ACES view on frames of at least 250,000 pixels, else exact
+  exact,      // OpenColorIO's own arithmetic for every pixel: about 240 ms of CPU per megapixel for ACES
+  baked,      // a table, for the pixels where it is within half a code value of exact: 20 to 70 ms per megapixel
 };
 
 struct ColorSettings {
-  std::string config;   // OCIO config file; empty: $OCIO; neither: the built-in one
+  std::string config;   // OCIO config file; empty: that of $OCIO; neither: the built-in one
   std::string input;    // name of linear Rec.709 in a config without aces_interchange
   std::string display;  // empty: the config's default
   std::string view;     // empty: the display's default
-  std::string look;     // empty: what the view says
+  std::string look;     // empty: those of the view
   ViewPrecision precision = ViewPrecision::automatic;
 };
 
@@ -51,7 +51,7 @@ struct ViewInfo {
 struct DisplayImage {
   int width_px = 0, height_px = 0;
   int bits = 8;                     // 8 or 16
-  std::vector<std::uint8_t> bytes;  // RGB interleaved, native endian for 16 bits
+  std::vector<std::uint8_t> bytes;  // interleaved RGB, row after row; 16 bits in the machine's byte order
 };
 
 class ColorPipeline {
@@ -65,14 +65,14 @@ class ColorPipeline {
   ColorPipeline(const ColorPipeline&) = delete;
   ColorPipeline& operator=(const ColorPipeline&) = delete;
 
-  // radiance * 2^ev through the view. Values are clamped to 0..1e6 first (OCIO's ACES turns black above about 1e20);
-  // `clamped_pixels`, when not null, receives how many were.
-  // Thread-safe.
+  // Takes radiance * 2^ev through the view. Values are first clamped to 0..1e6 (OpenColorIO's ACES returns black above
+  // about 1e20); `clamped_pixels`, where not null, receives the number of clamped pixels. `bits` is 8 or 16. May be
+  // called from several threads at once.
   [[nodiscard]] DisplayImage apply(const ImageRgb& radiance, double ev, int bits, int threads = 0,
                                    std::uint64_t* clamped_pixels = nullptr) const;
 
-  // Bakes the table now if apply() will need it for frames like this (0.8 s of CPU, once), so that no frame's time
-  // contains it. Changes no result.
+  // Bakes the table now if apply() will need it for frames of this size (0.8 s of CPU, once), so that it is not part of
+  // a frame's measured time. Changes no result.
   void prepare(int width_px, int height_px, int bits, int threads = 0) const;
 
   [[nodiscard]] const std::vector<ViewInfo>& views() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two sequences frame by frame: metrics per frame, per retinal region and band of eccentricity, and over the sequence,
-// apart for what the eye did. Nothing but numbers is kept of a frame, so sequences may be of any length.
+// Compares two sequences frame by frame: metrics per frame, per retinal region and band of eccentricity, and over the
+// sequence, separately for what the eye did. Only numbers are kept of a frame, so sequences may have any length.
 #pragma once
 
 #include <array>
@@ -20,20 +20,21 @@
 
 namespace gazetrace {
 
-// Where bands of eccentricity begin, in degrees between the rays to gaze and pixel; the last one has no end.
+// Where the bands of eccentricity begin, in degrees between the rays to gaze and pixel; the last one has no end.
 inline constexpr std::array<double, 7> kEccentricityBandsDeg{0, 2.6, 5.2, 8.5, 17, 30, 60};
 std::string eccentricity_band_name(std::size_t band);  // "0-2.6", ..., "60+"
 
-// Fovea, intermediate region and periphery: where the first two end, in degrees of eccentricity.
+// Fovea, intermediate region and periphery, by the eccentricities in degrees at which the first two end.
 inline constexpr std::array<const char*, 3> kRetinalRegionNames{"fovea", "intermediate", "periphery"};
 struct RetinalRegions {
   std::array<double, 2> end_deg{2.6, 8.5};
 };
-// Those of `falloff` "regions", as cones whatever their shape. Error(usage) unless 0 < first < second.
+// The regions of the fall-off "regions", always as cones, also where sampling used discs. Error(usage) unless
+// 0 < first < second.
 RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleReading reading);
 
-// What the eye did while a frame was seen, as far as scores are concerned; each class is scored apart. In flight: in a
-// saccade or within kAfterSaccadeNs of its end, when little is seen. unclassified: seen, but nobody knows what it did.
+// What the eye did while a frame was shown; each class is scored separately. in_flight: in a saccade, or within
+// kAfterSaccadeNs of its end, when little is seen. unclassified: there is gaze, but its movement is not known.
 enum class GazeClass : std::uint8_t { fixation, in_flight, blink, no_gaze, unclassified };
 inline constexpr std::array<GazeClass, 5> kGazeClasses{GazeClass::fixation, GazeClass::in_flight, GazeClass::blink,
                                                        GazeClass::no_gaze, GazeClass::unclassified};
@@ -41,7 +42,7 @@ inline constexpr std::int64_t kAfterSaccadeNs = 100'000'000;
 std::string_view to_string(GazeClass gaze_class);  // "fixation", "in-flight", "blink", "no-gaze", "unclassified"
 GazeClass gaze_class_of(const GazeAtTime& gaze);
 
-// The metrics of metrics.hpp and those that see time (compare/sequence_metrics.def).
+// The metrics of metrics.hpp, and those of whole sequences (compare/sequence_metrics.def).
 std::vector<MetricInfo> comparison_metrics();
 
 struct ComparisonSettings {
@@ -51,67 +52,67 @@ struct ComparisonSettings {
   DisplayPhotometry photometry;  // FovVideoVDP
   bool original_border = true;   // FovVideoVDP
   double frames_per_second = 0;  // FovVideoVDP; 0: every frame is a still
-  // Without it there are no regions, no bands, no weighted scores and no metrics that need gaze.
+  // Needed for regions, bands, weighted scores and metrics that need gaze.
   std::optional<PlanarView> view;
   bool want_maps = false;
 };
-// Error(usage) with the option of `compare` whose value makes no scores: peak (above 0), contrast (above 1), ambient
-// light (0 or more), reflectivity (0..1), relmse's epsilon (above 0), none of them infinite; and where code values are
-// relative and the room's light makes black as bright as white.
+// Error(usage) that names the setting whose value is out of range: peak (above 0), contrast (above 1), ambient light (0
+// or more), reflectivity (0..1) and relmse's epsilon (above 0), all of them finite; and where code values are relative
+// and the room's light makes black as bright as white.
 void check_comparison(const ComparisonSettings& settings);
-// One set of HDR-FLIP's exposures for all frames, from the first of them, or they would not compare. What is given
-// stays; without hdr_flip among the metrics nothing is done.
+// Computes what the settings leave empty of HDR-FLIP's exposures from this reference. Call it with the first frame,
+// since frames compare only with the same exposures. Does nothing unless hdr_flip is among the metrics.
 void fix_flip_exposures(ComparisonSettings& settings, const ImageRgb& reference_light);
 
 struct FramePair {
   std::int32_t frame = 1;
   MetricPicture reference, test;
-  // gaze_true, continuous frame pixels; empty: no gaze, as in blinks and where the class is no_gaze. Metrics that need
-  // gaze are then not scored, but see the frame pass.
+  // gaze_true in continuous pixels of the frame; empty without gaze, as in blinks and where the class is no_gaze.
+  // Metrics that need gaze do not score such frames, but still take them into their history.
   std::optional<Vec2d> gaze_px;
   GazeClass gaze_class = GazeClass::unclassified;
 };
 
-// A metric over a frame or, with sums carried on, over frames. Values are printed numbers, see metric_value().
+// The scores of one metric for a frame, or over many frames. Values are the printed numbers, see metric_value().
 struct Scores {
   std::string metric;
-  std::optional<double> value;  // empty: not scored, for want of gaze or of enough frames before
+  std::optional<double> value;  // empty: not scored, because gaze or enough earlier frames are missing
   // Weighted by areal cortical magnification, 1 / (e + 0.75 deg)^2 (Horton and Hoyt, "The representation of the visual
   // field in human striate cortex", 1991). Empty without gaze and for metrics without a map.
   std::optional<double> weighted;
-  // Of the band's pixels; empty where there are none. FovVideoVDP: 10 minus the mean of its local difference map.
+  // Over the band's pixels; empty where there are none. FovVideoVDP: 10 minus the mean of its local difference map.
   std::array<std::optional<double>, kEccentricityBandsDeg.size()> bands;
-  std::array<std::optional<double>, kRetinalRegionNames.size()> regions;  // the same of regions
+  std::array<std::optional<double>, kRetinalRegionNames.size()> regions;  // the same over the region's pixels
 };
 struct FrameScores {
   std::int32_t frame = 0;
   GazeClass gaze_class = GazeClass::unclassified;
   std::vector<Scores> scores;
-  std::vector<MapStatistics> statistics;  // of the maps, in the order of the scores; pixels 0: no map
+  std::vector<MapStatistics> statistics;  // of the maps, in the order of the scores; pixels is 0 where there is no map
   std::vector<ImageGray> maps;            // only with want_maps
 };
 struct SequenceScores {
   std::string gaze_class;  // "all", or to_string() of one class
   std::size_t frames = 0;
-  // One of each for a metric. A metric may have scored fewer frames than there are; where none, its score is empty, the
-  // quantiles are NaN and there is no worst frame.
-  std::vector<Scores> scores;  // means over frames before roots, decibels and JOD are taken
+  // One entry per metric in each. A metric may have scored fewer frames than there are; where it scored none, its score
+  // is empty, the quantiles are NaN and there is no worst frame.
+  std::vector<Scores> scores;  // averaged over frames before roots, decibels and JOD are taken
   std::vector<std::size_t> scored_frames;
   std::vector<std::array<double, 3>> quantiles;  // at 5, 50, 95 % of the frames' values
   std::vector<std::optional<std::int32_t>> worst_frame;
 };
-// What a claim rests on: fixations where there are any, else all frames.
+// The scores to quote: those of fixations where there are any, else those of all frames.
 const SequenceScores& headline(const std::vector<SequenceScores>& summary);
 
 class Comparison {
  public:
-  // Error(usage) for unknown metrics, for what check_comparison() refuses, and without a view for metrics that need
-  // gaze.
+  // Error(usage) for unknown metrics, for what check_comparison() refuses, and for metrics that need gaze where there
+  // is no view.
   Comparison(const ComparisonSettings& settings, int width_px, int height_px);
   ~Comparison();
   Comparison(const Comparison&) = delete;
   Comparison& operator=(const Comparison&) = delete;
-  // In the order of time. Error(input) with frame and metric where a score is not a number.
+  // Adds a frame; frames come in the order of time. Error(input) with frame and metric where a score is not a number.
   FrameScores add(const FramePair& pair);
   [[nodiscard]] std::vector<SequenceScores> summary() const;  // "all" first, then the classes that have frames
 
@@ -120,40 +121,42 @@ class Comparison {
   std::unique_ptr<Impl> impl_;
 };
 
-// A map as a picture in magma: FLIP as it is, squared errors as roots, SSIM as 1 - v, SMAPE halved. FovVideoVDP and
-// flicker as heat over the reference in grey: blue, green, yellow, red at 0.75, 1.5, 2.25 and 3 JOD, or at 2.5, 5, 7.5
-// and 10 times what is just seen. Without the reference's code values the grey is black.
+// A map as a picture in the colours of magma: FLIP as it is, roots of squared errors, SSIM as 1 - v, SMAPE halved.
+// FovVideoVDP and flicker are shown as heat over the reference in grey: blue, green, yellow and red stand for
+// 0.75, 1.5, 2.25 and 3 JOD, or for 2.5, 5, 7.5 and 10 times what is just visible. Without the reference's code values
+// the grey is black.
 DisplayImage error_map_picture(const std::string& metric, const ImageGray& map, const ImageRgb& reference_code = {});
-// Draws the borders of the regions and a cross where the gaze is, white in black. What lies off the picture is left
-// out.
+// Draws the borders of the regions and a cross at the gaze, in white with a black rim. Parts outside the picture are
+// cut off.
 void draw_gaze(DisplayImage& picture, const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions);
 
-// Frames of which a file of this pattern exists, ascending; {0} for the name of a single picture that exists.
+// The frames for which a file of this pattern exists, ascending; {0} for the name of a single picture that exists.
 std::vector<std::int32_t> find_frames(const std::string& pattern);
 
-// What a frame's file says of itself; empty where it does not.
+// What a frame's file states in its header; empty where it does not.
 struct FrameFacts {
   std::optional<double> exposure_ev;
   std::optional<double> frames_per_second;
   std::optional<std::int64_t> t_video_ns;
   std::string settings_digest;
-  std::optional<GazeAtTime> gaze_true;  // state, place, movement, time since the last saccade
-  bool gaze_is_direction = false;       // from the head: no place on a screen
+  std::optional<GazeAtTime> gaze_true;  // state, position, movement, time since the last saccade
+  bool gaze_is_direction = false;       // a direction from the head, without a position on a screen
 };
-// Display images say all but their frame rate; DPX files leave out the gaze.
+// Display images state all of this but the frame rate; DPX files leave out the gaze, too.
 FrameFacts read_frame_facts(const std::string& path);
 
-// A picture with what it says of itself. .exr: linear light; others: code values.
+// A picture with what its header states. An .exr holds linear light, every other format code values.
 struct ComparedPicture {
   MetricPicture picture;
   bool is_linear = false;
   FrameFacts facts;
 };
 ComparedPicture read_compared_picture(const std::string& path);
-// Code values of linear light as a view shows it, 8 bits; light of code values as a display emits it, its peak 1; PQ
-// code values of light in cd/m2, as far as the display goes.
+// The code values, at 8 bits, of linear light as a view shows it.
 ImageRgb viewed(const ImageRgb& light, const ColorPipeline& color, double exposure_ev, int threads = 0);
+// The light that a display emits for code values, relative to its peak.
 ImageRgb emitted(const ImageRgb& code, DisplayResponse response, double peak_cd_m2, int threads = 0);
+// The PQ code values of light in cd/m2, clamped to the display's peak.
 ImageRgb pq_codes(const ImageRgb& light_cd_m2, double peak_cd_m2, int threads = 0);
 
 }  // namespace gazetrace

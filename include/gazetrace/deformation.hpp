@@ -13,47 +13,49 @@ namespace gazetrace {
 struct Geometry;
 struct TextureRef;
 
-// What a target of weight 1 adds to every vertex; empty where it leaves an attribute alone.
+// What a target of weight 1 adds to every vertex. An attribute that it leaves alone is empty.
 struct MorphTarget {
   std::vector<Vec3f> positions, normals, tangents;
 };
 
-// The joints that pull at each vertex: `per_vertex` of them, with weights that are not negative and sum to 1.
+// The joints that influence each vertex: `per_vertex` of them, with weights that are not negative and sum to 1. Vertex
+// i has entries i * per_vertex and those after it.
 struct JointInfluences {
   std::uint32_t per_vertex = 0;  // 0: no skin
   std::vector<std::uint32_t> joints;
   std::vector<float> weights;
 };
 
-// What shapes a mesh at one time.
+// The state of a mesh's deformation at one time.
 struct MeshPose {
-  std::vector<double> morph_weights;  // one a target; empty: none
-  // One a joint, from the mesh's space to the world: the joint's place times its inverse bind matrix. Empty: no skin.
+  std::vector<double> morph_weights;  // one per target; empty: no morphing
+  // One per joint, from the mesh's space to the world: the joint's transform times its inverse bind matrix. Empty: no
+  // skin.
   std::vector<Affine> joints;
   friend bool operator==(const MeshPose&, const MeshPose&) = default;
 };
 
-// The pose of an instance's mesh over time. May be called with any time; before the first and after the last key of the
-// animation it holds. A skin puts vertices into the world by itself: its instance's to_world is the identity.
+// The pose of an instance's mesh over time. May be called with any time; before the first and after the last keyframe
+// it stands still. A skin puts vertices into the world by itself, so its instance's to_world is the identity.
 struct Deformation {
   std::function<MeshPose(std::int64_t t_video_ns)> pose_at;
   MeshPose rest;
-  std::int64_t end_ns = 0;  // of the last key
+  std::int64_t end_ns = 0;  // time of the last keyframe
 };
 
-// In the order of the geometry's vertices.
+// One entry per vertex, in the order of the geometry.
 struct DeformedVertices {
   std::vector<Vec3f> positions, normals;
   std::vector<Vec4f> tangents;  // empty where the geometry has none
 };
 
-// Morph targets first: p + sum w_k dp_k (section 3.7.2.2), then linear blend skinning: sum w_j M_j p (3.7.3.3). Normals
-// go with the cofactors of the blended matrix. Flat normals, and tangents that the file leaves out, are made anew from
-// the new shape; `normal_texture` is the one of the geometry's material. Vertices are spread over `threads` (0: all).
+// Applies morph targets, p + sum w_k dp_k (section 3.7.2.2), then linear blend skinning, sum w_j M_j p (3.7.3.3).
+// Normals are transformed by the cofactors of the blended matrix. Flat normals, and tangents that the file leaves out,
+// are computed anew from the new shape; `normal_texture` is that of the geometry's material. `threads` 0: all cores.
 DeformedVertices deform(const Geometry& geometry, const MeshPose& pose, const TextureRef& normal_texture,
                         int threads = 0);
 
-// Whether the joints turn a mesh inside out: the first one of them does.
+// Whether the joints mirror the mesh and so turn it inside out; the first joint decides.
 bool is_mirrored(const MeshPose& pose);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one exception type. Library code throws it and never prints or exits; the program catches it once.
+// The library's one exception type. Library code throws it and never prints or exits; the program catches it once.
 #pragma once
 
 #include <stdexcept>
@@ -10,9 +10,9 @@
 namespace gazetrace {
 
 enum class ErrorKind {
-  usage,    // options that contradict each other or name something unknown; exit code 2
+  usage,    // settings that contradict each other or name something unknown; exit code 2
   input,    // a file that is missing, broken or does not fit the rest; exit code 2
-  runtime,  // everything was right at the start and failed later (disk full, out of memory); exit code 3
+  runtime,  // the inputs were right, and something failed later (disk full, out of memory); exit code 3
 };
 
 class Error : public std::runtime_error {
@@ -29,11 +29,10 @@ class Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
-// Things worth saying that do not stop the work, one line each. Functions that can warn return them beside
-// their result.
+// Messages that do not stop the work, one line each. Functions that can warn return them beside their result.
 using Warnings = std::vector<std::string>;
 
-// "unknown falloff 'linaer'; did you mean 'linear'? Known: regions, uniform". For every choice by name.
+// The message for every choice by name: "unknown falloff 'linaer'; did you mean 'linear'? Known: regions, uniform".
 std::string unknown_name_message(std::string_view what, std::string_view given, const std::vector<std::string>& known);
 
 }  // namespace gazetrace

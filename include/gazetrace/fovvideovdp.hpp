@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// FovVideoVDP: what of a video's difference from its reference is seen, given where the eye looks (Mantiuk et al.,
-// "FovVideoVDP: A visible difference predictor for wide field-of-view video", ACM Transactions on Graphics 40(4),
-// 2021). Written from the formulas of the paper and of its sources, with the parameter values of version 1.2 of the
-// authors' program; scores of other versions do not compare.
+// FovVideoVDP: how much of the difference between a video and its reference is visible, given where the eye looks
+// (Mantiuk et al., "FovVideoVDP: A visible difference predictor for wide field-of-view video", ACM Transactions on
+// Graphics 40(4), 2021). Written from the formulas of the paper and of its sources, with the parameter values of
+// version 1.2 of the authors' program; scores do not compare with those of other versions.
 //
-// It sees luminance only, and no uniform differences: black against white scores 10. Scores compare only for the same
-// display, frame rate, gaze and version, and scores at different gaze positions do not compare at all.
+// It considers luminance only, and does not see uniform differences: black against white scores 10. Scores compare only
+// for the same display, frame rate, gaze and version; scores at different gaze positions do not compare at all.
 #pragma once
 
 #include <array>
@@ -22,34 +22,37 @@ namespace gazetrace {
 
 inline constexpr const char* kFovVideoVdpParameters = "FovVideoVDP parameters 1.2";
 
-// From code values to luminance. The default is the metric's standard_4k.
+// How code values become luminance. The default is the metric's display "standard_4k".
 struct DisplayPhotometry {
   DisplayResponse response = DisplayResponse::srgb;
   double peak_cd_m2 = 200;
-  double contrast = 1000;  // peak over the display's own black
+  double contrast = 1000;  // peak divided by the display's own black
   double ambient_lux = 250;
   double reflectivity = 0.005;
 };
-double black_level_cd_m2(const DisplayPhotometry& photometry);  // the display's own and reflected ambient light
-// Y = 0.2126729 R + 0.7151522 G + 0.0721750 B with each channel through response, peak and black level.
+double black_level_cd_m2(const DisplayPhotometry& photometry);  // the display's own black plus reflected ambient light
+// Luminance in cd/m2: Y = 0.2126729 R + 0.7151522 G + 0.0721750 B, with response, peak and black level applied to each
+// channel.
 ImageGray display_luminance(const ImageRgb& code, const DisplayPhotometry& photometry, int threads = 0);
-// Light that is linear: `scale` cd/m2 a unit, each channel clamped to 0.005..`most_cd_m2`, then `black_cd_m2` added.
+// The luminance of linear light of `scale` cd/m2 per unit: each channel is clamped to 0.005..`most_cd_m2`, then
+// `black_cd_m2` is added.
 ImageGray linear_luminance(const ImageRgb& light, double scale, double most_cd_m2 = 10000, double black_cd_m2 = 0,
                            int threads = 0);
 
-// The metric's own geometry: a flat display that the picture FILLS, whatever the picture's size in pixels. Angles are
-// (azimuth, elevation) pairs and their Euclidean distance, not angles between rays: keep them inside the metric.
-// A picture that lies off the eye's perpendicular is one on a display of its own size, so far right and up of it.
+// The metric's own geometry: a flat display that the picture always *fills*, whatever its size in pixels. Its angles
+// are pairs (azimuth, elevation) with Euclidean distances between them, not angles between rays; use them for this
+// metric only. A picture that covers a part of a display is described as a display of the picture's size whose middle
+// is right_m and up_m off the perpendicular from the eye.
 struct FovVideoVdpGeometry {
   int width_px = 3840, height_px = 2160;  // of the display
   double width_m = 0.66414056, height_m = 0.37357906, distance_m = 0.7472;
-  // Of the middle, from the foot of the eye's perpendicular. The authors' program has no more than 0.
+  // The display's middle, counted from the foot of the perpendicular from the eye. The authors' program knows 0 only.
   double right_m = 0, up_m = 0;
 
-  [[nodiscard]] double pixels_per_degree() const;  // at the foot of the eye's perpendicular
-  // Degrees right and up of a continuous position in a raster of this size.
+  [[nodiscard]] double pixels_per_degree() const;  // at the foot of the perpendicular from the eye
+  // Degrees right and up of a continuous position in a raster of this size that fills the display.
   [[nodiscard]] Vec2d view_direction_deg(double x, double y, int raster_width, int raster_height) const;
-  // How much more pixels a degree has in this direction than there.
+  // Pixels per degree in this direction, relative to pixels_per_degree().
   [[nodiscard]] double magnification(const Vec2d& direction_deg) const;
 };
 FovVideoVdpGeometry fovvideovdp_geometry(const DisplayGeometry& display);
@@ -59,31 +62,35 @@ FovVideoVdpGeometry geometry_from_diagonal_fov(int width_px, int height_px, doub
 
 struct FovVideoVdpSettings {
   FovVideoVdpGeometry geometry;
-  bool foveated = true;          // false: the fovea's sensitivity everywhere, gaze is ignored
+  bool foveated = true;          // false: the fovea's sensitivity holds everywhere, and gaze is ignored
   double frames_per_second = 0;  // 0: a still picture, without temporal channels
-  // The authors' program treats the right border of pictures whose width and height differ in parity as if the width
-  // had the height's parity: up to 0.05 JOD on small pictures. true: as it does; false: the correct border.
+  // Where a picture's width and height differ in parity, the authors' program treats its right border as if the width
+  // had the height's parity, which changes scores by up to 0.05 JOD on small pictures. true: as their program; false:
+  // the correct border.
   bool original_border = true;
   int threads = 0;
 };
 
-// Q of each spatial band, finest first; transient is empty for stills.
+// What one frame scores.
 struct FovVideoVdpFrame {
-  std::vector<double> sustained, transient;
-  double q = 0;   // over bands and channels; a sequence's Q is the mean over frames
+  std::vector<double> sustained, transient;  // Q of each spatial band, finest first; transient is empty for stills
+  double q = 0;   // pooled over bands and channels; the Q of a sequence is the mean over its frames
   ImageGray map;  // local difference in JOD; empty unless asked for
 };
 
-// Spatial frequencies of the bands that are used for a picture, finest first.
+// The spatial frequencies of the bands that are used for a picture of this size, finest first.
 std::vector<double> fovvideovdp_bands_cpd(double pixels_per_degree, int width_px, int height_px);
 
-// Just-objectionable differences: 10 is none, 9.5 what 63 % would see, 9 what 75 % would. No lower limit.
+// The score in just-objectionable differences: 10 means no visible difference, 9.5 one that 63 % of viewers see, 9 one
+// that 75 % see. There is no lower limit.
 double fovvideovdp_jod(double q);
 
-// State: the luminance of the last 250 ms of both sequences. Memory does not grow with time.
+// Scores two sequences frame by frame. Its state is the luminance of the last 250 ms of both, so that its memory does
+// not grow with time.
 class FovVideoVdp {
  public:
-  // Error(usage) for a raster of less than 8 pixels a side, frame rates that leave less than two taps.
+  // Error(usage) for pictures of less than 8 pixels a side, and for frame rates so low that the temporal filter would
+  // have less than two taps.
   FovVideoVdp(const FovVideoVdpSettings& settings, int width_px, int height_px);
   ~FovVideoVdp();
   FovVideoVdp(FovVideoVdp&&) noexcept;
@@ -91,13 +98,15 @@ class FovVideoVdp {
   FovVideoVdp(const FovVideoVdp&) = delete;
   FovVideoVdp& operator=(const FovVideoVdp&) = delete;
 
-  // A frame from before the first scored one, the oldest first. Without any, the first frame stands still before it.
+  // Adds a frame from before the first scored one; the oldest comes first. Without any, the first scored frame is taken
+  // to have stood still before.
   void prime(const ImageGray& reference_cd_m2, const ImageGray& test_cd_m2);
-  // Frames in their order. `gaze_px` is continuous (pixel centres at + 0.5), of this frame; empty: the middle.
+  // Scores the next frame. `gaze_px` is the gaze in this frame, in continuous coordinates (pixel centres at + 0.5);
+  // empty: the middle of the picture.
   FovVideoVdpFrame add(const ImageGray& reference_cd_m2, const ImageGray& test_cd_m2, std::optional<Vec2d> gaze_px,
                        bool want_map = false);
   [[nodiscard]] const std::vector<double>& band_frequencies_cpd() const;
-  [[nodiscard]] int taps() const;  // frames that a frame's score sees
+  [[nodiscard]] int taps() const;  // the number of frames that a frame's score depends on
 
  private:
   struct Impl;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dense raster. Pixel (i, j) covers [i, i+1) x [j, j+1), its centre is at + 0.5, origin top left.
+// A dense raster. Pixel (i, j) covers [i, i+1) x [j, j+1) and has its centre at (i + 0.5, j + 0.5); the origin is the
+// top left corner.
 #pragma once
 
 #include <cstddef>

@@ -92,7 +92,8 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   FoveationSettings foveation;
   TraceSettings trace;
   BvhQuality bvh = BvhQuality::high;
-  std::string filter = "auto";  // choose_filter() says which
+  std::string filter = "auto";  // filter_of() says which
+  std::optional<std::uint64_t> pass_through_samples;
   double enhance_contrast = 0;
   AccumulateSettings accumulate;
   std::string checkpoint, resume_from;

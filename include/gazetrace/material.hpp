@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surface description as glTF 2.0 states it: plain data, no evaluation.
+// Surface materials as glTF 2.0 states them: plain data without any evaluation.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 
 namespace gazetrace {
 
-// Shape of the diffuse lobe; both are balanced so that a white surface loses no light.
-// matte: every surface is the ideal Lambertian one, base colour / pi, without any specular lobe; for closed forms and
-// for comparison with renderers that have nothing else.
+// Shape of the diffuse lobe. burley and lambert are balanced with the specular lobe so that a white surface loses no
+// light. matte: every surface is ideally Lambertian, base colour / pi, without any specular lobe; this is for
+// closed-form tests and for comparison with renderers that have nothing else.
 enum class DiffuseModel : std::uint8_t { burley, lambert, matte };
 
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
-// A texture with the coordinates it is read at: uv' = (a u + b v + tx, c u + d v + ty) (KHR_texture_transform).
+// A texture, and the coordinates at which it is read: uv' = (a u + b v + tx, c u + d v + ty) (KHR_texture_transform).
 struct TextureRef {
   std::int32_t texture = -1;  // index into Scene::textures; -1: none
   std::uint8_t uv_set = 0;    // 0 or 1
@@ -29,14 +29,14 @@ struct TextureRef {
   friend bool operator==(const TextureRef&, const TextureRef&) = default;
 };
 
-// KHR_materials_clearcoat: a clear varnish of index 1.5 over everything else.
+// KHR_materials_clearcoat: a clear varnish with index of refraction 1.5 over everything else.
 struct ClearcoatLayer {
   float factor = 0;     // 0..1: share of the surface that is coated
   float roughness = 0;  // 0..1, perceptual
   float normal_scale = 1.0F;
   TextureRef texture;            // R
   TextureRef roughness_texture;  // G
-  TextureRef normal_texture;     // linear, tangent space; without it the coat is not bumped, whatever lies below
+  TextureRef normal_texture;     // linear, tangent space; without it the coat is smooth even where the base is bumped
 };
 
 // KHR_materials_sheen: fibres over the base, under a clearcoat.
@@ -47,32 +47,32 @@ struct SheenLayer {
   TextureRef roughness_texture;  // A
 };
 
-// KHR_materials_specular: what of the dielectric part's reflection is there.
+// KHR_materials_specular: strength and colour of the dielectric part's specular reflection.
 struct SpecularParameters {
-  float factor = 1.0F;       // 0..1, scales it under every angle
-  Vec3f color{1, 1, 1};      // linear, >= 0: tints it at normal incidence; the product with that reflectance ends at 1
-  TextureRef texture;        // A
+  float factor = 1.0F;   // 0..1, scales the reflection at every angle
+  Vec3f color{1, 1, 1};  // linear, >= 0: tints it at normal incidence; its product with that reflectance is at most 1
+  TextureRef texture;    // A
   TextureRef color_texture;  // sRGB
-  // From KHR_materials_pbrSpecularGlossiness: A of the colour's texture is glossiness, 1 - roughness; it takes the
-  // place of the metallic-roughness texture.
+  // KHR_materials_pbrSpecularGlossiness: the colour texture's A holds glossiness, 1 - roughness, and takes the place of
+  // the metallic-roughness texture.
   bool color_texture_has_glossiness = false;
 };
 
-// KHR_materials_transmission: light through the surface instead of a diffuse base.
+// KHR_materials_transmission: light passes through the surface instead of being reflected by a diffuse base.
 struct TransmissionParameters {
   float factor = 0;    // 0..1
   TextureRef texture;  // R
 };
 
-// KHR_materials_volume: the surface bounds a solid body. Without it everything that transmits is a thin sheet.
+// KHR_materials_volume: the surface bounds a solid body. Without this extension a transmitting surface is a thin sheet.
 struct VolumeParameters {
-  float thickness = 0;  // 0: thin. What lies between two surfaces is traced, so that only zero or not matters
-  Vec3f attenuation_color{1, 1, 1};  // linear, what is left of white after the distance below
+  float thickness = 0;               // 0: thin. Only zero or not matters, since the way through the body is traced
+  Vec3f attenuation_color{1, 1, 1};  // linear: what is left of white light after the distance below
   float attenuation_distance_m = std::numeric_limits<float>::infinity();
   [[nodiscard]] bool present() const { return thickness > 0; }
 };
 
-// KHR_materials_anisotropy: rougher along one direction of the surface, that of the tangent turned by `rotation_rad`.
+// KHR_materials_anisotropy: rougher along one direction in the surface, that of the tangent turned by `rotation_rad`.
 struct AnisotropyParameters {
   float strength = 0;  // 0..1
   float rotation_rad = 0;
@@ -81,14 +81,14 @@ struct AnisotropyParameters {
 
 // KHR_materials_iridescence: a thin film on the base.
 struct IridescenceParameters {
-  float factor = 0;  // 0..1: share of the surface under the film
+  float factor = 0;  // 0..1: share of the surface that has the film
   float ior = 1.3F;
-  float thickness_min_nm = 100, thickness_max_nm = 400;  // at texture values 0 and 1; without a texture: the latter
+  float thickness_min_nm = 100, thickness_max_nm = 400;  // at texture values 0 and 1; max without a texture
   TextureRef texture;                                    // R
   TextureRef thickness_texture;                          // G
 };
 
-// KHR_materials_diffuse_transmission: paper, leaves; a share of the diffuse light leaves on the other side.
+// KHR_materials_diffuse_transmission (paper, leaves): a share of the diffuse light leaves on the other side.
 struct DiffuseTransmissionParameters {
   float factor = 0;  // 0..1
   Vec3f color{1, 1, 1};
@@ -96,20 +96,20 @@ struct DiffuseTransmissionParameters {
   TextureRef color_texture;  // sRGB
 };
 
-// glTF 2.0 section 3.9, metallic-roughness, and its extensions; factors multiply what the textures hold.
+// The metallic-roughness material of glTF 2.0, section 3.9, and its extensions. Factors multiply what textures hold.
 struct Material {
   std::string name;
   Vec4f base_color{1, 1, 1, 1};  // linear Rec.709, alpha last
   float metallic = 1.0F;         // 0..1, texture channel B
   float roughness = 1.0F;        // 0..1, perceptual: alpha = roughness^2; texture channel G
-  // emissiveFactor * KHR_materials_emissive_strength, radiance. From 1e-30 to 1e30 pictures hold to float's precision:
-  // light weights come from ratios of densities, sums are double. It ends where a float does: at 1.2e-38 below (smaller
-  // ones are flushed to zero), above where the sum over a pixel's samples passes 3.4e38 (non-finite samples are
-  // counted); the sum of squares behind the variance saturates from a radiance of 1.8e19 on and is zero below about
-  // 1e-19.
+  // Radiance: emissiveFactor * KHR_materials_emissive_strength. Pictures are right to float's precision from 1e-30 to
+  // 1e30, since light weights come from ratios of densities and sums are double. The limits are those of a float: below
+  // 1.2e-38 values are flushed to zero, and above, the sum over a pixel's samples must not pass 3.4e38 (non-finite
+  // samples are counted). The sum of squares behind the variance saturates from a radiance of 1.8e19 on and is zero
+  // below about 1e-19.
   Vec3f emission{0, 0, 0};
   float normal_scale = 1.0F;
-  AlphaMode alpha_mode = AlphaMode::opaque;  // loading turns mask and blend into opaque where nothing is transparent
+  AlphaMode alpha_mode = AlphaMode::opaque;  // loading makes mask and blend opaque where nothing is transparent
   float alpha_cutoff = 0.5F;
   bool double_sided = false;
   bool unlit = false;  // KHR_materials_unlit: base colour is the outgoing radiance
@@ -128,11 +128,11 @@ struct Material {
   AnisotropyParameters anisotropy;
   IridescenceParameters iridescence;
   DiffuseTransmissionParameters diffuse_transmission;
-  float dispersion = 0;  // KHR_materials_dispersion: 20 / Abbe number; only of solid bodies
+  float dispersion = 0;  // KHR_materials_dispersion: 20 / Abbe number; has an effect in solid bodies only
 };
 
-// What a material has beyond metallic-roughness, as far as it can show: a clearcoat of factor 0 is none. Scenes or
-// these over all materials in use.
+// What a material has beyond metallic-roughness, as far as it can show: a clearcoat of factor 0 does not count. A scene
+// has what any of the materials in use has.
 struct MaterialLayers {
   bool clearcoat = false, sheen = false, specular = false, ior = false, transmission = false, volume = false,
        anisotropy = false, iridescence = false, diffuse_transmission = false, dispersion = false;
@@ -146,7 +146,7 @@ struct MaterialLayers {
 MaterialLayers layers_of(const Material& material);
 MaterialLayers operator|(const MaterialLayers& a, const MaterialLayers& b);
 
-// The texture slots of the extensions, present or not.
+// All texture slots of the extensions, whether they hold a texture or not.
 std::array<const TextureRef*, 13> layer_textures(const Material& material);
 
 }  // namespace gazetrace

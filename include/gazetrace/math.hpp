@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small vectors, quaternions and affine maps: plain values, no units of their own.
-// Right-handed frames throughout; a camera or eye looks along -z with +x right and +y up (glTF, OpenXR).
+// Small vectors, quaternions and affine maps as plain values without units of their own.
+// All frames are right-handed; a camera or eye looks along -z with +x right and +y up (glTF, OpenXR).
 #pragma once
 
 #include <cmath>
@@ -63,7 +63,7 @@ T length(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
-// The zero vector stays zero: callers that can meet one must test for it.
+// The zero vector stays zero; callers that can meet one must test for it.
 template <class T>
 Vec3<T> normalize(const Vec3<T>& a) {
   const T len = length(a);
@@ -82,13 +82,13 @@ inline Vec3d to_double(const Vec3f& a) {
   return {a.x, a.y, a.z};
 }
 
-// Angle between two directions of any length, in radians, 0..pi. atan2 keeps all digits near 0,
-// where acos of a normalised dot product has none left.
+// Angle between two directions of any length, in radians, 0..pi. atan2 keeps all digits near 0, where the acos of a
+// normalised dot product has none left.
 inline double angle_between_rad(const Vec3d& a, const Vec3d& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// Unit quaternion x i + y j + z k + w, rotating by q v q*.
+// The unit quaternion x i + y j + z k + w, which rotates v to q v q*.
 struct Quatd {
   double x{}, y{}, z{}, w{1};
   friend constexpr bool operator==(const Quatd&, const Quatd&) = default;
@@ -97,20 +97,20 @@ struct Quatd {
 Quatd normalize(const Quatd& q);
 Quatd operator*(const Quatd& a, const Quatd& b);
 Vec3d rotate(const Quatd& q, const Vec3d& v);
-// Shortest-path spherical interpolation; falls back to linear where the arc is below 1e-9 rad.
+// Spherical interpolation along the shorter path, t in 0..1; linear where the arc is below 1e-9 rad.
 Quatd slerp(const Quatd& a, const Quatd& b, double t);
 
-// p -> x p.x + y p.y + z p.z + t: the columns of a 3x4 matrix.
+// The map p -> x p.x + y p.y + z p.z + t; the members are the columns of a 3x4 matrix.
 struct Affine {
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, t{0, 0, 0};
   friend constexpr bool operator==(const Affine&, const Affine&) = default;
 };
 
-Affine operator*(const Affine& a, const Affine& b);  // a after b
+Affine operator*(const Affine& a, const Affine& b);  // b is applied first, then a
 Affine make_affine(const Vec3d& translation, const Quatd& rotation, const Vec3d& scale);
 double determinant(const Affine& a);  // of the 3x3 part
-// The rotation nearest to the 3x3 part with scale and shear removed (columns orthonormalised z first,
-// then y), as cameras need it. A mirrored map keeps its z and y axes.
+// The rotation in the 3x3 part without its scale and shear, as cameras need it: the columns are orthonormalised, z
+// first, then y. A mirrored map keeps its z and y axes.
 Quatd rotation_of(const Affine& a);
 
 inline Vec3d transform_vector(const Affine& a, const Vec3d& v) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where what a pixel shows was seen before: motion vectors of camera, bodies and shapes.
+// Motion vectors: where the surface point that a pixel shows was in an earlier view, by the motion of the camera, of
+// rigid bodies and of shapes. Reprojection uses them.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +13,23 @@ namespace gazetrace {
 // The view that a frame is compared with.
 struct EarlierView {
   Camera camera;
-  std::int64_t t_video_ns = 0;  // bodies and shapes are where they were then
+  std::int64_t t_video_ns = 0;  // the time whose positions and shapes count
 };
 
-// One entry a pixel, of the ray through its centre. Lens and shutter are left out: both cameras are pinholes in the
-// middle of their frames' time. Where the ray misses everything, the entry is about its direction.
+// One entry per pixel, found by the ray through its centre. Lens and shutter are left out: both cameras are pinholes in
+// the middle of their frames' times. Where the ray misses everything, earlier_px is where its direction was.
 struct SurfaceMotion {
   ImageGray depth_m;            // along the view axis; +Inf for a miss
   ImageRgb normal;              // of the triangle, unit, towards the camera; zero for a miss
   Image<std::uint32_t> object;  // 1 + index into Scene::instances; 0: a miss
-  Image<Vec2d> earlier_px;      // where the same point of the surface was: its centre's pixel (i, j) is at + 0.5.
-                                // NaN: behind the earlier camera
+  Image<Vec2d> earlier_px;      // where the same point of the surface was, in continuous coordinates (pixel centres at
+                                // + 0.5); NaN where it was not in front of the earlier camera
   ImageGray earlier_depth_m;    // along the earlier view axis; +Inf for a miss
-  ImageRgb earlier_normal;      // as `normal`, of the triangle as it was
+  ImageRgb earlier_normal;      // as `normal`, of the triangle at the earlier time, towards the earlier camera
 };
 
-// A point of the world in continuous pixel coordinates of a frame, and its depth along the view axis. Square pixels, as
-// in ray generation.
+// Projects points of the world into continuous pixel coordinates of a frame, with their depth along the view axis.
+// Pixels are square, as in ray generation.
 class PixelProjection {
  public:
   PixelProjection(const Camera& camera, int width_px, int height_px);
@@ -38,18 +39,20 @@ class PixelProjection {
     double depth_m = 0;
   };
   [[nodiscard]] Place point(const Vec3d& p) const;
-  [[nodiscard]] Vec2d direction(const Vec3d& d) const;  // of something infinitely far
-  // Depth at which the ray through `other_px` meets the plane through the point at `px` and `depth_m` with this normal
-  // (world space). NaN where it does not.
+  // The pixel of something infinitely far away in direction `d`. NaN where that is not in front of the camera, and
+  // always without perspective.
+  [[nodiscard]] Vec2d direction(const Vec3d& d) const;
+  // The depth at which the ray through `other_px` meets the plane through the point at `px` and `depth_m` with this
+  // normal (world space). Infinite or NaN where the two are parallel, negative where they meet behind the camera.
   [[nodiscard]] double depth_on_plane(const Vec2d& px, double depth_m, const Vec3d& normal,
                                       const Vec2d& other_px) const;
-  [[nodiscard]] Vec3d toward(const Vec3d& p) const;  // from a point to the camera, unit
+  [[nodiscard]] Vec3d toward(const Vec3d& p) const;  // unit direction from a point to the camera
 
  private:
   bool perspective_ = true;
   Vec3d origin_, right_, up_, forward_;
   Vec2d center_px_;
-  double step_ = 1;  // of one pixel: tangent (perspective) or metres
+  double step_ = 1;  // size of a pixel: as a tangent (perspective) or in metres
 };
 
 }  // namespace gazetrace

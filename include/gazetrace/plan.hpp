@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What will be rendered, decided before the first ray: one request a frame, printable and testable.
+// The plan: what will be rendered, decided before the first ray, as one request per frame that can be printed and
+// tested.
 #pragma once
 
 #include <cstdint>
@@ -16,86 +17,90 @@
 
 namespace gazetrace {
 
-FrameRate parse_frame_rate(std::string_view text);  // "24", "23.976" (as 2997/125), "24000/1001"
+FrameRate parse_frame_rate(std::string_view text);  // "24", "23.976" (2997/125), "24000/1001"; else Error(usage)
 std::string to_string(const FrameRate& rate);
 
-// "1-100", "1-100x2", "1,5,9-12". Frames are numbered from 1. Sorted, without duplicates.
+// "1-100", "1-100x2" (every second one) or "1,5,9-12". Frames are numbered from 1; the list is sorted and has no
+// duplicates. Error(usage) for anything else and for more than 10,000,000 frames.
 std::vector<std::int32_t> parse_frame_list(std::string_view text);
 std::string format_frame_list(const std::vector<std::int32_t>& frames);
 
-// When the shutter opens and closes, in fractions of the frame's time; equal: an instant, nothing blurs.
+// When the shutter opens and closes, as fractions 0..1 of the frame's time. Where they are equal the exposure is
+// instantaneous and nothing blurs.
 struct Shutter {
   double open = 0.5, close = 0.5;
   [[nodiscard]] bool blurs() const { return close > open; }
   friend bool operator==(const Shutter&, const Shutter&) = default;
 };
-// "0.5": half of the frame's time, about its middle; "180deg": the same as an angle of a turning shutter; "0.25,0.75":
-// open and close; "0": off.
+// "0.5": half of the frame's time, about its middle; "180deg": the same, as the angle of a rotary shutter; "0.25,0.75":
+// opening and closing; "0": no blur. Error(usage) for anything else.
 Shutter parse_shutter(std::string_view text);
 std::string to_string(const Shutter& shutter);
 
-// Of the tracker, in degrees: systematic error and scatter.
+// How far gaze is off: the tracker's systematic error (accuracy) and its scatter (precision).
 struct GazeUncertainty {
   double accuracy_deg = 0, precision_deg = 0;
 };
-// What the log tells of it: the mean error of its validations, and the root mean square of the scatter in fixations.
-// NaN where it tells nothing.
+// What the log says about it: the mean error of its validations, and the root mean square of the scatter within
+// fixations. NaN where the log does not say.
 GazeUncertainty uncertainty_of(const GazeLog& log);
 
-// How gaze on one screen is carried over to another. Velocities, events and precision belong to the recording.
-//   fraction  places stay: what was at a quarter of the screen's width is so again; angles change
-//   angle     angles from the eye stay; places change, and may fall beside the screen
+// How gaze that was recorded on one screen is carried over to a screen of another size or distance. Velocities, events
+// and precision are always those of the recording.
+//   fraction  keeps positions: what was at a quarter of the screen's width is there again; angles change
+//   angle     keeps the angles from the eye; positions change, and may fall off the screen
 enum class GazeTransfer : std::uint8_t { fraction, angle };
 
 struct PlanSettings {
   std::vector<std::int32_t> frames;
   Shutter shutter;
   FrameRate fps;
-  std::int64_t start_ns = 0;  // video time at which frame 1 begins
+  std::int64_t start_ns = 0;  // the video time at which frame 1 begins
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   GazeMapping gaze;
-  std::int64_t gaze_latency_ns = 0;  // gaze_render is the gaze this long ago; gaze_true stays
-  bool find_events = true;           // say what the eye does, by default_event_preset() in the recording's geometry
-  // The uncertainty of the gaze widens the fovea: accuracy + precision + age x speed, degrees.
+  std::int64_t gaze_latency_ns = 0;  // >= 0; gaze_render is the gaze this long before the frame, gaze_true is not
+  bool find_events = true;           // detect eye movements with default_event_preset(), in the recording's geometry
+  // If given, FrameRequest::gaze_uncertainty_deg is accuracy + precision + age x speed, and widens the fovea.
   std::optional<GazeUncertainty> uncertainty;
-  bool find_speed = false;  // say how fast the eye turns
+  bool find_speed = false;  // fill in FrameRequest::eye_speed_deg_s
   int width_px = 1280, height_px = 720;
   std::optional<DisplayGeometry> display;  // where the frame is watched; required for a screen log
-  // Needed where the log states a recording screen whose size in degrees differs by more than 2 %.
+  // Required where the log states a recording screen whose angular size differs from the display's by more than 2 %.
   std::optional<GazeTransfer> transfer;
   FrameRect frame_rect;  // default: the whole display
 };
 
-// Complete: a frame can be rendered from it and the scene alone, history apart.
+// Everything about one frame: it can be rendered from this and the scene alone, apart from temporal history.
 struct FrameRequest {
   std::int32_t frame = 1;
-  std::int64_t t_video_ns = 0;  // mid-exposure: start + (frame - 1/2) / fps, rounded down to a nanosecond
+  std::int64_t t_video_ns = 0;  // the middle of the frame: start + (frame - 1/2) / fps, rounded down to a nanosecond
   std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: no motion blur
   int width_px = 0, height_px = 0;
   Camera camera;
-  PlanarView view;         // of the eye: display or, for gaze directions, the camera's own frustum
-  GazeAtTime gaze_render;  // steers the sampling
-  GazeAtTime gaze_true;    // the clean log at that time; metrics use this one
-  // See GazeAges, video time; empty without gaze and where the log does not tell.
+  PlanarView view;         // the eye's view of the frame on the display or, for gaze directions, the camera's frustum
+  GazeAtTime gaze_render;  // the gaze that steers the sampling: processed and delayed, if so asked
+  GazeAtTime gaze_true;    // the gaze of the unprocessed log at the frame's time; metrics use this one
+  // See GazeAges; in video time. Empty without gaze, and where the log does not tell.
   std::optional<std::int64_t> gaze_effective_age_ns;
-  // The angle by which the gaze that steers may be off (PlanSettings::uncertainty); 0: not asked for.
+  // The angle by which gaze_render may be off (PlanSettings::uncertainty); 0 where that is not given.
   double gaze_uncertainty_deg = 0;
-  // Of the eye by the clean log, at the time whose gaze steers: known without foresight. Speed only if asked for.
+  // What the eye did according to the unprocessed log, at the time of gaze_render, so that no foresight is needed. The
+  // speed is 0 unless PlanSettings::find_speed or uncertainty asks for it.
   double eye_speed_deg_s = 0;
   bool eye_in_saccade = false;
-  // By the clean log as well: whether the eye was in a saccade, or closed, at any time since the gaze that steered the
-  // frame before. Both are shorter than most frames last.
+  // Also by the unprocessed log: whether the eye was in a saccade, or closed, at any time between the gaze_render of
+  // the frame before and that of this frame. Both are often shorter than a frame.
   bool saccade_since_last_frame = false, blink_since_last_frame = false;
-  // In the eye's frame; empty: no gaze, render uniformly.
+  // From the eye, in its frame; empty: no gaze, the frame is rendered uniformly.
   std::optional<Vec3d> gaze_direction_render, gaze_direction_true;
 };
 
-// How old the gaze that steers a frame is in the middle of the time for which the frame is shown: latency, the wait of
-// a sample for the next frame and half of the frame's own time are in it. While a frame is shown its age grows from
-// half_frame_ns less to half_frame_ns more.
+// The effective age of the gaze that steers a frame: its age in the middle of the time for which the frame is shown. It
+// contains the latency, the time that a sample waits for the next frame and half of the frame's own time. While a frame
+// is shown, the age grows from half_frame_ns below this to half_frame_ns above it.
 struct GazeAges {
-  std::size_t frames = 0, unknown = 0;  // with a known age; with gaze of unknown age
-  std::size_t without = 0;              // without gaze, whatever steers them instead; no part of the ages
+  std::size_t frames = 0, unknown = 0;  // frames whose gaze has a known age; frames whose gaze has none
+  std::size_t without = 0;              // frames without gaze, whatever steers them instead; not part of the ages
   double min_ns = 0, median_ns = 0, mean_ns = 0, p95_ns = 0, max_ns = 0;
   double half_frame_ns = 0;
 };
@@ -103,20 +108,26 @@ struct GazeAges {
 struct FramePlan {
   std::vector<FrameRequest> frames;
   std::optional<GazeAges> ages;              // empty: no frame has gaze from a log
-  std::int64_t gaze_latency_ns = 0;          // as asked for
-  std::vector<std::string> gaze_processing;  // what was done to the log that steers, line by line
+  std::int64_t gaze_latency_ns = 0;          // that of the settings
+  std::vector<std::string> gaze_processing;  // what was done to the log that steers, one line per step
   Warnings warnings;
 };
 
-// Without a log (nullptr) every frame is rendered without gaze. Error(input) when the camera path does not cover a
-// frame, when a screen log has no display, or was recorded on another one and there is no
-// transfer, when NoGazePolicy::error meets a gap.
-// `steering`: the log after processing, which gaze_render comes from; by default the log itself. Both share the clock
-// of the first.
+// Without a log (nullptr) every frame is rendered without gaze. `steering` is the log after processing, from which
+// gaze_render comes; by default it is the log itself. Both use the clock of the first.
+// Error(input) where the camera path does not cover a frame, where a screen log has no display, or was recorded on one
+// of another size and no transfer is chosen, where gaze directions meet an orthographic camera, and where
+// NoGazePolicy::error meets a gap. Error(usage) for an empty list of frames, frames below 1, a frame rate that is not
+// positive, and a negative latency.
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,
                       const ProcessedGaze* steering = nullptr);
 
-// "50.0 ms in the median, mean 50.1, ...": one line.
+// For a plan that goes on where another run ended: enters what the eye has done since `frame_before`, the last frame of
+// that run. By itself plan_frames() assumes that the frame before its first one is as far away as the next one. `log`
+// and `settings` are those that the plan was made of.
+void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings);
+
+// One line: "50.0 ms in the median, mean 50.1, ...".
 std::string gaze_ages_text(const GazeAges& ages);
 std::string plan_as_table(const FramePlan& plan);
 std::string plan_as_json(const FramePlan& plan);

@@ -69,14 +69,8 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options = {});
 // be written to. resolve() begins with it.
 void check_job(const Job& job, const JobSchema& schema = job_schema());
 
-// What `filter` says or its "auto" stands for, and why: "guided" for foveated frames; "linear", which passes single
-// pixels through, for uniform ones, where lens or shutter blur what guided takes from first hits, and for what guided
-// does not go with.
-struct ChosenFilter {
-  std::string name;
-  std::string reason;  // empty: it was named
-};
-ChosenFilter choose_filter(const JobSettings& job);
+// What `filter` says, without a reason, or what its "auto" stands for and why: see choose_filter().
+FilterChoice filter_of(const JobSettings& job);
 
 TracerOptions tracer_options(const JobSettings& job);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums of samples that can be taken apart: samples 0..99 of a site and samples 100..255, added in any order, are to the
-// bit the sum of samples 0..255.
+// Exact sums of samples, so that parts can be traced apart and joined: the sums of samples 0..99 and 100..255 of a
+// site, added in any order, equal the sum of samples 0..255 bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace gazetrace {
 
-// Samples of each site by their number: begin up to, not including, end.
+// The samples of each site whose number is in [begin, end).
 struct SampleRange {
   std::uint32_t begin = 0, end = 0;
   friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
-// The sum of floats as two doubles, high the sum's nearest double and low the rest (Knuth, TAOCP 2, 4.2.2, theorem B:
-// the error of an addition is a double, and six additions find it). Nothing is rounded, so no order matters, while the
-// sum of the magnitudes is under 2^80 (1e24) times the smallest of them that is not zero: every term is a multiple of
-// 2^-24 of that smallest one, and the pair holds 2^104 such steps.
+// The sum of floats as two doubles: `high` is the double nearest to the sum, and `low` the rest (Knuth, TAOCP 2, 4.2.2,
+// theorem B: the error of an addition is a double, and six additions find it). As long as the sum of the magnitudes is
+// below 2^80 (1e24) times the smallest magnitude that is not zero, nothing is rounded and the order does not matter:
+// every term is a multiple of 2^-24 of that smallest one, and the pair holds 2^104 such steps.
 struct ExactSum {
   double high = 0, low = 0;
 
@@ -36,7 +36,7 @@ struct ExactSum {
   friend bool operator==(const ExactSum&, const ExactSum&) = default;
 };
 
-// Of one site; members as in SparseFrame and GuideSums.
+// The sums of one site; members as in SparseFrame and GuideSums.
 struct SiteSums {
   ExactSum red, green, blue, square_luminance;
   std::uint64_t count = 0;
@@ -46,7 +46,7 @@ struct SiteGuideSums {
   std::uint64_t hits = 0;
 };
 
-// One entry per site of the map; `guides` as long or empty.
+// One entry per site of the map; `guides` is as long, or empty.
 struct SampleSums {
   std::vector<SiteSums> sites;
   std::vector<SiteGuideSums> guides;

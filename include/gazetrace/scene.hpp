@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as plain data in metres, world +y up, and how it is read from glTF 2.0.
+// A scene as plain data, in metres with +y up, and how it is read from glTF 2.0.
 #pragma once
 
 #include <array>
@@ -18,21 +18,21 @@
 
 namespace gazetrace {
 
-// One glTF primitive: triangles with one material, in the mesh's own space. Per-vertex arrays are empty when the
-// file has none; normals and, where a normal map needs them, tangents are always there after loading.
+// One glTF primitive: triangles with one material, in the mesh's own space. Per-vertex arrays are empty where the file
+// has none, except that after loading there are always normals and, where a normal map needs them, tangents.
 struct Geometry {
   std::vector<Vec3f> positions;
   std::vector<Vec3f> normals;
   std::vector<Vec4f> tangents;  // w: sign of the bitangent
   std::vector<Vec2f> uv0, uv1;
-  std::vector<Vec4f> colors;  // linear, multiplies base colour
+  std::vector<Vec4f> colors;  // linear; they multiply the base colour
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::int32_t material = 0;
-  // Only of meshes that an instance deforms.
+  // Only for meshes that an instance deforms.
   std::vector<MorphTarget> morph_targets;
   JointInfluences influences;
-  bool flat_normals = false;   // the file has no normals: every triangle has vertices of its own
-  bool made_tangents = false;  // the file has no tangents
+  bool flat_normals = false;   // the file has no normals, so every triangle has vertices of its own
+  bool made_tangents = false;  // the file has no tangents, so they were computed
 };
 
 struct Mesh {
@@ -40,62 +40,61 @@ struct Mesh {
   std::vector<Geometry> geometries;
 };
 
-// A mesh placed in the world. Instances whose 3x3 part has no finite inverse are left out at loading, with a
-// warning.
+// A mesh placed in the world. Loading leaves out instances whose 3x3 part has no finite inverse, with a warning.
 struct Instance {
   std::int32_t mesh = 0;
-  Affine to_world;                // of one that moves: at rest
+  Affine to_world;                // at rest, for an instance that moves
   std::int32_t motion = -1;       // index into Scene::motions; -1: stands still
   std::int32_t deformation = -1;  // index into Scene::deformations; -1: keeps its shape
 };
 
-// Where an instance is over time: a node's animation with those of its parents. May be called with any time; before the
-// first and after the last key of the animation it holds.
+// Where an instance is over time: a node's animation together with those of its parents. May be called with any time;
+// before the first and after the last keyframe it stands still.
 struct Motion {
   std::function<Affine(std::int64_t t_video_ns)> to_world_at;
-  std::int64_t end_ns = 0;  // of the last key: nothing moves afterwards
+  std::int64_t end_ns = 0;  // time of the last keyframe
 };
 
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
 
-// How a channel is stored. Pictures of up to 8 bits stay as they are. Of deeper ones, what is seen as a colour is kept
-// as linear light in half floats (11 bits of precision at any brightness), other integers in 16 bits.
+// How a channel of a texel is stored. Images of up to 8 bits stay as they are. Of deeper ones, colours are kept as
+// linear light in half floats (11 bits of precision at any brightness) and other data as 16-bit integers.
 enum class TexelFormat : std::uint8_t { unorm8, unorm16, half };
 
-// RGBA interleaved, unassociated alpha, full mip chain; level 0 first.
+// Interleaved RGBA with unassociated alpha and a full mip chain, level 0 first.
 struct Texture {
   std::string name;
   TexelFormat format = TexelFormat::unorm8;
-  bool srgb = false;  // RGB are sRGB-encoded; unorm8 only
+  bool srgb = false;  // RGB is sRGB-encoded; unorm8 only
   bool has_alpha = false;
   bool nearest = false;  // magFilter NEAREST
   TextureWrap wrap_u = TextureWrap::repeat;
   TextureWrap wrap_v = TextureWrap::repeat;
   struct Level {
     int width_px = 0, height_px = 0;
-    std::vector<std::uint8_t> rgba;  // 4 or 8 bytes a texel, in the machine's order
+    std::vector<std::uint8_t> rgba;  // 4 or 8 bytes per texel, in the machine's byte order
   };
   std::vector<Level> levels;
 };
 
 enum class LightKind : std::uint8_t { directional, point, spot };
 
-// KHR_lights_punctual, world space. Candela and lux are taken as W/sr and W/m^2 (no luminous efficacy).
+// KHR_lights_punctual, in world space. Candela and lux are taken as W/sr and W/m^2 (no luminous efficacy).
 struct PunctualLight {
   std::string name;
   LightKind kind = LightKind::point;
   Vec3f intensity{1, 1, 1};  // colour * intensity: W/sr (point, spot) or W/m^2 (directional)
   Vec3f position_m;
-  Vec3f direction{0, 0, -1};  // the way the light travels (directional, spot)
-  float range_m = 0;          // 0: infinite
-  float cos_inner = 1, cos_outer = 0.70710678F;
+  Vec3f direction{0, 0, -1};                     // the way the light travels (directional, spot)
+  float range_m = 0;                             // 0: infinite
+  float cos_inner = 1, cos_outer = 0.70710678F;  // of a spot's cone angles: full intensity inside, none outside
 };
 
-// Radiance from all directions, a lat-long picture: u = 0.5 + azimuth / 2 pi with azimuth measured from -z towards +x
-// (the picture's centre is -z), v = 0 straight up (+y). A constant is one pixel.
+// Radiance from all directions as a latitude-longitude picture: u = 0.5 + azimuth / 2 pi, with the azimuth measured
+// from -z towards +x (the picture's centre is -z), and v = 0 straight up (+y). A constant environment is one pixel.
 struct Environment {
   ImageRgb radiance;        // empty: no environment at all
-  double rotation_rad = 0;  // about +y; positive turns the picture's content from -z towards +x
+  double rotation_rad = 0;  // about +y; a positive angle turns the picture's content from -z towards +x
   std::string source;
   Warnings warnings;
   [[nodiscard]] bool present() const { return !radiance.empty(); }
@@ -103,10 +102,10 @@ struct Environment {
 
 struct SceneCamera {
   std::string name;
-  CameraPath path;  // static or animated (parents too)
+  CameraPath path;  // static or animated, by its node or that node's parents
 };
 
-// What a scene contains, or-ed bottom up; the tracer compiles nothing else into its inner loop's variant.
+// What a scene contains. The tracer chooses the variant of its inner loop by it.
 struct SceneFeatures {
   bool textures = false;
   bool normal_maps = false;
@@ -116,11 +115,11 @@ struct SceneFeatures {
   bool emissive_triangles = false;
   bool punctual_lights = false;
   bool environment = false;
-  bool instances = false;  // a mesh used more than once
+  bool instances = false;  // a mesh is used more than once
   bool motion = false;     // an instance that moves or deforms
   bool unlit = false;
   MaterialLayers layers;
-  bool specular = true;  // any material that is not purely diffuse (all of glTF's are not)
+  bool specular = true;  // some material is not purely diffuse (true of every glTF material)
 };
 
 struct Scene {
@@ -137,7 +136,7 @@ struct Scene {
 
   std::vector<std::string> animations;  // names; "#0" where the file gives none
   std::vector<std::string> extensions_used;
-  std::vector<std::string> ignored;  // what the file contains and this program does not show, one line each
+  std::vector<std::string> ignored;  // what the file contains and gazetrace does not show, one line each
   Warnings warnings;
 };
 
@@ -148,23 +147,25 @@ struct MaterialExtensionInfo {
 std::vector<MaterialExtensionInfo> material_extensions();
 
 struct SceneReadOptions {
-  int threads = 0;  // of decoding textures and reading meshes, which overlap; 0: all
-  // The one that plays, by name or number ("2", from 0). Empty: for each node, camera and skin the first that moves it.
+  int threads = 0;  // for decoding textures and reading meshes, which overlap; 0: all cores
+  // The animation that plays, by name or number ("2", counted from 0). Empty: for each node, camera and skin the first
+  // one that moves it.
   std::string animation;
-  // Told how many of a scene's textures and meshes are ready; from several threads, one at a time.
+  // Called with the number of textures and meshes that are ready; from several threads, but never at the same time.
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
-// .gltf or .glb. Error(input) names the file, the JSON place ("meshes[3].primitives[0].attributes.NORMAL") and what is
-// wrong; an extension in extensionsRequired that is not known ends in one naming it.
+// Reads a .gltf or .glb file. Error(input) names the file, the place in its JSON
+// ("meshes[3].primitives[0].attributes.NORMAL") and what is wrong; an unknown extension in extensionsRequired is such
+// an error.
 Scene load_scene(const std::string& path, const SceneReadOptions& options = {});
 
-// Lat-long .hdr or .exr; pixels are multiplied by 2^exposure_ev. Non-finite pixels are errors. Negative values, which
-// lossy compression leaves in dark areas, become 0 with a warning.
+// Reads a latitude-longitude .hdr or .exr; pixels are multiplied by 2^exposure_ev. Error(input) for non-finite pixels.
+// Negative values, which lossy compression leaves in dark areas, become 0 with a warning.
 Environment load_environment(const std::string& path, double rotation_deg = 0, double exposure_ev = 0);
 Environment constant_environment(const Vec3f& radiance);
-// A clear sky without a sun disc: an analytic gradient (zenith, horizon, ground) with a soft glow about the sun's
-// direction, smooth enough for few samples.
+// A clear sky without a sun disc: an analytic gradient (zenith, horizon, ground) with a soft glow around the sun's
+// direction, smooth enough to need few samples.
 Environment builtin_sky(double rotation_deg = 0, double exposure_ev = 0);
 
 SceneFeatures features_of(const Scene& scene);

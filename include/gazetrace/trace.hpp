@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path tracer: a scene, a camera and a sampling map in, sums per site out.
+// The path tracer takes a scene, a camera and a sampling map, and returns sums over the samples of each site.
 #pragma once
 
 #include <cstdint>
@@ -25,66 +25,73 @@ enum class BvhQuality : std::uint8_t { high, medium };
 
 struct TraceSettings {
   int max_bounces = 3;  // scattering events on a path; 0 shows emission only
-  // From the third scattering event on, paths go on with probability sqrt(throughput), and carry on as much more.
+  // From the third scattering event on, a path survives with probability min(0.95, sqrt(largest channel of its
+  // throughput)), and its weight is divided by that probability. The last event that max_bounces allows is not played
+  // for.
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
-  // Light samples of the environment go where it exceeds half its mean (MIS compensation); heeded with mis only. Less
-  // noise in the open, more where most of the sky is hidden.
+  // Draws light samples of the environment only where it exceeds half its mean (MIS compensation); has an effect with
+  // LightSampling::mis only. This gives less noise in the open, and more where most of the sky is hidden.
   bool compensate_environment = false;
-  // Upper bound of what one sample may add after more than one scattering event, on its largest channel; takes away
-  // fireflies and the light they stand for. 0: off, no bias.
+  // Upper bound (radiance, on the largest channel) of each contribution that reaches the camera after more than one
+  // scattering event. It removes fireflies, and with them the light that they stand for. 0: off, unbiased.
   double clamp_indirect = 0;
-  // Ray cones open by this angle (times 1 / sqrt(pi pdf): once for a diffuse bounce, hardly for a mirror), so that hits
-  // after a bounce read coarser texture levels. 0: full resolution.
+  // At each bounce the ray cone opens by this angle times 1 / sqrt(pi pdf), that is by about the whole angle for a
+  // diffuse bounce and hardly at all for a mirror, so that hits after a bounce read coarser texture levels. 0: full
+  // resolution.
   double bounce_cone_rad = 0.15;
-  // Width of a camera ray's cone in pixels, for texture levels at first hits. 0: full resolution, which the pixel's
-  // samples average; levels save no time worth their blur (Sponza at 960 x 540: 12 % root mean square a pixel).
+  // Width of a camera ray's cone in pixels, which chooses the texture level at first hits. 0: full resolution, which
+  // the pixel's samples average. Coarser levels save too little time to be worth their blur (Sponza at 960 x 540: a
+  // root mean square difference of 12 % per pixel).
   double pixel_cone = 0;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
-  bool guides = false;                   // collect albedo, normal and depth of the first hit
-  bool surfaces = false;                 // sums per surface of sites that needs_filtering names
-  std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
-  // Only these samples of every site; what they sum up to is kept in SparseFrame::unrounded, too. Rays go one by one,
-  // so that a sample does not depend on those beside it: without, one in 1e7 or so meets the other of two surfaces that
-  // share an edge. About an eighth slower.
+  bool guides = false;    // collect albedo, normal and depth of the first hit
+  bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
+  std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
+  std::optional<PixelIndex> only_pixel;               // trace only the site that holds this pixel
+  // Traces only these samples of every site, and keeps their exact sums in SparseFrame::unrounded as well. Rays are
+  // then traced one by one instead of in packets, so that a sample does not depend on its neighbours in the packet:
+  // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
+  // slower.
   std::optional<SampleRange> samples;
 };
 
-// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each may do to the
-// shaded point. automatic: the tree from a measured number of lights on.
+// How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light can
+// contribute to the shaded point. automatic: the tree from four small lights on, where it was measured to pay.
 enum class LightChoice : std::uint8_t { automatic, power, tree };
 
-// How the tree over a mesh that changes its shape follows it. refit: the boxes of the tree that was built at rest are
-// fitted to the new vertices, unless the mesh moves while the shutter is open; rebuild: a new one every frame, at the
-// ray library's three qualities.
+// How the BVH of a mesh that changes its shape is kept up to date. refit: the boxes of the BVH that was built at rest
+// are fitted to the new vertices, unless the mesh deforms while the shutter is open; rebuild_*: a new BVH every frame,
+// at one of the ray library's three qualities.
 enum class MeshUpdate : std::uint8_t { refit, rebuild_low, rebuild_medium, rebuild_high };
 
 struct TracerOptions {
-  int threads = 0;  // 0: all
+  int threads = 0;  // 0: all cores
   BvhQuality bvh_quality = BvhQuality::high;
   MeshUpdate mesh_update = MeshUpdate::refit;
   LightChoice light_choice = LightChoice::automatic;
-  // For measurements: use the kernel variant with everything compiled in.
+  // For measurements: always use the kernel variant that has every feature compiled in.
   bool all_features = false;
 };
 
-// Sums over a site's samples, before any division.
+// Sums over a site's samples; divide by `hits` for the mean. Samples that miss add nothing.
 struct GuideSums {
-  Vec3f albedo, normal;
-  float depth_m = 0;  // distance along the view axis; a miss adds nothing
+  Vec3f albedo;       // base colour of the first hit (not Guides::albedo, which is a reflectance)
+  Vec3f normal;       // shading normal towards the camera, world space
+  float depth_m = 0;  // distance along the view axis
   std::uint32_t hits = 0;
 };
 
-// What a site's samples found on one surface: first hits of one kind, facing one way, about in one plane. A site's
-// samples fall on at most kMostSurfaces; what is left joins the one it is nearest to.
+// Sums over those samples of a site whose first hits lie on one surface: they are of one kind, face about the same way
+// and lie about in one plane. A site has at most kMostSurfaces; further samples join the one that fits best.
 struct SurfaceSums {
-  Vec3f reflected;   // radiance but what the first hit itself shines, sum
-  Vec3f albedo;      // as Guides::albedo, sum
-  Vec3f normal;      // shading normals, sum
-  Vec3f place_m;     // relative to the eye, world axes, sum
-  float square = 0;  // of luminance of `reflected` over that of `albedo`, sum over samples
+  Vec3f reflected;   // sum of the radiance, without what the first hit itself emits
+  Vec3f albedo;      // sum, as Guides::albedo
+  Vec3f normal;      // sum of the shading normals
+  Vec3f place_m;     // sum of the hit points, relative to the camera, in world axes
+  float square = 0;  // sum over the samples of (luminance of `reflected` / luminance of `albedo`)^2
   std::uint32_t count = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
 };
@@ -99,55 +106,74 @@ struct BadSample {
 
 struct RegionTraceStats {
   std::uint64_t samples = 0;
-  std::int64_t cpu_ns = 0;  // thread time; tiles of several regions are split by samples
+  std::int64_t cpu_ns = 0;  // thread time; a batch that spans several regions is divided by their samples
 };
 
 struct TraceStats {
   std::uint64_t samples = 0;
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
-  std::uint64_t non_finite_samples = 0;  // counted as black, never silently
+  std::uint64_t non_finite_samples = 0;  // such samples count as black and are always reported here
   std::vector<BadSample> bad_samples;    // the first 16, in pixel order
   std::vector<RegionTraceStats> regions;
-  std::string kernel;  // name of the variant used
+  std::string kernel;  // name of the kernel variant that was used
 };
 
-// One entry per site of the map, in its order.
+// What the tracer found: one entry per site of the map, in the map's order.
 struct SparseFrame {
   int width_px = 0, height_px = 0;
-  std::vector<Vec3f> sum;                   // radiance
-  std::vector<float> sum_square_luminance;  // of samples' luminance (Rec.709), for variance; at most float's largest
-  std::vector<std::uint32_t> count;
-  std::vector<GuideSums> guides;  // empty unless TraceSettings::guides
-  // Those of site i are surfaces[first_surface[i]] up to, not including, first_surface[i + 1]; samples that miss are on
-  // none. Both empty unless TraceSettings::surfaces.
+  std::vector<Vec3f> sum;                   // radiance, summed over the site's samples
+  std::vector<float> sum_square_luminance;  // squared luminance (Rec.709) of each sample, summed, for the variance;
+                                            // saturates at float's largest value
+  std::vector<std::uint32_t> count;         // of samples
+  std::vector<GuideSums> guides;            // empty unless TraceSettings::guides
+  // The surfaces of site i are surfaces[first_surface[i]] up to, not including, surfaces[first_surface[i + 1]]. Samples
+  // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
   SampleSums unrounded;  // empty unless TraceSettings::samples
   TraceStats stats;
 };
 
-// Adds the sums of other samples of the same sites. Error(runtime) where they are not as many.
+// Adds the sums of other samples of the same sites. Error(runtime) where the numbers of sites differ.
 void add_sums(const SampleSums& from, SampleSums& to);
-// What trace() returns for the samples that were added up, to the bit; without surfaces and stats. Error(runtime) for
-// sums of another map.
+// What PosedScene::trace() would have returned for the samples that were added up, bit for bit, but without surfaces
+// and stats. Error(runtime) where the number of sums is not the map's number of sites.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
-// Whether a guided filter changes a site. Sites of several pixels are, and single pixels that expect fewer samples than
-// the map's enough_samples: uniform frames, and what a small budget leaves even where one looks. Not by whole counts:
-// of pixels that are to have 15.5 samples half have 16, others in every frame. All others keep their own mean, bit by
-// bit.
-bool needs_filtering(const SamplingMap& map, std::size_t site);
+// Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
+// samples than are enough. All others keep the mean of their own samples, bit by bit. What counts is the expectation
+// and not the whole number of samples: of pixels that expect 15.5 samples half have 16, and others in every frame.
+class PassThrough {
+ public:
+  // `samples`: so many are enough; 0: no number is. Empty: as many as the fovea has, where that is at least 8 and below
+  // 16, and otherwise 16, since below 8 samples smoothing is worth more than a fovea as it was traced. In a uniform
+  // frame there is no fovea, and no number is enough: whoever asks for such a filter there wants all of it smoothed.
+  // Keeps a reference to `map`, which must outlive it.
+  PassThrough(const SamplingMap& map, const std::optional<std::uint64_t>& samples);
 
-// When the shutter opens and closes, video time; equal: an instant.
+  [[nodiscard]] std::uint32_t enough_samples() const { return enough_samples_; }
+  [[nodiscard]] bool needs_filtering(std::size_t site) const {
+    return map_->regions[map_->sites[site].region].block_px > 1 || map_->expected(site) < enough_samples_;
+  }
+
+ private:
+  const SamplingMap* map_;
+  std::uint32_t enough_samples_;
+};
+
+// When the shutter opens and closes, in video time; the two are equal for an instantaneous exposure.
 struct ShutterTimes {
   std::int64_t open_ns = 0, close_ns = 0;
+  friend bool operator==(const ShutterTimes&, const ShutterTimes&) = default;
 };
 
 struct TracerMemory {
   std::uint64_t bvh_bytes = 0;  // as Embree reports it to the device's memory monitor
-  double build_s = 0;
+  double build_s = 0;           // time that building the scene took
 };
+
+class PosedScene;
 
 class PathTracer {
  public:
@@ -159,30 +185,50 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // Puts everything that moves where it is at that time, and whatever deforms into its shape: with an open shutter,
-  // over the whole way, taken as even within each sixteenth of it (or less of it, where that keeps vertices on their
-  // way to a thousandth of the mesh). Until it is called, all is at rest. Costs nothing in a scene without motions.
-  // Emitters that move are found by rays only: LightSampling::light_only does not see them.
-  void move_to(const ShutterTimes& times);
-
-  // A pure function of its arguments and the last move_to: same bits for any thread count. `frame` seeds the samples.
-  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
-                                  const TraceSettings& settings) const;
-
-  // First hits of every pixel, for filters and reprojection. A pure function of its arguments and the last move_to.
-  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
-
-  // What the pixels' centres see as things are now, and where that was in an earlier view.
-  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
-                                             const EarlierView& earlier) const;
+  // The scene at a time: everything that moves is where it is then, and everything that deforms has its shape. With an
+  // open shutter, rays see the whole motion, as straight lines between 17 equally spaced times; a deforming mesh uses 5
+  // or 2 times where that keeps its vertices within a thousandth of the mesh's size. It costs nothing in a scene
+  // without motions. Emitters that move are found by rays only, so LightSampling::light_only does not see them.
+  [[nodiscard]] PosedScene at(const ShutterTimes& times);
+  // The scene as its file places it when no animation plays.
+  [[nodiscard]] PosedScene at_rest();
 
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.
   [[nodiscard]] std::string ray_library() const;
 
  private:
+  friend class PosedScene;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+// A scene in one pose. Rays can only be traced through it, so that no picture is ever of a pose that nobody named.
+//
+// It names the pose and holds no copy of the scene: the tracer, which must outlive it, has one ray tracing tree. That
+// tree is put into the pose when it is asked for, and back into it where another pose was used in between. So what
+// these functions return depends on the pose and their arguments alone, and has the same bits for any number of
+// threads. The tree cannot be in two poses at once: threads of the caller may share one pose, but must not use two at a
+// time.
+class PosedScene {
+ public:
+  // TraceSettings::seed and `frame` together seed the samples.
+  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
+                                  const TraceSettings& settings) const;
+
+  // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
+  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
+
+  // What the pixels' centres see in this pose, and where that was in an earlier view.
+  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
+                                             const EarlierView& earlier) const;
+
+ private:
+  friend class PathTracer;
+  PosedScene(PathTracer::Impl& tracer, const std::optional<ShutterTimes>& times);
+
+  PathTracer::Impl* tracer_;
+  std::optional<ShutterTimes> times_;  // empty: at rest
 };
 
 }  // namespace gazetrace

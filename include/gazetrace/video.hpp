@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures into a video, through the ffmpeg program, with marks of where the viewer looked.
+// Makes a video of pictures with the ffmpeg program, and draws marks where the viewer looked.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace gazetrace {
 
-// What the file says its code values mean, in ffmpeg's names (ITU-T H.273).
+// The meaning of the code values that the video file states, in ffmpeg's names (ITU-T H.273).
 struct VideoColor {
   std::string name;       // "srgb", "rec709", "display-p3", "linear"
   std::string primaries;  // bt709, smpte432
@@ -24,38 +24,38 @@ struct VideoColor {
 };
 const std::vector<VideoColor>& video_colors();
 VideoColor video_color_by_name(const std::string& name);  // Error(usage) with the known names
-// Of ColorPipeline::description(), such as "built-in: display sRGB, view ACES"; empty: sRGB. Error(usage) for displays
-// of which this is not known, and for high dynamic range, which 8 bits do not hold.
+// The colour for ColorPipeline::description(), such as "built-in: display sRGB, view ACES"; sRGB where that is empty.
+// Error(usage) for displays whose colour is not known, and for high dynamic range, which 8 bits cannot hold.
 VideoColor video_color_of_view(const std::string& description);
 
 enum class VideoCodec : std::uint8_t {
   h264,  // 8 bits, 4:2:0, plays everywhere
-  hevc,  // the same in smaller files
-  ffv1,  // without loss: RGB as it is; .mkv only
+  hevc,  // the same, in smaller files
+  ffv1,  // lossless RGB; .mkv only
 };
 
 struct VideoSettings {
   VideoCodec codec = VideoCodec::h264;
-  int crf = 18;  // 0 (no loss but that of 4:2:0) to 51; h264 and hevc
+  int crf = 18;  // quality of h264 and hevc, from 0 (no loss besides 4:2:0) to 51 (worst)
   FrameRate fps;
   VideoColor color;
   std::string comment;             // for the file's metadata
-  std::string program = "ffmpeg";  // a name on the path, or a path
-  int threads = 0;
+  std::string program = "ffmpeg";  // a name to look up on $PATH, or a path
+  int threads = 0;                 // 0: as ffmpeg chooses
 };
-// Error(usage) for suffixes that cannot hold the codec, and values out of range.
+// Error(usage) for suffixes whose format cannot hold the codec, and for values out of range.
 void check_video_settings(const std::string& path, const VideoSettings& settings);
 
-// Takes frames in order; the file appears under its name when finish() has returned. Sizes that 4:2:0 cannot hold grow
-// by a repeated row or column.
+// Takes frames in order; the file appears under its name when finish() has returned. Where 4:2:0 needs an even size,
+// the last row or column is repeated.
 class VideoWriter {
  public:
   // Error(input) where the program is not found.
   VideoWriter(const std::string& path, int width_px, int height_px, const VideoSettings& settings);
-  ~VideoWriter();  // without finish(): stops the program and removes what it wrote
+  ~VideoWriter();  // where finish() was not called, stops ffmpeg and removes what it wrote
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
-  // Of 8 bits and the size given. Error(runtime) with what the program said.
+  // Adds a frame of 8 bits and the writer's size. Error(runtime) with ffmpeg's message where that fails.
   void add(const DisplayImage& frame);
   void finish();
 
@@ -64,19 +64,20 @@ class VideoWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-// Two pictures of one height beside each other; Error(input) for others.
+// Two pictures of 8 bits beside each other. Error(input) where their heights differ, and for other bits.
 DisplayImage side_by_side(const DisplayImage& left, const DisplayImage& right);
 
 using Rgb8Color = std::array<std::uint8_t, 3>;
 inline constexpr Rgb8Color kGazeColor{255, 210, 63};
 
-// A dot with a dark and a light rim at a continuous pixel position; parts outside the picture are cut off.
+// Draws a dot with a dark and a light rim at a continuous pixel position; parts outside the picture are cut off.
 void draw_gaze_dot(DisplayImage& image, const Vec2d& gaze_px, double radius_px);
-// Where the eccentricity from the gaze is `eccentricity_deg`, as the view shows it.
+// Draws the line where the eccentricity from the gaze is `eccentricity_deg`, as the view shows it.
 void draw_eccentricity_ring(DisplayImage& image, const PlanarView& view, const Vec2d& gaze_px, double eccentricity_deg,
                             double width_px);
-// A mark to look at: bull's eye with cross hair, outer diameter 0.6 deg and inner 0.2 deg, which keeps eyes stillest of
-// seven (Thaler, Schuetz, Goodale and Gegenfurtner, "What is the best fixation target?", Vision Research 76, 2013).
+// Draws a fixation mark: a bull's eye of 0.6 deg outer and 0.2 deg inner diameter with a cross hair, the one of seven
+// marks on which eyes keep stillest (Thaler, Schuetz, Goodale and Gegenfurtner, "What is the best fixation target?",
+// Vision Research 76, 2013).
 void draw_fixation_mark(DisplayImage& image, const Vec2d& gaze_px, double pixels_per_degree);
 
 }  // namespace gazetrace

@@ -18,7 +18,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// The digits at the front, without leading zeros, taken off `text`.
+// Removes the digits at the front of `text` and returns them without leading zeros.
 std::string_view take_number(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789"), text.size());
   std::string_view number = text.substr(0, end);
@@ -75,7 +75,7 @@ std::int64_t frame_time_at(std::int64_t number, std::int64_t first, const Camera
     throw Error(ErrorKind::input, place,
                 fmt::format("frame {} at {}/{} a second lies beyond int64 nanoseconds", number, options.fps.numerator,
                             options.fps.denominator),
-                "check the frame's number and --camera-fps");
+                "check the frame's number and `camera-fps`");
   }
   return *t_ns;
 }
@@ -109,12 +109,12 @@ std::optional<double> one_field_of_view(const std::vector<double>& yfovs_rad, co
     return std::nullopt;
   }
   const auto [least, most] = std::minmax_element(yfovs_rad.begin(), yfovs_rad.end());
-  // Sizes and focal lengths far apart give angles that round to these.
+  // Extreme ratios of size to focal length round to 0 or 180 degrees.
   if (!(*least > 0 && *most < kPi)) {
     throw Error(ErrorKind::input, path,
-                fmt::format("its picture sizes and focal lengths make a vertical field of view of {} degrees",
+                fmt::format("its picture sizes and focal lengths give a vertical field of view of {} degrees",
                             (*least > 0 ? *most : *least) * kDegPerRad),
-                "correct them, or take them out and give --yfov");
+                "correct them, or take them out and give `yfov`");
   }
   if ((*most - *least) * kDegPerRad > 1e-3) {
     warnings.push_back(

@@ -88,6 +88,13 @@ std::string with_flags(const std::string& text) {
   return std::regex_replace(text, kSetting, "--$1");
 }
 
+std::vector<std::string> with_flags(std::vector<std::string> texts) {
+  for (std::string& text : texts) {
+    text = with_flags(text);
+  }
+  return texts;
+}
+
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
     std::fprintf(stderr, "gazetrace: warning: %s\n", with_flags(warning).c_str());

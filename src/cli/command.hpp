@@ -80,6 +80,7 @@ void print_result(const std::string& text);
 // Messages of the library name settings in back quotes; the program's users know them as flags: `gaze-start` becomes
 // --gaze-start.
 std::string with_flags(const std::string& text);
+std::vector<std::string> with_flags(std::vector<std::string> texts);
 void print_warnings(const std::vector<std::string>& warnings);
 
 }  // namespace gazetrace

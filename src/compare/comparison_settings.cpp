@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a comparison's settings must be for its scores to mean anything.
+// Checks the settings of a comparison.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,23 +21,23 @@ void require(bool holds, const char* option, double value, const char* wanted) {
 
 void check_comparison(const ComparisonSettings& settings) {
   const DisplayPhotometry& p = settings.photometry;
-  require(p.peak_cd_m2 > 0, "--peak-cd-m2", p.peak_cd_m2, "a luminance above 0");
-  require(settings.metric.peak_cd_m2 > 0, "--peak-cd-m2", settings.metric.peak_cd_m2, "a luminance above 0");
-  require(p.contrast > 1, "--contrast", p.contrast, "a ratio above 1");
-  require(p.ambient_lux >= 0, "--ambient-lux", p.ambient_lux, "0 lux or more");
-  require(p.reflectivity >= 0 && p.reflectivity <= 1, "--reflectivity", p.reflectivity, "a share of 0 to 1");
-  require(settings.metric.relmse_epsilon > 0, "--relmse-epsilon", settings.metric.relmse_epsilon, "above 0");
+  require(p.peak_cd_m2 > 0, "`peak-cd-m2`", p.peak_cd_m2, "a luminance above 0");
+  require(settings.metric.peak_cd_m2 > 0, "`peak-cd-m2`", settings.metric.peak_cd_m2, "a luminance above 0");
+  require(p.contrast > 1, "`contrast`", p.contrast, "a ratio above 1");
+  require(p.ambient_lux >= 0, "`ambient-lux`", p.ambient_lux, "0 lux or more");
+  require(p.reflectivity >= 0 && p.reflectivity <= 1, "`reflectivity`", p.reflectivity, "a share of 0 to 1");
+  require(settings.metric.relmse_epsilon > 0, "`relmse-epsilon`", settings.metric.relmse_epsilon, "above 0");
   require(settings.metric.pixels_per_degree > 0, "flip", settings.metric.pixels_per_degree,
-          "a number of pixels a degree");
-  require(settings.frames_per_second >= 0, "--fps", settings.frames_per_second, "a frame rate");
-  // Light of relative code values fills what lies between black and white: there must be something.
+          "a number of pixels per degree above 0");
+  require(settings.frames_per_second >= 0, "`fps`", settings.frames_per_second, "a frame rate");
+  // Relative code values fill the range between black and white, so there must be such a range.
   const double black = black_level_cd_m2(p);
   if (!is_absolute(settings.metric.response) && !(black < p.peak_cd_m2)) {
-    throw Error(ErrorKind::usage, "--peak-cd-m2",
+    throw Error(ErrorKind::usage, "`peak-cd-m2`",
                 fmt::format("a white of {:g} cd/m2 is not brighter than the black of {:g} cd/m2 that the room's light "
                             "leaves",
                             p.peak_cd_m2, black),
-                "give a larger --peak-cd-m2, or less --ambient-lux or --reflectivity");
+                "give a larger `peak-cd-m2`, or less `ambient-lux` or `reflectivity`");
   }
 }
 

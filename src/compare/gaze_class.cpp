@@ -39,7 +39,7 @@ GazeClass gaze_class_of(const GazeAtTime& gaze) {
 
 RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleReading reading) {
   if (!(angles_deg[0] > 0 && angles_deg[1] > angles_deg[0])) {
-    throw Error(ErrorKind::usage, "--region-angles", fmt::format("{},{} do not ascend", angles_deg[0], angles_deg[1]),
+    throw Error(ErrorKind::usage, "`region-angles`", fmt::format("{},{} do not ascend", angles_deg[0], angles_deg[1]),
                 "give two angles above 0, the smaller first");
   }
   const double share = reading == AngleReading::full_angle ? 0.5 : 1.0;

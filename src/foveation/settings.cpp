@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What settings are allowed.
+// Checks settings, and widens regions for an uncertain gaze.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kMaxBlockPx = 64;  // a site counts its pixels in 16 bits
+constexpr int kMaxBlockPx = 64;  // since a site counts its pixels in 16 bits
 constexpr int kMaxDensityBlockPx = 16;
 constexpr std::uint32_t kMaxSamples = 1'000'000;  // times 64 x 64 pixels still fits 32 bits
 
@@ -39,7 +39,7 @@ void check_samples(std::string_view place, std::uint32_t samples) {
 }
 
 void check_angles(const FoveationSettings& settings) {
-  constexpr std::string_view kPlace = "--region-angles";
+  constexpr std::string_view kPlace = "`region-angles`";
   // tan(a/2) of eq. (1) ends at 180 degrees; a cone ends at 180 degrees of eccentricity.
   const bool cone = settings.shape == RegionShape::cone;
   const double limit = cone && settings.reading == AngleReading::full_angle ? 360.0 : 180.0;
@@ -65,65 +65,67 @@ void require_positive(std::string_view place, double value, std::string_view wha
 }
 
 void check_density(const FoveationSettings& settings) {
-  require(!(settings.budget_spp && settings.budget_samples), "--budget-samples", "there are two budgets",
-          "give --budget-spp or --budget-samples");
+  require(!(settings.budget_spp && settings.budget_samples), "`budget-samples`", "there are two budgets",
+          "give `budget-spp` or `budget-samples`");
   if (settings.budget_spp) {
-    require(*settings.budget_spp > 0 && *settings.budget_spp <= kMaxSamples, "--budget-spp",
+    require(*settings.budget_spp > 0 && *settings.budget_spp <= kMaxSamples, "`budget-spp`",
             shown(*settings.budget_spp) + " samples a pixel are not possible",
             "give more than 0, up to " + std::to_string(kMaxSamples));
   }
-  require(!settings.budget_samples || *settings.budget_samples > 0, "--budget-samples", "0 samples are no budget",
+  require(!settings.budget_samples || *settings.budget_samples > 0, "`budget-samples`", "0 samples are no budget",
           "give at least 1");
-  require_between("--block-samples", settings.block_samples, 1, 65536, "the samples of a block");
+  require_between("`block-samples`", settings.block_samples, 1, 65536, "the samples of a block");
   require(settings.max_block_px >= 1 && settings.max_block_px <= kMaxDensityBlockPx &&
               (settings.max_block_px & (settings.max_block_px - 1)) == 0,
-          "--max-block", "blocks of up to " + std::to_string(settings.max_block_px) + " pixels are not possible",
+          "`max-block`", "blocks of up to " + std::to_string(settings.max_block_px) + " pixels are not possible",
           "give 1, 2, 4, 8 or 16");
-  require(settings.density_floor > 0 && settings.density_floor <= 1, "--density-floor",
+  require(settings.density_floor > 0 && settings.density_floor <= 1, "`density-floor`",
           "a least density of " + std::to_string(settings.density_floor) + " is not possible",
-          "give more than 0, up to 1: a place without any would stay out of reach");
-  require_between("--border-blend-deg", settings.border_blend_deg, 0, 180, "the width of a rim");
-  require_between("--contrast-strength", settings.contrast_strength, 0, 1, "the strength of a term");
-  require_between("--saccade-density", settings.saccade_density, 0, 1, "what a flight leaves of the density");
+          "give more than 0, up to 1: every place needs some samples");
+  require_between("`border-blend-deg`", settings.border_blend_deg, 0, 180, "the width of a border's rim");
+  require_between("`contrast-strength`", settings.contrast_strength, 0, 1, "the strength of the contrast term");
+  require_between("`saccade-density`", settings.saccade_density, 0, 1,
+                  "the share of the density that a saccade leaves");
 }
 
-// What multiplies a density has nothing to multiply in a layout of whole rates.
+// Terms multiply a density, which a layout of whole rates does not have.
 void check_terms(const FoveationSettings& settings) {
   const bool hard_regions = settings.falloff == "regions" && settings.border_blend_deg == 0;
   if (!hard_regions && settings.falloff != "uniform") {
     return;
   }
-  const std::string_view term = settings.retinal_velocity        ? "--retinal-velocity"
-                                : settings.saccade_density != 1  ? "--saccade-density"
-                                : settings.contrast_strength > 0 ? "--contrast-strength"
+  const std::string_view term = settings.retinal_velocity        ? "`retinal-velocity`"
+                                : settings.saccade_density != 1  ? "`saccade-density`"
+                                : settings.contrast_strength > 0 ? "`contrast-strength`"
                                                                  : "";
   require(term.empty(), term, "the fall-off '" + settings.falloff + "' has fixed rates",
-          hard_regions ? "give --border-blend-deg, or another --falloff" : "give another --falloff");
+          hard_regions ? "give `border-blend-deg`, or another `falloff`" : "give another `falloff`");
 }
 
 void check_parameters(const FoveationSettings& settings) {
   const FalloffParameters& p = settings.parameters;
   const Vec3d& ramp = p.ramp;
-  require(ramp.x >= 0 && ramp.x <= ramp.y && ramp.y <= 180 && ramp.z >= 0 && ramp.z <= 1, "--falloff-ramp",
-          shown(ramp.x) + "," + shown(ramp.y) + "," + shown(ramp.z) + " are no two eccentricities and a density",
-          "give degrees, more degrees up to 180, and 0 to 1");
-  require(p.mar_slope >= 0 && p.mar_slope <= 180 && p.mar_foveal_deg >= 0 && p.mar_foveal_deg <= 180, "--falloff-mar",
+  require(
+      ramp.x >= 0 && ramp.x <= ramp.y && ramp.y <= 180 && ramp.z >= 0 && ramp.z <= 1, "`falloff-ramp`",
+      shown(ramp.x) + "," + shown(ramp.y) + "," + shown(ramp.z) + " are not two ascending eccentricities and a density",
+      "give degrees, more degrees up to 180, and 0 to 1");
+  require(p.mar_slope >= 0 && p.mar_slope <= 180 && p.mar_foveal_deg >= 0 && p.mar_foveal_deg <= 180, "`falloff-mar`",
           std::to_string(p.mar_slope) + "," + std::to_string(p.mar_foveal_deg) + " are not possible",
           "give two numbers of 0 to 180, such as 0.022,0.0208");
-  require(p.contrast > 0 && p.contrast <= 1, "--falloff-contrast",
+  require(p.contrast > 0 && p.contrast <= 1, "`falloff-contrast`",
           "a contrast of " + std::to_string(p.contrast) + " is not possible", "give more than 0, up to 1");
-  require(settings.falloff != "geisler-perry" || p.contrast > 1.0 / 64, "--falloff-contrast",
+  require(settings.falloff != "geisler-perry" || p.contrast > 1.0 / 64, "`falloff-contrast`",
           "geisler-perry sees no contrast of 1/64 or less", "give more than 0.015625");
-  require_positive("--falloff-luminance", p.luminance_cd_m2, "a luminance in cd/m2");
-  require_positive("--falloff-log-polar", p.log_polar_sigma, "the ratio of frame and buffer");
-  require_positive("--falloff-log-polar", p.log_polar_alpha, "the exponent of the kernel");
-  require(settings.falloff != "table" || !p.table.points.empty(), "--falloff-table",
+  require_positive("`falloff-luminance`", p.luminance_cd_m2, "a luminance in cd/m2");
+  require_positive("`falloff-log-polar`", p.log_polar_sigma, "the ratio of frame and buffer");
+  require_positive("`falloff-log-polar`", p.log_polar_alpha, "the exponent of the kernel");
+  require(settings.falloff != "table" || !p.table.points.empty(), "`falloff-table`",
           "the fall-off 'table' has no table", "name a CSV of ecc_deg,density");
   const std::vector<Vec2d>& points = p.table.points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     require(
         std::isfinite(points[i].x) && points[i].y >= 0 && points[i].y <= 1 && (i == 0 || points[i].x > points[i - 1].x),
-        "--falloff-table", "point " + std::to_string(i + 1) + " is out of order or its density not in 0 to 1",
+        "`falloff-table`", "point " + std::to_string(i + 1) + " is out of order or its density not in 0 to 1",
         "sort the points by eccentricity, each once");
   }
 }
@@ -138,12 +140,12 @@ void check_foveation(const FoveationSettings& settings) {
   if (std::find(names.begin(), names.end(), settings.falloff) == names.end()) {
     throw Error(ErrorKind::usage, "falloff", unknown_name_message("falloff", settings.falloff, names));
   }
-  check_samples("--spp", settings.uniform_spp);
+  check_samples("`spp`", settings.uniform_spp);
   for (const std::uint32_t samples : settings.region_samples) {
-    check_samples("--region-samples", samples);
+    check_samples("`region-samples`", samples);
   }
   for (const int block : settings.region_blocks_px) {
-    require(block >= 1 && block <= kMaxBlockPx, "--region-blocks",
+    require(block >= 1 && block <= kMaxBlockPx, "`region-blocks`",
             "blocks of " + std::to_string(block) + " pixels are not possible",
             "give 1 to " + std::to_string(kMaxBlockPx));
   }

@@ -70,7 +70,7 @@ void check_history_options(const JobSettings& job) {
     }
   }
   if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
-      filter_needs_guides(choose_filter(job).name)) {
+      Reconstruction({filter_of(job).name, {}}).needs().surfaces) {
     throw Error(ErrorKind::usage, "`accumulate-order`",
                 fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
                 "give after, or another `filter`");
@@ -93,7 +93,7 @@ void check_sample_range(const JobSettings& job) {
   }
   PipelineSettings settings;
   settings.foveation = job.foveation;
-  settings.filter = choose_filter(job).name;
+  settings.reconstruction.filter = filter_of(job).name;
   settings.accumulate = job.accumulate;
   settings.exposure = job.exposure;
   settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
@@ -117,8 +117,8 @@ void check_job(const Job& whole, const JobSchema& schema) {
   const JobSettings& job = whole.settings;
   check_registry_name("`falloff`", "falloff", job.foveation.falloff, falloffs());
   check_foveation(job.foveation);
-  check_registry_name("`filter`", "filter", choose_filter(job).name, reconstruction_filters());
-  if (job.enhance_contrast > 0 && (job.filter == "none" || filter_needs_guides(job.filter))) {
+  check_registry_name("`filter`", "filter", filter_of(job).name, reconstruction_filters());
+  if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job).name, {}}).filter().blurs_blocks) {
     throw Error(ErrorKind::usage, "`enhance-contrast`",
                 fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
                 "give `filter` linear, push-pull or tent");
@@ -150,30 +150,17 @@ void check_job(const Job& whole, const JobSchema& schema) {
   check_output_folders(output, job.checkpoint);
 }
 
-ChosenFilter choose_filter(const JobSettings& job) {
+FilterChoice filter_of(const JobSettings& job) {
   if (job.filter != "auto") {
     return {job.filter, {}};
   }
-  const auto linear = [](const char* reason) { return ChosenFilter{"linear", reason}; };
-  if (job.gaze.path.empty() && !job.gaze_at) {
-    return linear("all frames are uniform, as there is no gaze");
-  }
-  if (job.foveation.falloff == "uniform") {
-    return linear("all frames are uniform");
-  }
-  if (job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs()) {
-    return linear("what guided takes from first hits shows no blur of lens and shutter");
-  }
-  if (job.accumulate.mode == AccumulateMode::reproject && job.accumulate.order == AccumulateOrder::before) {
-    return linear("`accumulate-order` before works on sites, guided on surfaces");
-  }
-  if (job.enhance_contrast > 0) {
-    return linear("`enhance-contrast` brings back what blocks blur, and guided does not blur them");
-  }
-  if (job.trace.samples) {
-    return linear("`sample-range` keeps sums of sites, which guided cannot take apart by surfaces");
-  }
-  return {"guided", "frames are foveated"};
+  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;  // without any all frames are uniform
+  return choose_filter({.foveated = has_gaze && job.foveation.falloff != "uniform",
+                        .blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs(),
+                        .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
+                                             job.accumulate.order == AccumulateOrder::before,
+                        .enhances_contrast = job.enhance_contrast > 0,
+                        .part_of_samples = job.trace.samples.has_value()});
 }
 
 }  // namespace gazetrace

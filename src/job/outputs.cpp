@@ -154,7 +154,7 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.foveation = job.foveation;
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
-  settings.filter = choose_filter(job).name;
+  settings.reconstruction = {filter_of(job).name, job.pass_through_samples};
   settings.enhance_contrast = job.enhance_contrast;
   settings.accumulate = job.accumulate;
   settings.checkpoint = job.checkpoint;
@@ -166,10 +166,6 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.fps = job.fps;
   settings.threads = job.threads;
   settings.is_part = job.part;
-  const auto& aovs = job.exr.aovs;
-  settings.trace.guides = std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
-    return aov == "albedo" || aov == "normal" || aov == "depth";
-  });
   check_output_settings(settings.output, frames.size() > 1);
   return settings;
 }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "gazetrace/error.hpp"
-#include "gazetrace/plan_join.hpp"
 #include "job/choose_frames.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/scene_camera.hpp"
@@ -76,7 +75,7 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
 
 // Of first hits, which filters with guides see through a pinhole in the middle of the frame's time.
 std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
-  if (!filter_needs_guides(job.filter)) {
+  if (!Reconstruction({job.filter, {}}).needs().guides) {
     return {};
   }
   const bool moves =
@@ -151,7 +150,7 @@ void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scen
         "there, `filter` linear or tent keep it",
         job.filter, lost));
   }
-  if (job.trace.filter != PixelFilter::box && filter_needs_guides(job.filter)) {
+  if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter, {}}).needs().guides) {
     warnings.push_back(
         fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
                     "blackman-harris is missing there, `filter` linear or tent keep it",
@@ -211,11 +210,11 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(job);
   }
-  const ChosenFilter filter = choose_filter(job.settings);
+  const FilterChoice filter = filter_of(job.settings);
   resolved.job.settings.filter = filter.name;
   load_and_plan(options, resolved);
   if (!filter.reason.empty()) {
-    resolved.decisions.emplace_back("filter", filter.name + ": " + filter.reason);
+    resolved.decisions.emplace_back("filter", filter.name + ", because " + filter.reason);
   }
   const JobSettings& settings = resolved.job.settings;
   resolved.pipeline = pipeline_settings(settings, resolved.frames);

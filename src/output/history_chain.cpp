@@ -31,11 +31,11 @@ void check_link(const RunPart& part, std::int32_t frame, const Frames& found, co
       !found.empty() && found.size() < wanted.size() && std::equal(found.rbegin(), found.rend(), wanted.rbegin());
   if (!is_end_of_it) {
     throw Error(ErrorKind::input, part.timing_path, problem,
-                fmt::format("render this part again with --resume-from and a checkpoint made after frame {}, or with "
-                            "--preroll",
+                fmt::format("render this part again with `resume-from` and a checkpoint made after frame {}, or with "
+                            "`preroll`",
                             wanted.back()));
   }
-  warnings.push_back(fmt::format("{}: {}: a seam", part.timing_path, problem));
+  warnings.push_back(fmt::format("{}: {}; there may be a visible seam", part.timing_path, problem));
 }
 
 }  // namespace
@@ -45,8 +45,8 @@ void check_histories(const FrameOwners& frames, Warnings& warnings) {
   if (first == frames.end()) {
     return;
   }
-  std::map<const RunPart*, Frames> passed;  // by each part
-  Frames all = found_by(*first->second);    // by one run, which begins as the first part did
+  std::map<const RunPart*, Frames> passed;  // the frames in each part's history so far
+  Frames all = found_by(*first->second);    // those in the history of a single run that begins as the first part did
   const RunPart* before = first->second;
   for (const auto& [frame, part] : frames) {
     if (part != nullptr) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be said against output settings before the first ray.
+// Checks output settings before the first ray.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ void check_output_settings(const OutputSettings& settings, bool several_frames) 
   for (const std::string& aov : settings.exr.aovs) {
     check_known("AOV", aov, aov_names());
     if (settings.exr.pattern.empty()) {
-      throw Error(ErrorKind::usage, "--aov", "AOVs are channels of an EXR, and none is written",
-                  "add -o frame.####.exr");
+      throw Error(ErrorKind::usage, "`aov`", "AOVs are channels of an EXR, and none is written",
+                  "add `output` frame.####.exr");
     }
   }
   if (!settings.map_pattern.empty()) {

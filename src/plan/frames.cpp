@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame rates and frame lists as people write them.
+// Parses and formats frame rates and frame lists.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void append_range(std::string_view item, std::vector<std::int32_t>& frames) {
                                std::numeric_limits<std::int32_t>::max()));
   }
   if (*first < 1 || *last < 1) {
-    bad_list(item, "is not there: frames are numbered from 1");
+    bad_list(item, "does not exist: frames are numbered from 1");
   }
   if (*last < *first) {
     bad_list(item, "counts backwards");
@@ -77,7 +77,7 @@ FrameRate parse_frame_rate(std::string_view text) {
     const auto numerator = integer_from<std::int64_t>(trim(trimmed.substr(0, slash)));
     const auto denominator = integer_from<std::int64_t>(trim(trimmed.substr(slash + 1)));
     if (!numerator || !denominator) {
-      bad_rate(text, "is not a quotient of two whole numbers");
+      bad_rate(text, "is not a fraction of two whole numbers");
     }
     rate = {*numerator, *denominator};
   } else {
@@ -125,7 +125,7 @@ std::vector<std::int32_t> parse_frame_list(std::string_view text) {
 std::string format_frame_list(const std::vector<std::int32_t>& frames) {
   std::string text;
   for (std::size_t i = 0; i < frames.size();) {
-    // The longest run of one step from here; a step of two needs three frames to be worth a range.
+    // Finds the longest run with one step; with a step of two or more, a range is worth it from three frames on.
     std::size_t end = i + 1;
     const std::int64_t step = end < frames.size() ? std::int64_t{frames[end]} - frames[i] : 1;
     while (end < frames.size() && std::int64_t{frames[end]} - frames[end - 1] == step) {

@@ -21,7 +21,7 @@ double frame_ns(const PlanSettings& settings) {
 
 GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings)
     : log_(log), uncertainty_(settings.uncertainty) {
-  // A gaze of one row is one that never moves.
+  // Gaze of a single row never moves.
   if (log == nullptr || log->samples.size() < 2 || !knows_angles(*log)) {
     return;
   }
@@ -57,13 +57,13 @@ bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64
   }
   const auto first = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(std::min(after_log_ns, t_log_ns)));
   const auto last = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(t_log_ns));
-  // The row before the time after which it begins was the frame before's; alone it is this frame's, too.
+  // The first row was already counted for the frame before; where it is the only one, it counts for this frame, too.
   return std::find(first == last ? first : first + 1, last + 1, movement) != last + 1;
 }
 
 double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
   const auto age_ns = effective_age_ns(request);
-  // A fixed gaze has no rows and no age: it does not move, and may be off all the same.
+  // A fixed gaze has no rows and no age. It does not move, but may be off all the same.
   const bool is_fixed = !age_ns && request.gaze_render.state == GazeState::measured;
   if (!uncertainty_ || (!age_ns && !is_fixed)) {
     return 0;
@@ -122,11 +122,11 @@ void warn_about_latency(const PlanSettings& settings, Warnings& warnings) {
     return;
   }
   const double half_ms = 0.5e-6 * frame_ns(settings);
-  warnings.push_back(
-      fmt::format("a latency of {:.4g} ms is {:.1f} frames at {} fps: while a frame is shown, the age of its gaze runs "
-                  "over {:.1f} to {:.1f} ms; a study of latency needs --fps {:.0f} or more",
-                  latency_ns * 1e-6, frames, to_string(settings.fps), latency_ns * 1e-6 - half_ms,
-                  latency_ns * 1e-6 + half_ms, std::ceil(kFramesOfLatency * 1e9 / latency_ns)));
+  warnings.push_back(fmt::format(
+      "a latency of {:.4g} ms is {:.1f} frames at {} fps: while a frame is shown, the age of its gaze grows "
+      "from {:.1f} to {:.1f} ms; a study of latency needs `fps` {:.0f} or more",
+      latency_ns * 1e-6, frames, to_string(settings.fps), latency_ns * 1e-6 - half_ms, latency_ns * 1e-6 + half_ms,
+      std::ceil(kFramesOfLatency * 1e9 / latency_ns)));
 }
 
 GazeUncertainty uncertainty_of(const GazeLog& log) {

@@ -30,7 +30,7 @@ Shutter parse_shutter(std::string_view text) {
       bad_shutter(text, "is not two numbers");
     }
     if (*open == *close) {
-      bad_shutter(text, "opens for no time");
+      bad_shutter(text, "opens and closes at the same time");
     }
     shutter = {*open, *close};
   } else {

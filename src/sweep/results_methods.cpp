@@ -62,12 +62,12 @@ std::string light_of_references(const SweepPlan& plan) {
   std::vector<std::string> texts;
   for (const SweepReference& reference : plan.references) {
     const TraceSettings& trace = reference.pipeline.trace;
-    texts.push_back(
-        fmt::format("{} bounces, a pixel cone of {:g} pixels, a bounce cone of {:g} rad, {}, {}, filter {}",
-                    trace.max_bounces, trace.pixel_cone, trace.bounce_cone_rad,
-                    trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
-                                             : "indirect light not clamped",
-                    trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.filter));
+    texts.push_back(fmt::format(
+        "{} bounces, a pixel cone of {:g} pixels, a bounce cone of {:g} rad, {}, {}, filter {}", trace.max_bounces,
+        trace.pixel_cone, trace.bounce_cone_rad,
+        trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
+                                 : "indirect light not clamped",
+        trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.reconstruction.filter));
   }
   return each_once(texts);
 }

@@ -79,7 +79,7 @@ Job test_job(const SweepRequest& request, const SweepFileScene& scene, const Swe
   }
   assign(job, setting.options, request.schema);
   // Its baselines go through the same one.
-  job.settings.filter = choose_filter(job.settings).name;
+  job.settings.filter = filter_of(job.settings).name;
   return job;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the name of a display to what a video says of its colors.
+// Finds the colors that a video states from the name of a display.
 #include <algorithm>
 
 #include "core/text.hpp"
@@ -12,7 +12,7 @@ struct ViewNames {
   std::string display, view;
 };
 
-// Of "CONFIG: display DISPLAY, view VIEW".
+// Takes the names from "CONFIG: display DISPLAY, view VIEW".
 ViewNames names_of(const std::string& description) {
   constexpr std::string_view kDisplay = ": display ", kView = ", view ";
   const std::string text = to_lower(description);
@@ -34,7 +34,7 @@ bool has(const std::string& text, std::string_view part) {
 const std::vector<VideoColor>& video_colors() {
   static const std::vector<VideoColor> kColors{
       {"srgb", "bt709", "iec61966-2-1"},
-      // H.273 has no code for BT.1886; a player shows what says bt709 on a display of that kind.
+      // H.273 has no code for BT.1886, but players show bt709 as such a display does.
       {"rec709", "bt709", "bt709"},
       {"display-p3", "smpte432", "iec61966-2-1"},
       {"linear", "bt709", "linear"}};
@@ -49,14 +49,14 @@ VideoColor video_color_by_name(const std::string& name) {
     }
     known.push_back(color.name);
   }
-  throw Error(ErrorKind::usage, "--color", unknown_name_message("color", name, known));
+  throw Error(ErrorKind::usage, "`color`", unknown_name_message("color", name, known));
 }
 
 VideoColor video_color_of_view(const std::string& description) {
   const auto [display, view] = names_of(description);
   for (const char* const hdr : {"2100", "2084", "pq", "hlg", "hdr"}) {
     if (has(display, hdr) || has(view, hdr)) {
-      throw Error(ErrorKind::usage, "'" + description + "'", "is of high dynamic range, which 8 bits do not hold",
+      throw Error(ErrorKind::usage, "'" + description + "'", "is of high dynamic range, which 8 bits cannot hold",
                   "render through a view of standard range");
     }
   }
@@ -72,8 +72,8 @@ VideoColor video_color_of_view(const std::string& description) {
   if (has(display, "display p3") || has(display, "display-p3")) {
     return video_color_by_name("display-p3");
   }
-  throw Error(ErrorKind::usage, "'" + description + "'", "it is not known how a video says this of its colors",
-              "give --color srgb, rec709 or display-p3");
+  throw Error(ErrorKind::usage, "'" + description + "'", "it is not known how a video file states these colors",
+              "give `color` srgb, rec709 or display-p3");
 }
 
 }  // namespace gazetrace

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/reconstruct.hpp"
 #include "render/tracer_scenes.hpp"
+#include "support/reconstruct.hpp"
 #include "trace/kernel/kernel.hpp"
 #include "trace/samples/sample_list.hpp"
 
@@ -39,9 +39,10 @@ TEST(ExtremeFrame, FieldsOfViewFromATenthOfADegreeTo179) {
     Scene scene;
     scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
     add_mesh(scene, {plate(-half, -half / 2, half, half / 2)});
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
     const SamplingMap map = uniform_map(64, 32, 16);
-    const SparseFrame frame = tracer.trace(camera_at({0, 0, distance}, {0, 0, 0}, yfov_deg), 1, map, emission_only());
+    const SparseFrame frame =
+        tracer.at_rest().trace(camera_at({0, 0, distance}, {0, 0, 0}, yfov_deg), 1, map, emission_only());
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
       const Site& site = map.sites[i];
@@ -57,12 +58,12 @@ TEST(ExtremeFrame, AWideViewOfAFurnace) {
   scene.materials = {diffuse_material({1, 1, 1})};
   add_mesh(scene, box(0.5F, false, 0), make_affine({0, 0, -0.8}, normalize(Quatd{0.2, 0.1, 0, 1}), {1, 1, 1}));
   scene.environment = constant_environment({1, 1, 1});
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   TraceSettings settings;
   settings.diffuse = DiffuseModel::matte;
   for (const double yfov_deg : {0.1, 179.0}) {
     const SparseFrame frame =
-        tracer.trace(camera_at({0, 0, 0}, {0, 0, -1}, yfov_deg), 1, uniform_map(48, 32, 64), settings);
+        tracer.at_rest().trace(camera_at({0, 0, 0}, {0, 0, -1}, yfov_deg), 1, uniform_map(48, 32, 64), settings);
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     EXPECT_NEAR(mean_radiance(frame).y, 1, 2e-3) << yfov_deg;
   }
@@ -72,9 +73,9 @@ TEST(ExtremeFrame, OnePixel) {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
   add_mesh(scene, {plate(0, -9, 9, 9)});  // the right half
-  const PathTracer tracer(scene, threads(1));
+  PathTracer tracer(scene, threads(1));
   const SamplingMap map = uniform_map(1, 1, 1024);
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, map, emission_only());
+  const SparseFrame frame = tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, map, emission_only());
   ASSERT_EQ(frame.sum.size(), 1U);
   EXPECT_EQ(frame.sum[0].y, 512.0F);  // a net: exactly half of the samples on either side
   const Frame dense = reconstruct(frame, map, "linear");
@@ -101,11 +102,11 @@ TEST(ExtremeFrame, SixteenThousandPixelsWide) {
   Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
   camera.projection.kind = ProjectionKind::orthographic;
   camera.projection.ymag_m = 1.0 / 64;  // 64 times as wide: exactly from -1 to 1
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   std::ofstream("/proc/self/clear_refs") << "5";  // forgets the peak so far
   const double before_mib = status_mib("VmRSS");
   const SamplingMap map = uniform_map(kWidth, kHeight, 1);
-  const SparseFrame sparse = tracer.trace(camera, 1, map, emission_only());
+  const SparseFrame sparse = tracer.at_rest().trace(camera, 1, map, emission_only());
   const Frame frame = reconstruct(sparse, map, "linear");
   const double peak_mib = status_mib("VmHWM");
   const double megapixels = kWidth * kHeight * 1e-6;
@@ -141,7 +142,7 @@ TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   TraceSettings settings;
   settings.max_bounces = 2;
   const TracerOptions options = threads(2);
-  const SparseFrame frame = PathTracer(scene, options).trace(camera, 1, map, settings);
+  const SparseFrame frame = PathTracer(scene, options).at_rest().trace(camera, 1, map, settings);
 
   const RenderScene render_scene(scene, options);
   const LightSampler lights(scene);
@@ -216,11 +217,11 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
     Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
     camera.projection.kind = ProjectionKind::orthographic;
     camera.projection.ymag_m = 1.0 / 16384;
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const SamplingMap map = uniform_map(16384, 1, 4);
     TraceSettings settings = emission_only();
     settings.pixel_cone = 0;
-    const SparseFrame frame = tracer.trace(camera, 1, map, settings);
+    const SparseFrame frame = tracer.at_rest().trace(camera, 1, map, settings);
     int off = 0;
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
       EXPECT_EQ(frame.sum[i].z, 4.0F);
@@ -233,7 +234,7 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
     EXPECT_LT(off, 16384 / 50);
     // The coarsest level is the only one a wide cone leaves.
     settings.pixel_cone = 1e6;
-    const SparseFrame coarse = tracer.trace(camera, 1, uniform_map(16, 1, 4), settings);
+    const SparseFrame coarse = tracer.at_rest().trace(camera, 1, uniform_map(16, 1, 4), settings);
     for (const Vec3f& sum : coarse.sum) {
       EXPECT_EQ(sum.z, 4.0F);
       EXPECT_EQ(sum.x, coarse.sum[0].x);
@@ -253,11 +254,12 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
       Geometry face = plate(-1, -1, 1, 1);
       face.uv0 = {{-1e6F, 7}, {3.5F, 7}, {3.5F, -1e6F}, {-1e6F, -1e6F}};
       add_mesh(scene, {face});
-      const PathTracer tracer(scene, threads(1));
+      PathTracer tracer(scene, threads(1));
       for (const double cone : {0.0, 1.0}) {
         TraceSettings settings = emission_only();
         settings.pixel_cone = cone;
-        const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), settings);
+        const SparseFrame frame =
+            tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), settings);
         for (const Vec3f& sum : frame.sum) {
           EXPECT_NEAR(sum.x, 4 * 0.2, 1e-6);
           EXPECT_NEAR(sum.y, 4 * 0.4, 1e-6);

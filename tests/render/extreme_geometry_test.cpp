@@ -53,15 +53,17 @@ TEST(ExtremeGeometry, NeedlesFillASquare) {
     scene.environment = constant_environment({1, 1, 1});
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
-    const PathTracer lit(scene, threads(2));
-    const SparseFrame white = lit.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
+    PathTracer lit(scene, threads(2));
+    const SparseFrame white =
+        lit.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
     expect_clean(white);
     EXPECT_NEAR(mean_radiance(white).y, 1, 1e-3) << length;
     // The same needles as lamps on black: no gaps between them, no light lost among 8192 emitters.
     scene.environment = {};
     scene.meshes[0].geometries[0].material = 1;
-    const PathTracer lamps(scene, threads(2));
-    const SparseFrame glow = lamps.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
+    PathTracer lamps(scene, threads(2));
+    const SparseFrame glow =
+        lamps.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
     expect_clean(glow);
     EXPECT_NEAR(mean_radiance(glow).y, 1, 1e-4) << length;
   }
@@ -89,9 +91,9 @@ TEST(ExtremeGeometry, TrianglesWithoutAreaChangeNothing) {
     settings.diffuse = DiffuseModel::matte;
     const Camera camera = camera_at({0, 0, 5}, {0, 0, 0}, 30);
     const SamplingMap map = uniform_map(32, 32, 16);
-    const double without = mean_radiance(PathTracer(scene, threads(2)).trace(camera, 1, map, settings)).y;
+    const double without = mean_radiance(PathTracer(scene, threads(2)).at_rest().trace(camera, 1, map, settings)).y;
     add_mesh(scene, {soup(degenerate, 1)});
-    const SparseFrame with = PathTracer(scene, threads(2)).trace(camera, 1, map, settings);
+    const SparseFrame with = PathTracer(scene, threads(2)).at_rest().trace(camera, 1, map, settings);
     expect_clean(with);
     // Rounding may let a ray in ten thousand meet a line of no width; it must not shine or blacken more than that.
     EXPECT_NEAR(mean_radiance(with).y, without, 1e-3);
@@ -107,7 +109,7 @@ TEST(ExtremeGeometry, DuplicatesAreOneSurface) {
   TraceSettings settings;
   settings.diffuse = DiffuseModel::matte;
   const Camera camera = camera_at({0, 0, 5}, {0, 0, 0}, 10);
-  const SparseFrame lit = PathTracer(scene, threads(1)).trace(camera, 1, uniform_map(16, 16, 16), settings);
+  const SparseFrame lit = PathTracer(scene, threads(1)).at_rest().trace(camera, 1, uniform_map(16, 16, 16), settings);
   expect_clean(lit);
   EXPECT_NEAR(mean_radiance(lit).y, 1, 1e-3);
   // Three lamps in one place: seen as one, and a floor under them is lit as by one, however light is found. One of them
@@ -123,7 +125,8 @@ TEST(ExtremeGeometry, DuplicatesAreOneSurface) {
   std::array<double, 3> means{};
   for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only, LightSampling::bsdf_only}) {
     settings.light_sampling = sampling;
-    const SparseFrame frame = PathTracer(scene, threads(2)).trace(below, 1, uniform_map(32, 32, 256), settings);
+    const SparseFrame frame =
+        PathTracer(scene, threads(2)).at_rest().trace(below, 1, uniform_map(32, 32, 256), settings);
     expect_clean(frame);
     means[static_cast<std::size_t>(sampling)] = mean_radiance(frame).y;
   }
@@ -147,7 +150,7 @@ TEST(ExtremeGeometry, VerticesThatAreNoNumbersAreRefusedByName) {
         scene.instances.push_back({0, make_affine({5, 0, 0}, {}, {1, 1, 1})});
       }
       try {
-        const PathTracer tracer(scene, threads(1));
+        PathTracer tracer(scene, threads(1));
         FAIL() << bad;
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);

@@ -58,14 +58,14 @@ TEST(ExtremeLight, ASunOfAMillionOnABlackSky) {
     irradiance += tent * std::cos(polar) * std::sin(polar) * (2 * kPi / kWidth) * (kPi / kHeight) * 2.0 / kSteps;
   }
   const double expected = 1e6 * irradiance / kPi;
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   for (const bool compensated : {false, true}) {
     std::vector<double> means;
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       TraceSettings settings = one_bounce();
       settings.seed = seed;
       settings.compensate_environment = compensated;
-      const SparseFrame frame = tracer.trace(above(), 1, uniform_map(32, 32, 64), settings);
+      const SparseFrame frame = tracer.at_rest().trace(above(), 1, uniform_map(32, 32, 64), settings);
       EXPECT_EQ(frame.stats.non_finite_samples, 0U);
       means.push_back(mean_radiance(frame).y);
     }
@@ -77,14 +77,15 @@ TEST(ExtremeLight, ASunOfAMillionOnABlackSky) {
 
 TEST(ExtremeLight, AnAllBlackEnvironmentIsNone) {
   Scene scene = floor_scene();
-  const SparseFrame none = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 4), {});
+  const SparseFrame none = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 4), {});
   scene.environment = constant_environment({0, 0, 0});
   for (const bool compensated : {false, true}) {
     for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only, LightSampling::bsdf_only}) {
       TraceSettings settings;
       settings.light_sampling = sampling;
       settings.compensate_environment = compensated;
-      const SparseFrame black = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 4), settings);
+      const SparseFrame black =
+          PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 4), settings);
       EXPECT_EQ(black.stats.non_finite_samples + black.stats.rejected_rays, 0U);
       EXPECT_EQ(black.sum, none.sum);
       EXPECT_EQ(mean_radiance(black).y, 0);
@@ -93,9 +94,9 @@ TEST(ExtremeLight, AnAllBlackEnvironmentIsNone) {
   // A lamp beside it is sampled as if it were alone.
   scene.materials.push_back(diffuse_material({0, 0, 0}, {1, 1, 1}));
   add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 1)});
-  const SparseFrame lamp = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 16), {});
+  const SparseFrame lamp = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 16), {});
   scene.environment = {};
-  const SparseFrame alone = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 16), {});
+  const SparseFrame alone = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 16), {});
   EXPECT_GT(mean_radiance(lamp).y, 0);
   EXPECT_EQ(lamp.sum, alone.sum);
 }
@@ -138,7 +139,8 @@ TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
       add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 1)});
       TraceSettings settings = one_bounce(sampling);
       settings.max_bounces = 4;
-      const SparseFrame frame = PathTracer(scene, threads(2)).trace(above(), 1, uniform_map(16, 16, 64), settings);
+      const SparseFrame frame =
+          PathTracer(scene, threads(2)).at_rest().trace(above(), 1, uniform_map(16, 16, 64), settings);
       EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U) << emission;
       const double relative = mean_radiance(frame).y / static_cast<double>(e);
       double& expected = reference[static_cast<std::size_t>(sampling)];
@@ -155,8 +157,9 @@ TEST(ExtremeLight, BeyondFloatsSamplesAreCounted) {
   scene.materials.push_back(diffuse_material({0, 0, 0}, {3e38F, 3e38F, 3e38F}));
   add_mesh(scene, {quad({{{-9, 3, -9}, {9, 3, -9}, {9, 3, 9}, {-9, 3, 9}}}, 1)});
   // Light sampling divides by a density below 1: the estimate leaves float's range.
-  const SparseFrame frame =
-      PathTracer(scene, threads(2)).trace(above(), 1, uniform_map(8, 8, 16), one_bounce(LightSampling::light_only));
+  const SparseFrame frame = PathTracer(scene, threads(2))
+                                .at_rest()
+                                .trace(above(), 1, uniform_map(8, 8, 16), one_bounce(LightSampling::light_only));
   EXPECT_GT(frame.stats.non_finite_samples, 0U);
   EXPECT_FALSE(frame.stats.bad_samples.empty());
 }
@@ -173,7 +176,8 @@ TEST(ExtremeLight, PunctualLightsOverTheWholeRange) {
       // So narrow a view that the light is straight above all of it.
       Camera camera = above(2 * height);
       camera.projection.yfov_rad = 0.01 * kRadPerDeg;
-      const SparseFrame frame = PathTracer(scene, threads(1)).trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
+      const SparseFrame frame =
+          PathTracer(scene, threads(1)).at_rest().trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
       EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
       const double expected = static_cast<double>(i) / (height * height) / kPi;
       EXPECT_NEAR(mean_radiance(frame).y / expected, 1, 1e-4) << intensity << ' ' << height;
@@ -193,7 +197,7 @@ TEST(ExtremeLight, APunctualLightThatOverflowsIsNotDropped) {
     options.light_choice = choice;
     Camera camera = above(2);
     camera.projection.yfov_rad = 1e-5 * kRadPerDeg;
-    const SparseFrame frame = PathTracer(scene, options).trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
+    const SparseFrame frame = PathTracer(scene, options).at_rest().trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
     EXPECT_EQ(frame.stats.non_finite_samples, 64U);
     ASSERT_FALSE(frame.stats.bad_samples.empty());
     EXPECT_EQ(frame.stats.bad_samples[0].what, "non-finite radiance");

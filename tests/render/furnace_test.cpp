@@ -62,7 +62,7 @@ void expect_albedos(const std::vector<Case>& cases) {
   const double level = sidak(cases.size());
   for (const Case& c : cases) {
     const Scene scene = square_scene(surface_material(c.metallic, c.roughness));
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
     const Camera camera = camera_under(c.mu);
     TraceSettings settings;
     settings.max_bounces = 1;
@@ -71,7 +71,7 @@ void expect_albedos(const std::vector<Case>& cases) {
     std::vector<double> means;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       settings.seed = seed;
-      const Vec3d mean = mean_radiance(tracer.trace(camera, 1, map, settings));
+      const Vec3d mean = mean_radiance(tracer.at_rest().trace(camera, 1, map, settings));
       means.push_back((mean.x + mean.y + mean.z) / 3);
     }
     const MeanTest result = t_test(means, c.expected, kTableError);
@@ -166,7 +166,7 @@ TEST(Furnace, ASphereShowsTheAlbedoUnderEveryAngle) {
     scene.materials = {surface_material(kind.metallic, kind.roughness)};
     add_mesh(scene, {sphere(256)});
     scene.environment = constant_environment({1, 1, 1});
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
 
     const ReferenceBsdf reference({to_double(kColor), kind.metallic, kind.roughness, DiffuseModel::burley});
     std::vector<double> albedo;  // at radius 0, 1/n ... 1 of 0.95
@@ -200,7 +200,7 @@ TEST(Furnace, ASphereShowsTheAlbedoUnderEveryAngle) {
       TraceSettings settings;
       settings.max_bounces = 1;
       settings.seed = seed;
-      const SparseFrame frame = tracer.trace(camera, 1, map, settings);
+      const SparseFrame frame = tracer.at_rest().trace(camera, 1, map, settings);
       double sum = 0;
       for (std::size_t i = 0; i < map.sites.size(); ++i) {
         if (inside(map.sites[i])) {
@@ -228,10 +228,10 @@ TEST(Furnace, AWhiteSphereIsInvisible) {
         scene.materials = {surface_material(metallic, roughness, {1, 1, 1})};
         add_mesh(scene, {sphere(128)});
         scene.environment = constant_environment({1, 1, 1});
-        const PathTracer tracer(scene, threads(1));
+        PathTracer tracer(scene, threads(1));
         TraceSettings settings;
         settings.diffuse = diffuse;
-        const Vec3d mean = mean_radiance(tracer.trace(camera_at({2, 3, 4}, {0, 0, 0}, 15), 1, map, settings));
+        const Vec3d mean = mean_radiance(tracer.at_rest().trace(camera_at({2, 3, 4}, {0, 0, 0}, 15), 1, map, settings));
         // The tables' interpolation error (bsdf_test states 5e-3 for one angle; over all angles it averages out).
         EXPECT_NEAR(mean.y, 1, 2e-3) << roughness << ' ' << metallic << ' ' << static_cast<int>(diffuse);
       }

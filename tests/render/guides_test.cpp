@@ -59,7 +59,7 @@ PixelIndex pixel_of(const Vec3d& point) {
 }
 
 Guides guides_of(const Scene& scene, const GuideSettings& settings = {}, int thread_count = 1) {
-  return PathTracer(scene, threads(thread_count)).guides(kCamera, kWidth, kHeight, settings);
+  return PathTracer(scene, threads(thread_count)).at_rest().guides(kCamera, kWidth, kHeight, settings);
 }
 
 TEST(Guides, SayWhatIsSeen) {
@@ -125,13 +125,13 @@ TEST(Guides, SameBitsForAnyThreadCount) {
 // What many rays say is what the tracer's own first hits say: normals, coverage and directly seen light, per pixel.
 TEST(Guides, AgreeWithTracedFirstHits) {
   Scene scene = scene_of_kinds();
-  const PathTracer tracer(scene, threads(2));
-  const Guides guides = tracer.guides(kCamera, kWidth, kHeight, {.spp = 64});
+  PathTracer tracer(scene, threads(2));
+  const Guides guides = tracer.at_rest().guides(kCamera, kWidth, kHeight, {.spp = 64});
   TraceSettings settings;
   settings.guides = true;
   settings.max_bounces = 0;  // emission only
   const SamplingMap map = uniform_map(kWidth, kHeight, 256);
-  const SparseFrame traced = tracer.trace(kCamera, 0, map, settings);
+  const SparseFrame traced = tracer.at_rest().trace(kCamera, 0, map, settings);
   std::vector<PixelIndex> pixels;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
     pixels_of_site(map, map.sites[i], pixels);

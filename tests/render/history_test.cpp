@@ -61,6 +61,7 @@ PipelineSettings settings_of(AccumulateOrder order = AccumulateOrder::after) {
   settings.exposure.mode = ExposureMode::log_average;
   settings.exposure.smoothing_s = 0.2;
   settings.foveation.region_samples = {8, 4, 4};
+  settings.reconstruction.filter = "linear";
   settings.history_digest = "0123456789abcdef0123456789abcdef";
   settings.threads = 2;
   return settings;

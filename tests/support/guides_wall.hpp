@@ -42,7 +42,9 @@ inline SamplingMap map_with_fovea(const PixelSpan& across, const PixelSpan& down
       layout.region(x, y) = 0;
     }
   }
-  return map_from_layout(std::move(layout));
+  SamplingMap map = map_from_layout(std::move(layout));
+  map.full_rate_spp = foveal_samples;
+  return map;
 }
 
 }  // namespace gazetrace

@@ -107,7 +107,7 @@ TEST_F(CameraFormats, NukeCountsFramesAndTurnsAboutZThenXThenY) {
 TEST_F(CameraFormats, NukeErrorsAndWarnings) {
   const std::string form = "; a line of a .chan file is `frame tx ty tz rx ry rz [vfov]`, angles in degrees";
   EXPECT_EQ(refusal("a.chan", "1 0 0 0 0 0 0\n2 0 0 0 0 0\n"), "a.chan:2: 6 values where 7 or 8 belong" + form);
-  EXPECT_EQ(refusal("b.chan", "1 0 0 0 0 0 0\n1.5 0 0 0 0 0 0\n"), "b.chan:2: '1.5' is no frame number" + form);
+  EXPECT_EQ(refusal("b.chan", "1 0 0 0 0 0 0\n1.5 0 0 0 0 0 0\n"), "b.chan:2: '1.5' is not a frame number" + form);
   EXPECT_EQ(refusal("c.chan", "2 0 0 0 0 0 0\n2 0 0 0 0 0 0\n"),
             "c.chan:2: frame 2 repeats 2; frames of a .chan file must increase");
   EXPECT_EQ(refusal("d.chan", "2 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
@@ -146,19 +146,19 @@ TEST_F(CameraFormats, NerfErrors) {
     return "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": " + matrix + "}]}";
   };
   EXPECT_THAT(refusal("a.json", one("[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]")),
-              HasSubstr("a.json: frames[0]: the columns of its transform_matrix are no rotation"));
+              HasSubstr("a.json: frames[0]: the columns of its transform_matrix are not a rotation"));
   EXPECT_THAT(refusal("b.json", one("[[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]")), HasSubstr("a mirror image"));
   EXPECT_THAT(refusal("c.json", one("[[1,0,0,0],[0,1,0,0],[0,0,1,null],[0,0,0,1]]")),
               HasSubstr("no finite number at row 3, column 4"));
   EXPECT_THAT(refusal("d.json", one("[[1,0,0],[0,1,0],[0,0,1],[0,0,0]]")), HasSubstr("row 1"));
   EXPECT_THAT(refusal("e.json", one("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,2]]")), HasSubstr("the last row"));
   EXPECT_THAT(refusal("f.json", "{\"frames\": [], \"x\": \"transform_matrix\"}"), HasSubstr("f.json: holds no pose"));
-  EXPECT_THAT(refusal("g.json", "{\"frames\": [{\"transform_matrix\": "), HasSubstr("is not the JSON"));
+  EXPECT_THAT(refusal("g.json", "{\"frames\": [{\"transform_matrix\": "), HasSubstr("is not a JSON object"));
   const std::string ahead = "\"frames\": [{\"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}]}";
   EXPECT_THAT(refusal("wide.json", "{\"fl_y\": 691, \"h\": 9e22, " + ahead), HasSubstr("field of view of 180 degrees"));
   EXPECT_THAT(refusal("thin.json", "{\"fl_y\": 1e300, \"h\": 1e-300, " + ahead),
               HasSubstr("field of view of 0 degrees"));
-  EXPECT_THAT(refusal("scene.gltf", "{\"asset\": {\"version\": \"2.0\"}}"), HasSubstr("chosen with --camera"));
+  EXPECT_THAT(refusal("scene.gltf", "{\"asset\": {\"version\": \"2.0\"}}"), HasSubstr("chosen with `camera`"));
 }
 
 // x_camera = R x_world + t. Without rotation and with t = (1, 2, 3) the camera stands at (-1, -2, -3) and looks along
@@ -197,7 +197,7 @@ TEST_F(CameraFormats, ColmapIsInvertedAndSortedByName) {
   EXPECT_THAT(refusal("images.txt", "1 1 0 0 0 1 2 3 7 a.jpg\n\n2 0 0 0 0 1 2 3 7 b.jpg\n"),
               HasSubstr("images.txt:3: quaternion (-0, -0, -0, 0) has no direction"));
   EXPECT_THAT(refusal("images.txt", "1 1 0 0 0 1 2 3 7 a.jpg\n\n2 1 0 0 0 1 2 3\n"),
-              HasSubstr("images.txt:3: is no picture's line: less than 10 values"));
+              HasSubstr("images.txt:3: is not the line of a picture: it has less than 10 values"));
 }
 
 // A Unity camera at (1, 2, 3), yawed 90 degrees to the right: looks along Unity's +x, which is +x here too; z changes

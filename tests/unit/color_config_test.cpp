@@ -102,7 +102,7 @@ TEST_F(ColorConfig, EntersThroughTheInterchangeRole) {
 TEST_F(ColorConfig, EntersThroughANamedInput) {
   ColorSettings settings;
   settings.config = write(config_text(""));
-  expect_error(settings, ErrorKind::input, {settings.config, "no role aces_interchange", "--ocio-input"});
+  expect_error(settings, ErrorKind::input, {settings.config, "no role aces_interchange", "`ocio-input`"});
   settings.input = "ap0";
   EXPECT_THAT(show(settings), testing::ElementsAre(255, 0, 0));
   settings.input = "ap1";

@@ -133,7 +133,7 @@ TEST(GazeAges, SlowFramesAreWarnedAbout) {
   ASSERT_EQ(plan.warnings.size(), 1U);
   EXPECT_THAT(plan.warnings[0],
               HasSubstr("a latency of 50 ms is 1.2 frames at 24 fps: while a frame is shown, the age of "
-                        "its gaze runs over 29.2 to 70.8 ms; a study of latency needs --fps 80 or more"));
+                        "its gaze grows from 29.2 to 70.8 ms; a study of latency needs `fps` 80 or more"));
   PlanSettings fast = second_at(90);
   fast.gaze_latency_ns = 50 * kMs;
   EXPECT_TRUE(plan_frames(still(), &log, fast).warnings.empty());

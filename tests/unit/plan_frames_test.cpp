@@ -173,11 +173,11 @@ TEST(PlanFrames, CameraMustCoverTheFrames) {
   EXPECT_EQ(
       message_of(moving(0, 70 * kMs), nullptr, settings, ErrorKind::input),
       "walk.txt: the camera path runs from 0.000 s to 0.070 s, and frame 3 is at 0.104 s; render other frames, or use "
-      "--camera-extrapolation hold");
+      "`camera-extrapolation` hold");
   EXPECT_EQ(
       message_of(moving(30 * kMs, 60 * kMs), nullptr, settings, ErrorKind::input),
       "walk.txt: the camera path runs from 0.030 s to 0.060 s, and frame 1 is at 0.021 s (3 of 3 frames are outside); "
-      "render other frames, or use --camera-extrapolation hold");
+      "render other frames, or use `camera-extrapolation` hold");
   settings.camera_extrapolation = CameraExtrapolation::hold;
   const FramePlan plan = plan_frames(moving(30 * kMs, 70 * kMs), nullptr, settings);
   EXPECT_EQ(plan.frames[0].camera.pose.position_m.x, 30e6);
@@ -193,17 +193,16 @@ TEST(PlanFrames, CameraMustCoverTheFrames) {
 TEST(PlanFrames, ScreenGazeNeedsTheScreensGeometry) {
   const GazeLog log = screen_log();
   PlanSettings settings = paper_settings();
-  const std::string remedy = "; give --screen NAME, or --screen-px W,H --screen-cm W,H --screen-distance-cm D";
+  const std::string remedy = "; give `screen` NAME, or `screen-px` W,H `screen-cm` W,H `screen-distance-cm` D";
   settings.display.reset();
   EXPECT_EQ(message_of(still(), &log, settings, ErrorKind::input),
-            "gaze.csv: gaze on a screen means no angle without the screen's size and distance" + remedy);
+            "gaze.csv: gaze on a screen cannot be turned into angles without the screen's size and distance" + remedy);
   settings.display = display_by_name("paper");
   settings.display->distance_cm = 0;
-  EXPECT_EQ(
-      message_of(still(), &log, settings, ErrorKind::input),
-      "gaze.csv: gaze on a screen means no angle without its geometry: the display's distance from the eye in cm is "
-      "not stated; give the eye's distance in cm" +
-          remedy);
+  EXPECT_EQ(message_of(still(), &log, settings, ErrorKind::input),
+            "gaze.csv: gaze on a screen cannot be turned into angles: the display's distance from the eye in cm is "
+            "not stated; give the eye's distance in cm" +
+                remedy);
 }
 
 TEST(PlanFrames, DirectionsUseTheCamerasOwnView) {
@@ -274,9 +273,9 @@ TEST(PlanFrames, RecordingAndViewingGeometryAreCompared) {
 TEST(PlanFrames, SettingsThatCannotBe) {
   PlanSettings settings = paper_settings();
   settings.frames.clear();
-  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "there is no frame to render; give --frames");
+  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "there is no frame to render; give `frames`");
   settings.frames = {0};
-  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "frames are numbered from 1; give --frames");
+  EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage), "frames are numbered from 1; give `frames`");
   settings.frames = {1};
   settings.gaze_latency_ns = -1;
   EXPECT_THAT(message_of(still(), nullptr, settings, ErrorKind::usage), HasSubstr("would look ahead"));
@@ -286,7 +285,7 @@ TEST(PlanFrames, SettingsThatCannotBe) {
   settings.fps = {1, 1'000'000'000'000};
   settings.frames = {2147483647};
   EXPECT_EQ(message_of(still(), nullptr, settings, ErrorKind::usage),
-            "frame 2147483647 lies beyond int64 nanoseconds; check --frames, --fps and --start");
+            "frame 2147483647 lies beyond int64 nanoseconds; check `frames`, `fps` and `start`");
 }
 
 TEST(PrintPlan, TableIsAligned) {

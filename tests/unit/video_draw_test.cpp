@@ -114,7 +114,7 @@ TEST(VideoColor, FollowsFromTheDisplay) {
     video_color_of_view("c: display My Projector, view x");
     FAIL();
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("--color"));
+    EXPECT_THAT(e.what(), HasSubstr("`color`"));
   }
   EXPECT_THROW(video_color_by_name("rgb"), Error);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// NeRF's transforms.json (instant-ngp, nerfstudio, the synthetic sets): camera to world matrices, the camera looks
-// along -z with y up. Pictures become frames in the order of their names; there is no time. The vertical field of view
-// is that of fl_y and h, else camera_angle_y, else camera_angle_x (or fl_x) with w and h.
+// NeRF's transforms.json (instant-ngp, nerfstudio, the synthetic sets): camera-to-world matrices; the camera looks
+// along -z with y up. There are no times: pictures become frames in the order of their names. The vertical field of
+// view comes from fl_y and h, else from camera_angle_y, else from fl_x or camera_angle_x with w and h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Affine matrix_of(const Json& frame, const std::string& place) {
   for (std::size_t r = 0; r < found->size(); ++r) {
     const Json& row = (*found)[r];
     if (!row.is_array() || row.size() != 4) {
-      refuse(place, fmt::format("row {} of its transform_matrix has not 4 numbers", r + 1));
+      refuse(place, fmt::format("row {} of its transform_matrix does not have 4 numbers", r + 1));
     }
     for (std::size_t c = 0; c < 4; ++c) {
       if (!row[c].is_number() || !std::isfinite(row[c].get<double>())) {
@@ -58,7 +58,7 @@ Affine matrix_of(const Json& frame, const std::string& place) {
   return {column(0), column(1), column(2), column(3)};
 }
 
-// Text files round to a few digits; anything beyond is a scale, a shear or a mirror image.
+// Text files round to a few digits; a larger deviation is a scale, a shear or a mirror image.
 void check_rotation(const Affine& a, const std::string& place) {
   constexpr double kOff = 1e-2;
   const bool unit =
@@ -68,8 +68,8 @@ void check_rotation(const Affine& a, const std::string& place) {
   if (!unit || !square || determinant(a) < 0) {
     throw Error(ErrorKind::input, place,
                 unit && square ? "its transform_matrix is a mirror image, not a rotation"
-                               : "the columns of its transform_matrix are no rotation",
-                "export camera-to-world matrices without scale; --camera-scale scales a path");
+                               : "the columns of its transform_matrix are not a rotation",
+                "export camera-to-world matrices without scale; `camera-scale` scales a path");
   }
 }
 
@@ -116,7 +116,7 @@ void warn_about_lens(const Json& json, const std::string& path, CameraKeys& resu
   if (!result.yfov_rad && number_of(json, "camera_angle_x")) {
     result.warnings.push_back(path +
                               ": states camera_angle_x but neither w and h nor camera_angle_y, so no vertical field of "
-                              "view; --yfov gives one");
+                              "view; `yfov` gives one");
   }
 }
 
@@ -130,7 +130,7 @@ double sniff_camera_nerf(const CameraFile& file) {
 CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& options) {
   const Json json = Json::parse(file.text, nullptr, false);
   if (json.is_discarded() || !json.is_object()) {
-    refuse(file.path, "is not the JSON that it should be");
+    refuse(file.path, "is not a JSON object");
   }
   const auto frames = json.find("frames");
   if (frames == json.end() || !frames->is_array()) {
@@ -148,7 +148,7 @@ CameraKeys read_camera_nerf(const CameraFile& file, const CameraReadOptions& opt
     const auto index = static_cast<std::int64_t>(pictures.size());
     const std::string place = fmt::format("{}: frames[{}]", file.path, index);
     if (!frame.is_object()) {
-      refuse(place, "is no object");
+      refuse(place, "is not a JSON object");
     }
     const Affine matrix = matrix_of(frame, place);
     check_rotation(matrix, place);

@@ -36,7 +36,7 @@ template <class Infos>
 std::vector<Member> members_of(const Infos& infos) {
   std::vector<Member> members;
   for (const auto& info : infos) {
-    members.push_back({info.name, info.description});
+    members.push_back({info.name, with_flags(info.description)});
   }
   return members;
 }

@@ -115,7 +115,7 @@ int run_plan(const PlanArguments& arguments) {
                 "leave it out, or render and read timing.csv");
   }
   if (!arguments.counts) {
-    print_result(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan));
+    print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));
     return exit_done;
   }
   std::vector<FrameCounts> counts;

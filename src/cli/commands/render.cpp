@@ -34,6 +34,14 @@ void check_asked_for_something(const JobSettings& job) {
   }
 }
 
+RunRecord record_with_flags(RunRecord record) {
+  record.warnings = with_flags(std::move(record.warnings));
+  for (auto& [name, text] : record.facts) {
+    text = with_flags(text);
+  }
+  return record;
+}
+
 // Embree and libm choose kernels by the machine: frames of two kinds of machine may differ in their last bits.
 void warn_of_other_machine(const std::string& record_path, const RunRecord& now, Warnings& warnings) {
   if (!std::filesystem::exists(record_path)) {
@@ -89,7 +97,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
       record.warnings = resolved.warnings;
     }
     // Written now and at the end: a killed run has a record, too.
-    write_text_atomically(files.front(), run_record_json(record));
+    write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
   }
   print_warnings(resolved.warnings);
   if (!job.quiet) {
@@ -116,7 +124,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
 
   if (!files.empty()) {
     finish_run_record(record, result, resolved.plan, wall_s);
-    write_text_atomically(files.front(), run_record_json(record));
+    write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
   }
   print_warnings(result_warnings(result, resolved.plan));
   if (!job.quiet) {

@@ -13,8 +13,7 @@ void add_filter_options(JobSchema& schema) {
              "--gaze-missing uniform makes some of a log's frames uniform, they are guided as well. What guided takes "
              "from first hits shows no blur of lens and shutter")
       .with(Trait::always_stated);
-  schema.value("--pass-through", at(&JobSettings::foveation, &FoveationSettings::pass_through_samples), "SPP",
-               Touch::filter,
+  schema.value("--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
                "Pixels with at least so many samples keep their own mean in every filter; 0: guided and oidn smooth "
                "all; default: in a fovea of 8 and more its full rate, at most 16; none in uniform frames");
   schema

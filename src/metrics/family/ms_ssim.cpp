@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Multi-scale structural similarity (Wang, Simoncelli, Bovik, "Multi-scale structural similarity for image quality
 // assessment", 2003, eq. 7) of BT.601 luma: five scales, each the mean of 2 x 2 pixels of the one before. Negative
-// means of a scale count as 0. It has no map: its factors live at different scales.
+// means of a scale count as 0. There is no map, since the factors belong to different scales.
 #include <fmt/format.h>
 
 #include <algorithm>
