@@ -311,6 +311,9 @@ class OptionSchema {
     }
   }
 
+  // An option as it is, under its own heading.
+  OptionOf<S>& add(OptionOf<S> option) { return finish(std::move(option)); }
+
   // All options of a part of these settings, with their headings; returns the last of them.
   template <class Part, class Access>
   OptionOf<S>& include(const OptionSchema<Part>& part, Access access) {
