@@ -17,6 +17,11 @@ namespace gazetrace {
 // How an angle of the source paper is read: as the region's diameter (5.2 deg: the region ends at an eccentricity of
 // 2.6 deg), or as the eccentricity at which the region ends.
 enum class AngleReading { full_angle, eccentricity };
+// The share of an angle, read so, that is an eccentricity: half of a diameter, the whole of an eccentricity. This is
+// the only place where angles of regions are halved.
+constexpr double eccentricity_share(AngleReading reading) {
+  return reading == AngleReading::full_angle ? 0.5 : 1.0;
+}
 // Whether a region's number of samples, tau, counts for a whole n x n block or for each of its pixels.
 enum class SampleUnit { per_block, per_pixel };
 // cone: by the angle between rays, which is exact off the axis, too. disc: the paper's eq. (1), r = 2 d R tan(a/2) / S

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/metrics.hpp"
 
@@ -120,8 +121,7 @@ MapStatistics map_statistics(const ImageGray& map, int margin_px) {
   statistics.min = static_cast<double>(*least);
   statistics.max = static_cast<double>(*most);
   for (std::size_t i = 0; i < kShares.size(); ++i) {
-    const auto rank = static_cast<std::uint64_t>(kShares[i] * static_cast<double>(values.size()));
-    statistics.quantiles[i] = quantiles.at_rank(std::min<std::uint64_t>(rank, values.size() - 1));
+    statistics.quantiles[i] = quantiles.at_rank(upper_rank(kShares[i], values.size()));
   }
   for (std::size_t i = 0; i < kWeightedShares.size(); ++i) {
     statistics.weighted_quartiles[i] = quantiles.at_sum(kWeightedShares[i] * quantiles.total());

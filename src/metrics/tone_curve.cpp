@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -80,10 +81,9 @@ FlipExposures flip_exposures(const ImageRgb& reference, const FlipExposureSettin
     const std::size_t dark = reference.pixels.size() - luminance.size();
     const std::size_t half = reference.pixels.size() / 2;
     const std::size_t rank = half >= dark ? half - dark : luminance.size() / 2;
-    const auto middle = luminance.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(luminance.begin(), middle, luminance.end());
+    const float middle = value_at_rank(luminance, rank);
     exposures.start_ev = std::log2(x_max / *std::max_element(luminance.begin(), luminance.end()));
-    exposures.stop_ev = std::log2(x_max / *middle);
+    exposures.stop_ev = std::log2(x_max / middle);
   }
   exposures.start_ev = settings.start_ev.value_or(exposures.start_ev);
   exposures.stop_ev = settings.stop_ev.value_or(exposures.stop_ev);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/statistics.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -101,9 +103,7 @@ std::optional<GazeAges> gaze_ages(const FramePlan& plan, const PlanSettings& set
   ages.frames = all.size();
   if (!all.empty()) {
     std::sort(all.begin(), all.end());
-    const auto at = [&](double share) {
-      return all[static_cast<std::size_t>(std::ceil(share * static_cast<double>(all.size()))) - 1];
-    };
+    const auto at = [&](double share) { return all[covering_rank(share, all.size())]; };
     ages.min_ns = all.front();
     ages.median_ns = at(0.5);
     ages.p95_ns = at(0.95);

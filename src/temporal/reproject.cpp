@@ -8,6 +8,7 @@
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
+#include "core/statistics.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/temporal.hpp"
 #include "temporal/clip.hpp"
@@ -58,12 +59,7 @@ double median_depth_m(const ImageGray& depth_m) {
       depths.push_back(depth_m.pixels[i]);
     }
   }
-  if (depths.empty()) {
-    return HUGE_VAL;
-  }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return static_cast<double>(*middle);
+  return depths.empty() ? HUGE_VAL : static_cast<double>(upper_median(depths));
 }
 
 }  // namespace

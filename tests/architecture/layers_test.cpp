@@ -19,10 +19,10 @@ const fs::path kSource = GAZETRACE_SOURCE_DIR;
 
 // A module may include modules of a smaller number, and itself.
 const std::map<std::string, int> kLayer = {
-    {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},  {"scene", 2},
-    {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4}, {"output", 4},
-    {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"job", 6},   {"sweep", 7},
-    {"report", 7},  {"video", 7},       {"cli", 8},
+    {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},    {"scene", 2},
+    {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4},   {"output", 4},
+    {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"results", 5}, {"job", 6},
+    {"sweep", 7},   {"report", 7},      {"video", 7},    {"cli", 8},
 };
 
 // Within a layer, the order of the data: what may be seen sideways.
@@ -48,6 +48,7 @@ const std::map<std::string, std::string> kPublicHeader = {
     {"report", "report"},      {"video", "video"},       {"sweep", "sweep"},         {"job", "job"},
     {"job_schema", "job"},     {"job_settings", "job"},  {"option_schema", "job"},   {"option_values", "job"},
     {"metric_options", "job"}, {"resolve", "job"},       {"gaze_privacy", "job"},    {"sweep_plan", "sweep"},
+    {"results", "results"},
 };
 
 // Which files may meet which dependency.

@@ -66,11 +66,11 @@ int run_sweep_command(const SweepArguments& arguments) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
   keep_freed_memory();
-  const SweepResults results = run_sweep(plan, observer);
-  write_text_atomically(plan.directory + "/results.csv", sweep_csv(plan, results));
-  write_text_atomically(plan.directory + "/methods.txt", sweep_methods(plan, results));
-  write_text_atomically(plan.directory + "/results.json", sweep_json(plan, results));
-  print_result(sweep_table(plan, results));
+  const Results results = run_sweep(plan, observer);
+  write_text_atomically(plan.directory + "/results.csv", results_csv(results));
+  write_text_atomically(plan.directory + "/methods.txt", results_methods(results));
+  write_text_atomically(plan.directory + "/results.json", results_json(results));
+  print_result(results_table(results));
   return exit_done;
 }
 

@@ -107,7 +107,7 @@ std::array<double, 3> rates_of(const FoveationSettings& settings) {
 DensityModel blended_regions(const FoveationSettings& settings, const PlanarView& view) {
   const std::array<double, 3> rates = rates_of(settings);
   const double full = *std::max_element(rates.begin(), rates.end());
-  const double part = settings.reading == AngleReading::full_angle ? 0.5 : 1.0;
+  const double part = eccentricity_share(settings.reading);
   const bool disc = settings.shape == RegionShape::disc;
   DensityModel model;
   model.quantity = DensityModel::Quantity::density;
@@ -147,7 +147,7 @@ Falloff falloff_regions(const FoveationSettings& settings, const PlanarView& vie
                     {"periphery", settings.region_blocks_px[1], settings.region_samples[2], settings.unit}};
   layout.region = Image<std::uint8_t>(view.width_px, view.height_px, 2);
 
-  const double part = settings.reading == AngleReading::full_angle ? 0.5 : 1.0;
+  const double part = eccentricity_share(settings.reading);
   std::array<double, 2> limits{};
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const double angle_deg = settings.region_angles_deg[i];

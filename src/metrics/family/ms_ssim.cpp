@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "metrics/code_values.hpp"
 #include "metrics/metric.hpp"
@@ -35,10 +35,6 @@ ImageDouble halved(const ImageDouble& image) {
     }
   }
   return half;
-}
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace

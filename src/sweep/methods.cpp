@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paragraph for a paper: whatever a number of the sweep depends on.
+// The paragraph for a paper: it states everything that a number of the sweep depends on.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "gazetrace/version.hpp"
+#include "sweep/conclude.hpp"
 #include "sweep/scorer.hpp"
 
 namespace gazetrace {
@@ -26,7 +27,7 @@ std::string scenes_of(const SweepPlan& plan) {
   return text;
 }
 
-// Of the tests, each once.
+// The settings of the tests, each of them once.
 std::string settings_of(const SweepPlan& plan) {
   std::vector<std::string> settings;
   for (const SweepTest& test : plan.tests) {
@@ -38,7 +39,7 @@ std::string settings_of(const SweepPlan& plan) {
   return fmt::format("{}", fmt::join(settings, "; "));
 }
 
-// Each once, in their order.
+// The texts in their order, each of them once.
 std::string each_once(const std::vector<std::string>& texts) {
   std::vector<std::string> result;
   for (const std::string& text : texts) {
@@ -57,7 +58,7 @@ std::string views_of(const SweepPlan& plan) {
   return each_once(views);
 }
 
-// How the light of a reference was found, which is not always how that of a test was.
+// How the light of the references was computed, which may differ from how that of the tests was.
 std::string light_of_references(const SweepPlan& plan) {
   std::vector<std::string> texts;
   for (const SweepReference& reference : plan.references) {
@@ -110,7 +111,7 @@ std::string exposures_of(const FlipExposureSettings& flip) {
                      place(flip.stop_ev));
 }
 
-// What single metrics were told.
+// The settings of single metrics.
 std::string metric_settings(const SweepPlan& plan) {
   const ComparisonSettings& c = plan.measure.comparison;
   const auto has = [&](const char* name) {
@@ -134,18 +135,18 @@ std::string metric_settings(const SweepPlan& plan) {
   return texts.empty() ? std::string() : fmt::format(" ({})", fmt::join(texts, "; "));
 }
 
-// Of clips whose reference is one picture.
-std::string standing_pictures(const SweepResults& results) {
+// Said of clips whose reference is a single picture.
+std::string standing_pictures(const Results& results) {
   const bool stands = std::any_of(results.references.begin(), results.references.end(),
-                                  [](const SweepReferenceResult& reference) { return reference.pictures == 1; });
+                                  [](const ResultReference& reference) { return reference.pictures == 1; });
   const bool is_clip =
-      std::any_of(results.rows.begin(), results.rows.end(), [](const SweepRow& row) { return row.frames.size() > 1; });
+      std::any_of(results.rows.begin(), results.rows.end(), [](const ResultRow& row) { return row.frames.size() > 1; });
   return stands && is_clip ? ", once for all frames where neither camera nor scene moves" : "";
 }
 
 }  // namespace
 
-std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
+std::string sweep_methods(const SweepPlan& plan, const Results& results) {
   const SweepMeasure& m = plan.measure;
   const FrameRequest& request = plan.tests.front().plan.frames.front();
   const SweepReference& reference = plan.references.front();
@@ -155,9 +156,9 @@ std::string sweep_methods(const SweepPlan& plan, const SweepResults& results) {
       "pixels per degree in the middle of the view. Scenes: {}. Gaze: {}. Settings that did not vary: {}; options that "
       "are "
       "not named were at the defaults of this version (results.json lists them). Measured settings: {}. ",
-      kVersion, build_description(), instruction_set(), results.build.substr(0, 12), results.machine, results.threads,
-      request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad), scenes_of(plan), list_of(plan.gazes),
-      list_of(plan.stated_settings), settings_of(plan));
+      kVersion, build_description(), instruction_set(), results.build.digest.substr(0, 12), results.machine.cpu,
+      results.machine.threads.value_or(0), request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad),
+      scenes_of(plan), list_of(plan.gazes), list_of(plan.stated_settings), settings_of(plan));
   text += fmt::format("Pictures were shown and scored through the view {}. ", views_of(plan));
   text += fmt::format(
       "The reference of each scene is the mean of {} renderings of {} samples per pixel with independent scramblings "

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/math.hpp"
 #include "gazetrace/sweep.hpp"
@@ -26,14 +27,6 @@ double central_probability(double t, int degrees) {
     sum += term;
   }
   return is_odd ? 2 / kPi * (theta + std::sin(theta) * sum) : std::sin(theta) * sum;
-}
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) {
-    sum += value;
-  }
-  return sum / static_cast<double>(values.size());
 }
 
 }  // namespace
@@ -64,13 +57,8 @@ Interval mean_interval(const std::vector<double>& values) {
   }
   interval.mean = mean_of(values);
   if (values.size() > 1) {
-    double square = 0;
-    for (const double value : values) {
-      square += (value - interval.mean) * (value - interval.mean);
-    }
-    const auto n = static_cast<double>(values.size());
     const double half = student_t_quantile((1 + kConfidence) / 2, static_cast<int>(values.size()) - 1) *
-                        std::sqrt(square / (n - 1) / n);
+                        standard_error(values, interval.mean);
     interval.low = interval.mean - half;
     interval.high = interval.mean + half;
   }
