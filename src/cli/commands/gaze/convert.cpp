@@ -10,7 +10,7 @@
 #include "cli/exit_codes.hpp"
 #include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/gaze_inspect.hpp"
+#include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_write.hpp"
 
 namespace gazetrace {
