@@ -16,19 +16,6 @@
 
 namespace gazetrace {
 
-enum class TimeUnit { automatic, ns, us, ms, s };
-enum class PositionUnit { automatic, fraction, px, mm, cm, deg, unit_vector };
-// Where (0, 0) is and which way y grows: down from the top, up from the bottom and the center. Fractions from the
-// center count half the display, -1..1. automatic: the center for degrees, else top left.
-enum class PositionOrigin { automatic, top_left, bottom_left, center };
-
-// Axes in which a log writes directions and origins, and a head's pose. All have +y up but `cv`.
-//   gl        +x right, -z forward, right-handed: OpenXR, glTF, and gazetrace itself
-//   unity     +x right, +z forward, left-handed
-//   sranipal  +x to the wearer's left, +z forward, right-handed: HTC's SDK, Tobii's glasses
-//   cv        +x right, +y down, +z forward, right-handed: scene cameras
-enum class GazeAxes { automatic, gl, unity, sranipal, cv };
-
 // An eye's columns in a table: position or direction, and what else is known of it.
 struct EyeColumns {
   std::string x, y, z;
@@ -68,18 +55,6 @@ void save_gaze_columns(const GazeColumns& columns, const std::string& path);
 // What `over` declares replaces what `base` does.
 GazeColumns merge_gaze_columns(const GazeColumns& base, const GazeColumns& over);
 
-enum class UnorderedPolicy { error, sort };
-
-// Which gaze a binocular log gives.
-//   automatic  the log's own combined gaze where it has one; else the mean, or, where the eyes differ vertically by
-//              over 0.5 deg in the median, the best eye, with a warning. A combined gaze may jump when an eye is lost
-//   left, right  that eye alone
-//   mean       of both eyes, in angle. While one eye is lost the other stands in, moved by half the offset between
-//              them: for up to 75 ms straight from the one before to the one after, else the running one
-//   dominant   `dominant_eye`; while it is lost the other, moved by the offset
-//   best       as dominant, with the eye that has more usable samples, or less noise where both have as many
-enum class EyeChoice { automatic, left, right, mean, dominant, best };
-
 // What to take of a log that knows gaze in more than one frame.
 //   automatic     places on a display, else directions of head-mounted displays; gaze on a scene camera's picture is
 //                 refused
@@ -115,9 +90,6 @@ struct GazeReadOptions {
   // For looking at a log only: where pixels need the size of a display that nobody states, a usual size that holds them
   // is taken, with a warning and a fact marked statistics; degrees become directions.
   bool guess_display = false;
-  // As guess_display; moreover what reading refuses and an option mends is mended and told in GazeLog::faults, and gaze
-  // on a scene camera's picture is taken.
-  bool for_inspection = false;
 };
 
 // What `stated` leaves open (pixels, size, distance and with it the place of the eye) is that of `by`.

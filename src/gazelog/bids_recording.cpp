@@ -71,11 +71,11 @@ std::optional<StatedUnit> unit_from(const std::string& text) {
 
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 
-void add_origin(GazeLog& log, Eye eye, std::int64_t t_ns, const Vec3f& place_mm) {
+void add_origin(RawGaze& raw, Eye eye, std::int64_t t_ns, const Vec3f& place_mm) {
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   EyeOrigins origins{{kUnknown, kUnknown, kUnknown}, {kUnknown, kUnknown, kUnknown}, t_ns};
   (eye == Eye::right ? origins.right_mm : origins.left_mm) = place_mm;
-  log.origins.push_back(origins);
+  raw.origins.push_back(origins);
 }
 
 // After so many seconds, digit by digit; never longer than can be counted, nor later than the last time there is.
@@ -137,7 +137,7 @@ std::string bids_coordinate_system(const Sidecars& sidecars) {
 }
 
 BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, const GazeReadOptions& options,
-                              GazeLog& log) {
+                              RawGaze& raw) {
   std::vector<std::string> names = sidecars.texts("Columns");
   if (names.empty()) {
     throw Error(ErrorKind::input, file.path, "no sidecar names its Columns",
@@ -152,7 +152,7 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
   if (lines.next(line)) {
     split_cells(line, '\t', first);
     if (c.time < first.size() && !number_from(trim(first[c.time])) && !is_missing(trim(first[c.time]))) {
-      log.warnings.push_back(file.path + ": has a header line, as drafts had it; the sidecar's names are used");
+      raw.warnings.push_back(file.path + ": has a header line, as drafts had it; the sidecar's names are used");
       table.body = lines.rest();
       table.lines_above = 1;
     }
@@ -162,44 +162,43 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
   const int exponent = stated ? *stated
                        : options.columns.time_unit != TimeUnit::automatic
                            ? 9
-                           : exponent_by_rate(file, table, c.time, log.nominal_rate_hz, file.path);
+                           : exponent_by_rate(file, table, c.time, raw.nominal_rate_hz, file.path);
   const TimeScale scale =
-      choose_time_unit(log, options, time_name, exponent, stated ? Evidence::sidecar : Evidence::statistics, file.path);
-  log.pupil_unit = c.pupil ? sidecars.text(names[*c.pupil] + ".Units") : "";
+      declare_time(raw, options, time_name, exponent, stated ? Evidence::sidecar : Evidence::statistics, file.path);
+  raw.pupil_unit = c.pupil ? sidecars.text(names[*c.pupil] + ".Units") : "";
   const Eye eye = recorded_eye(sidecars);
   TableRows rows(file, table, c.needed());
   while (rows.next()) {
     rows.check_length();
-    GazeSample sample;
+    RawSample sample;
     sample.t_ns = rows.time_ns(c.time, scale);
     sample.row = rows.line();
     sample.eye = eye;
     sample.confidence = static_cast<float>(rows.number(c.confidence));
     sample.pupil = static_cast<float>(rows.number(c.pupil));
-    sample.u = rows.number(c.x);
-    sample.v = rows.number(c.y);
-    if (std::isnan(sample.u) || std::isnan(sample.v)) {
-      sample.u = sample.v = kNan;
+    sample.at.x = rows.number(c.x);
+    sample.at.y = rows.number(c.y);
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+      sample.at.x = sample.at.y = kNan;
       sample.validity = GazeValidity::lost;
     }
     if (c.validity) {
       sample.validity = validity_by_name(rows.cell(*c.validity)).value_or(sample.validity);
     }
     if (c.is_direction) {
-      sample.direction = {sample.u, sample.v, rows.number(c.z)};
-      sample.u = sample.v = 0;
+      sample.at.z = rows.number(c.z);
     }
     if (c.origin_x && c.origin_y && c.origin_z) {
-      add_origin(log, eye, sample.t_ns,
+      add_origin(raw, eye, sample.t_ns,
                  to_float({rows.number(c.origin_x), rows.number(c.origin_y), rows.number(c.origin_z)}));
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
   return c;
 }
 
 // ..._physioevents.tsv(.gz): onset in the unit of its OnsetSource, duration in seconds, trial_type, blink, message.
-void read_bids_events(const Sidecars& physio, const std::string& path, GazeLog& log) {
+void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& raw) {
   const BidsName name = parse_bids_name(path);
   const std::size_t at = path.rfind("_physio.");
   if (at == std::string::npos) {
@@ -218,7 +217,7 @@ void read_bids_events(const Sidecars& physio, const std::string& path, GazeLog& 
     const auto onset = table.find("onset");
     const auto exponent = time_exponent(physio.text(sidecars.text("OnsetSource") + ".Units"));
     if (!onset || !exponent) {
-      log.warnings.push_back(events_path + ": its onsets are in no known unit; left out");
+      raw.warnings.push_back(events_path + ": its onsets are in no known unit; left out");
       return;
     }
     const auto type = table.find("trial_type");
@@ -240,14 +239,14 @@ void read_bids_events(const Sidecars& physio, const std::string& path, GazeLog& 
                    : text == "segment"  ? GazeEventType::segment
                                         : GazeEventType::message;
       event.text = is_missing(rows.cell(message)) ? "" : std::string(rows.cell(message));
-      log.events.push_back(std::move(event));
+      raw.events.push_back(std::move(event));
     }
     return;
   }
 }
 
 StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns, const GazeReadOptions& options,
-                            const std::string& path, GazeLog& log, Evidence& evidence) {
+                            const std::string& path, RawGaze& raw, Evidence& evidence) {
   std::string x = sidecars.text(columns.x_name + ".Units");
   if (x.empty()) {
     x = sidecars.text("SampleCoordinateUnit");  // of drafts
@@ -260,7 +259,7 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
   if (given != PositionUnit::automatic && (!is_understood || unit->each != 1)) {
     evidence = Evidence::option;
     if (!x.empty()) {
-      log.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; --gaze-unit {} was given and is used", path,
+      raw.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; --gaze-unit {} was given and is used", path,
                                          columns.x_name, x.substr(0, 40), to_string(given)));
     }
     return {given};

@@ -34,12 +34,12 @@ std::string read_bids_table(const std::string& path);
 
 Eye recorded_eye(const Sidecars& sidecars);
 
-// Samples and origins of one file into the log, places as they stand there. Returns its columns.
+// Samples and origins of one file into the raw, places as they stand there. Returns its columns.
 BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, const GazeReadOptions& options,
-                              GazeLog& log);
+                              RawGaze& raw);
 
 // Those of the ..._physioevents.tsv(.gz) beside the recording at `path`, where there is one.
-void read_bids_events(const Sidecars& physio, const std::string& path, GazeLog& log);
+void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& raw);
 
 // A unit, and how many of it a number of the file counts.
 struct StatedUnit {
@@ -51,7 +51,7 @@ struct StatedUnit {
 // What the sidecar says of the positions' unit, or the user where it says nothing that is understood. `path`: of the
 // recording, for messages.
 StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns, const GazeReadOptions& options,
-                            const std::string& path, GazeLog& log, Evidence& evidence);
+                            const std::string& path, RawGaze& raw, Evidence& evidence);
 
 // gaze-on-screen where none is stated.
 std::string bids_coordinate_system(const Sidecars& sidecars);

@@ -13,10 +13,10 @@ namespace gazetrace {
 namespace {
 
 // EyeLink's inclusive corners are often written as the size: 1919 x 1079.
-void mend_resolution(DisplayGeometry& g, GazeLog& log, const std::string& place) {
+void mend_resolution(DisplayGeometry& g, RawGaze& raw, const std::string& place) {
   const auto is_corner = [](int n) { return n % 2 == 1 && (n + 1) % 8 == 0; };
   if (is_corner(g.width_px) && is_corner(g.height_px)) {
-    log.warnings.push_back(
+    raw.warnings.push_back(
         fmt::format("{}: ScreenResolution {}x{} looks like inclusive corners taken for a size; {}x{} is used", place,
                     g.width_px, g.height_px, g.width_px + 1, g.height_px + 1));
     ++g.width_px;
@@ -72,7 +72,7 @@ PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions&
                          : "top left, bottom left and center can be read; else give --gaze-origin");
 }
 
-void read_bids_screen(const Sidecars& events, GazeLog& log) {
+void read_bids_screen(const Sidecars& events, RawGaze& raw) {
   const auto& key = screen_key;
   const std::vector<double> resolution = events.numbers(key("ScreenResolution"));
   const std::vector<double> size = events.numbers(key("ScreenSize"));
@@ -86,8 +86,8 @@ void read_bids_screen(const Sidecars& events, GazeLog& log) {
   if (fits(resolution, 1e5)) {
     g.width_px = static_cast<int>(std::lround(resolution[0]));
     g.height_px = static_cast<int>(std::lround(resolution[1]));
-    mend_resolution(g, log, place);
-    add_fact(log, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::sidecar, place);
+    mend_resolution(g, raw, place);
+    add_note(raw, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::sidecar, place);
   }
   if (fits(size, 1e4)) {
     // Metres; drafts had centimetres, and no screen is 5 m wide.
@@ -95,20 +95,20 @@ void read_bids_screen(const Sidecars& events, GazeLog& log) {
     g.width_cm = size[0] * to_cm;
     g.height_cm = size[1] * to_cm;
     if (to_cm == 1) {
-      log.warnings.push_back(
+      raw.warnings.push_back(
           fmt::format("{}: ScreenSize {} is taken for centimetres, as drafts had it", place, size[0]));
     }
-    add_fact(log, "display size", fmt::format("{:.5g} x {:.5g} cm", g.width_cm, g.height_cm), Evidence::sidecar, place);
+    add_note(raw, "display size", fmt::format("{:.5g} x {:.5g} cm", g.width_cm, g.height_cm), Evidence::sidecar, place);
   }
   if (distance > 0 && distance < 1e4) {
     g.distance_cm = distance > 10 ? distance : distance * 100;
     if (point.size() == 3 && (point[0] != 0 || point[1] != 0)) {
-      log.warnings.push_back(fmt::format(
+      raw.warnings.push_back(fmt::format(
           "{}: of ScreenDistance [{}, {}, {}] only the last is used, for the distance; where the eye stands "
           "beside the display's center can be given with --screen-eye-cm",
           events.source(key("ScreenDistance")), point[0], point[1], point[2]));
     }
-    add_fact(log, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
+    add_note(raw, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
   }
   // gazetrace's own, from here.
   if (const std::vector<double> cm = events.numbers(key("ScreenSizeCm")); cm.size() == 2) {
@@ -122,10 +122,10 @@ void read_bids_screen(const Sidecars& events, GazeLog& log) {
   }
   if (const std::vector<double> density = events.numbers(key("PixelsPerDegree"));
       density.size() == 2 && density[0] > 0 && density[1] > 0) {
-    log.pixels_per_degree = Vec2d{density[0], density[1]};
+    raw.pixels_per_degree = Vec2d{density[0], density[1]};
   }
   if (g.width_px > 0 || g.width_cm > 0 || g.distance_cm > 0) {
-    log.recording_geometry = g;
+    raw.recording_geometry = g;
   }
 }
 

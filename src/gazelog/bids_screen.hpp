@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gazelog/bids_sidecars.hpp"
-#include "gazetrace/gaze_read.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
@@ -11,7 +11,7 @@ namespace gazetrace {
 PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions& options);
 bool states_screen_origin(const Sidecars& events);
 
-// Its size, distance and density into the log, with warnings for what is taken otherwise than it stands there.
-void read_bids_screen(const Sidecars& events, GazeLog& log);
+// Its size, distance and density into the raw, with warnings for what is taken otherwise than it stands there.
+void read_bids_screen(const Sidecars& events, RawGaze& raw);
 
 }  // namespace gazetrace

@@ -7,10 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <utility>
 
-#include "gazelog/facts.hpp"
-#include "gazelog/read_support.hpp"
+#include "core/statistics.hpp"
 
 namespace gazetrace {
 namespace {
@@ -189,6 +190,32 @@ void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
   sample.pupil = eye.pupil;
 }
 
+using TakenEye = Conventions::TakenEye;
+
+TakenEye taken_of(Eye eye) {
+  return eye == Eye::left ? TakenEye::left : TakenEye::right;
+}
+
+void note_taken(GazeLog& log, TakenEye eye, Evidence evidence, bool is_alone = false, std::string detail = {}) {
+  log.conventions.eye_taken = {Conventions::Taken{eye, is_alone}, evidence, std::move(detail)};
+}
+
+// A time at which the log has no gaze of its own.
+GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, GazeKind kind) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  GazeSample sample;
+  sample.t_ns = t_ns;
+  sample.row = row;
+  sample.validity = GazeValidity::lost;
+  sample.confidence = sample.pupil = std::numeric_limits<float>::quiet_NaN();
+  if (kind == GazeKind::direction) {
+    sample.direction = {kNan, kNan, kNan};
+  } else {
+    sample.u = sample.v = kNan;
+  }
+  return sample;
+}
+
 struct Rows {
   std::array<std::size_t, 3> of_eye{};
   [[nodiscard]] std::size_t left() const { return of_eye[static_cast<std::size_t>(Eye::left)]; }
@@ -217,7 +244,7 @@ void group_rows(GazeLog& log) {
         (row.eye == Eye::left ? eyes.left : eyes.right) = eye_gaze(row, log.kind);
       }
     }
-    samples[kept++] = own ? *own : missing_sample(samples[begin].t_ns, samples[begin].row, Eye::cyclopean, log.kind);
+    samples[kept++] = own ? *own : missing_sample(samples[begin].t_ns, samples[begin].row, log.kind);
     log.eyes.push_back(eyes);
     begin = end;
   }
@@ -245,9 +272,7 @@ EyeQuality quality_of(const GazeLog& log, const AnglePlane& plane, EyeGaze BothE
     }
   }
   if (!steps.empty()) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    quality.step = *middle;
+    quality.step = upper_median(steps);
   }
   return quality;
 }
@@ -279,9 +304,7 @@ std::optional<double> median_vertical_disparity_deg(const GazeLog& log, const An
   if (differences.empty()) {
     return std::nullopt;
   }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return *middle;
+  return upper_median(differences);
 }
 
 float mean_or_known(float a, float b) {
@@ -372,15 +395,10 @@ void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane&
   } else {
     take_one_eye(log, eye);
   }
-  add_fact(log, "eye", std::string(to_string(eye)), Evidence::header, has_own_rows ? "" : "alone");
+  note_taken(log, taken_of(eye), Evidence::header, !has_own_rows);
   if (const auto disparity = great_disparity_deg(log, plane)) {
     warn_of_disparity(log, *disparity, eye);
   }
-}
-
-std::optional<Eye> stated_eye(const GazeLog& log) {
-  const std::string_view name = fact_value(log, kStatedEye);
-  return name == "left" ? std::optional(Eye::left) : name == "right" ? std::optional(Eye::right) : std::nullopt;
 }
 
 [[noreturn]] void no_such_eye(const GazeLog& log, std::string_view eye) {
@@ -410,23 +428,28 @@ ChosenEye chosen_eye(const GazeLog& log) {
   return chosen;
 }
 
-void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
+void choose_eyes(GazeLog& log) {
+  const Conventions& c = log.conventions;
   Rows rows;
   for (const GazeSample& sample : log.samples) {
     ++rows.of_eye[static_cast<std::size_t>(sample.eye)];
   }
-  const EyeChoice choice = options.eye;
+  const EyeChoice choice = c.eye;
   if ((choice == EyeChoice::left && rows.left() == 0) || (choice == EyeChoice::right && rows.right() == 0)) {
     no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
   }
-  if (choice == EyeChoice::dominant && !options.dominant_eye) {
+  if (choice == EyeChoice::dominant && !c.dominant_eye) {
     throw Error(ErrorKind::usage, "--gaze-eye", "which eye is the dominant one is not known",
                 "give --gaze-dominant left or right");
   }
   const std::size_t kinds =
       static_cast<std::size_t>(std::count_if(rows.of_eye.begin(), rows.of_eye.end(), [](auto n) { return n > 0; }));
   if (kinds < 2) {
-    add_fact(log, "eye", rows.own() > 0 ? "combined" : rows.left() > 0 ? "left" : "right", Evidence::format);
+    note_taken(log,
+               rows.own() > 0    ? TakenEye::combined
+               : rows.left() > 0 ? TakenEye::left
+                                 : TakenEye::right,
+               Evidence::format);
     return;  // one eye, or one that stands for both
   }
   group_rows(log);
@@ -434,21 +457,21 @@ void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
   const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
   if (choice == EyeChoice::left || choice == EyeChoice::right) {
     take_one_eye(log, choice == EyeChoice::left ? Eye::left : Eye::right);
-    add_fact(log, "eye", choice == EyeChoice::left ? "left" : "right", evidence, "alone");
+    note_taken(log, choice == EyeChoice::left ? TakenEye::left : TakenEye::right, evidence, true);
     return;
   }
-  if (const auto stated = stated_eye(log);
+  if (const auto& stated = log.stated_eye;
       choice == EyeChoice::automatic && stated && (rows.own() > 0 || (rows.left() > 0 && rows.right() > 0))) {
     take_stated_eye(log, *stated, rows.own() > 0, plane);
     return;
   }
   if (choice == EyeChoice::automatic && rows.own() > 0) {
-    add_fact(log, "eye", "combined", Evidence::format, "by the tracker");
+    note_taken(log, TakenEye::combined, Evidence::format, false, "by the tracker");
     return;
   }
   Eye preferred = Eye::cyclopean;
   if (choice == EyeChoice::dominant) {
-    preferred = *options.dominant_eye;
+    preferred = *c.dominant_eye;
   } else if (choice == EyeChoice::best) {
     preferred = better_eye(log, plane);
   } else if (choice == EyeChoice::automatic) {
@@ -458,8 +481,8 @@ void choose_eyes(GazeLog& log, const GazeReadOptions& options) {
     }
   }
   const std::size_t alone = join_eyes(log, plane, preferred);
-  const std::string taken = preferred == Eye::cyclopean ? "mean" : std::string(to_string(preferred));
-  add_fact(log, "eye", taken, evidence, plane.knows_angles() ? "in angle" : "in places: angles are not known");
+  note_taken(log, preferred == Eye::cyclopean ? TakenEye::mean : taken_of(preferred), evidence, false,
+             plane.knows_angles() ? "in angle" : "in places: angles are not known");
   if (preferred == Eye::cyclopean) {
     log.warnings.push_back(
         fmt::format("{}: rows of several eyes merged to their mean: {} times, {} of them with one usable eye only",

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gazetrace/gaze_read.hpp"
+#include "gazetrace/gaze_log.hpp"
 
 namespace gazetrace {
 
-// Makes one gaze of the rows of one time, as options.eye says, and keeps both eyes in `log.eyes`. The rows are ordered,
-// and there is at most one of each eye at a time.
-void choose_eyes(GazeLog& log, const GazeReadOptions& options);
+// Makes one gaze of the rows of one time, as `log.conventions.eye` says, keeps both eyes in `log.eyes`, and notes
+// in `log.conventions.eye_taken` which gaze was taken. The rows are ordered, and there is at most one of each eye at a
+// time. Error(usage) for an eye that the log does not have.
+void choose_eyes(GazeLog& log);
 
 // How the samples of a log with both eyes relate to one of them.
 struct ChosenEye {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/gaze_read.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
@@ -21,9 +21,9 @@ struct GazeFormat {
   FormatProof proof;
   std::string description;
   double (*sniff)(const GazeFile& file);  // how sure, 0..1
-  // Rows in the order of the file, one for each eye and each combined gaze of the log; `finish_log` checks, orders and
-  // merges them. `origins` go by row, `samples` need not be aligned with them.
-  GazeLog (*read)(const GazeFile& file, const GazeReadOptions& options);
+  // Rows in the order of the file, one for each eye and each combined gaze of the log, with their numbers as they stand
+  // there, and what the file says of them.
+  RawGaze (*read)(const GazeFile& file, const GazeReadOptions& options);
 };
 
 // The part of a file that sniffing looks at.

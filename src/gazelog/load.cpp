@@ -8,17 +8,17 @@
 
 #include "core/text.hpp"
 #include "gazelog/decimal_comma.hpp"
-#include "gazelog/finish.hpp"
 #include "gazelog/gaze_format.hpp"
 #include "gazelog/gzip.hpp"
+#include "gazelog/mending.hpp"
 #include "gazelog/read_support.hpp"
-#include "gazetrace/gaze_read.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
 #define GAZE_FORMAT(name, ...)               \
   double sniff_gaze_##name(const GazeFile&); \
-  GazeLog read_gaze_##name(const GazeFile&, const GazeReadOptions&);
+  RawGaze read_gaze_##name(const GazeFile&, const GazeReadOptions&);
 #include "gazelog/formats/formats.def"
 #undef GAZE_FORMAT
 
@@ -64,7 +64,7 @@ std::vector<Guess> sniff(const GazeFile& file) {
 }
 
 // A file of another format than the one that was named is told so.
-GazeLog read_named(const GazeFormat& format, const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_named(const GazeFormat& format, const GazeFile& file, const GazeReadOptions& options) {
   try {
     return format.read(file, options);
   } catch (const Error& error) {
@@ -104,9 +104,9 @@ GazeFile open_file(const std::string& path) {
   return file;
 }
 
-// Columns that decimal commas split, where the user says so or, for inspection, where they are seen.
-std::optional<GazeFault> join_decimal_commas(GazeFile& file, const GazeReadOptions& options) {
-  if (!options.decimal_comma && !options.for_inspection) {
+// Columns that decimal commas split, where the user says so or, where the log is only looked at, where they are seen.
+std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOptions& options, Mending mending) {
+  if (!options.decimal_comma && mending == Mending::none) {
     return std::nullopt;
   }
   DecimalCommas commas = find_decimal_commas(file);
@@ -125,15 +125,14 @@ std::optional<GazeFault> join_decimal_commas(GazeFile& file, const GazeReadOptio
   if (options.decimal_comma) {
     return std::nullopt;
   }
-  return GazeFault{"decimal-commas",
-                   fmt::format("rows hold more cells than the {} columns: numbers have decimal commas, and commas "
-                               "separate the columns, too",
-                               file.fractions.size()),
-                   "--gaze-decimal-comma"};
+  const std::string problem = fmt::format(
+      "rows hold more cells than the {} columns: numbers have decimal commas, and commas separate the columns, too",
+      file.fractions.size());
+  return RawFault{"decimal-commas", file.path, problem, "give `gaze-decimal-comma`", "--gaze-decimal-comma", problem};
 }
 
 // Says so where the numbers of a table have decimal commas. The first rows decide.
-void add_decimal_mark(const GazeFile& file, GazeLog& log) {
+void add_decimal_mark(const GazeFile& file, RawGaze& raw) {
   std::size_t commas = 0;
   std::size_t points = 0;
   std::vector<std::string_view> cells;
@@ -155,7 +154,7 @@ void add_decimal_mark(const GazeFile& file, GazeLog& log) {
     }
   }
   if (!file.fractions.empty() || commas > 9 * points) {
-    add_fact(log, "decimal mark", "comma", Evidence::statistics,
+    add_note(raw, "decimal mark", "comma", Evidence::statistics,
              file.fractions.empty() ? "understood" : "cells that it split are joined");
   }
 }
@@ -256,37 +255,46 @@ std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
   return guesses;
 }
 
-GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
+RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending) {
   const GazeFormat* format = options.format.empty() ? nullptr : &format_by_name(options.format);
-  GazeLog log;
   double confidence = 1;
-  {
-    GazeFile file = open_file(path);
-    std::optional<GazeFault> commas;
-    if (file.text.empty() || trim(head_of(file)).empty()) {
-      throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
+  GazeFile file = open_file(path);
+  if (file.text.empty() || trim(head_of(file)).empty()) {
+    throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
+  }
+  if (format == nullptr) {
+    const std::vector<Guess> guesses = sniff(file);
+    if (guesses.empty()) {
+      throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
+                  "give a CSV or TSV with a header, or name the format with --gaze-format");
     }
-    if (format == nullptr) {
-      const std::vector<Guess> guesses = sniff(file);
-      if (guesses.empty()) {
-        throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
-                    "give a CSV or TSV with a header, or name the format with --gaze-format");
-      }
-      format = guesses.front().format;
-      confidence = guesses.front().confidence;
-    }
-    commas = join_decimal_commas(file, options);
-    log = options.format.empty() ? format->read(file, options) : read_named(*format, file, options);
-    if (commas) {
-      log.faults.push_back(*commas);
-    }
-    add_decimal_mark(file, log);
-  }  // the text is given back before eyes are joined
-  log.source = path;
-  log.format = format->name;
-  log.format_confidence = confidence;
-  finish_log(log, options);
-  return log;
+    format = guesses.front().format;
+    confidence = guesses.front().confidence;
+  }
+  const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
+  RawGaze raw = options.format.empty() ? format->read(file, options) : read_named(*format, file, options);
+  if (commas) {
+    raw.faults.push_back(*commas);
+  }
+  add_decimal_mark(file, raw);
+  raw.source = path;
+  raw.format = format->name;
+  raw.format_confidence = confidence;
+  return raw;
+}
+
+RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
+  return read_raw_gaze(path, options, Mending::none);
+}
+
+GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
+  const RawGaze raw = read_raw_gaze(path, options);
+  const Conventions conventions = conclude_conventions(raw, options);
+  if (!raw.faults.empty()) {
+    const RawFault& fault = raw.faults.front();
+    throw Error(ErrorKind::input, fault.place, fault.problem, fault.remedy);
+  }
+  return interpret(raw, conventions);
 }
 
 }  // namespace gazetrace

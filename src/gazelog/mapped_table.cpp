@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/text.hpp"
-#include "gazelog/missing_values.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/units.hpp"
 
@@ -33,7 +32,7 @@ class RowReader {
     has_head_ = plan.head_position[0] && plan.head_rotation[0];
   }
 
-  void read_all(GazeLog& log) {
+  void read_all(RawGaze& raw) {
     while (rows_.next()) {
       rows_.check_length();
       if (repeats_frame()) {
@@ -42,13 +41,13 @@ class RowReader {
       const std::int64_t t_ns = rows_.time_ns(plan_.time, time_);
       EyeOrigins origins{{nan_, nan_, nan_}, {nan_, nan_, nan_}, t_ns};
       for (const GazeSource& source : plan_.sources) {
-        log.samples.push_back(read_source(source, t_ns, log.kind, origins));
+        raw.rows.push_back(read_source(source, t_ns, raw.kind, origins));
       }
       if (has_origins_) {
-        log.origins.push_back(origins);
+        raw.origins.push_back(origins);
       }
       if (has_head_) {
-        read_head(t_ns, log);
+        read_head(t_ns, raw);
       }
     }
     repeated_headers = rows_.repeated_headers;
@@ -71,8 +70,8 @@ class RowReader {
     return repeats;
   }
 
-  GazeSample read_source(const GazeSource& source, std::int64_t t_ns, GazeKind kind, EyeOrigins& origins) {
-    GazeSample sample;
+  RawSample read_source(const GazeSource& source, std::int64_t t_ns, GazeKind kind, EyeOrigins& origins) {
+    RawSample sample;
     sample.row = rows_.line();
     sample.t_ns = t_ns;
     sample.eye = source.eye;
@@ -108,7 +107,7 @@ class RowReader {
     return sample;
   }
 
-  void read_position(const GazeSource& source, GazeKind kind, GazeSample& sample) {
+  void read_position(const GazeSource& source, GazeKind kind, RawSample& sample) {
     const double x = rows_.number(source.x);
     const double y = rows_.number(source.y);
     const double z = source.z ? rows_.number(*source.z) : 0.0;
@@ -122,10 +121,10 @@ class RowReader {
     }
     zero_pairs += zero && !missing && !source.validity ? 1 : 0;
     if (kind == GazeKind::direction) {
-      sample.direction = missing ? Vec3d{kNan, kNan, kNan} : Vec3d{x, y, z};
+      sample.at = missing ? Vec3d{kNan, kNan, kNan} : Vec3d{x, y, z};
     } else {
-      sample.u = missing ? kNan : x;
-      sample.v = missing ? kNan : y;
+      sample.at.x = missing ? kNan : x;
+      sample.at.y = missing ? kNan : y;
     }
   }
 
@@ -140,7 +139,7 @@ class RowReader {
               static_cast<float>(scale * rows_.number(source.origin[2]))};
   }
 
-  void read_head(std::int64_t t_ns, GazeLog& log) {
+  void read_head(std::int64_t t_ns, RawGaze& raw) {
     const auto vector = [&](const auto& c) {
       return Vec3d{rows_.number(c[0]), rows_.number(c[1]), rows_.number(c[2])};
     };
@@ -149,7 +148,7 @@ class RowReader {
     const Quatd q = plan_.head_rotation[3]
                         ? Quatd{rotation.x, rotation.y, rotation.z, rows_.number(*plan_.head_rotation[3])}
                         : quaternion_from_unity_euler_deg(rotation);
-    log.head.push_back(head_pose_from_axes(t_ns, position, q, columns_.head_axes));
+    raw.head.push_back(head_pose_from_axes(t_ns, position, q, columns_.head_axes));
   }
 
   static constexpr float nan_ = std::numeric_limits<float>::quiet_NaN();
@@ -164,7 +163,7 @@ class RowReader {
   std::string last_frame_;
 };
 
-int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, GazeLog& log) {
+int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, RawGaze& raw) {
   const std::string place = place_of(file, table.header_line);
   std::vector<double> times;
   TableRows rows(file, table, column + 1);
@@ -180,16 +179,16 @@ int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& tabl
                 fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps", name),
                 "give --gaze-time-unit, or write it into the header: t[ms]");
   }
-  log.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with --gaze-time-unit",
+  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with --gaze-time-unit",
                                      place, name, time_unit_text(*exponent)));
   return *exponent;
 }
 
 // .NET counts 100 ns from the year 1, which is beyond int64 nanoseconds: from 1970 then.
 TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan,
-                     const GazeColumns& columns, Evidence declared, GazeLog& log) {
+                     const GazeColumns& columns, Evidence declared, RawGaze& raw) {
   constexpr std::int64_t kTicksTo1970 = 621'355'968'000'000'000;
-  TimeScale scale{plan.time_exponent ? *plan.time_exponent : time_exponent_by_statistics(file, table, plan.time, log),
+  TimeScale scale{plan.time_exponent ? *plan.time_exponent : time_exponent_by_statistics(file, table, plan.time, raw),
                   0};
   const std::string& name = table.headings[plan.time].text;
   TableRows rows(file, table, plan.time + 1);
@@ -197,39 +196,39 @@ TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const Co
   if (scale.exponent == 2 && rows.next() && scaled_integer(rows.cell(plan.time), 0, first) == NumberStatus::ok &&
       first > kTicksTo1970) {
     scale.subtract = kTicksTo1970;
-    log.clock = "computer clock, from 1970";
+    raw.clock = "computer clock, from 1970";
   }
-  add_fact(log, "time column", name, columns.time.empty() ? Evidence::header : declared);
+  raw.declared.time_column = {name, columns.time.empty() ? Evidence::header : declared, {}};
   const Evidence evidence = columns.time_unit != TimeUnit::automatic ? declared
                             : plan.time_exponent                     ? Evidence::header
                                                                      : Evidence::statistics;
-  add_fact(log, "time unit", time_unit_text(scale.exponent), evidence,
-           scale.subtract == 0 ? "" : ".NET ticks; counted from 1970 here");
+  raw.declared.time_exponent = {scale.exponent, evidence,
+                                scale.subtract == 0 ? "" : ".NET ticks; counted from 1970 here"};
   return scale;
 }
 
-void add_row_warnings(GazeLog& log, const RowReader& rows, const ColumnPlan& plan, const DelimitedTable& table) {
-  const std::size_t count = log.samples.size();
+void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& plan, const DelimitedTable& table) {
+  const std::size_t count = raw.rows.size();
   if (rows.repeated_headers > 0) {
-    log.warnings.push_back(
-        fmt::format("{}: the header is repeated {} times; skipped", log.source, rows.repeated_headers));
+    raw.warnings.push_back(
+        fmt::format("{}: the header is repeated {} times; skipped", raw.source, rows.repeated_headers));
   }
   if (rows.repeated_frames > 0) {
-    log.warnings.push_back(fmt::format("{}: {} rows repeat the sample counter '{}' of the row before; dropped",
-                                       log.source, rows.repeated_frames, table.headings[*plan.frame].text));
+    raw.warnings.push_back(fmt::format("{}: {} rows repeat the sample counter '{}' of the row before; dropped",
+                                       raw.source, rows.repeated_frames, table.headings[*plan.frame].text));
   }
   if (rows.zero_pairs * 20 > count) {
-    log.warnings.push_back(
+    raw.warnings.push_back(
         fmt::format("{}: {} of {} positions are exactly (0, 0): missing values written as zero? Name a validity column",
-                    log.source, rows.zero_pairs, count));
+                    raw.source, rows.zero_pairs, count));
   }
   const OptionalColumn& validity = plan.sources.front().validity;
-  const auto is_good = [](const GazeSample& s) { return s.validity != GazeValidity::lost; };
-  if (validity && std::none_of(log.samples.begin(), log.samples.end(), is_good)) {
-    log.warnings.push_back(
+  const auto is_good = [](const RawSample& s) { return s.validity != GazeValidity::lost; };
+  if (validity && std::none_of(raw.rows.begin(), raw.rows.end(), is_good)) {
+    raw.warnings.push_back(
         fmt::format("{}: no row is valid by column '{}', which holds: {}; say with "
                     "--gaze-valid-values which of them are good",
-                    log.source, table.headings[*validity].text, fmt::join(rows.validity().seen(), ", ")));
+                    raw.source, table.headings[*validity].text, fmt::join(rows.validity().seen(), ", ")));
   }
 }
 
@@ -243,50 +242,36 @@ std::string position_columns(const ColumnPlan& plan, const DelimitedTable& table
   return text;
 }
 
-void finish_positions(GazeLog& log, const ColumnPlan& plan, const GazeFile& file, const DelimitedTable& table,
-                      const GazeReadOptions& options, ValidityStyle style, Evidence declared) {
+void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& file, const DelimitedTable& table,
+                       const GazeColumns& columns, ValidityStyle style, Evidence declared) {
   const std::string place = place_of(file, table.header_line);
-  if (log.kind == GazeKind::direction) {
-    add_fact(log, "position columns", position_columns(plan, table), Evidence::header);
-    add_fact(log, "position unit", "unit-vector", Evidence::header);
-    // The axes of a map are part of it, not a contradiction to it.
-    GazeReadOptions settled = options;
-    settled.columns.axes = GazeAxes::automatic;
-    finish_directions(log, settled, options.columns.axes == GazeAxes::automatic ? GazeAxes::gl : options.columns.axes,
-                      options.columns.axes == GazeAxes::automatic ? Evidence::format : declared, place);
+  const std::string names = position_columns(plan, table);
+  if (raw.kind == GazeKind::direction) {
+    const bool is_default = columns.axes == GazeAxes::automatic;
+    declare_directions(raw, {names, Evidence::header}, is_default ? GazeAxes::gl : columns.axes,
+                       is_default ? Evidence::format : declared, place);
+    raw.declared.unit.evidence = Evidence::header;
     return;
   }
-  PlaceSpace space{plan.unit, PositionOrigin::top_left,
-                   plan.unit_evidence == Evidence::option ? declared : plan.unit_evidence,
-                   position_columns(plan, table),
-                   // A log that names the state of each sample has said so itself.
-                   style == ValidityStyle::names && plan.sources.front().validity.has_value(),
-                   options.columns.origin == PositionOrigin::automatic ? Evidence::format : declared};
-  if (space.unit == PositionUnit::automatic) {
-    mark_missing_values(log, options);  // would widen the range that is guessed from
-    std::string evidence;
-    space.unit = guess_position_unit(log.samples, evidence);
-    space.evidence = Evidence::statistics;
-    log.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with "
-                    "--gaze-unit",
-                    place, evidence, to_string(space.unit)));
-  }
   // Fractions of gazetrace CSV count from the top left by definition; of other tables it is only likely.
-  const bool defined = style == ValidityStyle::names && space.unit == PositionUnit::fraction;
-  space.origin = options.columns.origin != PositionOrigin::automatic ? options.columns.origin
-                 : defined                                           ? PositionOrigin::top_left
-                                                                     : PositionOrigin::automatic;
-  GazeReadOptions settled = options;
-  settled.columns.position_unit = PositionUnit::automatic;
-  settled.columns.origin = PositionOrigin::automatic;
-  finish_places(log, settled, space, place);
+  const bool defined = style == ValidityStyle::names && plan.unit == PositionUnit::fraction;
+  const bool is_default = columns.origin == PositionOrigin::automatic;
+  declare_places(raw,
+                 {plan.unit,
+                  !is_default ? columns.origin
+                  : defined   ? PositionOrigin::top_left
+                              : PositionOrigin::automatic,
+                  plan.unit_evidence == Evidence::option ? declared : plan.unit_evidence, names,
+                  // A log that names the state of each sample has said so itself.
+                  style == ValidityStyle::names && plan.sources.front().validity.has_value(),
+                  is_default ? Evidence::format : declared},
+                 place);
 }
 
 }  // namespace
 
-GazeLog read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
-                          const GazeColumns& columns, ValidityStyle style, Evidence evidence) {
+RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
+                          ValidityStyle style, Evidence evidence) {
   if (table.headings.empty()) {
     throw Error(ErrorKind::input, file.path, "holds no sample",
                 "a gaze log needs a header and at least one row below it");
@@ -304,69 +289,35 @@ GazeLog read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
   }
   const GazetracePreamble preamble = read_preamble(file, table);
   const ColumnPlan plan = plan_columns(table, columns, place);
-  GazeLog log;
-  log.source = file.path;
-  log.kind = plan.kind;
-  log.clock = preamble.clock;
-  log.recording_geometry = preamble.geometry;
-  log.pixels_per_degree = preamble.pixels_per_degree;
+  RawGaze raw;
+  raw.source = file.path;
+  raw.kind = plan.kind;
+  raw.clock = preamble.clock;
+  raw.recording_geometry = preamble.geometry;
+  raw.pixels_per_degree = preamble.pixels_per_degree;
   if (preamble.is_scene_camera) {
-    if (options.frame == GazeFrame::automatic) {
-      refuse_scene_camera(file, options, "--gaze-frame scene-camera looks at it");
-    }
-    log.kind = GazeKind::scene_camera;
+    raw.way_out = "--gaze-frame scene-camera looks at it";
+    raw.kind = GazeKind::scene_camera;
   }
-  log.pupil_unit = plan.pupil_unit;
-  log.warnings = plan.warnings;
+  raw.pupil_unit = plan.pupil_unit;
+  raw.warnings = plan.warnings;
   if (trim(table.body).empty()) {
     throw Error(ErrorKind::input, file.path, "holds no sample", "a gaze log needs at least one row below its header");
   }
-  const TimeScale time = time_scale(file, table, plan, columns, evidence, log);
-  log.samples.reserve((static_cast<std::size_t>(std::count(table.body.begin(), table.body.end(), '\n')) + 1) *
-                      plan.sources.size());
+  const TimeScale time = time_scale(file, table, plan, columns, evidence, raw);
+  raw.rows.reserve((static_cast<std::size_t>(std::count(table.body.begin(), table.body.end(), '\n')) + 1) *
+                   plan.sources.size());
   RowReader rows(file, table, plan, columns, style, time);
-  rows.read_all(log);
-  GazeReadOptions with_columns = options;
-  with_columns.columns = columns;
-  finish_positions(log, plan, file, table, with_columns, style, evidence);
-  add_row_warnings(log, rows, plan, table);
-  finish_head(log);
-  return log;
+  rows.read_all(raw);
+  declare_positions(raw, plan, file, table, columns, style, evidence);
+  add_row_warnings(raw, rows, plan, table);
+  return raw;
 }
 
-GazeLog read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+RawGaze read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
                     const GazeColumns& preset) {
-  return read_mapped_table(file, table, options, merge_gaze_columns(preset, options.columns), ValidityStyle::any,
+  return read_mapped_table(file, table, merge_gaze_columns(preset, options.columns), ValidityStyle::any,
                            options.columns == GazeColumns{} ? Evidence::format : Evidence::option);
-}
-
-void mend_handedness(GazeLog& log) {
-  std::vector<float> differences;
-  for (const EyeOrigins& origins : log.origins) {
-    const float difference = origins.left_mm.x - origins.right_mm.x;
-    if (std::isfinite(difference) && difference != 0) {
-      differences.push_back(difference);
-    }
-  }
-  if (differences.empty()) {
-    return;
-  }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  const std::string seen = fmt::format("the left eye lies {:.0f} mm to the {} of the right one in these axes",
-                                       std::abs(*middle), *middle < 0 ? "left" : "right");
-  add_fact(log, "handedness", *middle < 0 ? "as the format has it" : "x was turned already; turned back",
-           Evidence::statistics, seen);
-  if (*middle < 0) {
-    return;
-  }
-  for (GazeSample& sample : log.samples) {
-    sample.direction.x = -sample.direction.x;
-  }
-  for (EyeOrigins& origins : log.origins) {
-    origins.left_mm.x = -origins.left_mm.x;
-    origins.right_mm.x = -origins.right_mm.x;
-  }
 }
 
 }  // namespace gazetrace

@@ -16,10 +16,10 @@ struct GazetracePreamble {
   bool is_scene_camera = false;  // `# kind scene-camera`
   std::optional<DisplayGeometry> geometry;
   std::optional<Vec2d> pixels_per_degree;
-  double nominal_rate_hz = 0;       // `# rate_hz R`; 0: not stated
-  bool sample_age_unknown = false;  // `# sample_age unknown`
-  std::optional<Eye> eye;           // `# eye right`: that whose gaze the cyclopean rows are, or was taken without such
-  std::string device;               // `# device desktop`, where it does not follow from the kind of gaze
+  double nominal_rate_hz = 0;        // `# rate_hz R`; 0: not stated
+  bool sample_age_unknown = false;   // `# sample_age unknown`
+  std::optional<Eye> eye;            // `# eye right`: that whose gaze the cyclopean rows are, or was taken without such
+  std::optional<GazeDevice> device;  // `# device desktop`, where it does not follow from the kind of gaze
   std::vector<GazeEvent> events;
   std::vector<GazeCalibration> calibrations;
   std::vector<HeadPose> head;
@@ -27,16 +27,13 @@ struct GazetracePreamble {
 // Error(input) for lines that say wrongly what they say.
 GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
 
-// Reads the rows and converts positions; everything but order, duplicates and eyes. `columns` replaces
+// Reads the rows, and declares what the header and the map say of them. `columns` replaces
 // `options.columns`: a preset merged with what the user declared; `evidence` is where the rest of it comes from.
-GazeLog read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
-                          const GazeColumns& columns, ValidityStyle style, Evidence evidence = Evidence::option);
+RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
+                          ValidityStyle style, Evidence evidence = Evidence::option);
 
 // A format that is a table with its own columns: `preset` under what the user declared.
-GazeLog read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+RawGaze read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
                     const GazeColumns& preset);
-// The left eye lies left of the right one: where the log's origins say otherwise, its x axis is the other way round, as
-// in logs whose maker had already turned the vectors. Mirrors directions and origins then.
-void mend_handedness(GazeLog& log);
 
 }  // namespace gazetrace

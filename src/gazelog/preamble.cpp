@@ -98,7 +98,7 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
   } else if (key == "eye") {
     preamble.eye = words.one_of({Eye::left, Eye::right});
   } else if (key == "device") {
-    preamble.device = to_string(words.one_of({GazeDevice::desktop, GazeDevice::head_mounted}));
+    preamble.device = words.one_of({GazeDevice::desktop, GazeDevice::head_mounted});
   } else if (key == "rate_hz") {
     preamble.nominal_rate_hz = words.number();
   } else if (key == "sample_age") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every reader does after its rows are in: what the user said wins over what the log says, raw places become
-// fractions or directions, and it is written down what was concluded from what.
+// What readers share. A reader fills rows as they stand in the file, and declares what the file says of its numbers;
+// what they mean in the end is concluded and interpreted elsewhere (conclude.cpp, interpret.cpp).
 #pragma once
 
 #include <array>
@@ -13,50 +13,43 @@
 
 namespace gazetrace {
 
-void add_fact(GazeLog& log, std::string what, std::string value, Evidence evidence, std::string detail = {});
+// Something that the file says, in words for people.
+void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail = {});
 
-// The unit of stamps: what --gaze-time-unit says, else `stated`.
-TimeScale choose_time_unit(GazeLog& log, const GazeReadOptions& options, std::string_view column, int stated,
-                           Evidence evidence, const std::string& place);
+// Declares the column and the unit of the stamps: the unit that the user gave, else `stated`.
+TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
+                       Evidence evidence, const std::string& place);
 
-// The column of stamps, and of positions, of a table format: what the user named, else the format's own.
+// The column of the stamps of a table: the one that the user named, else the format's own.
 std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
                         const std::string& place);
 
-// How a format writes places.
+// How a format writes positions. Unit and origin may be automatic, where the file does not say them.
 struct PlaceSpace {
   PositionUnit unit = PositionUnit::px;
   PositionOrigin origin = PositionOrigin::top_left;
   Evidence evidence = Evidence::format;
-  std::string columns;                                     // for the record
+  std::string columns;                                     // in words
   bool validity_is_final = false;                          // off-screen is said by the log itself
   std::optional<Evidence> origin_evidence = std::nullopt;  // where it is not that of the unit
 };
-
-// Raw u, v of the samples to fractions of the display or, for a scene camera, of its picture, whose size is
-// `log.recording_geometry` or `options.display`. Marks what lies beside it. Degrees become directions where
-// `options.frame` is head.
-void finish_places(GazeLog& log, const GazeReadOptions& options, const PlaceSpace& space, const std::string& place);
-
-// Raw directions and origins in `own` axes to unit vectors in gazetrace's. --gaze-axes wins.
-void finish_directions(GazeLog& log, const GazeReadOptions& options, GazeAxes own, Evidence evidence,
-                       const std::string& place);
-Vec3d from_axes(const Vec3d& v, GazeAxes axes);
-std::string_view to_string(GazeAxes axes);
+// `place`: file:line where the log says so, for messages.
+void declare_places(RawGaze& raw, const PlaceSpace& space, const std::string& place);
+// Vectors in `axes`, which also hold for the eyes' origins.
+void declare_directions(RawGaze& raw, Concluded<std::string> columns, GazeAxes axes, Evidence evidence,
+                        const std::string& place);
 
 // A head's pose as written; `rotation` in degrees about x, y, z, applied in Unity's order z, x, y.
 Quatd quaternion_from_unity_euler_deg(const Vec3d& rotation);
 HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Quatd& orientation, GazeAxes axes);
-// Keeps poses with increasing times and of unit length.
-void finish_head(GazeLog& log);
 
 // Gathers the correlations of a GazeWitness; rows where any of the four is not finite are left out.
 class WitnessTally {
  public:
   void add(double x, double y, double witness_x, double witness_y);
-  // Adds the witness to the log where there were enough rows. Call it before finish_places or finish_directions.
+  // Adds the witness where there were enough rows.
   // `eye`: whose gaze it tells of, where not of all rows'.
-  void finish(GazeLog& log, std::string what, std::optional<Eye> eye = std::nullopt) const;
+  void finish(RawGaze& raw, std::string what, std::optional<Eye> eye = std::nullopt) const;
 
  private:
   std::size_t count_ = 0;
@@ -64,15 +57,12 @@ class WitnessTally {
   std::array<std::array<double, 4>, 4> product_{};  // sums of products of differences from the means
 };
 
-// Throws for gaze on a scene camera's picture unless it was asked for; `way_out` says what else there is.
-void refuse_scene_camera(const GazeFile& file, const GazeReadOptions& options, std::string_view way_out);
-
 // Runs of one label over the rows become events: "Fixation 12".
 class LabelRuns {
  public:
   void add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row);
   void end();  // a row without a label
-  void finish(GazeLog& log);
+  void finish(RawGaze& raw);
 
  private:
   std::vector<GazeEvent> events_;
@@ -80,6 +70,7 @@ class LabelRuns {
   bool open_ = false;
 };
 
-GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, Eye eye, GazeKind kind);
+// A row whose place is not known.
+RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye);
 
 }  // namespace gazetrace

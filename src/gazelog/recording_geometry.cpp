@@ -21,45 +21,44 @@ bool has_angles(const DisplayGeometry& g) {
   return g.width_cm > 0 && g.height_cm > 0 && g.distance_cm > 0;
 }
 
-void warn_about_size(GazeLog& log, const DisplayGeometry& given, const DisplayGeometry& stated,
-                     const std::string& place) {
+void warn_about_size(const RawGaze& raw, Conventions& c, const DisplayGeometry& given, const DisplayGeometry& stated) {
   if (stated.width_px > 0 && given.width_px > 0 &&
       (stated.width_px != given.width_px || stated.height_px != given.height_px)) {
-    log.warnings.push_back(fmt::format("{}: the log states a display of {}x{} px; the given {}x{} px are used", place,
-                                       stated.width_px, stated.height_px, given.width_px, given.height_px));
+    c.warnings.push_back(fmt::format("{}: the log states a display of {}x{} px; the given {}x{} px are used", raw.place,
+                                     stated.width_px, stated.height_px, given.width_px, given.height_px));
   }
   if (differ(given.width_cm, stated.width_cm) || differ(given.height_cm, stated.height_cm)) {
-    log.warnings.push_back(
-        fmt::format("{}: the log states a display of {:.4g} x {:.4g} cm; the given {:.4g} x {:.4g} cm are used", place,
-                    stated.width_cm, stated.height_cm, given.width_cm, given.height_cm));
+    c.warnings.push_back(
+        fmt::format("{}: the log states a display of {:.4g} x {:.4g} cm; the given {:.4g} x {:.4g} cm are used",
+                    raw.place, stated.width_cm, stated.height_cm, given.width_cm, given.height_cm));
   }
   if (differ(given.distance_cm, stated.distance_cm)) {
-    log.warnings.push_back(fmt::format("{}: the log states a distance of {:.4g} cm; the given {:.4g} cm are used",
-                                       place, stated.distance_cm, given.distance_cm));
+    c.warnings.push_back(fmt::format("{}: the log states a distance of {:.4g} cm; the given {:.4g} cm are used",
+                                     raw.place, stated.distance_cm, given.distance_cm));
   }
 }
 
 // `used` has angles by what the user gave; the log may know them by its pixels per degree alone.
-void warn_about_density(GazeLog& log, const DisplayGeometry& used, const std::string& place) {
-  if (!log.pixels_per_degree || !has_angles(used) || used.width_px <= 0 || used.height_px <= 0) {
+void warn_about_density(const RawGaze& raw, Conventions& c, const DisplayGeometry& used) {
+  if (!raw.pixels_per_degree || !has_angles(used) || used.width_px <= 0 || used.height_px <= 0) {
     return;
   }
-  const Vec2d& stated = *log.pixels_per_degree;
+  const Vec2d& stated = *raw.pixels_per_degree;
   const double x = pixels_per_degree(used);
   const double y = used.distance_cm * kRadPerDeg * used.height_px / used.height_cm;
   if (differ(x, stated.x) || differ(y, stated.y)) {
-    log.warnings.push_back(
+    c.warnings.push_back(
         fmt::format("{}: the log states {:.4g} x {:.4g} pixels a degree; the given screen, which has {:.4g} x {:.4g}, "
                     "is used",
-                    place, stated.x, stated.y, x, y));
+                    raw.place, stated.x, stated.y, x, y));
   }
 }
 
 // Size and distance are angles only together. Where the log has them by its pixels per degree, a part alone does
 // nothing.
-void warn_about_unused(GazeLog& log, const GazeReadOptions& options, const DisplayGeometry& used,
-                       const std::string& place) {
-  if (!log.pixels_per_degree || has_angles(used)) {
+void warn_about_unused(const RawGaze& raw, Conventions& c, const GazeReadOptions& options,
+                       const DisplayGeometry& used) {
+  if (!raw.pixels_per_degree || has_angles(used)) {
     return;
   }
   const DisplayGeometry given = options.display.value_or(DisplayGeometry{});
@@ -76,15 +75,15 @@ void warn_about_unused(GazeLog& log, const GazeReadOptions& options, const Displ
   if (parts.empty()) {
     return;
   }
-  const Vec2d& stated = *log.pixels_per_degree;
-  log.warnings.push_back(fmt::format(
+  const Vec2d& stated = *raw.pixels_per_degree;
+  c.warnings.push_back(fmt::format(
       "{}: not used: {} of the screen that {} given, because angles are taken from the log's {:.4g} x {:.4g} "
       "pixels a degree; give --screen-cm and --screen-distance-cm both to overrule them",
-      place, fmt::join(parts, " and "), parts.size() > 1 ? "were" : "was", stated.x, stated.y));
+      raw.place, fmt::join(parts, " and "), parts.size() > 1 ? "were" : "was", stated.x, stated.y));
 }
 
 // The eye's place is a thing of its own: whoever gives another distance has not said that the eye is before the center.
-void place_eye(GazeLog& log, const GazeReadOptions& options, const DisplayGeometry& stated, const std::string& place,
+void place_eye(const RawGaze& raw, Conventions& c, const GazeReadOptions& options, const DisplayGeometry& stated,
                DisplayGeometry& used) {
   const Vec2d own{stated.eye_x_cm, stated.eye_y_cm};
   const bool display_says = options.display && (options.display->eye_x_cm != 0 || options.display->eye_y_cm != 0);
@@ -95,10 +94,10 @@ void place_eye(GazeLog& log, const GazeReadOptions& options, const DisplayGeomet
   used.eye_y_cm = eye.y;
   const double apart = std::max(std::abs(eye.x - own.x), std::abs(eye.y - own.y));
   if ((own.x != 0 || own.y != 0) && apart > kSameSize * stated.distance_cm) {
-    log.warnings.push_back(fmt::format(
+    c.warnings.push_back(fmt::format(
         "{}: the log states that the eye is {:.3g}, {:.3g} cm off the display's center (right, up); the given {:.3g}, "
         "{:.3g} cm are used",
-        place, own.x, own.y, eye.x, eye.y));
+        raw.place, own.x, own.y, eye.x, eye.y));
   }
 }
 
@@ -121,26 +120,32 @@ DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry
   return stated;
 }
 
-std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOptions& options,
-                                                  const std::string& place) {
-  if (log.kind == GazeKind::scene_camera) {
-    return log.recording_geometry;
+std::optional<Concluded<DisplayGeometry>> conversion_display(const RawGaze& raw, const GazeReadOptions& options,
+                                                             Conventions& c) {
+  const std::optional<DisplayGeometry>& stated = raw.recording_geometry;
+  if (raw.kind == GazeKind::scene_camera) {
+    if (raw.picture_px) {
+      return Concluded<DisplayGeometry>{DisplayGeometry{.width_px = static_cast<int>(raw.picture_px->x),
+                                                        .height_px = static_cast<int>(raw.picture_px->y)}};
+    }
+    return stated ? std::optional(Concluded<DisplayGeometry>{*stated, Evidence::header}) : std::nullopt;
   }
-  if (!options.display && !(options.eye_cm && log.recording_geometry)) {
-    return log.recording_geometry && options.fallback_display
-               ? completed_geometry(*log.recording_geometry, *options.fallback_display)
-           : log.recording_geometry ? log.recording_geometry
-                                    : options.fallback_display;
+  if (!options.display && !(options.eye_cm && stated)) {
+    const std::optional<DisplayGeometry>& fallback = options.fallback_display;
+    if (stated) {
+      return Concluded<DisplayGeometry>{fallback ? completed_geometry(*stated, *fallback) : *stated, Evidence::header};
+    }
+    return fallback ? std::optional(Concluded<DisplayGeometry>{*fallback, Evidence::option}) : std::nullopt;
   }
   const DisplayGeometry given = options.display.value_or(DisplayGeometry{});
-  const DisplayGeometry stated = log.recording_geometry.value_or(DisplayGeometry{});
-  DisplayGeometry used = completed_geometry(given, stated);
-  warn_about_size(log, given, stated, place);
-  warn_about_density(log, used, place);
-  warn_about_unused(log, options, used, place);
-  place_eye(log, options, stated, place, used);
-  log.recording_geometry = used;
-  return log.recording_geometry;
+  const DisplayGeometry own = stated.value_or(DisplayGeometry{});
+  DisplayGeometry used = completed_geometry(given, own);
+  warn_about_size(raw, c, given, own);
+  warn_about_density(raw, c, used);
+  warn_about_unused(raw, c, options, used);
+  place_eye(raw, c, options, own, used);
+  c.recording_geometry = used;
+  return Concluded<DisplayGeometry>{used, Evidence::option};
 }
 
 }  // namespace gazetrace

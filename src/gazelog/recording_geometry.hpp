@@ -2,15 +2,14 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
-#include "gazetrace/gaze_read.hpp"
+#include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
 
 // The display that converts positions: what the log states, overruled by what the user gave, with a warning where they
-// differ. What the user gave is the recording's geometry from then on.
-std::optional<DisplayGeometry> conversion_display(GazeLog& log, const GazeReadOptions& options,
-                                                  const std::string& place);
+// differ. What the user gave is the recording's geometry from then on: `c.recording_geometry`.
+std::optional<Concluded<DisplayGeometry>> conversion_display(const RawGaze& raw, const GazeReadOptions& options,
+                                                             Conventions& c);
 
 }  // namespace gazetrace

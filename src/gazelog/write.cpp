@@ -8,7 +8,6 @@
 
 #include "core/atomic_file.hpp"
 #include "gazelog/eyes.hpp"
-#include "gazelog/facts.hpp"
 #include "gazetrace/gaze_read.hpp"
 #include "gazetrace/gaze_write.hpp"
 
@@ -72,8 +71,8 @@ std::string preamble(const GazeLog& log) {
   if (log.nominal_rate_hz > 0) {
     text += fmt::format("# rate_hz {}\n", log.nominal_rate_hz);
   }
-  if (const std::string_view device = fact_value(log, kDevice); !device.empty()) {
-    text += fmt::format("# device {}\n", one_line(std::string(device)));
+  if (log.device) {
+    text += fmt::format("# device {}\n", to_string(*log.device));
   }
   text += log.sample_age_unknown ? "# sample_age unknown\n" : "";
   for (const GazeCalibration& c : log.calibrations) {

@@ -18,7 +18,6 @@
 #include "core/atomic_file.hpp"
 #include "gazelog/bids_sidecars.hpp"
 #include "gazelog/eyes.hpp"
-#include "gazelog/facts.hpp"
 #include "gazelog/gzip.hpp"
 #include "gazelog/timing.hpp"
 #include "gazetrace/gaze_read.hpp"
@@ -190,8 +189,8 @@ class RecordingWriter {
     if (const ChosenEye chosen = chosen_eye(log_); chosen.eye) {
       json["ChosenEye"] = to_string(*chosen.eye);  // our own: whose gaze stands for both
     }
-    if (const std::string_view device = fact_value(log_, kDevice); !device.empty()) {
-      json["RecordedOn"] = device;  // our own: desktop or head-mounted
+    if (log_.device) {
+      json["RecordedOn"] = to_string(*log_.device);  // our own: desktop or head-mounted
     }
     if (log_.sample_age_unknown) {
       json["SampleAge"] = "unknown";  // our own

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gaze/inspect/inspect.hpp"
 #include "gazelog/timing.hpp"
 
@@ -45,25 +46,6 @@ class Stretch {
   double squares_ = 0, steps_ = 0;
 };
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean_a = 0;
-  double mean_b = 0;
-  const auto n = static_cast<double>(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    mean_a += a[i] / n;
-    mean_b += b[i] / n;
-  }
-  double aa = 0;
-  double bb = 0;
-  double ab = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-  }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
-}
-
 }  // namespace
 
 GazeLoss measure_loss(const GazeLog& log, double median_step_ns) {
@@ -89,7 +71,7 @@ GazeLoss measure_loss(const GazeLog& log, double median_step_ns) {
     before = &sample;
   }
   loss.blink_like = blinks_ms.size();
-  loss.blink_like_median_ms = blinks_ms.empty() ? 0 : quantile(blinks_ms, 0.5);
+  loss.blink_like_median_ms = blinks_ms.empty() ? 0 : lower_quantile(blinks_ms, 0.5);
   if (!log.eyes.empty()) {
     std::array<std::size_t, 2> usable{};
     for (const BothEyes& eyes : log.eyes) {
@@ -189,7 +171,7 @@ std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePla
   if (rms.empty()) {
     return std::nullopt;
   }
-  return GazePrecision{rms.size(), quantile(rms, 0.5), quantile(sd, 0.5)};
+  return GazePrecision{rms.size(), lower_quantile(rms, 0.5), lower_quantile(sd, 0.5)};
 }
 
 std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane) {
@@ -222,11 +204,11 @@ std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePla
     left_y[i] -= right_y[i];
   }
   const auto spread = [](std::vector<double>& values) {
-    const double q1 = quantile(values, 0.25);
-    return (quantile(values, 0.75) - q1) / 1.349;
+    const double q1 = lower_quantile(values, 0.25);
+    return (lower_quantile(values, 0.75) - q1) / 1.349;
   };
-  disparity.horizontal = quantile(left_x, 0.5);
-  disparity.vertical = quantile(left_y, 0.5);
+  disparity.horizontal = lower_quantile(left_x, 0.5);
+  disparity.vertical = lower_quantile(left_y, 0.5);
   disparity.horizontal_spread = spread(left_x);
   disparity.vertical_spread = spread(left_y);
   return disparity;

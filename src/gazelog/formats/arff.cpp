@@ -67,7 +67,7 @@ double sniff_gaze_arff(const GazeFile& file) {
   return relation && attribute ? gaze ? 0.99 : 0.6 : 0.0;
 }
 
-GazeLog read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
   const ArffHeader header = read_header(file);
   DelimitedTable table = open_headerless(header.rows, ',', header.names);
   table.lines_above = header.lines_above;
@@ -84,19 +84,19 @@ GazeLog read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
     throw Error(ErrorKind::input, place, fmt::format("there is no attribute '{}'", own),
                 "its attributes are: " + column_listing(table));
   };
-  GazeLog log;
-  log.source = file.path;
-  log.format = "arff";
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "arff";
   const std::size_t time = named(options.columns.time, "time");
   const std::size_t x = named(options.columns.x, "x");
   const std::size_t y = named(options.columns.y, "y");
   const auto confidence = table.find("confidence");
   if (header.has_geometry) {
-    log.recording_geometry = header.geometry;
-    add_fact(log, "display size", fmt::format("{}x{} px", header.geometry.width_px, header.geometry.height_px),
+    raw.recording_geometry = header.geometry;
+    add_note(raw, "display size", fmt::format("{}x{} px", header.geometry.width_px, header.geometry.height_px),
              Evidence::header, "%@METADATA");
   }
-  const TimeScale scale = choose_time_unit(log, options, table.headings[time].text, 3, Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, place);
   const double least = std::isnan(options.min_confidence) ? 1e-9 : options.min_confidence;
   TableRows rows(file, table, std::max({time, x, y, confidence.value_or(0)}) + 1);
   while (rows.next()) {
@@ -104,24 +104,24 @@ GazeLog read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
       continue;
     }
     rows.check_length();
-    GazeSample sample;
+    RawSample sample;
     sample.t_ns = rows.time_ns(time, scale);
     sample.row = rows.line();
-    sample.u = rows.number(x);
-    sample.v = rows.number(y);
+    sample.at.x = rows.number(x);
+    sample.at.y = rows.number(y);
     sample.confidence = static_cast<float>(rows.number(confidence));
     sample.pupil = static_cast<float>(kNan);
-    const bool zero = sample.u == 0 && sample.v == 0 && sample.confidence == 0;
-    if (zero || std::isnan(sample.u) || std::isnan(sample.v)) {
-      sample = missing_sample(sample.t_ns, sample.row, Eye::cyclopean, GazeKind::screen);
+    const bool zero = sample.at.x == 0 && sample.at.y == 0 && sample.confidence == 0;
+    if (zero || std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+      sample = missing_row(sample.t_ns, sample.row, Eye::cyclopean);
       sample.confidence = 0;
     } else if (sample.confidence < least) {
       sample.validity = GazeValidity::low_confidence;
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
-  finish_places(log, options, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, "x, y"}, place);
-  return log;
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, "x, y"}, place);
+  return raw;
 }
 
 }  // namespace gazetrace

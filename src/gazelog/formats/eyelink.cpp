@@ -47,15 +47,15 @@ struct Span {
 class AscReader {
  public:
   AscReader(const GazeFile& file, const GazeReadOptions& options) : file_(file), options_(options) {
-    log_.source = file.path;
-    log_.format = "eyelink-asc";
-    log_.clock = "tracker, from its start";
-    exponent_ = choose_time_unit(log_, options, "first of a sample", 6, Evidence::format, file.path).exponent;
+    raw_.source = file.path;
+    raw_.format = "eyelink-asc";
+    raw_.clock = "tracker, from its start";
+    exponent_ = declare_time(raw_, options, "first of a sample", 6, Evidence::format, file.path).exponent;
   }
 
-  GazeLog read() {
+  RawGaze read() {
     // Two eyes a row at most. What is not used costs no memory; growing would hold the samples twice.
-    log_.samples.reserve(2 * rows_that_begin_with_a_digit(file_.text));
+    raw_.rows.reserve(2 * rows_that_begin_with_a_digit(file_.text));
     // Messages of a calibration go on in lines that begin with digits; only what stands between START and END is a
     // sample. Files of samples alone have neither.
     const bool has_blocks = file_.text.starts_with("START") || file_.text.find("\nSTART") != std::string::npos;
@@ -76,7 +76,7 @@ class AscReader {
       }
     }
     finish();
-    return std::move(log_);
+    return std::move(raw_);
   }
 
  private:
@@ -108,7 +108,7 @@ class AscReader {
       block_start_ = time(word(1));
       in_block_ = true;
       last_stamp_.clear();
-      compared_.fill(log_.samples.size());  // the clock may start anew
+      compared_.fill(raw_.rows.size());  // the clock may start anew
       block_.has_left = has_word("LEFT") || !has_word("RIGHT");
       block_.has_right = has_word("RIGHT");
     } else if (key == "END") {
@@ -116,7 +116,7 @@ class AscReader {
     } else if (key == "SAMPLES") {
       read_samples_line();
     } else if (key == "PUPIL") {
-      log_.pupil_unit = to_lower(word(1));  // area or diameter, arbitrary units
+      raw_.pupil_unit = to_lower(word(1));  // area or diameter, arbitrary units
     } else if (key == "EFIX" || key == "ESACC" || key == "EBLINK") {
       read_event(key);
     }
@@ -134,7 +134,7 @@ class AscReader {
     const auto rate = std::find(words_.begin(), words_.end(), "RATE");
     if (rate != words_.end() && rate + 1 != words_.end()) {
       block_.rate_hz = number_from(rate[1]).value_or(0);
-      log_.nominal_rate_hz = std::max(log_.nominal_rate_hz, block_.rate_hz);
+      raw_.nominal_rate_hz = std::max(raw_.nominal_rate_hz, block_.rate_hz);
     }
     if (block_.data != "GAZE") {
       fail(fmt::format("samples are {} data, not places on the screen", block_.data.substr(0, 20)),
@@ -145,7 +145,7 @@ class AscReader {
   void read_end() {
     const std::int64_t t_ns = time(word(1));
     if (in_block_) {
-      log_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, t_ns, "recording block", line_});
+      raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, t_ns, "recording block", line_});
     }
     in_block_ = false;
     const auto res = std::find(words_.begin(), words_.end(), "RES");
@@ -167,7 +167,7 @@ class AscReader {
     } else if (word(2) == "!CAL" && word(3) == "VALIDATION") {
       read_validation(t_ns);
     }
-    log_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(text), line_});
+    raw_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(text), line_});
   }
 
   // Corners are inclusive: 0 0 1919 1079 is 1920 x 1080.
@@ -187,7 +187,7 @@ class AscReader {
     coordinates_are_gaze_ = is_gaze;
     left_px_ = corners[0];
     top_px_ = corners[1];
-    log_.recording_geometry = DisplayGeometry{.width_px = static_cast<int>(std::lround(width)),
+    raw_.recording_geometry = DisplayGeometry{.width_px = static_cast<int>(std::lround(width)),
                                               .height_px = static_cast<int>(std::lround(height))};
     coordinates_ = fmt::format("{} {} {} {} {}", word(2), word(3), word(4), word(5), word(6));
   }
@@ -201,7 +201,7 @@ class AscReader {
     const auto mean = number_from(error[1]);
     const auto most = number_from(error[3]);
     if (mean) {
-      log_.calibrations.push_back({t_ns,
+      raw_.calibrations.push_back({t_ns,
                                    has_word("LEFT")    ? Eye::left
                                    : has_word("RIGHT") ? Eye::right
                                                        : Eye::cyclopean,
@@ -223,7 +223,7 @@ class AscReader {
     const GazeEventType type = key == "EFIX"    ? GazeEventType::fixation
                                : key == "ESACC" ? GazeEventType::saccade
                                                 : GazeEventType::blink;
-    log_.events.push_back({type, eye, begin, end, {}, line_});
+    raw_.events.push_back({type, eye, begin, end, {}, line_});
     if (type == GazeEventType::fixation) {
       compare_fixation(eye, begin, end);
     }
@@ -246,20 +246,20 @@ class AscReader {
     double y = 0;
     double count = 0;
     std::size_t& compared = compared_[eye == Eye::right ? 1 : 0];
-    const auto first = log_.samples.begin() + static_cast<std::ptrdiff_t>(compared);
-    const auto behind = std::partition_point(first, log_.samples.end(),
-                                             [&](const GazeSample& sample) { return sample.t_ns <= end_ns; });
+    const auto first = raw_.rows.begin() + static_cast<std::ptrdiff_t>(compared);
+    const auto behind =
+        std::partition_point(first, raw_.rows.end(), [&](const RawSample& sample) { return sample.t_ns <= end_ns; });
     for (auto sample = behind; sample != first && (sample - 1)->t_ns >= begin_ns; --sample) {
-      const GazeSample& s = *(sample - 1);
-      if (s.eye == eye && !std::isnan(s.u)) {
-        x += s.u;
-        y += s.v;
+      const RawSample& s = *(sample - 1);
+      if (s.eye == eye && !std::isnan(s.at.x)) {
+        x += s.at.x;
+        y += s.at.y;
         ++count;
       }
     }
-    compared = static_cast<std::size_t>(behind - log_.samples.begin());
+    compared = static_cast<std::size_t>(behind - raw_.rows.begin());
     if (count > 0) {
-      const Vec2d mean{number(column) - left_px_, number(column + 1) - top_px_};
+      const Vec2d mean{number(column), number(column + 1)};
       fixations_.add(x / count, y / count, mean.x, mean.y);
       fixations_of_eye_[eye == Eye::right ? 1 : 0].add(x / count, y / count, mean.x, mean.y);
     }
@@ -283,7 +283,7 @@ class AscReader {
     std::size_t column = 1;
     for (const Eye eye : {Eye::left, Eye::right}) {
       if (eye == Eye::left ? block_.has_left : block_.has_right) {
-        log_.samples.push_back(eye_sample(t_ns, eye, column, flags));
+        raw_.rows.push_back(eye_sample(t_ns, eye, column, flags));
         column += 3;
       }
     }
@@ -301,21 +301,17 @@ class AscReader {
     return text.size() == length && text.find_first_not_of(".ICR") == std::string_view::npos ? text : "";
   }
 
-  GazeSample eye_sample(std::int64_t t_ns, Eye eye, std::size_t column, std::string_view flags) {
-    GazeSample sample;
+  RawSample eye_sample(std::int64_t t_ns, Eye eye, std::size_t column, std::string_view flags) {
+    RawSample sample;
     sample.t_ns = t_ns;
     sample.row = line_;
     sample.eye = eye;
     sample.confidence = static_cast<float>(kNan);
-    sample.u = number(column) - left_px_;
-    sample.v = number(column + 1) - top_px_;
+    sample.at = {number(column), number(column + 1), 0};
     const double pupil = number(column + 2);
     sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-    const auto both_are = [&](double value) { return number(column) == value && number(column + 1) == value; };
-    const bool missing =
-        (options_.zero_is_missing && both_are(0)) || (options_.missing_value && both_are(*options_.missing_value));
-    if (missing || std::isnan(sample.u) || std::isnan(sample.v)) {
-      sample.u = sample.v = kNan;
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+      sample.at.x = sample.at.y = kNan;
       sample.validity = GazeValidity::lost;
     } else if (!flags.empty()) {
       // I..: interpolated. Then two for each eye: the corneal reflection lost, or just found again.
@@ -345,7 +341,7 @@ class AscReader {
       }
       std::sort(spans.begin(), spans.end(), [](const Span& x, const Span& y) { return x.begin_ns < y.begin_ns; });
       std::size_t s = 0;
-      for (GazeSample& sample : log_.samples) {
+      for (RawSample& sample : raw_.rows) {
         if (sample.eye != (side == 0 ? Eye::left : Eye::right)) {
           continue;
         }
@@ -364,14 +360,14 @@ class AscReader {
   }
 
   void finish() {
-    if (log_.samples.empty()) {
+    if (raw_.rows.empty()) {
       return;
     }
     mark_blinks();
     if (in_block_) {
-      log_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, log_.samples.back().t_ns,
+      raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, raw_.rows.back().t_ns,
                              "recording block without its end", line_});
-      log_.warnings.push_back(
+      raw_.warnings.push_back(
           fmt::format("{}: the last recording block has no END: the file may be cut off", file_.path));
     }
     if (!resolutions_.empty()) {
@@ -380,34 +376,28 @@ class AscReader {
         sum = {sum.x + r.x, sum.y + r.y};
       }
       const auto n = static_cast<double>(resolutions_.size());
-      log_.pixels_per_degree = Vec2d{sum.x / n, sum.y / n};
-      add_fact(log_, "resolution",
-               fmt::format("{:.2f} x {:.2f} px/deg", log_.pixels_per_degree->x, log_.pixels_per_degree->y),
+      raw_.pixels_per_degree = Vec2d{sum.x / n, sum.y / n};
+      add_note(raw_, "resolution",
+               fmt::format("{:.2f} x {:.2f} px/deg", raw_.pixels_per_degree->x, raw_.pixels_per_degree->y),
                Evidence::header, block_.has_resolution ? "RES of the samples and blocks" : "RES of END");
     }
-    if (log_.recording_geometry) {
-      add_fact(log_, "display size",
-               fmt::format("{}x{} px", log_.recording_geometry->width_px, log_.recording_geometry->height_px),
+    if (raw_.recording_geometry) {
+      add_note(raw_, "display size",
+               fmt::format("{}x{} px", raw_.recording_geometry->width_px, raw_.recording_geometry->height_px),
                Evidence::header, coordinates_ + ", inclusive corners");
     }
-    fixations_.finish(log_, "the fixations' means (EFIX)");
+    fixations_.finish(raw_, "the fixations' means (EFIX)");
     if (block_.eyes() == 2) {
-      fixations_of_eye_[0].finish(log_, "the left eye's fixations' means (EFIX L)", Eye::left);
-      fixations_of_eye_[1].finish(log_, "the right eye's fixations' means (EFIX R)", Eye::right);
+      fixations_of_eye_[0].finish(raw_, "the left eye's fixations' means (EFIX L)", Eye::left);
+      fixations_of_eye_[1].finish(raw_, "the right eye's fixations' means (EFIX R)", Eye::right);
     }
-    GazeReadOptions settled = options_;
-    settled.missing_value.reset();  // was held against what the file has, before corners were taken off
-    finish_places(log_, settled, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"},
-                  file_.path);
-    if (log_.recurring_place) {
-      log_.recurring_place->x += left_px_;
-      log_.recurring_place->y += top_px_;
-    }
+    declare_places(raw_, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"}, file_.path);
+    raw_.declared.corner = {left_px_, top_px_};
   }
 
   const GazeFile& file_;
   const GazeReadOptions& options_;
-  GazeLog log_;
+  RawGaze raw_;
   int exponent_ = 6;
   Block block_;
   std::int64_t line_ = 0;
@@ -439,7 +429,7 @@ double sniff_gaze_eyelink(const GazeFile& file) {
   return marks >= 3 ? 0.9 : marks == 2 ? 0.4 : 0.0;
 }
 
-GazeLog read_gaze_eyelink(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_eyelink(const GazeFile& file, const GazeReadOptions& options) {
   return AscReader(file, options).read();
 }
 

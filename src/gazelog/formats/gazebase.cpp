@@ -2,7 +2,6 @@
 // GazeBase and GazeBaseVR: `n` in milliseconds, gaze x, y in degrees from straight ahead, right and up, `val` 0 where
 // valid, from a desktop EyeLink; GazeBaseVR has lx, ly, rx, ry of each eye, from a headset. Angles are angles: they
 // become directions, and no display is needed.
-#include "gazelog/facts.hpp"
 #include "gazelog/mapped_table.hpp"
 #include "gazelog/read_support.hpp"
 
@@ -25,7 +24,7 @@ double sniff_gaze_gazebase(const GazeFile& file) {
   return table.has_all({"n", "x", "y"}) && (vr || table.has_all({"val"})) ? 0.9 : 0.0;
 }
 
-GazeLog read_gaze_gazebase(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_gazebase(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   GazeColumns c;
   c.time = "n";
@@ -44,14 +43,14 @@ GazeLog read_gaze_gazebase(const GazeFile& file, const GazeReadOptions& options)
     c.right.x = "rx";
     c.right.y = "ry";
   }
-  GazeReadOptions in_head = options;
-  in_head.frame = GazeFrame::head;
-  GazeLog log = read_preset(file, table, in_head, c);
+  RawGaze raw = read_preset(file, table, options, c);
+  raw.declared.degrees_are_directions = true;
   if (c.left.x.empty()) {
-    add_fact(log, kDevice, std::string(to_string(GazeDevice::desktop)), Evidence::format,
+    raw.device = GazeDevice::desktop;
+    add_note(raw, "device", std::string(to_string(GazeDevice::desktop)), Evidence::format,
              "EyeLink 1000, chin on a rest");
   }
-  return log;
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -13,7 +13,7 @@
 
 namespace gazetrace {
 
-GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options);
+RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options);
 
 namespace {
 
@@ -64,15 +64,18 @@ std::optional<int> tick_exponent(const ColumnHeading& heading) {
   return 9 - static_cast<int>(digits.size() - 1);
 }
 
-// For looking at a log whose TIME starts anew: by the ticks of the computer, which go on.
-GazeLog read_by_ticks(const GazeFile& file, const GazeReadOptions& options, const std::string& ticks,
-                      std::int64_t line) {
+// A log whose TIME starts anew, read by the ticks of the computer, which go on. That is another time than the one that
+// was asked for, so that it is told as a fault.
+RawGaze read_by_ticks(const GazeFile& file, const GazeReadOptions& options, const std::string& time,
+                      const std::string& ticks, std::int64_t line) {
   GazeReadOptions by_ticks = options;
   by_ticks.columns.time = ticks;
-  GazeLog log = read_gaze_gazepoint(file, by_ticks);
-  log.faults.push_back(
-      {"media", fmt::format("line {}: TIME starts anew with another medium", line), "--gaze-time-column " + ticks});
-  return log;
+  RawGaze raw = read_gaze_gazepoint(file, by_ticks);
+  raw.faults.push_back({"media", place_of(file, line), fmt::format("{} starts anew with another medium", time),
+                        fmt::format("use --gaze-time-column {}, which goes on, or export one medium a file", ticks),
+                        "--gaze-time-column " + ticks,
+                        fmt::format("line {}: TIME starts anew with another medium", line)});
+  return raw;
 }
 
 }  // namespace
@@ -84,7 +87,7 @@ double sniff_gaze_gazepoint(const GazeFile& file) {
   return has("BPOGX") || has("FPOGX") ? has("TIME") ? 0.99 : 0.7 : 0.0;
 }
 
-GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const auto seconds = column_starting(table, "TIME");
@@ -92,11 +95,11 @@ GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   if (!seconds && !ticks && options.columns.time.empty()) {
     throw Error(ErrorKind::input, place, "there is no column TIME(...)", "name it with --gaze-time-column");
   }
-  GazeLog log;
-  log.source = file.path;
-  log.format = "gazepoint";
-  log.pupil_unit = "px";
-  log.clock = "recording, from its start";
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "gazepoint";
+  raw.pupil_unit = "px";
+  raw.clock = "recording, from its start";
   const std::size_t time = time_column(table, options, seconds ? *seconds : ticks.value_or(0), place);
   const bool is_tick = ticks && time == *ticks;
   const auto tick = is_tick ? tick_exponent(table.headings[time]) : std::nullopt;
@@ -106,11 +109,11 @@ GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   const auto fixation = table.find("FPOGID");
   const auto fixation_valid = table.find("FPOGV");
   // The date in the header is the wall clock of the start: it goes nowhere.
-  const TimeScale scale = choose_time_unit(log, options,
-                                           is_tick                       ? "TIMETICK"
-                                           : seconds && time == *seconds ? "TIME"
-                                                                         : table.headings[time].text,
-                                           tick.value_or(9), Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options,
+                                       is_tick                       ? "TIMETICK"
+                                       : seconds && time == *seconds ? "TIME"
+                                                                     : table.headings[time].text,
+                                       tick.value_or(9), Evidence::format, place);
   std::size_t needed =
       std::max({time, blink.value_or(0), media.value_or(0), fixation.value_or(0), fixation_valid.value_or(0)}) + 1;
   for (const Point& point : points) {
@@ -124,36 +127,34 @@ GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(time, scale);
     if (media && rows.cell(*media) != medium) {
-      if (!log.samples.empty() && t_ns < last) {
+      if (!raw.rows.empty() && t_ns < last) {
         const std::string ticks_name = ticks && !is_tick ? table.headings[*ticks].name : "";
-        if (!ticks_name.empty() && options.for_inspection) {
-          return read_by_ticks(file, options, ticks_name, rows.line());
+        const std::string& time_name = table.headings[time].name;
+        if (!ticks_name.empty()) {
+          return read_by_ticks(file, options, time_name, ticks_name, rows.line());
         }
-        rows.fail(
-            fmt::format("{} starts anew with another medium", table.headings[time].name),
-            ticks_name.empty()
-                ? "export one medium a file"
-                : fmt::format("use --gaze-time-column {}, which goes on, or export one medium a file", ticks_name));
+        rows.fail(fmt::format("{} starts anew with another medium", time_name), "export one medium a file");
       }
       medium = rows.cell(*media);
-      log.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "medium " + medium, rows.line()});
+      raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "medium " + medium, rows.line()});
     }
     last = t_ns;
     const bool blinks = blink && rows.number(*blink) > 0;
     for (const Point& point : points) {
-      GazeSample sample;
+      RawSample sample;
       sample.t_ns = t_ns;
       sample.row = rows.line();
       sample.eye = point.eye;
       sample.confidence = static_cast<float>(kNan);
       const double pupil = rows.number(point.pupil);
       sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-      sample.u = rows.number(point.x);
-      sample.v = rows.number(point.y);
+      sample.at.x = rows.number(point.x);
+      sample.at.y = rows.number(point.y);
       const bool good = !point.valid || rows.number(*point.valid) == 1;
-      sample.validity = std::isnan(sample.u) || std::isnan(sample.v) || !good ? GazeValidity::lost : GazeValidity::ok;
+      sample.validity =
+          std::isnan(sample.at.x) || std::isnan(sample.at.y) || !good ? GazeValidity::lost : GazeValidity::ok;
       sample.validity = blinks ? GazeValidity::blink : sample.validity;
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     }
     if (fixation && fixation_valid && rows.number(*fixation_valid) == 1) {
       runs.add(GazeEventType::fixation, Eye::cyclopean, std::string(rows.cell(*fixation)), t_ns, rows.line());
@@ -161,12 +162,12 @@ GazeLog read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
       runs.end();
     }
   }
-  runs.finish(log);
-  finish_places(log, options,
-                {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format,
-                 table.headings[points.front().x].text + ", " + table.headings[points.front().y].text},
-                place);
-  return log;
+  runs.finish(raw);
+  declare_places(raw,
+                 {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format,
+                  table.headings[points.front().x].text + ", " + table.headings[points.front().y].text},
+                 place);
+  return raw;
 }
 
 }  // namespace gazetrace

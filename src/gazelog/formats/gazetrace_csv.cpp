@@ -5,7 +5,6 @@
 // the preamble, see mapped_table.hpp.
 #include <fmt/format.h>
 
-#include "gazelog/facts.hpp"
 #include "gazelog/mapped_table.hpp"
 #include "gazelog/read_support.hpp"
 
@@ -22,7 +21,7 @@ double sniff_gaze_gazetrace_csv(const GazeFile& file) {
   return has("t[ns],") && (has("u[1],v[1]") || has("dx,dy,dz")) ? 0.9 : 0.0;
 }
 
-GazeLog read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const GazetracePreamble preamble = read_preamble(file, table);
   if (preamble.version.value_or(1) != 1) {
@@ -42,23 +41,22 @@ GazeLog read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& opt
     columns.head_rotation_w = "hqw";
   }
   const bool names = options.columns.valid_values.empty() && options.columns.valid_mask == 0;
-  GazeLog log = read_mapped_table(file, table, options, columns, names ? ValidityStyle::names : ValidityStyle::any);
-  log.nominal_rate_hz = preamble.nominal_rate_hz;
-  log.sample_age_unknown = preamble.sample_age_unknown;
+  RawGaze raw = read_mapped_table(file, table, columns, names ? ValidityStyle::names : ValidityStyle::any);
+  raw.nominal_rate_hz = preamble.nominal_rate_hz;
+  raw.sample_age_unknown = preamble.sample_age_unknown;
   if (preamble.eye) {
-    add_fact(log, kStatedEye, std::string(to_string(*preamble.eye)), Evidence::header,
+    raw.stated_eye = preamble.eye;
+    add_note(raw, "chosen eye", std::string(to_string(*preamble.eye)), Evidence::header,
              "chosen before it was converted");
   }
-  if (!preamble.device.empty()) {
-    add_fact(log, kDevice, preamble.device, Evidence::header);
+  if (preamble.device) {
+    raw.device = preamble.device;
+    add_note(raw, "device", std::string(to_string(*preamble.device)), Evidence::header);
   }
-  log.events = preamble.events;
-  log.calibrations = preamble.calibrations;
-  if (!preamble.head.empty()) {
-    log.head.insert(log.head.end(), preamble.head.begin(), preamble.head.end());
-    finish_head(log);
-  }
-  return log;
+  raw.events = preamble.events;
+  raw.calibrations = preamble.calibrations;
+  raw.head.insert(raw.head.end(), preamble.head.begin(), preamble.head.end());
+  return raw;
 }
 
 }  // namespace gazetrace

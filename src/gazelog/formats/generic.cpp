@@ -23,8 +23,8 @@ double sniff_gaze_generic(const GazeFile& file) {
   return 0.05;
 }
 
-GazeLog read_gaze_generic(const GazeFile& file, const GazeReadOptions& options) {
-  return read_mapped_table(file, open_table(file), options, options.columns, ValidityStyle::any);
+RawGaze read_gaze_generic(const GazeFile& file, const GazeReadOptions& options) {
+  return read_mapped_table(file, open_table(file), options.columns, ValidityStyle::any);
 }
 
 }  // namespace gazetrace

@@ -56,74 +56,69 @@ double sniff_gaze_neon_native(const GazeFile& file) {
   return named ? 0.98 : 0.0;
 }
 
-GazeLog read_gaze_neon_native(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_neon_native(const GazeFile& file, const GazeReadOptions& options) {
   const std::string part = part_of(file.path);
   const std::string raw_path = sibling(file.path, "gaze " + part + ".raw");
   const std::string time_path = sibling(file.path, "gaze " + part + ".time");
   const std::string lens_path = sibling(file.path, "scene_camera.json");
   const bool has_lens = exists(lens_path);
-  refuse_scene_camera(file, options,
-                      has_lens ? "map gaze onto a surface in Pupil Cloud, or take directions from the head with "
-                                 "--gaze-frame head"
-                               : "map gaze onto a surface in Pupil Cloud, or put its scene_camera.json beside it and "
-                                 "take directions from the head with --gaze-frame head");
-  const std::string raw = read_file_bytes(raw_path);
+  const std::string bytes = read_file_bytes(raw_path);
   const std::string times = read_file_bytes(time_path);
   const std::string worn_path = sibling(file.path, "worn " + part + ".raw");
   const std::string worn = exists(worn_path) ? read_file_bytes(worn_path) : "";
-  if (raw.size() % 8 != 0 || times.size() % 8 != 0 || raw.size() != times.size()) {
+  if (bytes.size() % 8 != 0 || times.size() % 8 != 0 || bytes.size() != times.size()) {
     throw Error(ErrorKind::input, file.path,
-                fmt::format("{} bytes of places and {} of times do not make pairs", raw.size(), times.size()),
+                fmt::format("{} bytes of places and {} of times do not make pairs", bytes.size(), times.size()),
                 "each sample has 8 bytes in both files; one of them may be cut off");
   }
-  GazeLog log;
-  log.source = file.path;
-  log.format = "neon-native";
-  log.clock = "UTC, from 1970";
-  log.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
-  add_fact(log, "time column", "gaze " + part + ".time", Evidence::format);
-  add_fact(log, "time unit", "ns", Evidence::format);
+  RawGaze raw;
+  raw.way_out = has_lens ? "map gaze onto a surface in Pupil Cloud, or take directions from the head with "
+                           "--gaze-frame head"
+                         : "map gaze onto a surface in Pupil Cloud, or put its scene_camera.json beside it and "
+                           "take directions from the head with --gaze-frame head";
+  raw.source = file.path;
+  raw.format = "neon-native";
+  raw.clock = "UTC, from 1970";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  raw.declared.time_column = {"gaze " + part + ".time", Evidence::format, {}};
+  raw.declared.time_exponent = {0, Evidence::format, {}};
   if (const std::string info = sibling(file.path, "info.json"); exists(info)) {
-    log.nominal_rate_hz = JsonLeaves(read_text_file(info), info).number("gaze_frequency").value_or(0);
+    raw.nominal_rate_hz = JsonLeaves(read_text_file(info), info).number("gaze_frequency").value_or(0);
   }
-  const std::size_t count = raw.size() / 8;
+  const std::size_t count = bytes.size() / 8;
   for (std::size_t i = 0; i < count; ++i) {
     const auto t = little_endian<std::uint64_t>(times.data() + 8 * i);
     if (t > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
       throw Error(ErrorKind::input, time_path, fmt::format("time {} of record {} is beyond int64", t, i + 1));
     }
-    GazeSample sample = missing_sample(static_cast<std::int64_t>(t), static_cast<std::int64_t>(i) + 1, Eye::cyclopean,
-                                       GazeKind::scene_camera);
-    sample.u = static_cast<double>(little_endian<float>(raw.data() + 8 * i));
-    sample.v = static_cast<double>(little_endian<float>(raw.data() + 8 * i + 4));
-    const bool known = std::isfinite(sample.u) && std::isfinite(sample.v);
+    RawSample sample = missing_row(static_cast<std::int64_t>(t), static_cast<std::int64_t>(i) + 1, Eye::cyclopean);
+    sample.at.x = static_cast<double>(little_endian<float>(bytes.data() + 8 * i));
+    sample.at.y = static_cast<double>(little_endian<float>(bytes.data() + 8 * i + 4));
+    const bool known = std::isfinite(sample.at.x) && std::isfinite(sample.at.y);
     const bool is_worn = worn.size() != count || worn[i] != '\0';
     sample.validity = known && is_worn ? GazeValidity::ok : GazeValidity::lost;
     if (!known) {
-      sample.u = sample.v = kNan;
+      sample.at.x = sample.at.y = kNan;
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
-  if (log.kind == GazeKind::direction) {
+  const std::string columns = "gaze " + part + ".raw";
+  if (options.frame == GazeFrame::head) {
     if (!has_lens) {
       throw Error(ErrorKind::input, file.path, "places on the scene picture become directions only through its lens",
                   "put scene_camera.json beside it");
     }
-    const SceneLens lens = load_scene_lens(lens_path);
-    for (GazeSample& sample : log.samples) {
-      sample.direction = is_usable(sample.validity) ? ray_of(lens, {sample.u, sample.v}) : Vec3d{kNan, kNan, kNan};
-      sample.u = sample.v = 0;
-    }
-    add_fact(log, "position columns", "gaze " + part + ".raw", Evidence::format, "through scene_camera.json");
-    finish_directions(log, options, GazeAxes::cv, Evidence::format, file.path);
-    return log;
+    declare_directions(raw, {columns, Evidence::format, "through scene_camera.json"}, GazeAxes::cv, Evidence::format,
+                       file.path);
+    raw.declared.form = PlaceForm::lens_pixel;
+    raw.declared.unit = {PositionUnit::px, Evidence::format, {}};
+    raw.declared.lens = load_scene_lens(lens_path);
+    return raw;
   }
-  log.recording_geometry = DisplayGeometry{.width_px = 1600, .height_px = 1200};
-  add_fact(log, "picture size", "1600x1200 px", Evidence::format);
-  finish_places(log, options, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, "gaze " + part + ".raw"},
-                file.path);
-  log.recording_geometry.reset();  // a camera's picture is no display
-  return log;
+  raw.picture_px = Vec2d{1600, 1200};
+  add_note(raw, "picture size", "1600x1200 px", Evidence::format);
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, file.path);
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -101,7 +101,7 @@ double sniff_gaze_openxr(const GazeFile& file) {
   return table.has_header && c.gaze[0] && c.time ? c.head[0] ? 0.9 : 0.8 : 0.0;
 }
 
-GazeLog read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const PoseColumns c = find_columns(table);
@@ -109,15 +109,15 @@ GazeLog read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     throw Error(ErrorKind::input, place, "there are no columns of time and of gaze's orientation, x, y, z, w",
                 "the columns are: " + column_listing(table));
   }
-  GazeLog log;
-  log.source = file.path;
-  log.format = "openxr-pose";
-  log.kind = GazeKind::direction;
-  log.clock = "XrTime";
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "openxr-pose";
+  raw.kind = GazeKind::direction;
+  raw.clock = "XrTime";
   const std::size_t time = time_column(table, options, c.time.value_or(0), place);
   const auto stated = time_exponent(table.headings[time].unit);
-  const TimeScale scale = choose_time_unit(log, options, table.headings[time].text, stated.value_or(0),
-                                           stated ? Evidence::header : Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, stated.value_or(0),
+                                       stated ? Evidence::header : Evidence::format, place);
   const bool has_head = c.head[0].has_value();
   std::string last_sample_time;
   std::size_t repeats = 0;
@@ -130,7 +130,7 @@ GazeLog read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
     const bool head_known = has_head && is_rotation(h);
     if (head_known && c.head_position[0]) {
       const auto p = values(rows, c.head_position);
-      log.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, options.columns.head_axes));
+      raw.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, options.columns.head_axes));
     }
     // Runtimes that cannot interpolate clamp: the same sample again. 0 is an unknown time.
     const std::string_view sample_time = rows.cell(c.sample_time);
@@ -139,11 +139,11 @@ GazeLog read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
       continue;
     }
     last_sample_time = sample_time;
-    GazeSample sample = missing_sample(t_ns, rows.line(), Eye::cyclopean, GazeKind::direction);
+    RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
     sample.confidence = static_cast<float>(rows.number(c.confidence));
     const std::array<double, 4> q = values(rows, c.gaze);
     if (is_rotation(q)) {
-      sample.direction = rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), {0, 0, -1});
+      sample.at = rotate(normalize(Quatd{q[0], q[1], q[2], q[3]}), {0, 0, -1});
       sample.validity = is_tracked(rows, c) ? GazeValidity::ok : GazeValidity::lost;
       const std::string space = to_lower(rows.cell(c.space));
       if (!space.empty() && space != "view" && space != "head") {
@@ -152,19 +152,18 @@ GazeLog read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
                     "log gaze in the VIEW space, or the head's pose with it");
         }
         const Quatd unit = normalize(head);
-        sample.direction = rotate({-unit.x, -unit.y, -unit.z, unit.w}, sample.direction);
+        sample.at = rotate({-unit.x, -unit.y, -unit.z, unit.w}, sample.at);
       }
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
   if (repeats > 0) {
-    log.warnings.push_back(
+    raw.warnings.push_back(
         fmt::format("{}: {} rows repeat the sample of the row before; left out", file.path, repeats));
   }
-  add_fact(log, "position columns", table.headings[*c.gaze[0]].text + ", ...", Evidence::header);
-  finish_directions(log, options, GazeAxes::gl, Evidence::format, place);
-  finish_head(log);
-  return log;
+  declare_directions(raw, {table.headings[*c.gaze[0]].text + ", ...", Evidence::header}, GazeAxes::gl, Evidence::format,
+                     place);
+  return raw;
 }
 
 }  // namespace gazetrace

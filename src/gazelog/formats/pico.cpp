@@ -33,11 +33,11 @@ double sniff_gaze_pico(const GazeFile& file) {
   return has("Combine Eye Gaze Vector") ? has("Head Rotation") && has("Timeline") ? 0.97 : 0.5 : 0.0;
 }
 
-GazeLog read_gaze_pico(const GazeFile& file, const GazeReadOptions& options) {
-  GazeLog log = read_preset(file, open_table(file), options, preset());
-  log.sample_age_unknown = true;
-  log.clock = "frames of the display";
-  return log;
+RawGaze read_gaze_pico(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw = read_preset(file, open_table(file), options, preset());
+  raw.sample_age_unknown = true;
+  raw.clock = "frames of the display";
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -22,9 +22,7 @@ double sniff_gaze_pupil_cloud(const GazeFile& file) {
   return !places ? 0.0 : has("recording id") ? 0.99 : has("worn") || has("azimuth") ? 0.8 : 0.1;
 }
 
-GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& options) {
-  refuse_scene_camera(
-      file, options, "map gaze onto a surface in Pupil Cloud, or take directions from the head with --gaze-frame head");
+RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const auto own_time = table.find("timestamp [ns]");
@@ -43,13 +41,14 @@ GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   const auto worn = table.find("worn");
   const auto blink = table.find("blink id");
   const auto fixation = table.find("fixation id");
-  GazeLog log;
-  log.source = file.path;
-  log.format = "pupil-cloud";
-  log.clock = "UTC, from 1970";
-  log.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  RawGaze raw;
+  raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with --gaze-frame head";
+  raw.source = file.path;
+  raw.format = "pupil-cloud";
+  raw.clock = "UTC, from 1970";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const std::size_t time = time_column(table, options, *own_time, place);
-  const TimeScale scale = choose_time_unit(log, options, table.headings[time].text, 0, Evidence::header, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 0, Evidence::header, place);
   LabelRuns runs;
   WitnessTally angles;
   TableRows rows(file, table,
@@ -58,20 +57,13 @@ GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
                      1);
   while (rows.next()) {
     rows.check_length();
-    GazeSample sample = missing_sample(rows.time_ns(time, scale), rows.line(), Eye::cyclopean, log.kind);
-    if (log.kind == GazeKind::scene_camera && azimuth && elevation) {
+    RawSample sample = missing_row(rows.time_ns(time, scale), rows.line(), Eye::cyclopean);
+    if (raw.kind == GazeKind::scene_camera && azimuth && elevation) {
       angles.add(rows.number(*x), rows.number(*y), rows.number(*azimuth), -rows.number(*elevation));
     }
-    if (log.kind == GazeKind::direction) {
-      const double az = rows.number(*azimuth) * kRadPerDeg;
-      const double el = rows.number(*elevation) * kRadPerDeg;
-      sample.direction = {std::sin(az) * std::cos(el), std::sin(el), -std::cos(az) * std::cos(el)};
-      sample.validity = std::isnan(az) || std::isnan(el) ? GazeValidity::lost : GazeValidity::ok;
-    } else {
-      sample.u = rows.number(*x);
-      sample.v = rows.number(*y);
-      sample.validity = std::isnan(sample.u) || std::isnan(sample.v) ? GazeValidity::lost : GazeValidity::ok;
-    }
+    const bool in_head = raw.kind == GazeKind::direction;
+    sample.at = {rows.number(in_head ? *azimuth : *x), rows.number(in_head ? *elevation : *y), 0};
+    sample.validity = std::isnan(sample.at.x) || std::isnan(sample.at.y) ? GazeValidity::lost : GazeValidity::ok;
     if (worn && rows.number(*worn) == 0) {
       sample.validity = GazeValidity::lost;
     }
@@ -84,30 +76,28 @@ GazeLog read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
     } else {
       runs.end();
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
-  runs.finish(log);
-  angles.finish(log, "azimuth and elevation");
-  if (log.kind == GazeKind::direction) {
-    add_fact(log, "position columns", "azimuth [deg], elevation [deg]", Evidence::header);
-    add_fact(log, "position unit", "deg", Evidence::header);
-    finish_directions(log, options, GazeAxes::gl, Evidence::format, place);
-    return log;
+  runs.finish(raw);
+  angles.finish(raw, "azimuth and elevation");
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {"azimuth [deg], elevation [deg]", Evidence::header}, GazeAxes::gl, Evidence::format,
+                       place);
+    raw.declared.form = PlaceForm::azimuth_elevation;
+    raw.declared.unit = {PositionUnit::deg, Evidence::header, {}};
+    return raw;
   }
   // The picture is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; the file does not say.
   double widest = 0;
-  for (const GazeSample& sample : log.samples) {
-    widest = sample.u > widest && sample.u < 1600 ? sample.u : widest;
+  for (const RawSample& sample : raw.rows) {
+    widest = sample.at.x > widest && sample.at.x < 1600 ? sample.at.x : widest;
   }
-  log.recording_geometry = widest > 1100 ? DisplayGeometry{.width_px = 1600, .height_px = 1200}
-                                         : DisplayGeometry{.width_px = 1088, .height_px = 1080};
-  add_fact(log, "picture size",
-           fmt::format("{}x{} px", log.recording_geometry->width_px, log.recording_geometry->height_px),
-           Evidence::statistics, fmt::format("places reach {:.0f} px", widest));
-  finish_places(log, options,
-                {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "gaze x [px], gaze y [px]"}, place);
-  log.recording_geometry.reset();  // a camera's picture is no display
-  return log;
+  raw.picture_px = widest > 1100 ? Vec2d{1600, 1200} : Vec2d{1088, 1080};
+  add_note(raw, "picture size", fmt::format("{}x{} px", raw.picture_px->x, raw.picture_px->y), Evidence::statistics,
+           fmt::format("places reach {:.0f} px", widest));
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "gaze x [px], gaze y [px]"},
+                 place);
+  return raw;
 }
 
 }  // namespace gazetrace

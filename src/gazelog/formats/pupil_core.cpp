@@ -62,7 +62,7 @@ Vec3d vector(TableRows& rows, const std::optional<Triple>& columns) {
 }
 
 // Documents disagree on which eye is 0: the one whose center lies further right (+x) is the right one.
-bool eye_0_is_right(const GazeFile& file, const DelimitedTable& table, const CoreColumns& c, GazeLog& log) {
+bool eye_0_is_right(const GazeFile& file, const DelimitedTable& table, const CoreColumns& c, RawGaze& raw) {
   double sum = 0;
   std::size_t count = 0;
   TableRows rows(file, table, c.needed);
@@ -75,12 +75,12 @@ bool eye_0_is_right(const GazeFile& file, const DelimitedTable& table, const Cor
     }
   }
   if (count == 0) {
-    add_fact(log, "eye 0", "right", Evidence::format, "Pupil Core's usual order; no center of both eyes confirms it");
+    add_note(raw, "eye 0", "right", Evidence::format, "Pupil Core's usual order; no center of both eyes confirms it");
     return true;
   }
   const double mean = sum / static_cast<double>(count);
-  add_fact(
-      log, "eye 0", mean > 0 ? "right" : "left", Evidence::statistics,
+  add_note(
+      raw, "eye 0", mean > 0 ? "right" : "left", Evidence::statistics,
       fmt::format("its center lies {:.0f} mm to the {} of the other's", std::abs(mean), mean > 0 ? "right" : "left"));
   return mean > 0;
 }
@@ -96,26 +96,26 @@ double sniff_gaze_pupil_core(const GazeFile& file) {
              : 0.0;
 }
 
-GazeLog read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& options) {
-  refuse_scene_camera(file, options,
-                      "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
-                      "with --gaze-frame head");
+RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const CoreColumns c = find_columns(table, options, place);
-  GazeLog log;
-  log.source = file.path;
-  log.format = "pupil-core";
-  log.clock = "Pupil, arbitrary zero";
-  log.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  RawGaze raw;
+  raw.way_out =
+      "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
+      "with --gaze-frame head";
+  raw.source = file.path;
+  raw.format = "pupil-core";
+  raw.clock = "Pupil, arbitrary zero";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const bool by_eye = c.normal[0] && c.normal[1];
-  if (log.kind == GazeKind::direction && !by_eye) {
+  if (raw.kind == GazeKind::direction && !by_eye) {
     throw Error(ErrorKind::input, place, "it has no directions (gaze_normal0_x, ...), only places on the scene picture",
                 "export again with the 3D gaze mapper, or a surface");
   }
-  const TimeScale scale = choose_time_unit(log, options, table.headings[c.time].text, 9, Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 9, Evidence::format, place);
   const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
-  const bool right_first = by_eye && eye_0_is_right(file, table, c, log);
+  const bool right_first = by_eye && eye_0_is_right(file, table, c, raw);
   TableRows rows(file, table, c.needed);
   WitnessTally points;
   while (rows.next()) {
@@ -125,43 +125,41 @@ GazeLog read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
     const GazeValidity validity = confidence >= least ? GazeValidity::ok
                                   : confidence > 0    ? GazeValidity::low_confidence
                                                       : GazeValidity::lost;
-    const auto add = [&](GazeSample sample, bool known) {
+    const auto add = [&](RawSample sample, bool known) {
       sample.confidence = static_cast<float>(confidence);
       sample.validity = known ? validity : GazeValidity::lost;
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     };
-    if (log.kind == GazeKind::scene_camera) {
-      GazeSample sample = missing_sample(t_ns, rows.line(), Eye::cyclopean, log.kind);
-      sample.u = rows.number(c.x);
-      sample.v = rows.number(c.y);
+    if (raw.kind == GazeKind::scene_camera) {
+      RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
+      sample.at.x = rows.number(c.x);
+      sample.at.y = rows.number(c.y);
       if (const Vec3d at = vector(rows, c.point); validity == GazeValidity::ok && at.z > 0) {
-        points.add(sample.u, sample.v, at.x / at.z, -at.y / at.z);
+        points.add(sample.at.x, sample.at.y, at.x / at.z, -at.y / at.z);
       }
-      add(sample, !std::isnan(sample.u) && !std::isnan(sample.v));
+      add(sample, !std::isnan(sample.at.x) && !std::isnan(sample.at.y));
       continue;
     }
     Vec3f origins[2];
     for (std::size_t i = 0; i < 2; ++i) {
       const bool right = (i == 0) == right_first;
-      GazeSample sample = missing_sample(t_ns, rows.line(), right ? Eye::right : Eye::left, log.kind);
-      sample.direction = vector(rows, c.normal[i]);
-      add(sample, length(sample.direction) > 0);
+      RawSample sample = missing_row(t_ns, rows.line(), right ? Eye::right : Eye::left);
+      sample.at = vector(rows, c.normal[i]);
+      add(sample, length(sample.at) > 0);
       origins[right ? 1 : 0] = to_float(vector(rows, c.center[i]));
     }
-    log.origins.push_back({origins[0], origins[1], t_ns});
+    raw.origins.push_back({origins[0], origins[1], t_ns});
   }
-  points.finish(log, "the gaze point in 3D");
-  add_fact(log, "least confidence", fmt::format("{}", least),
+  points.finish(raw, "the gaze point in 3D");
+  add_note(raw, "least confidence", fmt::format("{}", least),
            std::isnan(options.min_confidence) ? Evidence::format : Evidence::option);
-  if (log.kind == GazeKind::direction) {
-    add_fact(log, "position columns", "gaze_normal0, gaze_normal1", Evidence::header);
-    finish_directions(log, options, GazeAxes::cv, Evidence::format, place);
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {"gaze_normal0, gaze_normal1", Evidence::header}, GazeAxes::cv, Evidence::format, place);
   } else {
-    finish_places(log, options,
-                  {PositionUnit::fraction, PositionOrigin::bottom_left, Evidence::format, "norm_pos_x, norm_pos_y"},
-                  place);
+    declare_places(
+        raw, {PositionUnit::fraction, PositionOrigin::bottom_left, Evidence::format, "norm_pos_x, norm_pos_y"}, place);
   }
-  return log;
+  return raw;
 }
 
 }  // namespace gazetrace

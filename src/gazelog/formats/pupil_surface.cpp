@@ -29,7 +29,7 @@ double sniff_gaze_pupil_surface(const GazeFile& file) {
   return (core && has("gaze_timestamp")) || has("gaze position on surface x") ? 0.99 : core ? 0.7 : 0.0;
 }
 
-GazeLog read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const bool cloud = is_cloud(table);
@@ -42,25 +42,25 @@ GazeLog read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
   }
   const auto confidence = table.find("confidence");
   const auto blink = table.find("blink id");
-  GazeLog log;
-  log.source = file.path;
-  log.format = "pupil-surface";
-  log.clock = cloud ? "UTC, from 1970" : "Pupil, arbitrary zero";
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "pupil-surface";
+  raw.clock = cloud ? "UTC, from 1970" : "Pupil, arbitrary zero";
   const std::size_t time_at = time_column(table, options, *time, place);
-  const TimeScale scale = choose_time_unit(log, options, table.headings[time_at].text, cloud ? 0 : 9,
-                                           cloud ? Evidence::header : Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time_at].text, cloud ? 0 : 9,
+                                       cloud ? Evidence::header : Evidence::format, place);
   const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
   TableRows rows(file, table, std::max({time_at, *x, *y, confidence.value_or(0), blink.value_or(0)}) + 1);
   while (rows.next()) {
     rows.check_length();
-    GazeSample sample;
+    RawSample sample;
     sample.t_ns = rows.time_ns(time_at, scale);
     sample.row = rows.line();
     sample.pupil = static_cast<float>(kNan);
-    sample.u = rows.number(*x);
-    sample.v = rows.number(*y);
+    sample.at.x = rows.number(*x);
+    sample.at.y = rows.number(*y);
     sample.confidence = static_cast<float>(rows.number(confidence));
-    if (std::isnan(sample.u) || std::isnan(sample.v) || sample.confidence == 0) {
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y) || sample.confidence == 0) {
       sample.validity = GazeValidity::lost;
     } else if (sample.confidence < least) {
       sample.validity = GazeValidity::low_confidence;
@@ -68,13 +68,13 @@ GazeLog read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
     if (!is_missing(rows.cell(blink))) {
       sample.validity = GazeValidity::blink;
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
-  finish_places(log, options,
-                {PositionUnit::fraction, cloud ? PositionOrigin::top_left : PositionOrigin::bottom_left,
-                 Evidence::format, table.headings[*x].text + ", " + table.headings[*y].text},
-                place);
-  return log;
+  declare_places(raw,
+                 {PositionUnit::fraction, cloud ? PositionOrigin::top_left : PositionOrigin::bottom_left,
+                  Evidence::format, table.headings[*x].text + ", " + table.headings[*y].text},
+                 place);
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -32,7 +32,7 @@ std::vector<double> numbers_after_colon(std::string_view line) {
   return values;
 }
 
-void read_preamble_lines(const DelimitedTable& table, GazeLog& log) {
+void read_preamble_lines(const DelimitedTable& table, RawGaze& raw) {
   DisplayGeometry geometry;
   for (const PreambleLine& line : table.preamble) {
     std::string_view text = line.text;
@@ -40,7 +40,7 @@ void read_preamble_lines(const DelimitedTable& table, GazeLog& log) {
     text = trim(text);
     const std::vector<double> values = numbers_after_colon(text);
     if (text.starts_with("Sample Rate") && !values.empty()) {
-      log.nominal_rate_hz = values[0];
+      raw.nominal_rate_hz = values[0];
     } else if (text.starts_with("Calibration Area") && values.size() == 2) {
       geometry.width_px = static_cast<int>(std::lround(values[0]));
       geometry.height_px = static_cast<int>(std::lround(values[1]));
@@ -52,8 +52,8 @@ void read_preamble_lines(const DelimitedTable& table, GazeLog& log) {
     }
   }
   if (geometry.width_px > 0) {
-    log.recording_geometry = geometry;
-    add_fact(log, "display size", fmt::format("{}x{} px", geometry.width_px, geometry.height_px), Evidence::header,
+    raw.recording_geometry = geometry;
+    add_note(raw, "display size", fmt::format("{}x{} px", geometry.width_px, geometry.height_px), Evidence::header,
              "Calibration Area");
   }
 }
@@ -89,7 +89,7 @@ double sniff_gaze_smi(const GazeFile& file) {
   return columns && preamble ? 0.99 : columns ? 0.9 : preamble ? 0.6 : 0.0;
 }
 
-GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const auto own_time = table.find("Time");
@@ -97,14 +97,14 @@ GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
   if (!own_time || !type) {
     throw Error(ErrorKind::input, place, "there are no columns 'Time' and 'Type'", "is this an SMI export?");
   }
-  GazeLog log;
-  log.source = file.path;
-  log.format = "smi";
-  log.clock = "tracker";
-  read_preamble_lines(table, log);
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "smi";
+  raw.clock = "tracker";
+  read_preamble_lines(table, raw);
   const std::vector<SmiColumns> eyes = eye_columns(table, place);
   const std::size_t time = time_column(table, options, *own_time, place);
-  const TimeScale scale = choose_time_unit(log, options, table.headings[time].text, 3, Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, place);
   std::size_t needed = std::max(time, *type) + 1;
   std::string columns;
   for (const SmiColumns& eye : eyes) {
@@ -112,7 +112,7 @@ GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
                        eye.event.value_or(0) + 1});
     columns += (columns.empty() ? "" : ", ") + table.headings[eye.x].text + ", " + table.headings[eye.y].text;
     if (eye.pupil) {
-      log.pupil_unit = table.headings[*eye.pupil].unit;
+      raw.pupil_unit = table.headings[*eye.pupil].unit;
     }
   }
   const auto trial_column = table.find("Trial");
@@ -123,7 +123,7 @@ GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
     const std::int64_t t_ns = rows.time_ns(time, scale);
     if (rows.cell(*type) == "MSG") {
       // Free text in the fourth column.
-      log.events.push_back(
+      raw.events.push_back(
           {GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(rows.cell(std::size_t{3})), rows.line()});
       continue;
     }
@@ -133,10 +133,10 @@ GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
     rows.check_length();
     if (trial_column && rows.cell(*trial_column) != trial) {
       trial = rows.cell(*trial_column);
-      log.events.push_back(
+      raw.events.push_back(
           {GazeEventType::segment, Eye::cyclopean, t_ns, t_ns, "trial " + trial.substr(0, 20), rows.line()});
-    } else if (trial_column && !log.events.empty()) {
-      for (auto event = log.events.rbegin(); event != log.events.rend(); ++event) {
+    } else if (trial_column && !raw.events.empty()) {
+      for (auto event = raw.events.rbegin(); event != raw.events.rend(); ++event) {
         if (event->type == GazeEventType::segment) {
           event->end_ns = t_ns;
           break;
@@ -144,17 +144,17 @@ GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
       }
     }
     for (const SmiColumns& eye : eyes) {
-      GazeSample sample;
+      RawSample sample;
       sample.t_ns = t_ns;
       sample.row = rows.line();
       sample.eye = eye.eye;
       sample.confidence = static_cast<float>(kNan);
       const double pupil = rows.number(eye.pupil);
       sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-      sample.u = rows.number(eye.x);
-      sample.v = rows.number(eye.y);
-      if ((sample.u == 0 && sample.v == 0) || std::isnan(sample.u) || std::isnan(sample.v)) {
-        sample.u = sample.v = kNan;
+      sample.at.x = rows.number(eye.x);
+      sample.at.y = rows.number(eye.y);
+      if ((sample.at.x == 0 && sample.at.y == 0) || std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+        sample.at.x = sample.at.y = kNan;
         sample.validity = GazeValidity::lost;
       }
       if (eye.validity && rows.number(*eye.validity) == 0) {
@@ -174,12 +174,12 @@ GazeLog read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
           runs.end();
         }
       }
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     }
   }
-  runs.finish(log);
-  finish_places(log, options, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, columns}, place);
-  return log;
+  runs.finish(raw);
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, columns}, place);
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -62,25 +62,25 @@ void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, std::
   }
 }
 
-void add_event(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, GazeLog& log) {
+void add_event(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, RawGaze& raw) {
   if (json.number("vts") == 0.0) {
-    log.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "scene video starts", row});
+    raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "scene video starts", row});
   } else if (json.has("sig")) {
     const std::string text = fmt::format("sync port {} {}", json.text("dir"), json.text("sig"));
-    log.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, text, row});
+    raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, text, row});
   }
 }
 
-void add_samples(const GazeOfIndex& gaze, GazeLog& log) {
-  if (log.kind == GazeKind::scene_camera) {
+void add_samples(const GazeOfIndex& gaze, RawGaze& raw) {
+  if (raw.kind == GazeKind::scene_camera) {
     if (gaze.has_place) {
-      GazeSample sample = missing_sample(gaze.t_ns, gaze.row, Eye::cyclopean, log.kind);
+      RawSample sample = missing_row(gaze.t_ns, gaze.row, Eye::cyclopean);
       if (!gaze.bad_place && !std::isnan(gaze.u)) {
-        sample.u = gaze.u;
-        sample.v = gaze.v;
+        sample.at.x = gaze.u;
+        sample.at.y = gaze.v;
         sample.validity = GazeValidity::ok;
       }
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     }
     return;
   }
@@ -88,15 +88,15 @@ void add_samples(const GazeOfIndex& gaze, GazeLog& log) {
     return;
   }
   for (std::size_t side = 0; side < 2; ++side) {
-    GazeSample sample = missing_sample(gaze.t_ns, gaze.row, side == 0 ? Eye::left : Eye::right, GazeKind::direction);
+    RawSample sample = missing_row(gaze.t_ns, gaze.row, side == 0 ? Eye::left : Eye::right);
     sample.pupil = static_cast<float>(gaze.pupil_mm[side]);
     if (!gaze.bad[side] && length(gaze.direction[side]) > 0) {
-      sample.direction = gaze.direction[side];
+      sample.at = gaze.direction[side];
       sample.validity = GazeValidity::ok;
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
-  log.origins.push_back({to_float(gaze.center_mm[0]), to_float(gaze.center_mm[1]), gaze.t_ns});
+  raw.origins.push_back({to_float(gaze.center_mm[0]), to_float(gaze.center_mm[1]), gaze.t_ns});
 }
 
 }  // namespace
@@ -108,22 +108,22 @@ double sniff_gaze_tobii_glasses2(const GazeFile& file) {
   return object ? known ? 0.99 : 0.7 : 0.0;
 }
 
-GazeLog read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& options) {
-  refuse_scene_camera(file, options,
-                      "--gaze-frame head takes the directions of the eyes from the head; or map gaze onto the display "
-                      "and export that");
-  GazeLog log;
-  log.source = file.path;
-  log.format = "tobii-glasses-2";
-  log.clock = "device";
-  log.pupil_unit = "mm";
-  log.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
-  const int exponent = choose_time_unit(log, options, "ts", 3, Evidence::format, file.path).exponent;
+RawGaze read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw;
+  raw.way_out =
+      "--gaze-frame head takes the directions of the eyes from the head; or map gaze onto the display "
+      "and export that";
+  raw.source = file.path;
+  raw.format = "tobii-glasses-2";
+  raw.clock = "device";
+  raw.pupil_unit = "mm";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  const int exponent = declare_time(raw, options, "ts", 3, Evidence::format, file.path).exponent;
   std::map<std::int64_t, GazeOfIndex> gazes;
-  for_each_json_line(file, log.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
+  for_each_json_line(file, raw.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
     if (const auto t_ns = json_time_ns(json, "ts", exponent, place)) {
       add_line(json, *t_ns, row, gazes);
-      add_event(json, *t_ns, row, log);
+      add_event(json, *t_ns, row, raw);
     }
   });
   std::vector<const GazeOfIndex*> ordered;
@@ -137,16 +137,15 @@ GazeLog read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& op
     if (const Vec3d& at = gaze->point_mm; !gaze->bad_place && at.z > 0) {
       points.add(gaze->u, gaze->v, -at.x / at.z, -at.y / at.z);
     }
-    add_samples(*gaze, log);
+    add_samples(*gaze, raw);
   }
-  if (log.kind == GazeKind::direction) {
-    add_fact(log, "position columns", "gd", Evidence::format, "of each eye");
-    finish_directions(log, options, GazeAxes::sranipal, Evidence::format, file.path);
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {"gd", Evidence::format, "of each eye"}, GazeAxes::sranipal, Evidence::format, file.path);
   } else {
-    points.finish(log, "gp3");
-    finish_places(log, options, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gp"}, file.path);
+    points.finish(raw, "gp3");
+    declare_places(raw, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gp"}, file.path);
   }
-  return log;
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -10,35 +10,35 @@
 namespace gazetrace {
 namespace {
 
-void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, GazeLog& log, WitnessTally& points) {
-  if (log.kind == GazeKind::scene_camera) {
-    GazeSample sample = missing_sample(t_ns, row, Eye::cyclopean, log.kind);
+void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, RawGaze& raw, WitnessTally& points) {
+  if (raw.kind == GazeKind::scene_camera) {
+    RawSample sample = missing_row(t_ns, row, Eye::cyclopean);
     const std::vector<double> at = json.numbers("data.gaze2d");
     if (at.size() == 2) {
-      sample.u = at[0];
-      sample.v = at[1];
+      sample.at.x = at[0];
+      sample.at.y = at[1];
       sample.validity = GazeValidity::ok;
       if (const Vec3d point = json_vector(json, "data.gaze3d"); point.z > 0) {
         points.add(at[0], at[1], -point.x / point.z, -point.y / point.z);
       }
     }
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
     return;
   }
   Vec3f origins[2];
   for (std::size_t side = 0; side < 2; ++side) {
     const std::string eye = side == 0 ? "data.eyeleft." : "data.eyeright.";
-    GazeSample sample = missing_sample(t_ns, row, side == 0 ? Eye::left : Eye::right, GazeKind::direction);
+    RawSample sample = missing_row(t_ns, row, side == 0 ? Eye::left : Eye::right);
     const Vec3d direction = json_vector(json, eye + "gazedirection");
     if (length(direction) > 0) {
-      sample.direction = direction;
+      sample.at = direction;
       sample.validity = GazeValidity::ok;
     }
     sample.pupil = static_cast<float>(json.number(eye + "pupildiameter").value_or(kNan));
     origins[side] = to_float(json_vector(json, eye + "gazeorigin"));
-    log.samples.push_back(sample);
+    raw.rows.push_back(sample);
   }
-  log.origins.push_back({origins[0], origins[1], t_ns});
+  raw.origins.push_back({origins[0], origins[1], t_ns});
 }
 
 }  // namespace
@@ -52,19 +52,19 @@ double sniff_gaze_tobii_glasses3(const GazeFile& file) {
   return has("\"type\":\"gaze\"") && (has("gaze2d") || has("\"data\":{}")) ? 0.99 : 0.0;
 }
 
-GazeLog read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& options) {
-  refuse_scene_camera(file, options,
-                      "--gaze-frame head takes the directions of the eyes from the head; or map gaze onto the display "
-                      "and export that");
-  GazeLog log;
-  log.source = file.path;
-  log.format = "tobii-glasses-3";
-  log.clock = "recording, from its start";
-  log.pupil_unit = "mm";
-  log.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
-  const int exponent = choose_time_unit(log, options, "timestamp", 9, Evidence::format, file.path).exponent;
+RawGaze read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw;
+  raw.way_out =
+      "--gaze-frame head takes the directions of the eyes from the head; or map gaze onto the display "
+      "and export that";
+  raw.source = file.path;
+  raw.format = "tobii-glasses-3";
+  raw.clock = "recording, from its start";
+  raw.pupil_unit = "mm";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  const int exponent = declare_time(raw, options, "timestamp", 9, Evidence::format, file.path).exponent;
   WitnessTally points;
-  for_each_json_line(file, log.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
+  for_each_json_line(file, raw.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
     if (json.text("type") != "gaze") {
       return;
     }
@@ -72,17 +72,16 @@ GazeLog read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& op
     if (!t_ns) {
       throw Error(ErrorKind::input, place, "this sample has no timestamp", "remove the line");
     }
-    add_line(json, *t_ns, row, log, points);
+    add_line(json, *t_ns, row, raw, points);
   });
-  if (log.kind == GazeKind::direction) {
-    add_fact(log, "position columns", "gazedirection", Evidence::format, "of each eye");
-    finish_directions(log, options, GazeAxes::sranipal, Evidence::format, file.path);
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {"gazedirection", Evidence::format, "of each eye"}, GazeAxes::sranipal, Evidence::format,
+                       file.path);
   } else {
-    points.finish(log, "gaze3d");
-    finish_places(log, options, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gaze2d"},
-                  file.path);
+    points.finish(raw, "gaze3d");
+    declare_places(raw, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gaze2d"}, file.path);
   }
-  return log;
+  return raw;
 }
 
 }  // namespace gazetrace

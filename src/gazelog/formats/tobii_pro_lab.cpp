@@ -148,24 +148,24 @@ double sniff_gaze_tobii_pro_lab(const GazeFile& file) {
   return has("Participant name") && (has("Sensor") || has("Gaze point") || has("Eye movement type")) ? 0.99 : 0.8;
 }
 
-GazeLog read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const LabColumns c = find_columns(table, options, place);
-  GazeLog log;
-  log.source = file.path;
-  log.format = "tobii-pro-lab";
-  log.clock = "recording, from its start";
-  log.pupil_unit = "mm";
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "tobii-pro-lab";
+  raw.clock = "recording, from its start";
+  raw.pupil_unit = "mm";
   if (!c.is_declared && is_of_glasses(file, table)) {
-    refuse_scene_camera(file, options,
-                        "export gaze mapped onto a snapshot, or read the glasses' own files (gazedata.gz) with "
-                        "--gaze-frame head");
-    log.kind = GazeKind::scene_camera;
+    raw.way_out =
+        "export gaze mapped onto a snapshot, or read the glasses' own files (gazedata.gz) with "
+        "--gaze-frame head";
+    raw.kind = GazeKind::scene_camera;
   }
   const bool unit_stated = !table.headings[c.time].unit.empty();
-  const TimeScale scale = choose_time_unit(log, options, table.headings[c.time].text, c.time_exponent,
-                                           unit_stated ? Evidence::header : Evidence::format, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, c.time_exponent,
+                                       unit_stated ? Evidence::header : Evidence::format, place);
   LabelRuns runs;
   std::size_t others = 0;
   TableRows rows(file, table, c.needed);
@@ -173,39 +173,39 @@ GazeLog read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(c.time, scale);
     if (const std::string_view event = rows.cell(c.event); !event.empty()) {
-      log.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(event), rows.line()});
+      raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(event), rows.line()});
     }
     if (c.sensor && rows.cell(*c.sensor) != "Eye Tracker") {
       ++others;
       continue;
     }
-    if (c.width && c.height && !log.recording_geometry) {
+    if (c.width && c.height && !raw.recording_geometry) {
       const double width = rows.number(*c.width);
       const double height = rows.number(*c.height);
       if (width >= 1 && height >= 1 && width < 1e5 && height < 1e5) {
-        log.recording_geometry =
+        raw.recording_geometry =
             DisplayGeometry{.width_px = static_cast<int>(width), .height_px = static_cast<int>(height)};
-        add_fact(log, "display size", fmt::format("{:.0f}x{:.0f} px", width, height), Evidence::header,
+        add_note(raw, "display size", fmt::format("{:.0f}x{:.0f} px", width, height), Evidence::header,
                  "Recording resolution width and height");
       }
     }
     for (const EyeInLab& eye : c.eyes) {
-      GazeSample sample;
+      RawSample sample;
       sample.t_ns = t_ns;
       sample.row = rows.line();
       sample.eye = eye.eye;
       sample.confidence = static_cast<float>(kNan);
       sample.pupil = static_cast<float>(rows.number(eye.pupil));
-      sample.u = rows.number(eye.x);
-      sample.v = rows.number(eye.y);
+      sample.at.x = rows.number(eye.x);
+      sample.at.y = rows.number(eye.y);
       const std::string validity = to_lower(rows.cell(eye.validity));
-      if (std::isnan(sample.u) || std::isnan(sample.v)) {
-        sample.u = sample.v = kNan;
+      if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+        sample.at.x = sample.at.y = kNan;
         sample.validity = GazeValidity::lost;
       } else if (eye.validity && validity != "valid" && validity != "1") {
         sample.validity = GazeValidity::lost;
       }
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     }
     if (const auto movement = movement_type(rows.cell(c.movement))) {
       runs.add(*movement, Eye::cyclopean, std::string(rows.cell(c.movement_index)), t_ns, rows.line());
@@ -213,13 +213,13 @@ GazeLog read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
       runs.end();
     }
   }
-  runs.finish(log);
+  runs.finish(raw);
   if (others > 0) {
-    add_fact(log, "rows left out", std::to_string(others), Evidence::header, "of other sensors, and of events");
+    add_note(raw, "rows left out", std::to_string(others), Evidence::header, "of other sensors, and of events");
   }
   const std::string columns = table.headings[*c.eyes.front().x].text + ", " + table.headings[*c.eyes.front().y].text;
-  finish_places(log, options, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, place);
-  return log;
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, place);
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -75,7 +75,7 @@ double sniff_gaze_tobii_sdk(const GazeFile& file) {
   return has("device_time_stamp") || has("system_time_stamp") ? 0.98 : 0.5;
 }
 
-GazeLog read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
   const auto own = table.find_any({"device_time_stamp", "system_time_stamp"});
@@ -83,13 +83,13 @@ GazeLog read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options
     throw Error(ErrorKind::input, place, "there is no column device_time_stamp or system_time_stamp",
                 "name it with --gaze-time-column");
   }
-  GazeLog log;
-  log.source = file.path;
-  log.format = "tobii-sdk";
-  log.pupil_unit = "mm";
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "tobii-sdk";
+  raw.pupil_unit = "mm";
   const std::size_t time = time_column(table, options, own.value_or(0), place);
-  log.clock = table.headings[time].text;
-  const TimeScale scale = choose_time_unit(log, options, log.clock, 3, Evidence::format, place);
+  raw.clock = table.headings[time].text;
+  const TimeScale scale = declare_time(raw, options, raw.clock, 3, Evidence::format, place);
   const std::vector<SdkEye> eyes = find_eyes(table, place);
   std::size_t needed = time + 1;
   for (const SdkEye& eye : eyes) {
@@ -101,7 +101,7 @@ GazeLog read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(time, scale);
     for (const SdkEye& eye : eyes) {
-      GazeSample sample;
+      RawSample sample;
       sample.t_ns = t_ns;
       sample.row = rows.line();
       sample.eye = eye.eye;
@@ -110,23 +110,23 @@ GazeLog read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options
       const bool pupil_good = !eye.pupil_validity || rows.number(*eye.pupil_validity) == 1;
       sample.pupil = static_cast<float>(pupil_good && pupil > 0 ? pupil : kNan);
       const auto at = eye.y ? std::array{rows.number(eye.x), rows.number(*eye.y)} : pair_from(rows, eye.x);
-      sample.u = at[0];
-      sample.v = at[1];
+      sample.at.x = at[0];
+      sample.at.y = at[1];
       const bool said_bad = eye.validity && !(rows.number(*eye.validity) == 1);
       if (std::isnan(at[0]) || std::isnan(at[1])) {
-        sample.u = sample.v = kNan;
+        sample.at.x = sample.at.y = kNan;
         sample.validity = GazeValidity::lost;
       } else if (said_bad) {
         sample.validity = GazeValidity::lost;
       }
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     }
   }
-  finish_places(log, options,
-                {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format,
-                 table.headings[eyes.front().x].text + ", ..."},
-                place);
-  return log;
+  declare_places(raw,
+                 {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format,
+                  table.headings[eyes.front().x].text + ", ..."},
+                 place);
+  return raw;
 }
 
 }  // namespace gazetrace

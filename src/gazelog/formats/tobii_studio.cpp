@@ -107,28 +107,28 @@ class StudioReader {
         place_(place_of(file, table_.header_line)),
         c_(find_columns(table_, options, place_)),
         rows_(file, table_, c_.needed) {
-    log_.source = file.path;
-    log_.format = "tobii-studio";
-    log_.clock = "recording, from its start";
-    log_.pupil_unit = "mm";
+    raw_.source = file.path;
+    raw_.format = "tobii-studio";
+    raw_.clock = "recording, from its start";
+    raw_.pupil_unit = "mm";
     const std::string& time = table_.headings[c_.time].text;
     // EyeTrackerTimestamp is in microseconds.
     const int stated = to_lower(time).find("eyetracker") == std::string::npos ? 6 : 3;
-    scale_ = choose_time_unit(log_, options, time, stated, Evidence::format, place_);
+    scale_ = declare_time(raw_, options, time, stated, Evidence::format, place_);
   }
 
-  GazeLog read() {
+  RawGaze read() {
     const auto resolution = table_.find("RecordingResolution");
     while (rows_.next()) {
       rows_.check_length();
-      if (resolution && !log_.recording_geometry) {
+      if (resolution && !raw_.recording_geometry) {
         read_resolution(rows_.cell(*resolution));
       }
       read_row();
     }
-    runs_.finish(log_);
+    runs_.finish(raw_);
     finish();
-    return std::move(log_);
+    return std::move(raw_);
   }
 
  private:
@@ -137,7 +137,7 @@ class StudioReader {
     const auto width = number_from(trim(text.substr(0, cross)));
     const auto height = cross == std::string_view::npos ? std::nullopt : number_from(trim(text.substr(cross + 1)));
     if (width && height && *width >= 1 && *height >= 1 && *width < 1e5 && *height < 1e5) {
-      log_.recording_geometry =
+      raw_.recording_geometry =
           DisplayGeometry{.width_px = static_cast<int>(*width), .height_px = static_cast<int>(*height)};
     }
   }
@@ -156,7 +156,7 @@ class StudioReader {
     }
     const std::int64_t t_ns = rows_.time_ns(c_.time, scale_);
     if (!happened.empty()) {
-      log_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, happened, rows_.line()});
+      raw_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, happened, rows_.line()});
     }
     if (!is_sample) {
       return;
@@ -204,21 +204,21 @@ class StudioReader {
   }
 
   void add(std::int64_t t_ns, Eye eye, std::size_t x, std::size_t y, double validity, double pupil) {
-    GazeSample sample;
+    RawSample sample;
     sample.t_ns = t_ns;
     sample.row = rows_.line();
     sample.eye = eye;
     sample.confidence = static_cast<float>(kNan);
     sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);  // -1: none
-    sample.u = rows_.number(x);
-    sample.v = rows_.number(y);
-    if (std::isnan(sample.u) || std::isnan(sample.v)) {
-      sample.u = sample.v = kNan;
+    sample.at.x = rows_.number(x);
+    sample.at.y = rows_.number(y);
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+      sample.at.x = sample.at.y = kNan;
       sample.validity = GazeValidity::lost;
     } else if (validity > kWorstValidity) {
       sample.validity = validity >= 4 ? GazeValidity::lost : GazeValidity::low_confidence;
     }
-    log_.samples.push_back(sample);
+    raw_.rows.push_back(sample);
   }
 
   void read_label(std::int64_t t_ns) {
@@ -237,38 +237,38 @@ class StudioReader {
       g.distance_cm = median_of(eyes_z_mm_) / 10;
       g.eye_x_cm = median_of(eyes_x_mm_) / 10 - 0.5 * g.width_cm;
       g.eye_y_cm = median_of(eyes_y_mm_) / 10 - 0.5 * g.height_cm;
-      add_fact(log_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
+      add_note(raw_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
                "median of EyePosLeftZ and EyePosRightZ (ADCSmm)");
-      add_fact(log_, "eye off the display's center", fmt::format("{:.1f}, {:.1f} cm", g.eye_x_cm, g.eye_y_cm),
+      add_note(raw_, "eye off the display's center", fmt::format("{:.1f}, {:.1f} cm", g.eye_x_cm, g.eye_y_cm),
                Evidence::header, "right, up: medians of EyePos (ADCSmm)");
     } else if (!distances_mm_.empty()) {
       g.distance_cm = median_of(distances_mm_) / 10;
-      add_fact(log_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
+      add_note(raw_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
                "median of DistanceLeft and DistanceRight");
     }
   }
 
   // Millimetres against pixels of the same points give the display's size; the eyes' place or distance is in every row.
   void finish() {
-    if (log_.recording_geometry) {
-      DisplayGeometry& g = *log_.recording_geometry;
-      add_fact(log_, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::header,
+    if (raw_.recording_geometry) {
+      DisplayGeometry& g = *raw_.recording_geometry;
+      add_note(raw_, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::header,
                "RecordingResolution");
       const double width_cm = std::abs(width_.value()) * g.width_px / 10;
       const double height_cm = std::abs(height_.value()) * g.height_px / 10;
       if (width_cm > 5 && height_cm > 5) {
         g.width_cm = width_cm;
         g.height_cm = height_cm;
-        add_fact(log_, "display size", fmt::format("{:.1f} x {:.1f} cm", width_cm, height_cm), Evidence::header,
+        add_note(raw_, "display size", fmt::format("{:.1f} x {:.1f} cm", width_cm, height_cm), Evidence::header,
                  "(ADCSmm) against (ADCSpx)");
       }
       place_eyes(g);
     }
-    millimetres_.finish(log_, "the left eye in millimetres (ADCSmm)", Eye::left);
-    finish_places(log_, options_,
-                  {PositionUnit::px, PositionOrigin::top_left, Evidence::header,
-                   c_.x ? "GazePointX (ADCSpx), GazePointY (ADCSpx)" : "GazePointLeftX (ADCSpx), ..."},
-                  place_);
+    millimetres_.finish(raw_, "the left eye in millimetres (ADCSmm)", Eye::left);
+    declare_places(raw_,
+                   {PositionUnit::px, PositionOrigin::top_left, Evidence::header,
+                    c_.x ? "GazePointX (ADCSpx), GazePointY (ADCSpx)" : "GazePointLeftX (ADCSpx), ..."},
+                   place_);
   }
 
   const GazeReadOptions& options_;
@@ -276,7 +276,7 @@ class StudioReader {
   std::string place_;
   StudioColumns c_;
   TableRows rows_;
-  GazeLog log_;
+  RawGaze raw_;
   TimeScale scale_;
   LabelRuns runs_;
   Slope width_, height_;
@@ -296,7 +296,7 @@ double sniff_gaze_tobii_studio(const GazeFile& file) {
   return has("StudioVersionRec") || has("(ADCSpx)") ? 0.99 : has("GazePoint") || has("ValidityLeft") ? 0.9 : 0.3;
 }
 
-GazeLog read_gaze_tobii_studio(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_tobii_studio(const GazeFile& file, const GazeReadOptions& options) {
   return StudioReader(file, options).read();
 }
 

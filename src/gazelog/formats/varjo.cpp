@@ -15,7 +15,7 @@ double sniff_gaze_varjo(const GazeFile& file) {
   return has("raw_timestamp") || has("relative_to_video_first_frame_timestamp") ? 0.98 : 0.6;
 }
 
-GazeLog read_gaze_varjo(const GazeFile& file, const GazeReadOptions& options) {
+RawGaze read_gaze_varjo(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const auto if_there = [&](const std::string& name) { return table.find(name) ? name : std::string(); };
   GazeColumns c;

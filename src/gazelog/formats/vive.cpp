@@ -44,12 +44,10 @@ double sniff_gaze_vive(const GazeFile& file) {
   return has("gaze_direct_L.x") && has("eye_valid_L") ? has("helmet_rot_x") && has("time(100ns)") ? 0.97 : 0.5 : 0.0;
 }
 
-GazeLog read_gaze_vive(const GazeFile& file, const GazeReadOptions& options) {
-  GazeLog log = read_preset(file, open_table(file), options, preset());
-  if (options.columns.axes == GazeAxes::automatic) {
-    mend_handedness(log);
-  }
-  return log;
+RawGaze read_gaze_vive(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw = read_preset(file, open_table(file), options, preset());
+  raw.declared.x_is_turned.emplace();  // some loggers turn it; the eyes' origins tell
+  return raw;
 }
 
 }  // namespace gazetrace

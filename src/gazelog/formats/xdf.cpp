@@ -180,12 +180,12 @@ double sniff_gaze_xdf(const GazeFile& file) {
   return file.text.starts_with("XDF:") ? 0.99 : 0.0;
 }
 
-GazeLog read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
-  GazeLog log;
-  log.source = file.path;
-  log.format = "xdf";
-  log.clock = "LSL";
-  const std::vector<XdfStream> streams = read_xdf(file.text, file.path, log.warnings, read_header);
+RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "xdf";
+  raw.clock = "LSL";
+  const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.warnings, read_header);
   const XdfStream& stream = gaze_stream(streams, file.path);
   const std::vector<Channel> channels = channels_of(stream);
   if (channels.size() > stream.channels) {
@@ -195,13 +195,13 @@ GazeLog read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   const std::vector<GazeChannels> gazes = find_gazes(channels, options, file.path);
   const GazeChannels& first = gazes.front();
   if (first.is_scene_camera) {
-    refuse_scene_camera(file, options, "stream gaze on a surface, or look at it with --gaze-frame scene-camera");
+    raw.way_out = "stream gaze on a surface, or look at it with --gaze-frame scene-camera";
   }
-  log.kind = first.is_direction      ? GazeKind::direction
+  raw.kind = first.is_direction      ? GazeKind::direction
              : first.is_scene_camera ? GazeKind::scene_camera
                                      : GazeKind::screen;
-  log.nominal_rate_hz = stream.nominal_rate_hz;
-  add_fact(log, "time unit", "s", Evidence::format, "doubles in the file, on the recorder's clock");
+  raw.nominal_rate_hz = stream.nominal_rate_hz;
+  raw.declared.time_exponent = {9, Evidence::format, "doubles in the file, on the recorder's clock"};
   const double least = std::isnan(options.min_confidence) ? first.is_scene_camera ? 0.6 : 1e-9 : options.min_confidence;
   const std::vector<double> times_s = synchronized_times_s(stream);
   for (std::size_t i = 0; i < times_s.size(); ++i) {
@@ -211,17 +211,18 @@ GazeLog read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
       throw Error(ErrorKind::input, file.path, fmt::format("time {} s of sample {} is no time", times_s[i], i + 1));
     }
     for (const GazeChannels& gaze : gazes) {
-      GazeSample sample = missing_sample(std::llround(t_ns), static_cast<std::int64_t>(i) + 1, gaze.eye, log.kind);
+      RawSample sample = missing_row(std::llround(t_ns), static_cast<std::int64_t>(i) + 1, gaze.eye);
       const auto value = [&](const std::optional<std::size_t>& c) { return c ? values[*c] : kNan; };
-      if (log.kind == GazeKind::direction) {
-        sample.direction = {value(gaze.at[0]), value(gaze.at[1]), value(gaze.at[2])};
-        sample.validity = is_finite(sample.direction) ? GazeValidity::ok : GazeValidity::lost;
+      if (raw.kind == GazeKind::direction) {
+        sample.at = {value(gaze.at[0]), value(gaze.at[1]), value(gaze.at[2])};
+        sample.validity = is_finite(sample.at) ? GazeValidity::ok : GazeValidity::lost;
       } else {
-        sample.u = value(gaze.at[0]);
-        sample.v = value(gaze.at[1]);
-        sample.validity = std::isfinite(sample.u) && std::isfinite(sample.v) ? GazeValidity::ok : GazeValidity::lost;
+        sample.at.x = value(gaze.at[0]);
+        sample.at.y = value(gaze.at[1]);
+        sample.validity =
+            std::isfinite(sample.at.x) && std::isfinite(sample.at.y) ? GazeValidity::ok : GazeValidity::lost;
         if (sample.validity == GazeValidity::lost) {
-          sample.u = sample.v = kNan;
+          sample.at.x = sample.at.y = kNan;
         }
       }
       sample.confidence = static_cast<float>(value(gaze.confidence));
@@ -229,14 +230,13 @@ GazeLog read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
       if (sample.confidence < least && is_usable(sample.validity)) {
         sample.validity = sample.confidence > 0 ? GazeValidity::low_confidence : GazeValidity::lost;
       }
-      log.samples.push_back(sample);
+      raw.rows.push_back(sample);
     }
   }
   const std::string columns = channels[*first.at[0]].label + ", " + channels[*first.at[1]].label;
-  if (log.kind == GazeKind::direction) {
-    add_fact(log, "position columns", columns, Evidence::header);
-    finish_directions(log, options, GazeAxes::gl, Evidence::format, file.path);
-    return log;
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {columns, Evidence::header}, GazeAxes::gl, Evidence::format, file.path);
+    return raw;
   }
   PlaceSpace space{PositionUnit::fraction,
                    first.is_scene_camera ? PositionOrigin::bottom_left : PositionOrigin::top_left, Evidence::header,
@@ -246,16 +246,12 @@ GazeLog read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
     space.unit = *unit;
     space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
   } else if (!first.is_scene_camera) {
-    std::string evidence;
-    space.unit = guess_position_unit(log.samples, evidence);
+    space.unit = PositionUnit::automatic;
+    space.origin = PositionOrigin::automatic;
     space.evidence = Evidence::statistics;
-    log.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with "
-                    "--gaze-unit",
-                    file.path, evidence, to_string(space.unit)));
   }
-  finish_places(log, options, space, file.path);
-  return log;
+  declare_places(raw, space, file.path);
+  return raw;
 }
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/missing_values.hpp"
+#include "gaze/inspect/recurring_place.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,11 +12,11 @@
 #include <tuple>
 #include <utility>
 
+#include "gazelog/interpret.hpp"
+
 namespace gazetrace {
 namespace {
 
-constexpr double kInt16Min = -32768;
-constexpr double kLarge = 1e7;
 constexpr double kJump = 0.1;  // of the display, or of a unit vector, in any axis
 constexpr std::size_t kFewestRows = 3;
 constexpr std::size_t kFewestRowsInLog = 2000;  // one of so many
@@ -40,6 +40,9 @@ struct Visits {
 
 using Place = std::tuple<double, double, double>;
 
+Vec3d place_of(const RawSample& row, bool has_three) {
+  return has_three ? row.at : Vec3d{row.at.x, row.at.y, 0};
+}
 Vec3d place_of(const GazeSample& sample, GazeKind kind) {
   return kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0};
 }
@@ -65,23 +68,14 @@ bool Visits::look_like_a_mark(std::size_t rows_in_log) const {
          jumps * 2 >= moves;
 }
 
-}  // namespace
+// A place at which many rows of a log lie, and one of them.
+struct FrequentPlace {
+  Vec3d raw;               // as in the file
+  std::size_t sample = 0;  // index
+};
 
-bool is_missing_marker(double coordinate) {
-  return coordinate == kInt16Min || std::abs(coordinate) >= kLarge;
-}
-
-void mark_missing_values(GazeLog& log, const GazeReadOptions& options) {
-  for (GazeSample& sample : log.samples) {
-    const bool is_given = options.missing_value && sample.u == *options.missing_value && sample.v == sample.u;
-    if (is_given || is_missing_marker(sample.u) || is_missing_marker(sample.v)) {
-      sample.u = sample.v = std::numeric_limits<double>::quiet_NaN();
-      sample.validity = is_usable(sample.validity) ? GazeValidity::lost : sample.validity;
-    }
-  }
-}
-
-std::vector<FrequentPlace> frequent_places(const std::vector<GazeSample>& samples, GazeKind kind) {
+// At most a few thousand places, whatever the log's length.
+std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, bool has_three) {
   // A log has nearly as many places as rows. Counting them by a hash first leaves few to be told apart.
   constexpr int kHashBits = 18;
   const auto hash = [](const Vec3d& at) {
@@ -91,29 +85,31 @@ std::vector<FrequentPlace> frequent_places(const std::vector<GazeSample>& sample
     return ((x ^ std::rotl(y, 32) ^ std::rotl(z, 16)) * 0x9E37'79B9'7F4A'7C15U) >> (64 - kHashBits);
   };
   std::vector<std::uint32_t> counts(std::size_t{1} << kHashBits, 0);
-  for (const GazeSample& sample : samples) {
-    ++counts[hash(place_of(sample, kind))];
+  for (const RawSample& row : rows) {
+    ++counts[hash(place_of(row, has_three))];
   }
   struct Found {
     std::size_t rows = 0, first = 0;
   };
   std::map<Place, Found> found;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec3d at = place_of(samples[i], kind);
-    if (is_known(at) && is_often(counts[hash(at)], samples.size())) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Vec3d at = place_of(rows[i], has_three);
+    if (is_known(at) && is_often(counts[hash(at)], rows.size())) {
       ++found.try_emplace(key_of(at), Found{0, i}).first->second.rows;
     }
   }
   std::vector<FrequentPlace> frequent;
   for (const auto& [place, times] : found) {
-    if (is_often(times.rows, samples.size())) {
+    if (is_often(times.rows, rows.size())) {
       frequent.push_back({{std::get<0>(place), std::get<1>(place), std::get<2>(place)}, times.first});
     }
   }
   return frequent;
 }
 
-std::optional<Mark> find_mark(const GazeLog& log, const std::vector<FrequentPlace>& frequent) {
+// A place that gaze comes to again and again, and from elsewhere by a jump: beside the display rarely, else in a
+// hundredth of the rows and at no other place alike. `log` has a sample for each row, in the order of the rows.
+std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<FrequentPlace>& frequent) {
   std::map<Place, Visits> places;
   for (const FrequentPlace& place : frequent) {
     const Vec3d at = place_of(log.samples[place.sample], log.kind);
@@ -180,7 +176,19 @@ std::optional<Mark> find_mark(const GazeLog& log, const std::vector<FrequentPlac
     within = nullptr;
   }
   const Visits* const mark = beside != nullptr ? beside : within;
-  return mark == nullptr ? std::nullopt : std::optional(Mark{mark->raw, mark->rows});
+  return mark == nullptr ? std::nullopt : std::optional(RecurringPlace{mark->raw, mark->rows});
+}
+
+}  // namespace
+
+std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Conventions& conventions) {
+  const bool has_three = conventions.form == PlaceForm::vector;
+  const std::vector<FrequentPlace> frequent = frequent_places(raw.rows, has_three);
+  const std::optional<RecurringPlace> mark = find_mark(interpret_rows(raw, conventions), frequent);
+  // Of directions only those that loggers write: three times one number, and straight ahead.
+  const bool is_plain =
+      mark && ((mark->raw.x == mark->raw.y && mark->raw.y == mark->raw.z) || (mark->raw.x == 0 && mark->raw.y == 0));
+  return mark && (!has_three || is_plain) ? mark : std::nullopt;
 }
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gazelog/finish.hpp"
+#include "gazelog/row_order.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,11 @@
 #include <limits>
 #include <utility>
 
-#include "gazelog/eyes.hpp"
-
 namespace gazetrace {
 namespace {
 
-std::string place_of(const GazeLog& log, const GazeSample& sample) {
-  return fmt::format("{}:{}", log.source, sample.row);
+std::string place_of(const GazeLog& log, std::int64_t row) {
+  return fmt::format("{}:{}", log.source, row);
 }
 
 bool is_same_position(const GazeSample& a, const GazeSample& b) {
@@ -24,19 +22,18 @@ bool is_same_position(const GazeSample& a, const GazeSample& b) {
          same(a.direction.z, b.direction.z);
 }
 
-// Error(input) naming `row`, unless what is wrong is to be mended.
-void refuse(GazeLog& log, const GazeReadOptions& options, const std::string& code, const GazeSample& row,
-            const std::string& problem, const std::string& remedy) {
-  if (options.unordered == UnorderedPolicy::sort) {
-    return;
-  }
-  if (!options.for_inspection) {
-    throw Error(ErrorKind::input, place_of(log, row), problem, remedy);
-  }
-  log.faults.push_back({code, fmt::format("line {}: {}", row.row, problem), "--gaze-sort"});
+}  // namespace
+
+std::string unordered_problem(const GazeOrder& order) {
+  return fmt::format("time {} ns is before that of line {} ({} ns)", order.first_backward_ns, order.row_before,
+                     order.before_ns);
 }
 
-void order_samples(GazeLog& log, const GazeReadOptions& options) {
+std::string duplicate_problem(const GazeOrder& order) {
+  return fmt::format("time {} ns repeats that of line {}", order.first_duplicate_ns, order.row_repeated);
+}
+
+void order_samples(GazeLog& log, UnorderedPolicy policy) {
   GazeOrder& order = log.order;
   order.rows = log.samples.size();
   for (std::size_t i = 1; i < log.samples.size(); ++i) {
@@ -47,9 +44,13 @@ void order_samples(GazeLog& log, const GazeReadOptions& options) {
     }
     if (order.backward_steps++ == 0) {
       order.first_backward_row = sample.row;
-      refuse(log, options, "unordered", sample,
-             fmt::format("time {} ns is before that of line {} ({} ns)", sample.t_ns, before.row, before.t_ns),
-             "sort the log, or use --gaze-sort");
+      order.first_backward_ns = sample.t_ns;
+      order.row_before = before.row;
+      order.before_ns = before.t_ns;
+      if (policy == UnorderedPolicy::error) {
+        throw Error(ErrorKind::input, place_of(log, sample.row), unordered_problem(order),
+                    "sort the log, or use `gaze-sort`");
+      }
     }
     std::int64_t back_ns = 0;
     if (__builtin_sub_overflow(before.t_ns, sample.t_ns, &back_ns)) {
@@ -65,8 +66,7 @@ void order_samples(GazeLog& log, const GazeReadOptions& options) {
   }
 }
 
-// Keeps the last row of each eye among rows of one time.
-void drop_duplicates(GazeLog& log, const GazeReadOptions& options) {
+void drop_duplicates(GazeLog& log, UnorderedPolicy policy) {
   GazeOrder& order = log.order;
   std::vector<GazeSample>& samples = log.samples;
   std::size_t kept = 0;
@@ -82,9 +82,12 @@ void drop_duplicates(GazeLog& log, const GazeReadOptions& options) {
     if (twin < kept) {
       if (order.duplicates++ == 0) {
         order.first_duplicate_row = samples[i].row;
-        refuse(log, options, "duplicates", samples[i],
-               fmt::format("time {} ns repeats that of line {}", samples[i].t_ns, samples[twin].row),
-               "remove one of them, or use --gaze-sort, which keeps the last");
+        order.first_duplicate_ns = samples[i].t_ns;
+        order.row_repeated = samples[twin].row;
+        if (policy == UnorderedPolicy::error) {
+          throw Error(ErrorKind::input, place_of(log, samples[i].row), duplicate_problem(order),
+                      "remove one of them, or use `gaze-sort`, which keeps the last");
+        }
       }
       order.identical_duplicates += is_same_position(samples[twin], samples[i]) ? 1 : 0;
       samples[twin] = samples[i];
@@ -102,8 +105,6 @@ void drop_duplicates(GazeLog& log, const GazeReadOptions& options) {
   }
 }
 
-// Origins come in the order of the file, perhaps each eye's in a row of its own; samples have one each when this is
-// done.
 void align_origins(GazeLog& log) {
   if (log.origins.empty()) {
     return;
@@ -124,22 +125,6 @@ void align_origins(GazeLog& log) {
       }
     }
     log.origins.push_back(joined);
-  }
-}
-
-}  // namespace
-
-void finish_log(GazeLog& log, const GazeReadOptions& options) {
-  if (log.samples.empty()) {
-    throw Error(ErrorKind::input, log.source, "holds no sample", "a gaze log needs at least one row below its header");
-  }
-  order_samples(log, options);
-  drop_duplicates(log, options);
-  choose_eyes(log, options);
-  align_origins(log);
-  const auto usable = [](const GazeSample& sample) { return is_usable(sample.validity); };
-  if (std::none_of(log.samples.begin(), log.samples.end(), usable)) {
-    log.warnings.push_back(fmt::format("{}: none of its {} samples is usable", log.source, log.samples.size()));
   }
 }
 
