@@ -26,8 +26,7 @@ enum class BvhQuality : std::uint8_t { high, medium };
 struct TraceSettings {
   int max_bounces = 3;  // scattering events on a path; 0 shows emission only
   // From the third scattering event on, a path survives with probability min(0.95, sqrt(largest channel of its
-  // throughput)), and its weight is divided by that probability. The last event that max_bounces allows is not played
-  // for.
+  // throughput)), and its weight is divided by that probability; not at the last event that max_bounces allows.
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;

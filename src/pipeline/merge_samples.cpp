@@ -130,7 +130,7 @@ std::string needs_all_samples(const PipelineSettings& settings) {
     return "frames depend on those before them";
   }
   const Reconstruction reconstruction(settings.reconstruction);
-  if (reconstruction.needs().surfaces) {
+  if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind
     return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);
   }
   if (settings.foveation.contrast_strength > 0) {

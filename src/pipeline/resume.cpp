@@ -78,6 +78,11 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
   if (!output.resume || (output.exr.pattern.empty() && output.display.pattern.empty())) {
     return resume;
   }
+  // Every file that is not of ours has an empty digest, too.
+  if (settings.settings_digest.empty()) {
+    throw Error(ErrorKind::usage, "`resume`", "no settings digest tells frames of these settings from others",
+                "resolve the job, or set PipelineSettings::settings_digest");
+  }
   const bool has_timing = fs::exists(timing_path);
   resume.kept_rows = read_earlier_rows(timing_path);
   std::size_t last_to_render = plan.frames.size();

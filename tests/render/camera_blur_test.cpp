@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera that moves while the shutter is open: coverage of an edge against its closed form.
+// A camera that moves while the shutter is open: the coverage of an edge is compared with its closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ double pixel_tangent() {
   return 2 * std::tan(kYfovDeg / 2 * kRadPerDeg) / kHeight;
 }
 
-// Everything to the right of x = `edge_m` at the distance glows.
+// Everything to the right of x = `edge_m`, at the distance, emits light.
 Scene edge_scene(double edge_m) {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
@@ -33,7 +33,7 @@ Scene edge_scene(double edge_m) {
   return scene;
 }
 
-// Mean radiance of every column, one value a seed.
+// The mean radiance of every column, with one value per seed.
 std::vector<std::vector<double>> columns(const Scene& scene, const Camera& camera) {
   PathTracer tracer(scene, threads(2));
   const SamplingMap map = uniform_map(kWidth, kHeight, 64);
@@ -54,7 +54,8 @@ std::vector<std::vector<double>> columns(const Scene& scene, const Camera& camer
   return result;
 }
 
-// `lit(tangent)`: the share of the time for which that tangent sees the glow; averaged over a column's width.
+// `lit(tangent)` is the share of the time for which that tangent sees the emitter; it is averaged over a column's
+// width.
 template <class Lit>
 void expect_columns(const std::vector<std::vector<double>>& measured, const Lit& lit) {
   constexpr int kSteps = 4096;
@@ -102,7 +103,7 @@ TEST(CameraBlur, APanTurnsAtAnEvenRate) {
 }
 
 TEST(CameraBlur, PosesBetweenAreAtEqualSteps) {
-  // Out, and back again in the second half: the ramp of one way, twice as fast.
+  // There and back again in the second half: the same ramp, passed twice as fast.
   Camera camera = camera_at({0, 0, 0}, {0, 0, -1}, kYfovDeg);
   for (const double x : {-0.4, 0.4, -0.4}) {
     camera.shutter_poses.push_back(look_at({x, 0, 0}, {x, 0, -1}, {0, 1, 0}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that change their shape, as the tracer shows them: from frame to frame, and while the shutter is open.
+// Meshes that change their shape from frame to frame and while the shutter is open, as the tracer renders them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using namespace test;
 constexpr int kWidth = 64, kHeight = 8, kSeeds = 16;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// Pictures x from -4 to 4 and y from -0.5 to 0.5 at any depth.
+// Shows x from -4 to 4 and y from -0.5 to 0.5 at any depth.
 Camera flat_camera(double ymag_m = 0.5) {
   Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
   camera.projection.kind = ProjectionKind::orthographic;
@@ -46,7 +46,7 @@ double seconds(std::int64_t t_ns) {
   return static_cast<double>(t_ns) * 1e-9;
 }
 
-// A glowing square of half width 1 whose right edge moves out by the first weight of its one target.
+// An emissive square of half width 1, whose right edge moves out by the first weight of its only target.
 Scene widening_square(double weight_per_s) {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
@@ -107,7 +107,7 @@ TEST(Deformation, AnEdgeThatMovesWhileTheShutterIsOpenBecomesARamp) {
   }
 }
 
-// A small glowing square at 3 m from a joint that turns by 120 degrees: a way that is not straight.
+// A small emissive square at 3 m from a joint that turns by 120 degrees, so that its path is not straight.
 TEST(Deformation, AJointTurnsItsVerticesOnACircle) {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
@@ -141,8 +141,8 @@ TEST(Deformation, AJointTurnsItsVerticesOnACircle) {
   EXPECT_NEAR(least, -60 * kRadPerDeg, 0.03);
 }
 
-// A white Lambert square that a joint turns about y under a sun along -z: its radiance is cos(angle) / pi, whatever
-// stands in the file as its normal at rest.
+// A white Lambertian square that a joint turns about y under a sun along -z. Its radiance is cos(angle) / pi, whatever
+// normal it has at rest.
 TEST(Deformation, NormalsTurnWithTheJoints) {
   Scene scene;
   scene.materials = {diffuse_material({1, 1, 1})};
@@ -173,7 +173,7 @@ TEST(Deformation, NormalsTurnWithTheJoints) {
   EXPECT_NEAR(radiance(0.2, 1.0), (std::sin(1.0) - std::sin(0.2)) / 0.8 / kPi, 2e-3);
 }
 
-// The picture of a wavy sheet in some other shape than at rest.
+// The picture of a wavy sheet in a shape other than that at rest.
 Scene wavy_sheet() {
   constexpr int kSide = 24;
   Scene scene;
@@ -241,7 +241,7 @@ TEST(Deformation, APictureDependsOnItsTimeAlone) {
   EXPECT_TRUE(same_samples(picture(single, {kSecond / 3, kSecond / 2}), other, sheet_map()));
 }
 
-// A mesh in a shape equals another mesh that was made in it.
+// A mesh that is deformed into a shape gives the same picture as a mesh that was made in that shape.
 TEST(Deformation, AShapeLooksLikeAMeshMadeSo) {
   const Scene scene = wavy_sheet();
   PathTracer tracer(scene, threads(2));

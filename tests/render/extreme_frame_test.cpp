@@ -25,13 +25,13 @@ TraceSettings emission_only() {
   return settings;
 }
 
-// A glowing rectangle at z = 0 from (x0, y0) to (x1, y1).
+// An emissive rectangle at z = 0 from (x0, y0) to (x1, y1).
 Geometry plate(double x0, double y0, double x1, double y1) {
   const auto corner = [](double x, double y) { return to_float(Vec3d{x, y, 0}); };
   return quad({{corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)}}, 0);
 }
 
-// A plate that covers the middle half of each side covers the pixels of the middle, and no other.
+// A plate over the middle half of each side covers exactly the pixels in the middle.
 TEST(ExtremeFrame, FieldsOfViewFromATenthOfADegreeTo179) {
   for (const double yfov_deg : {0.1, 1.0, 90.0, 170.0, 179.0}) {
     const double distance = 100;
@@ -52,7 +52,7 @@ TEST(ExtremeFrame, FieldsOfViewFromATenthOfADegreeTo179) {
   }
 }
 
-// The whole of a white room is white at any field of view: no direction of a wide picture is lost.
+// A white room is white everywhere at any field of view, so no direction of a wide picture is lost.
 TEST(ExtremeFrame, AWideViewOfAFurnace) {
   Scene scene;
   scene.materials = {diffuse_material({1, 1, 1})};
@@ -92,8 +92,8 @@ double status_mib(const std::string& field) {
   return 0;
 }
 
-// From map to dense frame. The bound is what the arrays hold: a site (12 bytes) and its sums (20), the region map (1),
-// and the frame's five numbers (20), each at least once; twice that is room for growing and sorting.
+// From map to dense frame. The bound is the size of the arrays: a site (12 bytes) and its sums (20), the region map
+// (1), and the frame's five numbers (20), each at least once; twice that leaves room for growing and sorting.
 TEST(ExtremeFrame, SixteenThousandPixelsWide) {
   constexpr int kWidth = 16384, kHeight = 256;
   Scene scene;
@@ -129,7 +129,7 @@ TEST(ExtremeFrame, SixteenThousandPixelsWide) {
   EXPECT_LE(beside_edge, 2 * kWidth / 1024);
 }
 
-// 65536 samples a pixel: the very samples, summed in long double.
+// 65536 samples per pixel, compared with the same samples summed in long double.
 TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   Scene scene;
   scene.materials = {diffuse_material({0.7F, 0.6F, 0.5F}), diffuse_material({0, 0, 0}, {0.1F, 7.0F, 1e-3F})};
@@ -208,7 +208,7 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
     scene.materials[0].unlit = true;
     scene.materials[0].base_color_texture.texture = 0;
     scene.textures = {wide ? numbered_texture(16384, 64) : numbered_texture(64, 16384)};
-    // Turned so that the long side lies along the picture's.
+    // Turned so that its long side is along that of the picture.
     Geometry face = plate(-1, -1, 1, 1);
     if (!wide) {
       face.uv0 = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
@@ -227,12 +227,12 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
       EXPECT_EQ(frame.sum[i].z, 4.0F);
       const double index =
           (256.0 * static_cast<double>(frame.sum[i].x) + static_cast<double>(frame.sum[i].y)) * 255 / 4;
-      // Rounding of the coordinates may take a sample on a texel's border to its neighbour.
+      // Rounding of the coordinates may move a sample on a texel's border to the neighbour.
       ASSERT_NEAR(index, map.sites[i].block_x, 1);
       off += std::fabs(index - map.sites[i].block_x) > 1e-3 ? 1 : 0;
     }
     EXPECT_LT(off, 16384 / 50);
-    // The coarsest level is the only one a wide cone leaves.
+    // A wide cone reads the coarsest level only.
     settings.pixel_cone = 1e6;
     const SparseFrame coarse = tracer.at_rest().trace(camera, 1, uniform_map(16, 1, 4), settings);
     for (const Vec3f& sum : coarse.sum) {

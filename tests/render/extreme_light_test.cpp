@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from nothing to beyond what a float can hold.
+// Light from zero to beyond float's range.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -41,8 +41,8 @@ TraceSettings one_bounce(LightSampling sampling = LightSampling::mis) {
   return settings;
 }
 
-// A sun of 1e6 in one pixel of a black sky. Bilinear lookup spreads it over a tent of two pixels each way; the mean
-// over the tent of cosine and solid angle is worked out by quadrature in double.
+// A sun of 1e6 in one pixel of a black sky. Bilinear interpolation spreads it over a tent of two pixels in each
+// direction; the mean of cosine and solid angle over the tent is computed by quadrature in double.
 TEST(ExtremeLight, ASunOfAMillionOnABlackSky) {
   constexpr int kWidth = 256, kHeight = 128, kRow = 30, kColumn = 77;
   Scene scene = floor_scene();
@@ -91,7 +91,7 @@ TEST(ExtremeLight, AnAllBlackEnvironmentIsNone) {
       EXPECT_EQ(mean_radiance(black).y, 0);
     }
   }
-  // A lamp beside it is sampled as if it were alone.
+  // An emitter beside it is sampled as if it were alone.
   scene.materials.push_back(diffuse_material({0, 0, 0}, {1, 1, 1}));
   add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 1)});
   const SparseFrame lamp = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 16), {});
@@ -101,7 +101,7 @@ TEST(ExtremeLight, AnAllBlackEnvironmentIsNone) {
   EXPECT_EQ(lamp.sum, alone.sum);
 }
 
-// Weights over all that floats can hold, against the same formula in long double, whose exponents never end.
+// Weights over float's whole range, compared with the same formula in long double, whose range is far larger.
 TEST(ExtremeLight, MisWeightsHoldOverTheWholeRangeOfFloats) {
   double worst = 0;
   for (int i = -37; i <= 38; ++i) {
@@ -120,7 +120,7 @@ TEST(ExtremeLight, MisWeightsHoldOverTheWholeRangeOfFloats) {
         } else {
           EXPECT_LT(weight, 1.1e-37F);
         }
-        // The two partners share the light without loss.
+        // The two weights sum to 1, so no light is lost.
         EXPECT_NEAR(static_cast<double>(weight) + static_cast<double>(power_heuristic(q, p)), 1, 2e-7) << p << ' ' << q;
       }
     }
@@ -128,7 +128,7 @@ TEST(ExtremeLight, MisWeightsHoldOverTheWholeRangeOfFloats) {
   std::printf("largest relative error of a weight above 1e-37: %.2g\n", worst);
 }
 
-// A lamp's radiance over the whole range of floats: the picture divided by it is the same one.
+// An emitter's radiance over float's whole range: divided by it, the picture is always the same.
 TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
   std::array<double, 3> reference{};
   for (const double emission : {1.0, 1e-30, 1e-20, 1e-10, 1e10, 1e20, 1e30}) {
@@ -151,12 +151,12 @@ TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
   }
 }
 
-// Where it ends: said, not silent.
+// Where the range ends, this is reported.
 TEST(ExtremeLight, BeyondFloatsSamplesAreCounted) {
   Scene scene = floor_scene();
   scene.materials.push_back(diffuse_material({0, 0, 0}, {3e38F, 3e38F, 3e38F}));
   add_mesh(scene, {quad({{{-9, 3, -9}, {9, 3, -9}, {9, 3, 9}, {-9, 3, 9}}}, 1)});
-  // Light sampling divides by a density below 1: the estimate leaves float's range.
+  // Light sampling divides by a density below 1, so the estimate exceeds float's range.
   const SparseFrame frame = PathTracer(scene, threads(2))
                                 .at_rest()
                                 .trace(above(), 1, uniform_map(8, 8, 16), one_bounce(LightSampling::light_only));
@@ -173,7 +173,7 @@ TEST(ExtremeLight, PunctualLightsOverTheWholeRange) {
       light.intensity = {i, i, i};
       light.position_m = to_float({0, height, 0});
       scene.lights = {light};
-      // So narrow a view that the light is straight above all of it.
+      // The view is so narrow that the light is straight above all of it.
       Camera camera = above(2 * height);
       camera.projection.yfov_rad = 0.01 * kRadPerDeg;
       const SparseFrame frame =

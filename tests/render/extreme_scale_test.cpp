@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of any size, anywhere: no light leaks out of or into a closed box, no surface shadows itself.
+// Scenes of any size at any place: no light leaks out of or into a closed box, and no surface shadows itself.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using namespace test;
 
 constexpr int kSize = 32;
-constexpr std::uint32_t kSpp = 64;  // one path that leaks is then less than the smallest share that is allowed
+constexpr std::uint32_t kSpp = 64;  // so that one leaking path is less than the smallest share that is allowed
 
 struct Place {
   double scale, offset;  // half the box's side; distance of its centre from the origin along each axis
@@ -25,8 +25,8 @@ struct Place {
 const std::vector<Place> kPlaces{{1e-6, 0}, {1e-3, 0}, {1, 0}, {1e3, 0}, {1e6, 0}, {1, 1e3}, {1e4, 1e7}};
 const Quatd kTurned = normalize(Quatd{0.21, 0.34, -0.13, 1});
 
-// Points on a wall are rounded by up to 2^-22 of their largest coordinate; one that lies so close to an edge of the
-// wall (2 edges across, per half side) may come to lie behind the next wall, at each of 12 bounces.
+// Points on a wall are rounded by up to 2^-22 of their largest coordinate. A point that is so close to an edge of the
+// wall (2 edges across, per half side) may end up behind the next wall, at each of 12 bounces.
 double largest_leak(const Place& place) {
   return 12 * 2 * 0x1p-22 * (place.offset + 2 * place.scale) / place.scale;
 }
@@ -75,8 +75,8 @@ void for_all_boxes(const Test& test) {
   }
 }
 
-// White walls inside, bright light outside, the camera inside. A path that gets out adds the sky's radiance times its
-// weight, which is 1 for white walls and rays alone: the mean is the share of leaking paths.
+// White walls inside, bright light outside, and the camera inside. A path that gets out adds the sky's radiance times
+// its weight, which is 1 for white walls with rays only, so the mean is the share of leaking paths.
 TEST(ExtremeScale, NoLightLeaksIntoAClosedBox) {
   for_all_boxes([](const Place& place, bool turned, Kind kind) {
     Scene scene = box_scene(place, turned, kind, true);
@@ -117,7 +117,7 @@ TEST(ExtremeScale, NoLightLeaksOutOfAClosedBox) {
     // itself: a wall closer to it than that, two thousandths of the box a thousand half sides away, would not be seen.
     const double lamp = place.offset > 0 ? 0.9 : 0.999;
     add_mesh(scene, box(1, false, 1), scene.instances[0].to_world * make_affine({}, {}, {lamp, lamp, lamp}));
-    // A floor below, from where light samples aim at the lamp through the walls.
+    // From a floor below, light samples aim at the emitter through the walls.
     add_mesh(scene, {quad({{{-6, -2, 6}, {6, -2, 6}, {6, -2, -6}, {-6, -2, -6}}}, 0)},
              make_affine(Vec3d{1, 1, -1} * place.offset, {}, Vec3d{1, 1, 1} * place.scale));
     PathTracer tracer(scene, threads(2));
@@ -132,7 +132,7 @@ TEST(ExtremeScale, NoLightLeaksOutOfAClosedBox) {
   });
 }
 
-// A white convex body in a white room is seen white: what is missing shadowed itself.
+// A white convex body in a white room looks white; anything missing would be self-shadowing.
 TEST(ExtremeScale, NoSurfaceShadowsItself) {
   for_all_boxes([](const Place& place, bool turned, Kind kind) {
     Scene scene = box_scene(place, turned, kind, false);

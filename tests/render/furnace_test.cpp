@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convex objects in a uniform environment of radiance 1: what they show is the directional albedo of their BRDF, here
-// from an independent double-precision quadrature. One bounce is exact, since nothing is hit twice.
+// Convex objects in a uniform environment of radiance 1 show the directional albedo of their BRDF, which is computed
+// here by an independent quadrature in double precision. One bounce is exact, since nothing is hit twice.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,8 +20,7 @@ using namespace test;
 constexpr int kSeeds = 16;
 constexpr std::array kModels{DiffuseModel::burley, DiffuseModel::lambert};
 constexpr Vec3f kColor{0.9F, 0.5F, 0.1F};
-// The library's tables are floats of a quadrature of their own: agreement with the reference's is not a matter of
-// noise.
+// The library's tables are floats from a quadrature of their own, so the difference to the reference is not noise only.
 constexpr double kTableError = 2e-4;
 
 Material surface_material(float metallic, float roughness, const Vec3f& color = kColor) {
@@ -32,7 +31,7 @@ Material surface_material(float metallic, float roughness, const Vec3f& color = 
   return material;
 }
 
-// A large square at the origin that faces +y, seen under one angle by an orthographic camera.
+// A large square at the origin that faces +y, seen at one angle by an orthographic camera.
 Scene square_scene(const Material& material) {
   Scene scene;
   scene.materials = {material};
@@ -218,7 +217,7 @@ TEST(Furnace, ASphereShowsTheAlbedoUnderEveryAngle) {
   }
 }
 
-// A white sphere in a white room cannot be seen, whatever it is made of and however often light may scatter.
+// A white sphere in a white room is invisible, whatever its material and however often light may scatter.
 TEST(Furnace, AWhiteSphereIsInvisible) {
   const SamplingMap map = uniform_map(32, 32, 64);
   for (const float roughness : {0.25F, 0.5F, 1.0F}) {

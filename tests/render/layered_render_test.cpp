@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials with extensions through the whole tracer: furnaces, closed forms, and three ways of finding light that must
+// Materials with extensions in the whole tracer: furnace tests, closed forms, and three ways of finding light that must
 // agree.
 #include <gtest/gtest.h>
 
@@ -68,8 +68,8 @@ struct Furnace {
   double bound;
 };
 
-// A white sphere in a white room is not to be seen. Bounds: what layered_bsdf_test states for one event and one angle
-// averages out over the sphere's; light goes through bodies several times.
+// A white sphere in a white room must be invisible. The bounds that layered_bsdf_test states for one event and one
+// angle average out over the angles of the sphere, but light passes bodies several times.
 TEST(LayeredFurnace, AWhiteSphereIsInvisible) {
   std::vector<Furnace> furnaces;
   for (const float roughness : {0.0F, 0.1F, 0.3F, 0.6F, 1.0F}) {
@@ -180,8 +180,8 @@ TEST(LayeredLight, AGlassPlateAttenuatesAsBeerAndFresnelSay) {
   check(mean_radiance(tracer.at_rest().trace(straight_down(0), 1, map, settings)), {inside(a), inside(0.5), inside(1)});
 }
 
-// An emitter and a sky behind, and another emitter before, surfaces that let light through: MIS, light sampling alone
-// and BSDF sampling alone find the same.
+// An emitter and a sky behind surfaces that transmit light, and another emitter in front of them: MIS, light sampling
+// alone and BSDF sampling alone give the same.
 TEST(LayeredLight, EveryWayOfFindingLightShowsTheSame) {
   std::vector<Furnace> cases;
   Material sheet = white(0.7F);
@@ -235,7 +235,7 @@ TEST(LayeredLight, EveryWayOfFindingLightShowsTheSame) {
   }
 }
 
-// Opaque bodies in a glass: their light passes the glass once on the way out, and paths know what they are in.
+// Opaque bodies in glass: their light passes the glass once on the way out, and paths know which body they are in.
 TEST(LayeredLight, ABodyInsideAnotherIsSeenThroughIt) {
   Scene scene;
   scene.materials = {glass(0), diffuse_material({0, 0, 0}, {1, 1, 1})};
@@ -298,7 +298,7 @@ TEST(LayeredRender, ACoatDimsWhatShinesUnderIt) {
   }
 }
 
-// A coated lamp over a floor: rays that find it and samples of it see the same.
+// A coated emitter over a floor: rays that find it and light samples of it give the same.
 TEST(LayeredRender, ACoatedLampIsTheSameHoweverItIsFound) {
   Scene scene;
   scene.materials = {white(1), diffuse_material({0, 0, 0}, {3, 3, 3})};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth of field against the closed forms of the thin lens.
+// Depth of field, compared with the closed forms of the thin lens.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Material glowing() {
   return diffuse_material({0, 0, 0}, {1, 1, 1});
 }
 
-// A glowing disc of n corners about the view axis, `distance` in front of a camera at the origin.
+// An emissive disc with n corners about the view axis, `distance` in front of a camera at the origin.
 Geometry disc(double distance, double radius) {
   constexpr int kCorners = 64;
   Geometry geometry;
@@ -113,7 +113,7 @@ TEST(Lens, CircleOfConfusionHasTheDiameterOfTheThinLens) {
 TEST(Lens, WhatIsInFocusIsAsSharpAsThroughAPinhole) {
   Scene scene;
   scene.materials = {glowing()};
-  // Half the plane in focus glows; its edge runs through the middle of a pixel's column.
+  // Half the plane in focus emits light; its edge runs through the middle of a pixel's column.
   const double edge = 10.5 * 2 * std::tan(5 * kRadPerDeg) / kSize * kFocus;
   const auto e = static_cast<float>(edge);
   const auto z = static_cast<float>(-kFocus);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same light as another renderer: window means beside those that Mitsuba 3 gave for the same files
+// Compares light with that of another renderer: means over windows with those that Mitsuba 3 gave for the same files
 // (tests/data/mitsuba, written by tests/benchmarks/peers/write_mitsuba_reference.py, with versions and settings).
 #include <gtest/gtest.h>
 
@@ -157,7 +157,7 @@ TEST(MitsubaReference, NoWindowDiffers) {
     ADD_FAILURE() << w.place << ": " << w.ours << ", Mitsuba " << w.theirs << ", standard error " << w.spread << ", p "
                   << w.p << keep_pictures(ours, theirs, w.scene);
   }
-  // Else nothing could be seen: the median window tells differences of 0.4 % (two standard errors).
+  // The test must be able to see something: in the median window, differences of 0.4 % (two standard errors).
   std::vector<double> relative;
   for (const Window& w : windows) {
     relative.push_back(w.spread / w.theirs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies that move: from frame to frame, and while the shutter is open, against closed forms.
+// Bodies that move from frame to frame and while the shutter is open, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using namespace test;
 constexpr int kWidth = 64, kHeight = 8, kSeeds = 16;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// Pictures x from -4 to 4 and y from -0.5 to 0.5 at any depth.
+// Shows x from -4 to 4 and y from -0.5 to 0.5 at any depth.
 Camera flat_camera() {
   Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
   camera.projection.kind = ProjectionKind::orthographic;
@@ -37,7 +37,7 @@ Affine moved(const Vec3d& by) {
   return make_affine(by, {}, {1, 1, 1});
 }
 
-// A glowing box of half width 1 that slides to the right by 2 m a second, x = 0 at t = 1 s.
+// An emissive box of half width 1 that slides to the right at 2 m/s, with x = 0 at t = 1 s.
 Scene sliding_box() {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
@@ -154,7 +154,7 @@ TEST(ObjectBlur, AWheelTurnsOnACircle) {
   EXPECT_NEAR(least, -turn / 2 - 0.05 / 3, 0.02);
 }
 
-// Shading follows: a lit plate that turns its face shows the mean of its cosine.
+// Shading follows the motion: a lit plate that turns shows the mean of the cosine.
 TEST(ObjectBlur, NormalsTurnWithTheirBody) {
   for (const double mirror : {1.0, -1.0}) {
     Scene scene;
@@ -189,7 +189,7 @@ TEST(ObjectBlur, NormalsTurnWithTheirBody) {
   }
 }
 
-// A mirroring matrix turns the winding round, not the front: a lamp that shines forwards does so while it slides, too.
+// A mirroring matrix reverses the winding, not the front: an emitter that faces forwards does so also while it slides.
 TEST(ObjectBlur, MirroredBodiesKeepTheirFront) {
   for (const double mirror : {1.0, -1.0}) {
     Scene scene;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the samples, added up in any order, are the whole to the bit.
+// Parts of the samples, added up in any order, equal the whole bit for bit.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -76,7 +76,7 @@ TEST(SampleRange, AnySplitInAnyOrderIsTheWhole) {
   }
 }
 
-// Without a range rays go in packets: all but those that graze an edge meet the same surfaces.
+// Without a range, rays are traced in packets; all but those that graze an edge hit the same surfaces.
 TEST(SampleRange, TheWholeIsWhatIsTracedWithoutARange) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));

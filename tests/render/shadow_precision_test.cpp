@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near a thing may lie to a lamp, or how small it may be on large ground, and still throw a shadow; and lamps that
+// How close an object may be to an emitter, or how small on large ground, and still cast a shadow; and emitters that
 // light samples cannot aim at.
 #include <gtest/gtest.h>
 
@@ -20,12 +20,13 @@ TraceSettings one_bounce(LightSampling sampling) {
   return settings;
 }
 
-// A square that looks down, its middle at (0, y, 0).
+// A square that faces down, with its middle at (0, y, 0).
 Geometry facing_down(float half, float y, std::int32_t material) {
   return quad({{{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}}}, material);
 }
 
-// A panel that covers a lamp entirely, closer to it than a thousandth or a ten-thousandth of the way to the floor.
+// A panel that covers an emitter entirely, closer to it than a thousandth or a ten-thousandth of the distance to the
+// floor.
 TEST(ShadowPrecision, AThinCoverHidesALampFromAFarFloor) {
   for (const double distance : {20.0, 200.0}) {
     for (const bool turned : {false, true}) {
@@ -44,7 +45,7 @@ TEST(ShadowPrecision, AThinCoverHidesALampFromAFarFloor) {
         const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(16, 16, 64), one_bounce(sampling));
         EXPECT_EQ(mean_radiance(frame).y, 0) << distance << ' ' << turned;
       }
-      // Without the cover the lamp is seen.
+      // Without the cover the emitter is visible.
       scene.instances.erase(scene.instances.begin() + 1);
       PathTracer open(scene, threads(1));
       EXPECT_GT(

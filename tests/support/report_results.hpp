@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of a sweep as tests of reports make them up.
+// Invented results of a sweep, for tests of reports.
 #pragma once
 
 #include <nlohmann/json.hpp>

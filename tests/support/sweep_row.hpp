@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A row of a sweep's tables, measured once, for tests of what the tables say.
+// A row of a sweep's tables, which was measured once, for tests of the tables.
 #pragma once
 
 #include <string>

@@ -80,7 +80,7 @@ Command add_report_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--threads", arguments->settings.threads, "0: as many as the machine has")->type_name("N");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces outputs that are there");
   app.footer(kExitCodesHelp);
-  return {[arguments] { return run_report(*arguments); }, nullptr};
+  return {[arguments] { return run_report(*arguments); }, {}};
 }
 
 }  // namespace gazetrace
