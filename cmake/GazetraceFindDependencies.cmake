@@ -32,6 +32,7 @@ find_package(meshoptimizer REQUIRED)
 find_package(draco REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(pugixml REQUIRED)
+find_package(tomlplusplus REQUIRED)
 # Not in every Debian: a filter more where it is found.
 if(GAZETRACE_OIDN)
   find_package(OpenImageDenoise 2 QUIET)

@@ -1,68 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library without the program: one foveated frame of a scene, stage by stage, and what it cost.
-//   embed scene.gltf out.exr [u v]      (u, v: gaze as fractions of the frame)
+// The library without the program: one frame, foveated about a fixed gaze. It is the picture that
+//   gazetrace render scene.gltf --gaze-at U,V --screen paper --size 320x180 --frames 1 -o out.exr
+// makes, to the bit: a job stands for the options, resolve() reads and checks what it names, and a FrameRenderer
+// renders each frame of the plan.
+//   embed scene.gltf out.exr [U V]      (U, V: gaze in fractions of the screen; default: its middle)
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
-#include "gazetrace/color.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/foveation.hpp"
+#include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/output.hpp"
-#include "gazetrace/reconstruct.hpp"
-#include "gazetrace/scene.hpp"
-#include "gazetrace/trace.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace {
 
-int render(const std::string& scene_path, const std::string& exr_path, double u, double v) {
+void render(const std::string& scene, const std::string& exr, const std::string& gaze) {
   using namespace gazetrace;
-  Scene scene = load_scene(scene_path);
-  if (!scene.environment.present()) {
-    scene.environment = builtin_sky();
+  Job job;
+  set_option(job, "scene", scene);
+  set_option(job, "gaze-at", gaze);
+  set_option(job, "screen", "paper");
+  set_option(job, "size", "320x180");
+  set_option(job, "frames", "1");
+
+  ResolvedJob resolved = resolve(job);
+  for (const auto& [what, decision] : resolved.decisions) {
+    std::printf("%s: %s\n", what.c_str(), decision.c_str());
   }
-  Camera camera;
-  if (scene.cameras.empty()) {
-    camera.pose = look_at({3, 2, 4}, {0, 0, 0}, {0, 1, 0});
-  } else {
-    const CameraPath& path = scene.cameras.front().path;
-    camera.pose = path.pose_at(path.begin_ns);
-    camera.projection = path.projection;
+  PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
+  const FrameRenderer renderer(tracer, resolved.pipeline);
+  for (const FrameRequest& request : resolved.plan.frames) {
+    const RenderedFrame rendered = renderer.render(request, resolved.history);
+    FrameHeader header;
+    header.frame = request.frame;
+    header.camera = request.camera;
+    write_frame_exr(exr, rendered.frame, nullptr, header, {});
+    std::printf("frame %d: %llu samples, %.1f ms of tracing\n", request.frame,
+                static_cast<unsigned long long>(rendered.samples.samples), rendered.times.trace_ms);
   }
-
-  constexpr int kWidth = 320;
-  constexpr int kHeight = 180;
-  const DisplayGeometry display = display_by_name("paper");
-  const PlanarView view = view_of_display(display, {}, kWidth, kHeight);
-  const Vec3d gaze = view.direction(u * kWidth, v * kHeight);
-
-  const SamplingMap map = make_sampling_map({}, view, gaze);
-  const PathTracer tracer(scene, {});
-  const SparseFrame sparse = tracer.trace(camera, 1, map, {});
-  const Frame frame = reconstruct(sparse, map, "linear");
-
-  FrameHeader header;
-  header.frame = 1;
-  header.camera = camera;
-  write_frame_exr(exr_path, frame, nullptr, header, {});
-
-  std::printf(
-      "%llu samples for %d pixels, %llu rays, kernel %s\n", static_cast<unsigned long long>(sparse.stats.samples),
-      kWidth * kHeight,
-      static_cast<unsigned long long>(sparse.stats.rays_primary + sparse.stats.rays_bounce + sparse.stats.rays_shadow),
-      sparse.stats.kernel.c_str());
-  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3 && argc != 5) {
-    std::fprintf(stderr, "usage: embed scene.gltf out.exr [u v]\n");
+    std::fprintf(stderr, "usage: embed scene.gltf out.exr [U V]\n");
     return 2;
   }
   try {
-    return render(argv[1], argv[2], argc == 5 ? std::atof(argv[3]) : 0.5, argc == 5 ? std::atof(argv[4]) : 0.5);
+    render(argv[1], argv[2], argc == 5 ? std::string(argv[3]) + "," + argv[4] : "0.5,0.5");
+    return 0;
   } catch (const gazetrace::Error& error) {
     std::fprintf(stderr, "embed: %s\n", error.what());
     return error.kind() == gazetrace::ErrorKind::runtime ? 3 : 2;

@@ -6,7 +6,7 @@
 // that two cells are one cycle of rho_s = ppd / (2 n_s), about 4, 2, 1 and 0.5 cycles per degree. For each cell a
 // discrete Fourier transform of the last N = round(fps) frames (one second), with the mean subtracted and under a Hann
 // window, gives the frequencies f_k = k fps / N, k = 1 .. N/2. With P_k the power at f_k of the luminance divided by
-// the reference's mean luminance L in that second,
+// the reference's mean luminance L in that second (at least 0.1 cd/m2),
 //   F = max over s of max(0, sum over k of 2 S(rho_s, f_k, L, e)^2 (P_k of the test - P_k of the reference)),
 // where e is the eccentricity of the cell's middle from this frame's gaze. A cell whose luminance oscillates with a
 // contrast (amplitude over mean) of A has P = A^2 / 2 at one frequency, and so F = (A S)^2: a value of 1 is just

@@ -17,6 +17,11 @@ namespace gazetrace {
 // How an angle of the source paper is read: as the region's diameter (5.2 deg: the region ends at an eccentricity of
 // 2.6 deg), or as the eccentricity at which the region ends.
 enum class AngleReading { full_angle, eccentricity };
+// The share of an angle, read so, that is an eccentricity: half of a diameter, the whole of an eccentricity. This is
+// the only place where angles of regions are halved.
+constexpr double eccentricity_share(AngleReading reading) {
+  return reading == AngleReading::full_angle ? 0.5 : 1.0;
+}
 // Whether a region's number of samples, tau, counts for a whole n x n block or for each of its pixels.
 enum class SampleUnit { per_block, per_pixel };
 // cone: by the angle between rays, which is exact off the axis, too. disc: the paper's eq. (1), r = 2 d R tan(a/2) / S
@@ -91,10 +96,6 @@ struct FoveationSettings {
   double saccade_density = 1;     // 0..1, while the eye is in a saccade
   // 0..1. 0: off; 1: a quarter of the density is left where a first, coarse rendering shows no contrast.
   double contrast_strength = 0;
-
-  // Pixels with at least this many samples of their own keep their mean in every filter; 0: none does. Empty: in maps
-  // about a gaze 16, or the fovea's full rate where that is 8 to 16; none in uniform frames.
-  std::optional<std::uint64_t> pass_through_samples;
 };
 
 // What a map depends on besides settings, view and gaze.
@@ -171,10 +172,8 @@ struct SamplingMap {
   // Where rates are not whole: the expectation of each site's count over all seeds, also where the count is 0 now. An
   // unbiased estimate divides a site's sum by it. Empty where every count is certain.
   std::vector<float> expected_samples;
-  double full_rate_spp = 0;  // samples per pixel where the density is 1; 0 for layouts
-  // Sites of one pixel that expect at least this many samples keep their own mean in every filter; others may be
-  // filtered. See FoveationSettings::pass_through_samples.
-  std::uint32_t enough_samples = 16;
+  // Samples a pixel where the density is 1, and in the fovea of a layout; 0 in frames that are uniform.
+  double full_rate_spp = 0;
   [[nodiscard]] double expected(std::size_t site) const {
     return expected_samples.empty() ? sites[site].samples : static_cast<double>(expected_samples[site]);
   }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaze is biometric, and a time of day tells whose it is: what nothing that is written shall carry unless it was asked
-// to be kept.
+// Gaze is biometric, and a time of day tells whose it is. What is written shall carry neither times of day nor what an
+// experiment said of its participants, unless it was asked to be kept. This is the one place that says how it is
+// hidden.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "gazetrace/error.hpp"
 #include "gazetrace/gaze_log.hpp"
 
 namespace gazetrace {
@@ -27,5 +29,10 @@ struct LogWithoutTimesOfDay {
 // The log with its stamps counted from the first sample where they are times of day, and without dates in its clock's
 // description and its warnings. Its messages and events keep their words.
 LogWithoutTimesOfDay without_times_of_day(GazeLog log);
+
+// For copies of a log, whose stamps stay, because other programs hold them against recordings of the same clock: takes
+// dates out of what is said of the clock, and leaves out the messages of the experiment, into which participants,
+// serial numbers and dates are written. Returns what to tell of that.
+Warnings leave_out_identities(GazeLog& log);
 
 }  // namespace gazetrace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole way: requests in, files and timing out.
+// Sequences: requests in; files, timing and a history that can be taken up again out. Frames are those of
+// FrameRenderer.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "gazetrace/color.hpp"
-#include "gazetrace/foveation.hpp"
+#include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/plan.hpp"
 #include "gazetrace/scene.hpp"
@@ -19,25 +20,19 @@
 
 namespace gazetrace {
 
-struct PipelineSettings {
-  FoveationSettings foveation;
-  TraceSettings trace;
-  std::string filter = "linear";
-  AccumulateSettings accumulate;
-  double enhance_contrast = 0;  // enhance.hpp; after accumulation and the choice of an exposure
-  ExposureSettings exposure;
-  OutputSettings output;  // without any pattern nothing is written, timing and run record included
+// What every frame is made with, and what becomes of the frames.
+struct PipelineSettings : FrameSettings {
+  OutputSettings output;  // without any pattern nothing is written, not even timing and run record
   FrameRate fps;
   std::string settings_digest;
-  std::string history_digest;  // the same without what frames there are: of checkpoints
-  int threads = 0;
-  // History (accumulation, smoothed exposure) that is kept and taken up again.
+  std::string history_digest;  // the same without the list of frames; checkpoints carry it
+  // History (accumulation, smoothed exposure) that is kept in files and taken up again.
   std::string checkpoint;             // a file for the history after the last frame; empty: none
-  std::int32_t checkpoint_every = 0;  // and after every so many frames; 0: only at the end
-  std::string resume_from;            // a checkpoint whose frame comes before the plan's first; empty: no history
+  std::int32_t checkpoint_every = 0;  // also write it after every so many frames; 0: only at the end
+  std::string resume_from;            // a checkpoint whose last frame comes before the plan's first; empty: no history
   std::int32_t preroll = 0;           // so many frames at the plan's beginning are rendered for their history alone
-  // The plan is a part of a longer sequence: timing.csv and run.json carry the frame range in their names. With
-  // `trace.samples` it is a part of the samples: their sums are written in place of pictures, for merge_samples().
+  // The plan is a part of a longer sequence: timing.csv and run.json carry the range of frames in their names. With
+  // `trace.samples` it is a part of the samples: their sums are written instead of pictures, for merge_samples().
   bool is_part = false;
 };
 
@@ -51,51 +46,47 @@ struct PipelineObserver {
 
 struct SequenceResult {
   std::vector<TimingRow> rows;        // of this run, skipped frames left out
-  std::vector<std::int32_t> skipped;  // complete before this run began
+  std::vector<std::int32_t> skipped;  // frames that were complete before this run began
   std::vector<BadSample> bad_samples;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
   Warnings warnings;
 };
 
-// What PipelineSettings::resume_from holds, or nothing. Error(usage) unless it comes before the plan's first frame; a
-// warning where frames are missing between, and where a part of a sequence begins with no history of those before.
+// The history that PipelineSettings::resume_from holds, or an empty one. Error(usage) unless it ends before the plan's
+// first frame. It warns where frames are missing in between, and where a part of a sequence begins without the history
+// of the frames before it.
 TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings);
 
 // Renders the frames of a plan in order. With OutputSettings::resume, frames whose files carry this settings digest are
-// skipped; where history (accumulation, exposure smoothing) needs them they are rendered again, but not written, and so
-// are all where a checkpoint is asked for that is not there.
-// The tracer is moved from frame to frame. timing.csv grows by a row with each finished frame, so that a killed run
-// keeps what it measured. `history`: of the frames before, see starting_history().
+// skipped. Where history (accumulation, exposure smoothing) needs them they are rendered again without being written,
+// and so are all frames where a checkpoint is asked for that is not there.
+// timing.csv grows by a row with each finished frame, so that a killed run keeps what it measured. `history` is that of
+// the frames before, see starting_history().
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history = {});
 
-// What the sampling map of a frame depends on beside settings, view and gaze.
-MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);
-
-// A frame depends on those before it.
-bool uses_history(const PipelineSettings& settings);
-// For the run record; `history`: what the plan's first frame finds.
+// For the run record; `history` is what the plan's first frame finds.
 RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
                                  const TemporalHistory& history);
 
-// The history after a frame, to the bit, with the digest of the settings it was made under. Appears under its name when
-// it is complete. Error(runtime) where it cannot be written.
+// Writes the history after a frame, to the bit, with the digest of the settings that it was made under. The file
+// appears under its name only when it is complete. Error(runtime) where it cannot be written.
 void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& history_digest);
-// Error(input) for what is no checkpoint, is damaged, or was made under other settings.
+// Error(input) for a file that is not a checkpoint, is damaged, or was made under other settings.
 TemporalHistory load_checkpoint(const std::string& path, const std::string& history_digest);
 
 // Every file that rendering these frames would write, in order; run record and timing come first.
 std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
 
-// Why a part of the samples is not enough to make a picture later; empty: it is.
+// Why pictures cannot be made later from parts of the samples under these settings; empty: they can.
 std::string needs_all_samples(const PipelineSettings& settings);
-// Adds up the parts of the samples of every frame of the plan and writes what the run over all of them would have
-// written, to the bit, with timing.csv and run.json. `settings`: those of the parts, without `trace.samples`.
-// Error(input) for files of other settings, and where samples are missing or there twice.
+// Adds up the parts of the samples of every frame of the plan and writes what one run over all samples would have
+// written, to the bit, with timing.csv and run.json. `settings` are those of the parts, without `trace.samples`.
+// Error(input) for files of other settings, and where samples are missing or present twice.
 MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
                           const PipelineSettings& settings);
-// Sums of one frame's samples in a file, to the bit, as save_checkpoint and load_checkpoint.
+// The sums of one frame's samples in a file, to the bit, in the manner of save_checkpoint and load_checkpoint.
 void save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest);
 SampleSums load_samples(const std::string& path, const std::string& settings_digest);
 

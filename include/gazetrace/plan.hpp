@@ -122,6 +122,11 @@ struct FramePlan {
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,
                       const ProcessedGaze* steering = nullptr);
 
+// For a plan that goes on where another run ended: enters what the eye has done since `frame_before`, the last frame of
+// that run. By itself plan_frames() assumes that the frame before its first one is as far away as the next one. `log`
+// and `settings` are those that the plan was made of.
+void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings);
+
 // One line: "50.0 ms in the median, mean 50.1, ...".
 std::string gaze_ages_text(const GazeAges& ages);
 std::string plan_as_table(const FramePlan& plan);

@@ -26,8 +26,7 @@ enum class BvhQuality : std::uint8_t { high, medium };
 struct TraceSettings {
   int max_bounces = 3;  // scattering events on a path; 0 shows emission only
   // From the third scattering event on, a path survives with probability min(0.95, sqrt(largest channel of its
-  // throughput)), and its weight is divided by that probability. The last event that max_bounces allows is not played
-  // for.
+  // throughput)), and its weight is divided by that probability; not at the last event that max_bounces allows.
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
@@ -47,9 +46,10 @@ struct TraceSettings {
   double pixel_cone = 0;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   std::uint64_t seed = 0;
-  bool guides = false;                   // collect albedo, normal and depth of the first hit
-  bool surfaces = false;                 // collect SparseFrame::surfaces for the sites that needs_filtering names
-  std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
+  bool guides = false;    // collect albedo, normal and depth of the first hit
+  bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
+  std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
+  std::optional<PixelIndex> only_pixel;               // trace only the site that holds this pixel
   // Traces only these samples of every site, and keeps their exact sums in SparseFrame::unrounded as well. Rays are
   // then traced one by one instead of in packets, so that a sample does not depend on its neighbours in the packet:
   // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
@@ -136,25 +136,43 @@ struct SparseFrame {
 
 // Adds the sums of other samples of the same sites. Error(runtime) where the numbers of sites differ.
 void add_sums(const SampleSums& from, SampleSums& to);
-// What trace() would have returned for the samples that were added up, bit for bit, but without surfaces and stats.
-// Error(runtime) where the number of sums is not the map's number of sites.
+// What PosedScene::trace() would have returned for the samples that were added up, bit for bit, but without surfaces
+// and stats. Error(runtime) where the number of sums is not the map's number of sites.
 SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
-// Whether a guided filter changes a site: it filters sites of several pixels, and single pixels that expect fewer
-// samples than the map's enough_samples (uniform frames, and what a small budget leaves even at the gaze). All other
-// sites keep their own mean, bit for bit. The expectation decides and not the count: of pixels that expect 15.5 samples
-// half have 16, and it is a different half in every frame.
-bool needs_filtering(const SamplingMap& map, std::size_t site);
+// Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
+// samples than are enough. All others keep the mean of their own samples, bit by bit. What counts is the expectation
+// and not the whole number of samples: of pixels that expect 15.5 samples half have 16, and others in every frame.
+class PassThrough {
+ public:
+  // `samples`: so many are enough; 0: no number is. Empty: as many as the fovea has, where that is at least 8 and below
+  // 16, and otherwise 16, since below 8 samples smoothing is worth more than a fovea as it was traced. In a uniform
+  // frame there is no fovea, and no number is enough: whoever asks for such a filter there wants all of it smoothed.
+  // Keeps a reference to `map`, which must outlive it.
+  PassThrough(const SamplingMap& map, const std::optional<std::uint64_t>& samples);
+
+  [[nodiscard]] std::uint32_t enough_samples() const { return enough_samples_; }
+  [[nodiscard]] bool needs_filtering(std::size_t site) const {
+    return map_->regions[map_->sites[site].region].block_px > 1 || map_->expected(site) < enough_samples_;
+  }
+
+ private:
+  const SamplingMap* map_;
+  std::uint32_t enough_samples_;
+};
 
 // When the shutter opens and closes, in video time; the two are equal for an instantaneous exposure.
 struct ShutterTimes {
   std::int64_t open_ns = 0, close_ns = 0;
+  friend bool operator==(const ShutterTimes&, const ShutterTimes&) = default;
 };
 
 struct TracerMemory {
   std::uint64_t bvh_bytes = 0;  // as Embree reports it to the device's memory monitor
   double build_s = 0;           // time that building the scene took
 };
+
+class PosedScene;
 
 class PathTracer {
  public:
@@ -166,33 +184,50 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  // Puts everything that moves where it is at that time, and everything that deforms into its shape. With an open
-  // shutter, rays see the whole motion, as straight lines between 17 equally spaced times; a deforming mesh uses 5 or 2
-  // times where that keeps its vertices within a thousandth of the mesh's size. Until it is called, everything is at
-  // rest. It costs nothing in a scene without motions. Emitters that move are found by rays only, so
-  // LightSampling::light_only does not see them.
-  void move_to(const ShutterTimes& times);
-
-  // A pure function of its arguments and the last move_to: the same bits for any number of threads. TraceSettings::seed
-  // and `frame` together seed the samples.
-  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
-                                  const TraceSettings& settings) const;
-
-  // First hits of every pixel, for filters and reprojection. A pure function of its arguments and the last move_to.
-  // Error(usage) for numbers of rays out of range.
-  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
-
-  // What the pixels' centres see as things stand after the last move_to, and where that was in an earlier view.
-  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
-                                             const EarlierView& earlier) const;
+  // The scene at a time: everything that moves is where it is then, and everything that deforms has its shape. With an
+  // open shutter, rays see the whole motion, as straight lines between 17 equally spaced times; a deforming mesh uses 5
+  // or 2 times where that keeps its vertices within a thousandth of the mesh's size. It costs nothing in a scene
+  // without motions. Emitters that move are found by rays only, so LightSampling::light_only does not see them.
+  [[nodiscard]] PosedScene at(const ShutterTimes& times);
+  // The scene as its file places it when no animation plays.
+  [[nodiscard]] PosedScene at_rest();
 
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.
   [[nodiscard]] std::string ray_library() const;
 
  private:
+  friend class PosedScene;
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+// A scene in one pose. Rays can only be traced through it, so that no picture is ever of a pose that nobody named.
+//
+// It names the pose and holds no copy of the scene: the tracer, which must outlive it, has one ray tracing tree. That
+// tree is put into the pose when it is asked for, and back into it where another pose was used in between. So what
+// these functions return depends on the pose and their arguments alone, and has the same bits for any number of
+// threads. The tree cannot be in two poses at once: threads of the caller may share one pose, but must not use two at a
+// time.
+class PosedScene {
+ public:
+  // TraceSettings::seed and `frame` together seed the samples.
+  [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
+                                  const TraceSettings& settings) const;
+
+  // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
+  [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
+
+  // What the pixels' centres see in this pose, and where that was in an earlier view.
+  [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
+                                             const EarlierView& earlier) const;
+
+ private:
+  friend class PathTracer;
+  PosedScene(PathTracer::Impl& tracer, const std::optional<ShutterTimes>& times);
+
+  PathTracer::Impl* tracer_;
+  std::optional<ShutterTimes> times_;  // empty: at rest
 };
 
 }  // namespace gazetrace

@@ -52,9 +52,9 @@ Quatd quaternion_of_euler(const Vec3d& angles_rad, RotationOrder order) {
                    turn_about(i, component(angles_rad, i)));
 }
 
-// M = Rk(c) Rj(b) Ri(a). Row k of M does not see c: (k,i) = -e sin b, (k,j) = e cos b sin a, (k,k) = cos b cos a, with
-// e = 1 where i, j, k follow each other cyclically and -1 elsewhere. Once `a` is known it is taken off, and b and c
-// come from what is left: near b = 90 degrees an inexact `a` then costs nothing, since c makes up for it.
+// M = Rk(c) Rj(b) Ri(a). Row k of M does not depend on c: (k,i) = -e sin b, (k,j) = e cos b sin a, (k,k) = cos b cos a,
+// with e = 1 where i, j, k follow each other cyclically and -1 otherwise. Once `a` is known its rotation is undone, and
+// b and c come from what is left. An inexact `a` near b = 90 degrees then does no harm, since c makes up for it.
 Vec3d euler_of_quaternion(const Quatd& rotation, RotationOrder order) {
   const auto [i, j, k] = axes_of(order);
   const double e = (i + 1) % 3 == j ? 1.0 : -1.0;

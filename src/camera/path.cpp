@@ -54,7 +54,7 @@ const CameraFormat& choose_format(const CameraFile& file, const std::string& nam
   return *best;
 }
 
-// To glTF's camera convention: the pose looks along its own -z, +y up.
+// Converts a pose to glTF's camera convention: it looks along its own -z with +y up.
 CameraPose from_axes(const CameraPose& pose, CameraAxes axes) {
   const Vec3d& p = pose.position_m;
   const Quatd& q = pose.orientation;
@@ -62,7 +62,7 @@ CameraPose from_axes(const CameraPose& pose, CameraAxes axes) {
     case CameraAxes::gl:
       break;
     case CameraAxes::cv:
-      // The same world, another naming of the camera's own axes: half a turn about x.
+      // The world is the same, only the camera's own axes have other names: half a turn about x.
       return {p, q * Quatd{1, 0, 0, 0}};
     case CameraAxes::unity:
       // World and camera are both mirrored by diag(1, 1, -1): rotations about x and y turn the other way.
@@ -71,7 +71,7 @@ CameraPose from_axes(const CameraPose& pose, CameraAxes axes) {
   return pose;
 }
 
-// Files that round to four digits are within 1e-4.
+// Generous: rounding to four digits changes the length by about 1e-4.
 constexpr double kNormTolerance = 0.01;
 
 void prepare_keys(std::vector<CameraKey>& keys, const std::string& path, CameraAxes axes) {
@@ -119,8 +119,8 @@ double step_s(const CameraKey& a, const CameraKey& b) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(b.t_ns) - static_cast<std::uint64_t>(a.t_ns));
 }
 
-// Of the parabola through a key and both its neighbors, at the key (Barry & Goldman 1988 at the times of the keys); at
-// an end, of the line to the only neighbor.
+// The velocity at a key: that of the parabola through it and its two neighbours (Barry and Goldman 1988, with the times
+// of the keys as knots); at an end, that of the line to the only neighbour.
 Vec3d velocity_at(const std::vector<CameraKey>& keys, std::size_t i) {
   const auto slope = [&](std::size_t a) {
     return (keys[a + 1].pose.position_m - keys[a].pose.position_m) / step_s(keys[a], keys[a + 1]);

@@ -8,7 +8,7 @@ namespace {
 
 Vec3d axis_most_across(const Vec3d& direction) {
   const Vec3d a{std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
-  // Ties prefer y, then z: a camera that looks along x keeps y up.
+  // Where axes are equally good, y is preferred, then z, so that a camera that looks along x keeps y up.
   if (a.y <= a.x && a.y <= a.z) {
     return {0, 1, 0};
   }

@@ -18,7 +18,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-// The digits at the front, without leading zeros, taken off `text`.
+// Removes the digits at the front of `text` and returns them without leading zeros.
 std::string_view take_number(std::string_view& text) {
   const std::size_t end = std::min(text.find_first_not_of("0123456789"), text.size());
   std::string_view number = text.substr(0, end);
@@ -109,7 +109,7 @@ std::optional<double> one_field_of_view(const std::vector<double>& yfovs_rad, co
     return std::nullopt;
   }
   const auto [least, most] = std::minmax_element(yfovs_rad.begin(), yfovs_rad.end());
-  // Sizes and focal lengths far apart give angles that round to these.
+  // Extreme ratios of size to focal length round to 0 or 180 degrees.
   if (!(*least > 0 && *most < kPi)) {
     throw Error(ErrorKind::input, path,
                 fmt::format("its picture sizes and focal lengths give a vertical field of view of {} degrees",

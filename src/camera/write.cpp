@@ -11,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-// Seconds to the nanosecond, from integers. Unsigned, so that the least int64 has an absolute value.
+// Seconds with nine decimals, from integers. Unsigned, so that the least int64 has an absolute value.
 std::string seconds_text(std::int64_t t_ns) {
   const auto bits = static_cast<std::uint64_t>(t_ns);
   const std::uint64_t size = t_ns < 0 ? ~bits + 1 : bits;
@@ -46,7 +46,7 @@ std::string as_chan(const std::vector<FramePose>& frames, RotationOrder order) {
 void write_camera_path(const std::vector<FramePose>& frames, RotationOrder order, const std::string& path) {
   const std::string suffix = to_lower(std::filesystem::path(path).extension().string());
   if (suffix != ".chan" && suffix != ".tum" && suffix != ".txt") {
-    throw Error(ErrorKind::usage, path, "names no known format of camera paths",
+    throw Error(ErrorKind::usage, path, "its suffix is not that of a known camera path format",
                 "end it in .chan for Nuke, .tum or .txt for TUM");
   }
   std::ofstream file(path, std::ios::binary);

@@ -23,33 +23,45 @@ std::string joined(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-void bind_options(CLI::App& app, const OptionTable& table) {
-  for (const OptionEntry& entry : table.entries()) {
-    const bool positional = !entry.flags.starts_with('-');
-    const std::string place = positional ? entry.name : "--" + entry.name;
+void bind_options(CLI::App& app, const OptionList& options, const TakeOption& take) {
+  for (const Option* const described : options) {
+    const bool positional = !described->flags.starts_with('-');
     CLI::Option* option = nullptr;
-    if (entry.shape == OptionShape::flag) {
+    if (described->shape == OptionShape::flag) {
       option = app.add_flag_function(
-          entry.flags,
-          [assign = entry.assign, place](std::int64_t count) { assign({count > 0 ? "true" : "false"}, place); },
-          entry.help);
+          described->flags, [take, described](std::int64_t count) { take(*described, {count > 0 ? "true" : "false"}); },
+          described->help);
     } else {
       option = app.add_option(
-          entry.flags,
-          [assign = entry.assign, place](const CLI::results_t& results) {
-            assign(results, place);
+          described->flags,
+          [take, described](const CLI::results_t& results) {
+            take(*described, results);
             return true;
           },
-          entry.help);
-      option->type_name(entry.unit)->default_str(joined(entry.defaults));
+          described->help);
+      option->type_name(described->unit)->default_str(joined(described->defaults));
     }
-    if (entry.shape == OptionShape::repeated) {
+    if (described->shape == OptionShape::repeated) {
       option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
     }
     if (!positional) {
-      option->group(entry.group);
+      option->group(described->group);
     }
   }
+}
+
+void bind_job_options(CLI::App& app, Job& job) {
+  bind_options(app, job_schema().list(), [&job](const Option& option, const std::vector<std::string>& values) {
+    set_option(job, option.name, values, {Origin::given, "the command line", {}});
+  });
+}
+
+void read_job_config(Job& job, const std::string& command, const std::string& path) {
+  add_toml(job, read_settings_file(path), path, unknown_key_remedy(command));
+}
+
+std::string unknown_key_remedy(const std::string& command) {
+  return "'gazetrace " + command + " --print-config' lists every key";
 }
 
 void check_output_file(const std::string& path, bool overwrite) {

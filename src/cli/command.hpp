@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "cli/option_table.hpp"
+#include "gazetrace/job.hpp"
+#include "gazetrace/option_schema.hpp"
 
 namespace CLI {
 class App;
@@ -19,8 +21,9 @@ struct Invocation {
 };
 
 struct Command {
-  std::function<int()> run;                    // called after parsing; returns an exit code
-  std::shared_ptr<const OptionTable> options;  // what a settings file may hold; empty: takes none
+  std::function<int()> run;  // called after parsing; returns an exit code
+  // Takes a settings file, after the command line, whose options stay. Empty: the command takes none.
+  std::function<void(const std::string& path)> read_config;
 };
 
 // One function a command adds its options to its own subcommand.
@@ -32,9 +35,43 @@ struct Command {
 #include "cli/gaze_commands.def"
 #undef GAZETRACE_GAZE_COMMAND
 
-// Makes CLI11 options of a table's entries; both must live until parsing is done.
-void bind_options(CLI::App& app, const OptionTable& table);
+// Makes CLI11 options of these. `take` gets the values of each that the command line gives.
+using TakeOption = std::function<void(const Option& option, const std::vector<std::string>& values)>;
+void bind_options(CLI::App& app, const OptionList& options, const TakeOption& take);
 
+// The options of a job: `render` and `plan`. `job` must live until parsing is done.
+void bind_job_options(CLI::App& app, Job& job);
+void read_job_config(Job& job, const std::string& command, const std::string& path);
+
+// What to do about a key of a settings file that the command does not have.
+std::string unknown_key_remedy(const std::string& command);
+
+// The options of a command that has settings of its own.
+template <class S>
+class CommandOptions {
+ public:
+  explicit CommandOptions(OptionSchema<S> schema) : schema_(std::move(schema)) {}
+
+  // Both must live until parsing is done.
+  void bind(CLI::App& app, S& settings) {
+    bind_options(app, schema_.list(), [this, &settings](const Option& option, const std::vector<std::string>& values) {
+      schema_.find(option.name)->assign(settings, values, "`" + option.name + "`");
+      given_.insert(option.name);
+    });
+  }
+  void read_config(S& settings, const std::string& command, const std::string& path) const {
+    for (const TomlSetting& setting :
+         read_toml_settings(read_settings_file(path), path, schema_.list(), unknown_key_remedy(command))) {
+      if (!given_.contains(setting.name)) {
+        schema_.find(setting.name)->assign(settings, setting.values, setting.place + ": " + setting.name);
+      }
+    }
+  }
+
+ private:
+  OptionSchema<S> schema_;
+  std::set<std::string> given_;
+};
 // Error(input) where the file exists and may not be replaced, or its folder does not.
 void check_output_file(const std::string& path, bool overwrite);
 

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 
-#include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -30,19 +28,7 @@ std::optional<JobSettings> settings_of_run(const std::string& pattern, const Fra
   }
   const auto found = record.facts.find("view");
   view = found == record.facts.end() ? std::string() : found->second;
-  JobSettings job;
-  OptionTable table;
-  add_job_options(table, job);
-  const TomlConfig config([&] { return TomlConfig::Target{&table, "render", path}; });
-  std::istringstream text(record.config_toml);
-  for (const CLI::ConfigItem& item : config.from_config(text)) {
-    for (const OptionEntry& entry : table.entries()) {
-      if (entry.name == item.name && !item.inputs.empty()) {
-        entry.assign(item.inputs, path + ": " + item.name);
-      }
-    }
-  }
-  return job;
+  return job_of_record(record, path).settings;
 }
 
 std::vector<std::int32_t> frames_of_both(const CompareJob& job) {

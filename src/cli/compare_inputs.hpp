@@ -8,23 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "cli/inputs.hpp"
-#include "cli/option_table.hpp"
 #include "gazetrace/compare.hpp"
+#include "gazetrace/metric_options.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 
-struct CompareJob {
+struct CompareJob : MetricChoice {
   std::string reference, test;
-  std::vector<std::string> metrics;
   std::optional<FrameList> frames;
   std::optional<FrameRate> fps;
   std::optional<double> exposure_ev;
   std::optional<std::array<double, 2>> region_angles_deg;
   AngleReading reading = AngleReading::full_angle;  // of region_angles_deg
   JobSettings shared;  // screen, gaze, colour: the options that `render` has, under the same names
-  bool correct_border = false;
-  ComparisonSettings settings;
   std::string csv, json, maps;
   std::vector<std::string> fail_above, fail_below;
   bool map_overlay = false;
@@ -52,8 +49,8 @@ struct CompareInputs {
   GazeSource gaze;
 };
 
-// The options of the command, but the two patterns. The table refers to `job`.
-void add_compare_options(OptionTable& table, CompareJob& job);
+// The options of the command, but the two patterns.
+OptionSchema<CompareJob> compare_schema();
 
 CompareInputs load_compare_inputs(const CompareJob& job);
 std::string picture_path(const std::string& pattern, std::int32_t frame);

@@ -12,8 +12,8 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/option_schema.hpp"
 #include "gazetrace/version.hpp"
 
 namespace gazetrace {
@@ -99,32 +99,28 @@ int run(int argc, char** argv) {
 #include "cli/commands.def"
 #undef GAZETRACE_COMMAND
 
-  CLI::Option* config = app.set_config("--config", "",
-                                       "A TOML file with options of 'render' or 'plan'; what stands on "
-                                       "the command line wins ('gazetrace render --print-config' writes one)");
-  config->type_name("FILE");
-  app.config_formatter(std::make_shared<TomlConfig>([&] {
-    const CLI::App* command = chosen_command(app);
-    TomlConfig::Target target;
-    if (command != nullptr) {
-      target.command = command->get_name();
-      target.table = commands.at(target.command).options.get();
-    }
-    target.path = config->as<std::string>();
-    return target;
-  }));
+  std::string config;
+  app.add_option("--config", config,
+                 "A TOML file with options of 'render' or 'plan'; what stands on the command line wins ('gazetrace "
+                 "render --print-config' writes one)")
+      ->type_name("FILE");
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
     print_result("");
     return app.exit(help_or_version);
-  } catch (const CLI::FileError&) {
-    throw Error(ErrorKind::input, config->as<std::string>(), "the settings file cannot be read", "check the path");
   } catch (const CLI::ParseError& error) {
     return report(parse_error_text(app, error), exit_bad_input);
   }
-  return commands.at(chosen_command(app)->get_name()).run();
+  const Command& command = commands.at(chosen_command(app)->get_name());
+  if (!config.empty()) {
+    if (!command.read_config) {
+      throw Error(ErrorKind::usage, "`config`", "only 'render' and 'plan' take a settings file");
+    }
+    command.read_config(config);
+  }
+  return command.run();
 }
 
 }  // namespace

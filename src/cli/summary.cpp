@@ -76,16 +76,15 @@ std::string summary_text(const SequenceResult& result, double wall_s) {
   return text;
 }
 
-std::string summary_json(const SequenceResult& result, const Inputs& inputs, const PipelineSettings& settings,
-                         double wall_s) {
+std::string summary_json(const SequenceResult& result, const ResolvedJob& resolved, double wall_s) {
   const Totals totals = add_up(result);
   nlohmann::ordered_json json;
-  json["frames"] = format_frame_list(inputs.frames);
+  json["frames"] = format_frame_list(resolved.frames);
   json["rendered"] = result.rows.size();
   json["skipped"] = result.skipped.size();
-  json["settings_digest"] = settings.settings_digest;
+  json["settings_digest"] = resolved.pipeline.settings_digest;
   json["wall_s"] = wall_s;
-  json["load_s"] = inputs.load_s;
+  json["load_s"] = resolved.load_s;
   for (std::size_t i = 0; i < kStages.size(); ++i) {
     json["mean_ms"][kStages[i].name] = per(totals.ms[i], static_cast<double>(result.rows.size()));
   }
@@ -93,59 +92,13 @@ std::string summary_json(const SequenceResult& result, const Inputs& inputs, con
   json["rays"] = totals.rays;
   json["pixels"] = totals.pixels;
   json["peak_memory_mib"] = totals.peak_memory_mib;
-  json["warnings"] = with_flags(inputs.warnings);
-  for (const std::string& warning : with_flags(result_warnings(result, inputs.plan))) {
-    json["warnings"].push_back(warning);
+  json["warnings"] = nlohmann::ordered_json::array();
+  for (const Warnings& warnings : {resolved.warnings, result_warnings(result, resolved.plan)}) {
+    for (const std::string& warning : warnings) {
+      json["warnings"].push_back(with_flags(warning));
+    }
   }
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
-  Warnings warnings = result.warnings;
-  const auto count = [&](GazeState state) {
-    return std::count_if(plan.frames.begin(), plan.frames.end(),
-                         [&](const FrameRequest& request) { return request.gaze_render.state == state; });
-  };
-  const auto held = std::count_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
-    return request.gaze_render.no_gaze && request.gaze_render.state == GazeState::held;
-  });
-  if (held > 0) {
-    warnings.push_back(fmt::format("{} frames without gaze hold the nearest one in the past, or the first", held));
-  }
-  const auto centered = count(GazeState::center);
-  const bool has_gaze = std::any_of(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
-    return request.gaze_render.state != GazeState::none;
-  });
-  if (centered > 0) {
-    warnings.push_back(fmt::format("{} frames without gaze look at the centre", centered));
-  }
-  if (const auto uniform = count(GazeState::none); uniform > 0 && has_gaze) {
-    warnings.push_back(fmt::format("{} frames without gaze are rendered uniformly", uniform));
-  }
-  if (result.clamped_half_values > 0) {
-    warnings.push_back(fmt::format("{} values were clamped to the range of half floats; --exr-pixels float keeps them",
-                                   result.clamped_half_values));
-  }
-  if (result.clamped_view_pixels > 0) {
-    warnings.push_back(fmt::format("{} pixels were clamped before the viewing transform", result.clamped_view_pixels));
-  }
-  std::uint64_t non_finite = 0;
-  std::uint64_t rejected = 0;
-  for (const TimingRow& row : result.rows) {
-    non_finite += row.non_finite_samples;
-    rejected += row.rejected_rays;
-  }
-  if (non_finite + rejected > 0) {
-    std::string text = fmt::format("{} samples were not finite and {} rays were rejected", non_finite, rejected);
-    if (!result.bad_samples.empty()) {
-      const BadSample& first = result.bad_samples.front();
-      text += fmt::format(
-          "; the first: {} in frame {}, pixel {},{}, sample {}; replay it with --only-frame {} --only-pixel {},{}",
-          first.what, first.frame, first.x_px, first.y_px, first.sample, first.frame, first.x_px, first.y_px);
-    }
-    warnings.push_back(text);
-  }
-  return warnings;
 }
 
 }  // namespace gazetrace

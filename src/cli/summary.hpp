@@ -4,17 +4,12 @@
 
 #include <string>
 
-#include "cli/inputs.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 
 // Frames, mean time by stage, samples and speed; several lines.
 std::string summary_text(const SequenceResult& result, double wall_s);
-std::string summary_json(const SequenceResult& result, const Inputs& inputs, const PipelineSettings& settings,
-                         double wall_s);
-
-// Frames without gaze, clamped values, samples that were not finite with the command that replays them.
-Warnings result_warnings(const SequenceResult& result, const FramePlan& plan);
+std::string summary_json(const SequenceResult& result, const ResolvedJob& resolved, double wall_s);
 
 }  // namespace gazetrace

@@ -11,8 +11,8 @@
 namespace gazetrace {
 namespace {
 
-// The axis: x + kOffset, read as the bits of its float, is a piecewise linear logarithm that costs one addition. Its
-// bends lie at powers of two, where the grid has a point, so that between two grid points it is linear.
+// The axis of the grid: the bits of the float x + kOffset are a piecewise linear logarithm that costs one addition. Its
+// bends are at powers of two, where the grid has points, so that it is linear between any two grid points.
 constexpr float kOffset = 0x1p-6F;
 constexpr float kMaxInput = 0x1p6F - kOffset;
 constexpr int kOctaves = 12;
@@ -26,7 +26,7 @@ float to_axis(float x) {
   return static_cast<float>(bits) * (1.0F / kBitsPerStep);
 }
 
-// The inverse at point `i` of a grid with `steps` to an octave.
+// The inverse of the axis at point `i` of a grid with `steps` points per octave.
 float from_axis(int i, int steps) {
   const int octave = i / steps;
   const double mantissa = 1.0 + static_cast<double>(i % steps) / steps;
@@ -38,7 +38,7 @@ using Int4 = std::int32_t __attribute__((vector_size(16)));
 }  // namespace
 
 BakedView::BakedView(const OcioView& exact, int threads) : exact_(exact) {
-  // Every second point of the fine grid is a point of the table; the others are where it is judged.
+  // Every second point of the fine grid is a point of the table; at the others its error is measured.
   constexpr int kFine = 2 * kCells + 1;
   constexpr std::size_t kRow = kFine;
   std::array<float, kRow> axis{};
@@ -106,8 +106,8 @@ BakedView::BakedView(const OcioView& exact, int threads) : exact_(exact) {
 std::size_t BakedView::apply_8(const float* rgb, std::size_t count, std::uint8_t* out) const {
   constexpr std::array<std::size_t, 3> kStride{1, kPoints, static_cast<std::size_t>(kPoints) * kPoints};
   constexpr std::size_t kAll = kStride[0] + kStride[1] + kStride[2];
-  // By the three comparisons r >= g, g >= b, r >= b: the axis with the largest fraction and the one with the smallest.
-  // Two of the eight outcomes contradict themselves and never occur.
+  // The axis with the largest fraction and the one with the smallest, indexed by the three comparisons r >= g, g >= b
+  // and r >= b. Two of the eight combinations are contradictory and never occur.
   constexpr std::array<std::size_t, 8> kFirst{kStride[2], 0,          kStride[1], kStride[1],
                                               kStride[2], kStride[0], 0,          kStride[0]};
   constexpr std::array<std::size_t, 8> kLast{kStride[0], 0,          kStride[0], kStride[2],
@@ -128,8 +128,8 @@ std::size_t BakedView::apply_8(const float* rgb, std::size_t count, std::uint8_t
     const float fb = ab - static_cast<float>(ib);
     const Entry* base = &table_[static_cast<std::size_t>(ir) * kStride[0] + static_cast<std::size_t>(ig) * kStride[1] +
                                 static_cast<std::size_t>(ib) * kStride[2]];
-    // The tetrahedron walks from the lowest corner along the axes in falling order of their fractions. Selections
-    // instead of six branches: in a noisy picture none of them could be predicted.
+    // The tetrahedron's corners are reached from the lowest one along the axes in falling order of their fractions.
+    // Selections take the place of six branches, which could not be predicted in a noisy picture.
     const float high = std::max(fr, std::max(fg, fb));
     const float low = std::min(fr, std::min(fg, fb));
     const float middle = std::max(std::min(fr, fg), std::min(std::max(fr, fg), fb));

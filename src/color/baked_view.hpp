@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A viewing transform as a table, for 8-bit pictures.
+// A viewing transform baked into a table, for 8-bit pictures.
 #pragma once
 
 #include <cstddef>
@@ -10,23 +10,24 @@
 
 namespace gazetrace {
 
-// Samples the exact transform on a grid and interpolates it tetrahedrally. The transform is sampled on the grid of
-// twice the resolution too, and every cell in which the interpolation is off there by more than kTolerance code values
-// is left to the exact transform, as is everything above the grid. So the error is bounded by measurement, not by hope.
+// Samples the exact transform on a grid and interpolates it tetrahedrally. The transform is also sampled on a grid of
+// twice the resolution. Every cell in which the interpolation is off there by more than kTolerance code values is left
+// to the exact transform, as is everything above the grid, so the error at these points is bounded by measurement.
 class BakedView {
  public:
   static constexpr double kTolerance = 0.45;  // of an 8-bit code value
 
   BakedView(const OcioView& exact, int threads);
 
-  // `count` RGB pixels, all values in 0..1e6. Returns how many of them took the exact way. Pure, and the same for any
-  // split of the pixels into calls.
+  // Converts `count` RGB pixels with values in 0..1e6 and returns how many of them took the exact transform. The result
+  // does not depend on how the pixels are divided into calls.
   std::size_t apply_8(const float* rgb, std::size_t count, std::uint8_t* out) const;
 
   [[nodiscard]] double exact_cell_share() const { return exact_cell_share_; }
 
  private:
-  // Display code values 0..255 of R, G, B, and 1 where the cell with this lowest corner is left to the exact transform.
+  // Display code values 0..255 of R, G and B, and 1 where the cell that has this point as its lowest corner is left to
+  // the exact transform.
   using Entry = float __attribute__((vector_size(16)));
   const OcioView& exact_;
   std::vector<Entry> table_;

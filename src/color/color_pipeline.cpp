@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exposure, clamping and threads around the viewing transform.
+// Applies exposure and clamping, and runs the viewing transform on several threads.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -14,12 +14,11 @@
 namespace gazetrace {
 namespace {
 
-// Pixels handled at once: small enough that a band's floats stay in the L2 cache.
+// Pixels that are handled at once; few enough that a band's floats stay in the L2 cache.
 constexpr std::size_t kBandPixels = 8192;
 constexpr float kMaxScene = 1e6F;
 
-// radiance * scale, limited to 0..kMaxScene, as interleaved RGB. Returns how many pixels the limits changed. A NaN
-// fails both comparisons and becomes 0.
+// radiance * scale, clamped to 0..kMaxScene, as interleaved RGB; NaN becomes 0. Returns how many pixels were clamped.
 std::uint64_t expose(const Vec3f* radiance, std::size_t count, float scale, float* rgb) {
   const auto limit = [](float value) {
     const float low = value > 0 ? value : 0.0F;
@@ -42,7 +41,7 @@ std::uint64_t expose(const Vec3f* radiance, std::size_t count, float scale, floa
 struct ColorPipeline::Impl {
   explicit Impl(const ColorSettings& settings) : view(settings), precision(settings.precision) {}
 
-  // Depends on nothing but settings and frame size: a frame looks the same wherever in a sequence it is rendered.
+  // Depends only on settings and frame size, so that a frame is the same wherever in a sequence it is rendered.
   [[nodiscard]] bool wants_table(std::size_t pixels, int bits) const {
     constexpr std::size_t kMinPixels = 250'000;  // below, baking takes longer than it saves in most jobs
     switch (precision) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exposure of a frame, fixed or from its own log-average luminance.
+// The exposure of a frame, fixed or computed from its own log-average luminance.
 //
 //   L_avg = exp( mean over blocks of ln L_block ),  ev = log2( key / L_avg )
 //
@@ -21,7 +21,7 @@ namespace {
 constexpr int kBlockPx = 16;
 constexpr double kBlackLuminance = 1e-6;
 
-// Bounds of block `i` of `count`; the last one takes the remainder, so that no block is smaller than kBlockPx.
+// Where block `i` of `count` ends; the last one takes the remainder, so that no block is smaller than kBlockPx.
 int block_end(int i, int count, int size) {
   return i + 1 == count ? size : (i + 1) * kBlockPx;
 }
@@ -70,13 +70,13 @@ double choose_exposure_ev(const ImageRgb& radiance, std::int64_t t_video_ns, con
   const std::optional<double> luminance = log_average_luminance(radiance);
   const bool smoothed = settings.smoothing_s > 0;
   if (!luminance) {
-    // A black frame says nothing about exposure: stay where we were.
+    // A black frame says nothing about exposure, so the smoothed one is kept.
     return settings.ev + (smoothed ? history.smoothed_ev.value_or(0.0) : 0.0);
   }
   double measured_ev = std::log2(settings.key / *luminance);
   if (smoothed) {
-    // Exponential smoothing with the exact step response for uneven frame times. Time that stands still or runs
-    // backwards starts anew.
+    // Exponential smoothing, with the exact step response for unequal frame times. Where time does not advance, it
+    // starts anew.
     if (history.smoothed_ev && t_video_ns > history.smoothed_ev_t_ns) {
       const double elapsed_s = static_cast<double>(t_video_ns - history.smoothed_ev_t_ns) * 1e-9;
       const double weight = -std::expm1(-elapsed_s / settings.smoothing_s);

@@ -18,8 +18,8 @@ constexpr const char* kRec709Name = "Linear Rec.709";
 constexpr const char* kBuiltinDisplay = "sRGB";
 constexpr const char* kAcesView = "ACES SDR";
 
-// Linear Rec.709 (D65) -> ACES2065-1 (AP0, its own white), Bradford adaptation. Derived from the primaries in
-// tests/unit/color_view_test.cpp; the same figures stand in the public ACES configurations.
+// From linear Rec.709 (D65) to ACES2065-1 (AP0 with its own white), with Bradford adaptation. Derived from the
+// primaries in tests/unit/color_view_test.cpp; the public ACES configurations have the same figures.
 ocio::MatrixTransformRcPtr rec709_to_aces() {
   constexpr std::array<double, 16> kMatrix{0.439632981919,
                                            0.382988698152,
@@ -48,7 +48,7 @@ ocio::TransformRcPtr builtin(const char* style) {
   return transform;
 }
 
-// Value of the half with these bits, as float; infinities and NaN as the largest finite half of their sign.
+// The value of the half with these bits; infinities and NaN give the largest finite half of their sign.
 float half_from_bits(unsigned bits) {
   const float sign = (bits & 0x8000U) != 0 ? -1.0F : 1.0F;
   const unsigned exponent = (bits >> 10U) & 31U;
@@ -60,8 +60,9 @@ float half_from_bits(unsigned bits) {
                        : sign * std::ldexp(1024.0F + mantissa, static_cast<int>(exponent) - 25);
 }
 
-// Reinhard et al. 2002, eq. (3): L_d = L / (1 + L), on luminance, chromaticity kept. The curve is a table over all
-// halves because OpenColorIO has no rational function; between neighbours it is linear (relative error < 2^-22).
+// Reinhard et al. 2002, eq. (3), L_d = L / (1 + L), applied to luminance with the chromaticity kept. The curve is a
+// table over all halves, because OpenColorIO has no rational function; it is linear in between (relative error <
+// 2^-22).
 ocio::GroupTransformRcPtr reinhard() {
   auto to_xyy = ocio::FixedFunctionTransform::Create(ocio::FIXED_FUNCTION_XYZ_TO_xyY);
   auto from_xyy = ocio::FixedFunctionTransform::Create(ocio::FIXED_FUNCTION_XYZ_TO_xyY);
@@ -88,7 +89,8 @@ void add_view_transform(ocio::Config& config, const char* name, const ocio::Cons
   config.addViewTransform(transform);
 }
 
-// Scene reference ACES2065-1, display reference CIE XYZ with a D65 white, as in the public ACES configurations.
+// The scene reference is ACES2065-1, the display reference CIE XYZ with a D65 white, as in the public ACES
+// configurations.
 ocio::ConstConfigRcPtr make_builtin_config() {
   auto config = ocio::Config::Create();
   config->setVersion(2, 1);
@@ -190,7 +192,8 @@ std::string choose(const char* what, const std::string& given, const char* fallb
   return given;
 }
 
-// OpenColorIO's syntax for looks: names separated by , or : with optional + and - in front, alternatives by |.
+// OpenColorIO's syntax for looks: names with an optional + or - in front, separated by "," or ":"; alternatives are
+// separated by "|".
 void check_looks(const ocio::Config& config, const std::string& looks, const std::string& place) {
   std::vector<std::string> known;
   for (int i = 0; i < config.getNumLooks(); ++i) {
@@ -212,7 +215,8 @@ void check_looks(const ocio::Config& config, const std::string& looks, const std
   }
 }
 
-// Linear Rec.709 -> a colour space of the config: its name, and the matrix in front where one is needed.
+// Finds a way from linear Rec.709 into the config: returns the name of the colour space to enter by, and adds the
+// matrix that leads there to `group`, where one is needed.
 std::string enter_config(const LoadedConfig& loaded, const ColorSettings& settings, ocio::GroupTransform& group) {
   const ocio::Config& config = *loaded.config;
   if (!settings.input.empty()) {
@@ -230,7 +234,7 @@ std::string enter_config(const LoadedConfig& loaded, const ColorSettings& settin
   }
   if (!config.hasRole(ocio::ROLE_INTERCHANGE_SCENE)) {
     throw Error(ErrorKind::input, loaded.path,
-                "the config has no role aces_interchange, so linear Rec.709 has no way in",
+                "the config has no role aces_interchange, so there is no way into it from linear Rec.709",
                 "name its linear Rec.709 color space with `ocio-input`");
   }
   group.appendTransform(rec709_to_aces());

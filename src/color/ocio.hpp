@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewing transform, with no OpenColorIO types in sight.
+// The viewing transform, without OpenColorIO's types.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace gazetrace {
 
-// Linear Rec.709 -> display code values. Thread-safe once built.
+// Converts linear Rec.709 to display code values. May be used from several threads at once.
 class OcioView {
  public:
   explicit OcioView(const ColorSettings& settings);
@@ -20,10 +20,10 @@ class OcioView {
   OcioView(const OcioView&) = delete;
   OcioView& operator=(const OcioView&) = delete;
 
-  // `count` RGB pixels. `out`: 8 or 16 bits a value, rounded to nearest. `rgb` may serve as work space.
+  // Convert `count` RGB pixels to 8 or 16 bits per value, rounded to the nearest. `rgb` may be overwritten.
   void apply_8(float* rgb, std::size_t count, std::uint8_t* out) const;
   void apply_16(float* rgb, std::size_t count, std::uint16_t* out) const;
-  // In place, no quantisation: 1 is the display's white.
+  // Converts in place and without quantisation; 1 is the display's white.
   void apply_float(float* rgb, std::size_t count) const;
 
   [[nodiscard]] const std::vector<ViewInfo>& views() const;

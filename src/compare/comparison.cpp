@@ -16,10 +16,10 @@ namespace {
 
 constexpr PrintedNumbers kPrinted{comparison_value, comparison_local_value};
 
-// Frames of one class, or all of them.
+// The frames of one gaze class, or all frames.
 struct FrameGroup {
   std::size_t frames = 0;
-  std::vector<ScoreSeries> series;  // one a metric
+  std::vector<ScoreSeries> series;  // one per metric
 };
 
 MetricInfo known_metric(const std::string& name) {
@@ -46,7 +46,7 @@ std::vector<MetricInfo> comparison_metrics() {
 struct Comparison::Impl {
   ComparisonSettings settings;
   std::vector<MetricInfo> infos;
-  std::vector<std::unique_ptr<SequenceMetric>> over_time;  // one a metric; empty for those of single frames
+  std::vector<std::unique_ptr<SequenceMetric>> over_time;  // one per metric; null for metrics of single frames
   bool sees_luminance = false;
   FrameGroup all;
   std::array<FrameGroup, kGazeClasses.size()> classes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a comparison's settings must be for its scores to mean anything.
+// Checks the settings of a comparison.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ void check_comparison(const ComparisonSettings& settings) {
   require(settings.metric.pixels_per_degree > 0, "flip", settings.metric.pixels_per_degree,
           "a number of pixels per degree above 0");
   require(settings.frames_per_second >= 0, "`fps`", settings.frames_per_second, "a frame rate");
-  // Light of relative code values fills what lies between black and white: there must be something.
+  // Relative code values fill the range between black and white, so there must be such a range.
   const double black = black_level_cd_m2(p);
   if (!is_absolute(settings.metric.response) && !(black < p.peak_cd_m2)) {
     throw Error(ErrorKind::usage, "`peak-cd-m2`",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which band of eccentricity and retinal region a pixel lies in, how much of the visual cortex sees it, and sums over
-// maps by all three.
+// The band of eccentricity and the retinal region of each pixel, its weight by cortical magnification, and sums of maps
+// over all three.
 #pragma once
 
 #include <array>

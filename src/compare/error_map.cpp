@@ -9,7 +9,7 @@
 namespace gazetrace {
 namespace {
 
-// Where a metric's map is shown as heat, its values from "nothing" to the last color.
+// For metrics whose map is shown as heat, the value of the last color.
 std::optional<double> hottest(const std::string& metric) {
   constexpr double kJod = 3;
   constexpr double kSquaredThresholds = 100;
@@ -32,7 +32,7 @@ double shade(const std::string& metric, double value) {
   return metric == "smape" ? value / 2 : value;
 }
 
-// Grey where there is nothing, then blue, green, yellow and red at quarters; the grey's brightness shows through.
+// Grey at 0, then blue, green, yellow and red at the quarters; the brightness of the grey shows through.
 std::array<std::uint8_t, 3> heat(double value, double grey) {
   constexpr std::array<Vec3d, 5> kColors{
       {{1, 1, 1}, {0.25, 0.55, 1}, {0.2, 0.85, 0.3}, {1, 0.85, 0.1}, {1, 0.15, 0.1}}};
@@ -40,7 +40,7 @@ std::array<std::uint8_t, 3> heat(double value, double grey) {
   const auto node = std::min<std::size_t>(static_cast<std::size_t>(at), 3);
   const double share = at - static_cast<double>(node);
   const Vec3d color = kColors[node] * (1 - share) + kColors[node + 1] * share;
-  // Heat is told by color: half of its brightness is its own, however dark the picture.
+  // The color must be recognised however dark the picture is, so half of the brightness does not depend on the picture.
   const double own = 0.5 * std::min(at, 1.0);
   const double bright = own + (1 - own) * grey;
   const auto code = [&](double v) { return static_cast<std::uint8_t>(std::lround(255 * v * bright)); };

@@ -55,7 +55,7 @@ void take_gaze(const std::string& text, FrameFacts& facts) {
   gaze.movement = named(value_of(text, "event"), {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::pursuit,
                                                   EyeMovement::blink, EyeMovement::lost, EyeMovement::unclassified});
   gaze.since_saccade_ns = integer_of(value_of(text, "since_saccade_ns"));
-  // Places on a screen leave the direction straight ahead, directions leave the place in the middle.
+  // Gaze on a screen has the default direction, straight ahead; gaze directions have the default position, the middle.
   facts.gaze_is_direction = value_of(text, "direction") != "0,0,-1";
   gaze.kind = facts.gaze_is_direction ? GazeKind::direction : GazeKind::screen;
   facts.gaze_true = gaze;

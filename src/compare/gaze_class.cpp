@@ -42,7 +42,7 @@ RetinalRegions retinal_regions(const std::array<double, 2>& angles_deg, AngleRea
     throw Error(ErrorKind::usage, "`region-angles`", fmt::format("{},{} do not ascend", angles_deg[0], angles_deg[1]),
                 "give two angles above 0, the smaller first");
   }
-  const double share = reading == AngleReading::full_angle ? 0.5 : 1.0;
+  const double share = eccentricity_share(reading);
   return {{share * angles_deg[0], share * angles_deg[1]}};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaze and retinal regions over a picture. Borders are as wide everywhere: the distance to one in pixels is that in
-// degrees over the degrees from pixel to pixel.
+// Draws gaze and retinal regions over a picture. Borders have the same width everywhere, since the distance to a border
+// in pixels is computed as the distance in degrees over the local degrees per pixel.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace gazetrace {
 namespace {
 
-// How far a pixel is from the nearest line, in half widths of a line: up to 1 white, up to 2 black.
+// `distance` is that from the nearest line, in half widths of a line: pixels up to 1 become white, up to 2 black.
 void ink(DisplayImage& picture, int x, int y, double distance) {
   if (!(distance <= 2)) {
     return;
@@ -23,8 +23,8 @@ void ink(DisplayImage& picture, int x, int y, double distance) {
 }  // namespace
 
 void draw_gaze(DisplayImage& picture, const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions) {
-  constexpr double kLinesOfHeight = 1.0 / 900;  // half a width of a line
-  constexpr double kArm = 9;                    // of the cross, in half widths
+  constexpr double kLinesOfHeight = 1.0 / 900;  // half the width of a line, relative to the picture's height
+  constexpr double kArm = 9;                    // length of the cross's arms, in half widths
   const double half_px = std::max(0.6, kLinesOfHeight * picture.height_px);
   const Vec3d gaze = view.direction(gaze_px.x, gaze_px.y);
   for (int y = 0; y < picture.height_px; ++y) {

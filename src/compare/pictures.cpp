@@ -24,7 +24,7 @@ bool is_exr(const std::string& path) {
   return suffix == ".exr";
 }
 
-// The number that makes `path` of the pattern: one of the runs of digits in its name.
+// The frame number with which the pattern gives `path`, if there is one: one of the runs of digits in its name.
 std::optional<std::int32_t> frame_of(const std::string& pattern, const std::string& path) {
   const std::size_t name = path.find_last_of('/') == std::string::npos ? 0 : path.find_last_of('/') + 1;
   for (std::size_t at = path.find_first_of("0123456789", name); at != std::string::npos;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/statistics.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -46,9 +48,7 @@ void summarise(const MetricInfo& info, const PrintedNumbers& printed, const Scor
   summary.scores.push_back(scores_of(info.name, printed, series.sum / count, series.bands));
   std::vector<double> sorted = series.values;
   std::sort(sorted.begin(), sorted.end());
-  const auto at = [&](double share) {
-    return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * count))];
-  };
+  const auto at = [&](double share) { return sorted[upper_rank(share, sorted.size())]; };
   summary.quantiles.push_back({at(0.05), at(0.5), at(0.95)});
   std::size_t worst = 0;
   for (std::size_t i = 1; i < series.values.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores of one metric over the frames of one class.
+// The scores of one metric over the frames of one gaze class.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace gazetrace {
 
-// The printed number of a mean over a frame or frames, and of one over a part of the picture.
+// Functions that turn a mean into the printed number: `whole` for means over frames, `local` for means over a part of
+// the picture.
 struct PrintedNumbers {
   double (*whole)(const std::string& metric, double mean);
   double (*local)(const std::string& metric, double mean);
@@ -26,7 +27,7 @@ struct ScoreSeries {
   std::vector<std::int32_t> frames;
 };
 
-// Appends the series to the columns of `summary`.
+// Appends the metric's scores to the vectors of `summary`.
 void summarise(const MetricInfo& info, const PrintedNumbers& printed, const ScoreSeries& series,
                SequenceScores& summary);
 

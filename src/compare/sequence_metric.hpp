@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A metric that sees time: what a frame scores depends on the frames before it.
+// Metrics of whole sequences: the score of a frame depends on the frames before it.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace gazetrace {
 
-// Luminance of both, in cd/m2, and the gaze where there is one.
+// The luminance of both pictures in cd/m2, and the gaze where there is one.
 struct LuminanceFrame {
   const ImageGray& reference;
   const ImageGray& test;
@@ -24,12 +24,12 @@ class SequenceMetric {
   virtual ~SequenceMetric() = default;
   SequenceMetric(const SequenceMetric&) = delete;
   SequenceMetric& operator=(const SequenceMetric&) = delete;
-  // Frames in the order of time. Empty: not scored.
+  // Adds the next frame. Empty where the frame is not scored.
   virtual std::optional<MetricMap> add(const LuminanceFrame& frame) = 0;
 };
 
-// Three functions per line of sequence_metrics.def: the metric over pictures of one size, and the printed numbers of a
-// mean over a frame or frames and of one over a part of the picture.
+// Each line of sequence_metrics.def has three functions: one makes the metric for pictures of one size, the others turn
+// a mean over frames, and a mean over a part of the picture, into the printed number.
 #define SEQUENCE_METRIC(name, better, needs_gaze, description)                                                  \
   std::unique_ptr<SequenceMetric> make_##name(const ComparisonSettings& settings, int width_px, int height_px); \
   double sequence_value_##name(double mean);                                                                    \
@@ -41,7 +41,7 @@ std::vector<MetricInfo> sequence_metrics();
 bool is_sequence_metric(const std::string& name);
 std::unique_ptr<SequenceMetric> make_sequence_metric(const std::string& name, const ComparisonSettings& settings,
                                                      int width_px, int height_px);
-// Of any metric.
+// The printed numbers of any metric, of pictures or of sequences.
 double comparison_value(const std::string& metric, double mean);
 double comparison_local_value(const std::string& metric, double mean);
 

@@ -28,8 +28,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& path, int atte
   return name.replace_filename("." + path.stem().string() + "." + number + ".part" + path.extension().string());
 }
 
-// Bytes on their way to a file. Where the file system can hold a file without a name, they have none until they are all
-// there, and a process that is killed leaves nothing behind; elsewhere they stand under a temporary name.
+// A file that is being written. Where the file system can hold a file without a name, it has none until it is complete,
+// so that a process that is killed leaves nothing behind; elsewhere it has a temporary name.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& final_path) : final_path_(final_path) {
@@ -44,7 +44,7 @@ class TemporaryFile {
       });
     }
   }
-  // Removes what is not in its place.
+  // Removes the file unless it has its final name.
   ~TemporaryFile() {
     if (descriptor_ >= 0) {
       ::close(descriptor_);
@@ -81,7 +81,7 @@ class TemporaryFile {
       if (errno != EEXIST) {
         fail(final_path_, "cannot put the finished file in place", errno);
       }
-      take_name(link_to);  // there is no link that replaces a file, but a rename does
+      take_name(link_to);  // a link cannot replace an existing file, but a rename can
     }
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
@@ -95,8 +95,8 @@ class TemporaryFile {
   }
 
  private:
-  // The first name that nobody has: not another thread's, another process's, or one of the same number on another
-  // machine that shares the folder.
+  // Takes the first free name: another thread, another process, or a process of the same number on another machine that
+  // shares the folder may have taken some.
   template <class Make>
   void take_name(const Make& make) {
     for (int attempt = 0; temporary_.empty(); ++attempt) {
@@ -110,7 +110,7 @@ class TemporaryFile {
   }
 
   std::string final_path_;
-  std::string temporary_;  // empty: there is nothing under another name
+  std::string temporary_;  // the temporary name; empty: there is no file under one
   int descriptor_ = -1;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions for inner loops: branch-light, the same bits whatever the C library, and accurate to a few
-// units in the last place of float where each says so. Polynomials are Taylor or minimax series over the stated range.
+// Elementary functions for inner loops, with few branches: they give the same bits whatever the C library is, with the
+// errors that each states. Polynomials are Taylor or minimax series over the stated range.
 #pragma once
 
 #include <bit>
@@ -50,8 +50,8 @@ inline float atan2_turns(float y, float x) noexcept {
   return y < 0 ? -turns : turns;
 }
 
-// log2(x) for normal x > 0; absolute error below 2e-7 + 1e-7 |log2 x|. The mantissa in [sqrt(1/2), sqrt 2) goes through
-// log m = 2 atanh((m - 1) / (m + 1)), whose series needs five terms there.
+// log2(x) for normal x > 0; absolute error below 2e-7 + 1e-7 |log2 x|. For the mantissa m in [sqrt(1/2), sqrt 2) it
+// uses log m = 2 atanh((m - 1) / (m + 1)), whose series needs five terms there.
 inline float log2_fast(float x) noexcept {
   constexpr std::int32_t kHalfRoot = 0x3f3504f3;  // bits of sqrt(1/2)
   const auto bits = std::bit_cast<std::int32_t>(x);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// IEEE 754 binary16, for storage: compilers at hand have no such type in C++.
+// IEEE 754 binary16 for storage, since the compilers in use have no such type in C++.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@ namespace gazetrace {
 
 inline constexpr float kLargestHalf = 65504.0F;
 
-// Exact for every code; infinities and NaN come out as 65536 and more.
+// Exact for every finite code; infinities and NaN give 65536 and more.
 constexpr float half_to_float(std::uint16_t half) {
   const std::uint32_t sign = (half & 0x8000U) << 16U;
   // The exponent's bias is corrected by a multiplication, which is right for subnormal numbers, too.
@@ -17,7 +17,7 @@ constexpr float half_to_float(std::uint16_t half) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(magnitude) | sign);
 }
 
-// To the nearest, ties to even. The value must be finite; it is brought to [-65504, 65504].
+// Rounds to the nearest, ties to even. The value must be finite; it is clamped to [-65504, 65504].
 constexpr std::uint16_t float_to_half(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
   const auto sign = static_cast<std::uint16_t>(bits >> 16U & 0x8000U);

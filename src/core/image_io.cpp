@@ -25,7 +25,7 @@ constexpr int kMaxSidePx = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30U;        // 4 GiB of bytes, 16 of floats
 constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;  // whatever its size
 
-// OpenImageIO multiplies PNG colour by alpha unless told not to; colour under alpha 0 would be lost.
+// OpenImageIO multiplies PNG colour by alpha unless told otherwise, which would lose the colour where alpha is 0.
 OIIO::ImageSpec keep_alpha_unassociated() {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
@@ -36,7 +36,7 @@ std::string reason(const std::string& message) {
   return message.empty() ? std::string("not a readable picture") : message;
 }
 
-// A picture that is being read, with the bytes that its reader reads.
+// A picture that is being read, together with the bytes that it is read from.
 struct OpenPicture {
   std::vector<std::uint8_t> bytes;
   std::unique_ptr<OIIO::Filesystem::IOMemReader> reader;
@@ -44,15 +44,15 @@ struct OpenPicture {
   std::uint64_t file_size = 0;
 };
 
-// How many pixels a byte of a file can stand for, by OpenImageIO's name of the format: for PNG deflate's 1032 bytes of
-// 8 pixels, rounded up, and more than any picture has that is worth keeping for others. Formats that are not named hold
-// any number of equal pixels.
+// The most pixels that a byte of a file can stand for, by OpenImageIO's name of the format. PNG: deflate's 1032 bytes
+// of 8 pixels each, rounded up; other formats: more than any real picture has. Formats that are not listed may hold any
+// number of equal pixels.
 std::uint64_t most_pixels_a_byte(std::string_view format) {
   constexpr std::array<std::string_view, 4> kOthers{"jpeg", "hdr", "bmp", "openexr"};
   return format == "png" ? 8448 : std::find(kOthers.begin(), kOthers.end(), format) != kOthers.end() ? 65536 : 0;
 }
 
-// Before any memory is asked for: the sizes are what a header of a few bytes says.
+// Called before any memory is allocated, since the size is only the claim of a header of a few bytes.
 const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string& place) {
   const OIIO::ImageSpec& spec = picture.input->spec();
   const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
@@ -63,9 +63,10 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
   }
   const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
   if (pixels > kMaxPixels) {
-    throw Error(ErrorKind::input, place,
-                "a picture of " + size + " pixels is too large; " + std::to_string(kMaxPixels) + " are the most",
-                "make it smaller");
+    throw Error(
+        ErrorKind::input, place,
+        "a picture of " + size + " pixels is too large; at most " + std::to_string(kMaxPixels) + " are possible",
+        "make it smaller");
   }
   const std::uint64_t a_byte = most_pixels_a_byte(picture.input->format_name());
   if (a_byte > 0 && pixels > kPixelsOfAnyFile + a_byte * picture.file_size) {
@@ -84,7 +85,7 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
               "make it smaller");
 }
 
-// Spreads `channels` (1 to 4) of each pixel over R, G, B, A in place of a second buffer where there are 4 already.
+// Makes RGBA from `channels` (1 to 4) channels per pixel; where there are 4 already, the buffer itself is returned.
 template <class T>
 std::vector<T> to_rgba(std::vector<T>&& pixels, std::size_t count, int channels, T opaque) {
   if (channels == 4) {
@@ -135,7 +136,7 @@ std::vector<T> read_channels(OIIO::ImageInput& input, OIIO::TypeDesc type, int c
 ImageRgba read_rgba(const OpenPicture& picture, const std::string& place) {
   const OIIO::ImageSpec& spec = check_size(picture, place);
   OIIO::ImageInput& input = *picture.input;
-  input.threads(1);  // callers decode many pictures side by side
+  input.threads(1);  // since callers decode many pictures at once
   ImageRgba image;
   image.width_px = spec.width;
   image.height_px = spec.height;
@@ -176,7 +177,7 @@ ImageRgb read_rgb_float(OIIO::ImageInput& input, const std::string& place) {
   return image;
 }
 
-// OpenImageIO picks its reader by the name's suffix; bytes in memory have none, so the magic number speaks.
+// OpenImageIO chooses its reader by the suffix of the name. Bytes in memory have none, so their magic number decides.
 const char* name_by_content(std::span<const std::uint8_t> bytes) {
   const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
   struct Magic {
@@ -199,11 +200,11 @@ const char* name_by_content(std::span<const std::uint8_t> bytes) {
   return nullptr;
 }
 
-// `name` tells the format. The reader's bytes are the picture's own, or outlive it.
+// `name` gives the format. `bytes` must be the picture's own, or outlive it.
 void open_memory(OpenPicture& picture, std::span<const std::uint8_t> bytes, const char* name, OIIO::ImageSpec config) {
   picture.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(
       OIIO::cspan<unsigned char>(bytes.data(), static_cast<std::ptrdiff_t>(bytes.size())));
-  // As an attribute: 2.4 loses a proxy that is handed to open() beside a config.
+  // Passed as an attribute, since OpenImageIO 2.4 loses a proxy that is passed to open() together with a config.
   void* proxy = picture.reader.get();
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
   picture.input = OIIO::ImageInput::open(name, &config, picture.reader.get());
@@ -215,7 +216,7 @@ void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, co
   open_memory(picture, picture.bytes, "memory.png", config);
 }
 
-// Error(input) where the file begins as PNG does and is not; an empty `input` where there is no reader for it.
+// Error(input) where the file begins as PNG does but is broken; `input` is empty where there is no reader for the file.
 OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, const std::string& place) {
   OpenPicture picture;
   std::error_code ignored;
@@ -300,15 +301,15 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
   OIIO::ImageSpec spec(width_px, height_px, 3, options.file_bits > 8 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:BitsPerSample", options.file_bits);
   const auto add_text = [&](const char* name, const std::string& value) {
-    if (!value.empty()) {  // JPEG's writer ends the process over an empty text
+    if (!value.empty()) {  // JPEG's writer ends the process when it gets an empty text
       spec.attribute(name, value);
     }
   };
   add_text("Software", options.software);
   add_text("ImageDescription", options.note);
   add_text("DocumentName", options.note);  // DPX cuts descriptions after 100 characters, project names after 200
-  // PNG's filter 64 (the mean of left and upper neighbour) leaves noise with little to gain from a search for repeats:
-  // run lengths and Huffman codes alone give files a tenth larger than zlib's level 1 in three quarters of its time.
+  // PNG's filter 64 (the mean of left and upper neighbour) leaves noise in which a search for repeats finds little: run
+  // lengths and Huffman codes alone make files a tenth larger than zlib's level 1, in three quarters of its time.
   if (output->format_name() == std::string_view("png")) {
     spec.attribute("compression", "rle");
     spec.attribute("png:compressionLevel", 1);
@@ -316,13 +317,13 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
   }
   spec.attribute("CompressionQuality", options.quality);
   spec.attribute("jpeg:subsampling", "4:4:4");
-  // TIFF would otherwise carry the time of writing, and the same frame would not give the same bytes.
+  // TIFF would otherwise contain the time of writing, and the same frame would not give the same bytes.
   spec.attribute("DateTime", "0000:00:00 00:00:00");
 
   std::vector<std::uint16_t> reduced;
   const void* pixels = rgb.data();
   if (bits == 16 && options.file_bits == 10) {
-    // OpenImageIO cuts the lower bits off: give it values whose upper ten are the nearest ones.
+    // OpenImageIO truncates the lower bits, so it gets values whose upper ten bits are already rounded.
     reduced.resize(rgb.size() / 2);
     std::memcpy(reduced.data(), rgb.data(), rgb.size());
     for (std::uint16_t& value : reduced) {
@@ -332,7 +333,7 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
     pixels = reduced.data();
   }
 
-  // Through memory, because a full disk is noticed only by the one who writes the file; see output/atomic_file.cpp.
+  // Encoded in memory, because only write_bytes_atomically (core/atomic_file.cpp) reports a full disk reliably.
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput writer(bytes);
   if (!output->set_ioproxy(&writer) || !output->open(path, spec) || !output->write_image(type, pixels) ||
@@ -345,10 +346,10 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
 std::string read_image_note(const std::string& path) {
   const auto input = OIIO::ImageInput::open(path);
   if (!input) {
-    OIIO::geterror();  // or it would be printed when the program ends
+    OIIO::geterror();  // clears the error, which would otherwise be printed when the program ends
     return {};
   }
-  // DPX keeps the whole of it in the name only; the others have no name or the same text in both.
+  // DPX keeps the whole text in the document name only; other formats have no name, or the same text in both.
   const std::string name(input->spec().get_string_attribute("DocumentName"));
   return name.empty() ? std::string(input->spec().get_string_attribute("ImageDescription")) : name;
 }

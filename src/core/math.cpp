@@ -55,7 +55,7 @@ Quatd rotation_of(const Affine& a) {
   const Vec3d z = normalize(a.z);
   const Vec3d y = normalize(a.y - z * dot(a.y, z));
   const Vec3d x = cross(y, z);
-  // Shepperd's method: divide by the largest of the four components.
+  // Shepperd's method divides by the largest of the four components.
   const double trace = x.x + y.y + z.z;
   if (trace > 0) {
     const double s = 2.0 * std::sqrt(trace + 1.0);

@@ -39,12 +39,12 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   const int cores = tbb::info::default_concurrency();
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(resolved));
   if (resolved <= cores) {
-    // A thread that waits in here takes no task of a loop outside, which might wait for it in turn.
+    // Isolated, so that a thread that waits in here does not take a task of an outer loop, which might wait for it.
     tbb::this_task_arena::isolate(loop);
     return;
   }
-  // More threads than cores need an arena with room for them. Only then: each one made leaves some kilobytes behind
-  // in the task library.
+  // More threads than cores need an arena with room for them. An arena is made only then, since each one leaves some
+  // kilobytes behind in the task library.
   tbb::task_arena arena(resolved);
   arena.execute(loop);
 }

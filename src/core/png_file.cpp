@@ -17,10 +17,10 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array<std::uint8_t, 8> kSignature{0x89, 'P', 'N', 'G', 13, 10, 26, 10};
 constexpr std::uint32_t kMaxLength = 0x7FFFFFFF;  // of a chunk
-constexpr std::uint32_t kMaxSidePx = 1000000;     // of libpng, unless it is told otherwise
+constexpr std::uint32_t kMaxSidePx = 1000000;     // libpng's limit, unless it is told otherwise
 constexpr std::uint8_t kPalette = 3;
 
-// `bytes`: of a chunk, whose length fits zlib's.
+// `bytes` are those of a chunk, so their number fits zlib's integer.
 std::uint32_t crc_of(Bytes bytes) {
   return static_cast<std::uint32_t>(::crc32(0, bytes.data(), static_cast<uInt>(bytes.size())));
 }
@@ -33,7 +33,7 @@ std::uint32_t big_endian_u32(Bytes p) {
 struct Chunk {
   std::string_view type;
   Bytes data;
-  Bytes whole;  // with length, type and checksum
+  Bytes whole;  // including length, type and checksum
 };
 
 class PngCheck {
@@ -61,7 +61,7 @@ class PngCheck {
       }
       if (chunk.type == "IDAT") {
         if (after_pixels) {
-          fail("its IDAT chunks do not follow each other");
+          fail("its IDAT chunks are not consecutive");
         }
         if (color_ == kPalette && !palette) {
           fail("it has no palette");
@@ -69,7 +69,7 @@ class PngCheck {
         pixels = true;
         keep(chunk);
       } else if (chunk.type == "PLTE") {
-        if (color_ == kPalette) {  // else a mere suggestion for displays of few colours
+        if (color_ == kPalette) {  // otherwise it is only a suggestion for displays of few colours
           const std::size_t length = chunk.data.size();
           if (palette || pixels || length == 0 || length > 768 || length % 3 != 0) {
             fail("its palette is out of order or has a wrong length");
@@ -87,7 +87,7 @@ class PngCheck {
           keep(chunk);
         }
       } else if (is_critical(chunk.type)) {
-        fail("it has a second header or a chunk that no program can do without and PNG does not know");
+        fail("it has a second header, or a chunk that is marked as essential but unknown to PNG");
       }
     }
   }
@@ -99,7 +99,7 @@ class PngCheck {
 
   static bool is_critical(std::string_view type) { return (static_cast<unsigned char>(type[0]) & 0x20U) == 0; }
 
-  // Checksums of chunks that are left out do not matter.
+  // The checksums of chunks that are left out are not checked.
   Chunk next() {
     if (rest_.size() < 12) {
       fail("the file ends before its IEND chunk");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What diagrams are drawn with: axes and their ticks, text and files inside SVG.
+// Helpers for drawing diagrams as SVG: axes and their ticks, escaped text and embedded files.
 #pragma once
 
 #include <cmath>
@@ -8,12 +8,12 @@
 
 namespace gazetrace {
 
-// A linear map from values to the picture.
+// A linear map from values to positions in the picture.
 struct Axis {
   double low = 0, high = 1;   // values
   double begin = 0, end = 1;  // picture
   [[nodiscard]] double at(double value) const { return begin + (value - low) / (high - low) * (end - begin); }
-  // 1, 2 or 5 times a power of ten, for about `count` ticks.
+  // The distance between ticks, 1, 2 or 5 times a power of ten, for about `count` ticks.
   [[nodiscard]] double tick(double count) const {
     const double rough = std::abs(high - low) / count;
     const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -22,7 +22,7 @@ struct Axis {
   }
 };
 
-// At most 40 round values of an axis, about `count`.
+// About `count` round values on an axis, at most 40.
 std::vector<double> ticks(const Axis& axis, double count);
 std::string escaped(const std::string& text);
 std::string base64(const std::string& bytes);

@@ -79,7 +79,7 @@ std::string read_file_bytes(const std::string& path) {
   std::string text;
   const auto size = std::filesystem::file_size(path, code);
   std::size_t used = 0;
-  // One byte more than the size: a file that has not grown ends without another allocation. Pipes have no size.
+  // One byte more than the size, so that a file that has not grown needs no second allocation. Pipes have no size.
   text.resize((code ? 0 : static_cast<std::size_t>(size)) + 1);
   for (std::size_t got = 1; got != 0; used += got) {
     if (used == text.size()) {
@@ -114,7 +114,7 @@ std::string_view trim(std::string_view text) {
   constexpr std::string_view kNoBreakSpace = "\xC2\xA0";
   const auto plain = [](char c) { return static_cast<signed char>(c) > ' '; };
   if (!text.empty() && plain(text.front()) && plain(text.back())) {
-    return text;  // nearly always
+    return text;  // the usual case
   }
   for (;;) {
     if (!text.empty() && kBlanks.find(text.front()) != std::string_view::npos) {
@@ -206,7 +206,7 @@ std::string_view cell_text(std::string_view cell, std::string& buffer) {
 }
 
 NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& value) {
-  // Nearly all stamps are short whole numbers.
+  // A shortcut, since nearly all time stamps are short whole numbers.
   constexpr std::array<std::int64_t, 10> kPowers{1,       10,        100,        1'000,       10'000,
                                                  100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
   if (exponent >= 0 && exponent < 10 && !text.empty() && text.size() <= 18 &&
@@ -264,7 +264,7 @@ NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& v
     const std::int64_t at = i < whole ? i : i + 1;
     return static_cast<std::uint64_t>(digits[static_cast<std::size_t>(at)] - '0');
   };
-  // Digits [0, kept) make the integer; the one after them rounds it.
+  // Digits [0, kept) make the integer, and the next one decides the rounding.
   const std::int64_t kept = whole + shift;
   const std::uint64_t limit = negative ? std::uint64_t{1} << 63U : (std::uint64_t{1} << 63U) - 1;
   std::uint64_t magnitude = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading numbers and lines from text files of unknown manners.
+// Reads numbers and lines from text files whatever their encoding, line ends and number format.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace gazetrace {
 
-// The whole file as UTF-8: a byte-order mark is dropped, UTF-16 (either order, with its mark) is converted.
-// Error(input) when it cannot be read.
+// The whole file as UTF-8: a byte-order mark is dropped, and UTF-16 with its mark (either order) is converted.
+// Error(input) where it cannot be read.
 std::string read_text_file(const std::string& path);
-// The two halves of it.
+// The two steps of read_text_file().
 std::string read_file_bytes(const std::string& path);
 std::string utf8_text(std::string text);
 
 std::string_view trim(std::string_view text);  // blanks, tabs, carriage returns, no-break spaces
 std::string to_lower(std::string_view text);   // ASCII
 
-// Walks lines ending in \n or \r\n; the last one may lack its end.
+// Walks the lines of a text, which end in \n or \r\n; the last one may lack its line break.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : rest_(text) {}
   bool next(std::string_view& line);
-  [[nodiscard]] std::int64_t number() const { return number_; }  // 1-based, of the line last returned
+  [[nodiscard]] std::int64_t number() const { return number_; }  // of the line last returned, counted from 1
   [[nodiscard]] std::string_view rest() const { return rest_; }
 
  private:
@@ -37,19 +37,19 @@ class LineReader {
 // Splits at `separator` outside double quotes. Cells keep their quotes and blanks; see `cell_text`.
 // A separator of ' ' means runs of blanks and tabs.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& cells);
-// Trimmed and unquoted; `buffer` is used only for doubled quotes.
+// A cell without blanks and quotes around it; `buffer` holds the result where there are doubled quotes.
 std::string_view cell_text(std::string_view cell, std::string& buffer);
 
-// The decimal number `text` times 10^exponent, rounded to the nearest integer (halves away from zero), digit by digit:
-// no double in between. Sign, decimal point or comma, and e/E exponents are understood.
+// The decimal number `text` times 10^exponent, rounded to the nearest integer (halves away from zero). It works on the
+// digits, so nothing is lost in a double. Sign, decimal point or comma, and e/E exponents are understood.
 enum class NumberStatus : std::uint8_t { ok, malformed, overflow };
 NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& value);
 
-// Finite doubles with a decimal point or comma, exactly rounded; empty where the text is anything else.
+// The double nearest to a finite number with a decimal point or comma; empty where the text is anything else.
 std::optional<double> number_from(std::string_view text);
 
-// Powers of ten from a unit of time to nanoseconds: "ns", "us", "μs" (either mu), "ms", "s", with common spellings and
-// "100ns"; empty for anything else.
+// The power of ten from a unit of time to nanoseconds: "ns", "us", "μs" (either mu), "ms", "s" in their common
+// spellings, and "100ns"; empty for anything else.
 std::optional<int> time_exponent(std::string_view unit);
 
 }  // namespace gazetrace

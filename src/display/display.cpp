@@ -21,7 +21,7 @@ void check_positive(double value, std::string_view field, std::string_view remed
   }
 }
 
-// Half a pixel in one of the two directions is what rounding a size to whole pixels costs.
+// Rounding a size to whole pixels may cost half a pixel in one of the two directions.
 bool same_aspect(const FrameRect& rect, int width_px, int height_px) {
   const double wanted_height = width_px * rect.height_px / rect.width_px;
   const double wanted_width = height_px * rect.width_px / rect.height_px;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A display as JSON, with the names of DisplayGeometry's fields.
+// Reads a display from JSON whose keys are the fields of DisplayGeometry.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ DisplayGeometry load_display(const std::string& path) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) {
     throw Error(
-        ErrorKind::input, path, "is not the JSON of a display",
+        ErrorKind::input, path, "is not a JSON object that describes a display",
         "give {\"width_px\": 1920, \"height_px\": 1080, \"width_cm\": 53, \"height_cm\": 30, \"distance_cm\": 60}");
   }
   DisplayGeometry display;

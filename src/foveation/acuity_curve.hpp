@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Relative visual acuity over eccentricity, after Reddy, "Perceptually Optimized 3D Graphics", IEEE CG&A 21(5), 2001:
+// Visual acuity relative to the fovea, after Reddy, "Perceptually Optimized 3D Graphics", IEEE CG&A 21(5), 2001:
 //   M(e) = 1                       e <= 5.79 degrees
 //          7.49 / (0.3 e + 1)^2    beyond
 #pragma once

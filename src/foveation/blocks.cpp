@@ -21,7 +21,7 @@ struct TileBlocks {
   std::vector<double> weights;
 };
 
-// Walks the squares of one tile, each before the next in Z order.
+// Divides one tile into blocks, in Z order.
 class BlockCutter {
  public:
   BlockCutter(const DensityField& field, const FoveationSettings& settings, double full_rate_spp,
@@ -70,7 +70,7 @@ class BlockCutter {
     cut(x + half, y + half, half);
   }
 
-  // No place in the square needs a closer look at which blocks it has.
+  // Every block in the square is known to be a pixel, so bounds need not be computed any more.
   void all_pixels(int x, int y, int side, bool full_rate) {
     if (x >= region_.width_px || y >= region_.height_px) {
       return;

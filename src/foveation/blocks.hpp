@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a density to square blocks of 1, 2, 4, ... pixels a side, each of which is a site.
+// Divides a frame with a given density into square blocks of 1, 2, 4, ... pixels a side, each of which is a site.
 #pragma once
 
 #include <vector>
@@ -8,22 +8,22 @@
 
 namespace gazetrace {
 
-// A map without counts, and beside each site the number of samples that it expects where the density 1 means one sample
-// a pixel.
+// A map without counts, and for each site the number of samples that it would expect if the full rate were one sample
+// per pixel.
 struct WeighedMap {
   SamplingMap map;
   std::vector<double> weights;
 };
 
-// One region for every block size from 1 to max_block_px, named block_<side>. A square is divided while any of its
-// places would have `block_samples` (or the full rate, where that is less) in a block of half its side: a block is the
-// smallest that expects as many at its densest place, and where the density is 1 it is a pixel. Sites of a tile follow
-// a Z-curve. The density of a block is that at the middle of its pixels; blocks that the frame's edge cuts keep their
-// own area.
+// There is one region for every block size from 1 to max_block_px, named block_<side>. A square is divided as long as a
+// block of half its side would expect `block_samples` samples (or the full rate, where that is less) at the square's
+// densest place. A block is therefore the smallest that expects that many at its densest place, and one pixel where the
+// density is 1. The sites of a tile follow a Z-curve. The density of a block is taken at the middle of its pixels;
+// blocks that the frame's edge cuts count only the pixels inside.
 WeighedMap blocks_of_density(const DensityField& field, const FoveationSettings& settings, int width_px, int height_px,
                              double full_rate_spp, int threads);
 
-// Sum of the density over the frame's pixels, by one look at each square of 8 x 8.
+// The sum of the density over the frame's pixels, from one evaluation per square of 8 x 8 pixels.
 double sum_of_density(const DensityField& field, int width_px, int height_px, int threads);
 
 }  // namespace gazetrace

@@ -14,14 +14,15 @@
 namespace gazetrace {
 namespace {
 
-// Horizontal in the eye's frame, to the right of where the gaze goes; for a gaze straight up or down, the eye's own.
+// The horizontal direction to the right of the gaze, in the eye's frame; for a gaze straight up or down, the eye's own.
 Vec3d right_of(const Vec3d& gaze) {
   const Vec3d right = cross(gaze, Vec3d{0, 1, 0});
   const double size = length(right);
   return size > 1e-12 ? right / size : Vec3d{1, 0, 0};
 }
 
-// Two pixels are the shortest cycle that a display shows: f_disp = pixels per degree / 2, apart for either axis.
+// The factor from a squared cut-off frequency to a density. Two pixels are the shortest cycle that a display shows, so
+// f_disp = pixels per degree / 2, separately for either axis.
 double density_per_cpd2(const FoveationSettings& settings, const PlanarView& view, const DensityModel& model) {
   if (model.quantity == DensityModel::Quantity::density) {
     return 1;
@@ -94,7 +95,7 @@ double DensityField::density(const FalloffPlace& place, double cos_off_axis) con
     const double solid_angle = shrinks_ ? cos_off_axis * cos_off_axis * cos_off_axis : 1.0;
     value *= value * per_cpd2_ * solid_angle;
   }
-  // An infinite cut-off must not meet a factor of zero.
+  // Limited to 1 before the last factor, since that may be zero and the cut-off infinite.
   return std::min(1.0, value * velocity_) * flight_;
 }
 
@@ -125,7 +126,7 @@ DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const
 
   std::array<Vec2d, 5> meridians{center.place.meridian};
   std::size_t directions = 1;
-  // Far from the gaze a square lies in one direction.
+  // Far from the gaze, all of a square lies in about one direction.
   if (model_.uses_meridian && center.place.eccentricity_deg < 16 * reach_deg) {
     for (const auto& [dx, dy] : {std::pair{-half, -half}, {half, -half}, {-half, half}, {half, half}}) {
       meridians.at(directions++) = meridian(view_->direction(x + dx, y + dy));

@@ -41,7 +41,7 @@ FoveationSettings with_limits_of(const DensityModel& model, const FoveationSetti
 std::optional<double> falloff_cutoff_cpd(const FoveationSettings& settings, double eccentricity_deg,
                                          double meridian_deg) {
   check_foveation(settings);
-  // A cut-off does not depend on how the eye sees the frame; any view will do.
+  // A cut-off does not depend on how the eye sees the frame, so any view will do.
   const Falloff falloff = make_falloff(settings, view_of_perspective(1, 2, 2), {0, 0, -1});
   const auto* model = std::get_if<DensityModel>(&falloff);
   if (model == nullptr || model->quantity != DensityModel::Quantity::cutoff_cpd) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a fall-off model returns: either a layout, the region of each pixel with whole rates, or a density, from which
-// blocks and counts follow in one place (blocks.hpp, whole_counts.hpp).
+// A fall-off model returns one of two things: a layout, which assigns each pixel to a region with whole rates, or a
+// density, from which blocks.hpp and whole_counts.hpp make blocks and counts.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace gazetrace {
 struct LayoutRegion {
   std::string name;
   int block_px = 1;
-  std::uint32_t tau = 1;  // samples of a block, or of a pixel, by `unit`
+  std::uint32_t tau = 1;  // samples per block or per pixel, as `unit` says
   SampleUnit unit = SampleUnit::per_block;
 };
 
@@ -29,24 +29,24 @@ struct Layout {
 // A place as a density model sees it.
 struct FalloffPlace {
   double eccentricity_deg = 0;
-  Vec2d meridian{1, 0};  // unit vector from the gaze in the visual field, right and up; only if `uses_meridian`
-  double radius_px = 0;  // from the gaze point in the frame's plane, infinite if there is none; only if `uses_radius`
+  Vec2d meridian{1, 0};  // unit vector from the gaze in the visual field, right and up; set only for `uses_meridian`
+  double radius_px = 0;  // from the gaze point in the frame's plane, infinite without one; set only for `uses_radius`
 };
 
 struct DensityModel {
   enum class Quantity : std::uint8_t {
-    cutoff_cpd,  // highest frequency seen, >= 0, may be infinite: the density is its square by the normalization
-    density      // of the full rate, >= 0
+    cutoff_cpd,  // highest visible frequency, >= 0, may be infinite; the density is its square, normalized
+    density      // relative to the full rate, >= 0
   };
   Quantity quantity = Quantity::cutoff_cpd;
   std::function<double(const FalloffPlace&)> value;
   bool uses_meridian = false, uses_radius = false;
   std::optional<double> full_rate_spp;  // default: the settings' uniform_spp
-  // Of a model made from regions: the least of their densities and the side of their largest block, which the default
-  // floor and the default limit of blocks make way for.
+  // For a model made from regions: the least of their densities and the side of their largest block. The default floor
+  // and the default limit of blocks give way to them (with_limits_of).
   double own_floor = 1;
   int own_block_px = 1;
-  // Eccentricities at which the value may turn from falling to rising or back.
+  // Eccentricities at which the value may change from falling to rising or back.
   std::vector<double> turns_deg;
 };
 
@@ -58,16 +58,16 @@ using Falloff = std::variant<Layout, DensityModel>;
 #include "foveation/falloffs.def"
 #undef FALLOFF
 
-// The settings with the floor and the largest block that hold for this model.
+// The settings with the density floor and the largest block that hold for this model.
 FoveationSettings with_limits_of(const DensityModel& model, const FoveationSettings& settings);
 
-// The one that the settings name, which check_foveation has accepted.
+// The fall-off that the settings name; check_foveation must have accepted them.
 Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction);
 
-// `samples_per_pixel` at every pixel: the fall-off "uniform", and any frame without gaze.
+// `samples_per_pixel` at every pixel, for the fall-off "uniform" and for any frame without gaze.
 Layout uniform_layout(std::uint32_t samples_per_pixel, int width_px, int height_px);
 
-// A model of cut-off that is the same in every direction.
+// A model of the cut-off frequency, or of the density, that is the same in every direction.
 template <class Cutoff>
 DensityModel isotropic_cutoff(const Cutoff& cutoff) {
   DensityModel model;

@@ -37,7 +37,7 @@ void check_gaze(const Vec3d& direction) {
   }
 }
 
-// A budget in samples a frame, or nothing.
+// The budget in samples per frame, if there is one.
 std::optional<double> budget_of(const FoveationSettings& settings, const PlanarView& view) {
   if (settings.budget_samples) {
     return static_cast<double>(*settings.budget_samples);
@@ -46,16 +46,6 @@ std::optional<double> budget_of(const FoveationSettings& settings, const PlanarV
     return *settings.budget_spp * view.width_px * view.height_px;
   }
   return std::nullopt;
-}
-
-// A uniform frame has no fovea: who asks for a filter there wants all of it smoothed, however many samples there are.
-constexpr std::uint32_t kNoneIsEnough = std::numeric_limits<std::uint32_t>::max();
-
-// For a map about a gaze. Below 8 samples a pixel smoothing is worth more than a fovea as it was traced.
-std::uint32_t enough_samples(double full_rate_spp) {
-  constexpr double kLeast = 8;
-  constexpr std::uint32_t kAlways = 16;
-  return full_rate_spp >= kLeast && full_rate_spp < kAlways ? static_cast<std::uint32_t>(full_rate_spp) : kAlways;
 }
 
 SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, const MapContext& context) {
@@ -71,7 +61,7 @@ SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, co
     scale = rate_of_budget(map, weights, *budget, kMaxSpp);
     set_whole_counts(map, weights, scale, kMaxSpp, context.seed, context.frame);
   }
-  map.enough_samples = about_gaze ? enough_samples(fovea_spp * scale) : kNoneIsEnough;
+  map.full_rate_spp = about_gaze ? fovea_spp * scale : 0;
   return map;
 }
 
@@ -89,7 +79,6 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
     rate = rate_of_budget(blocks.map, blocks.weights, *budget, kMaxSpp);
   }
   blocks.map.full_rate_spp = std::min(rate, kMaxSpp);
-  blocks.map.enough_samples = enough_samples(rate);
   set_whole_counts(blocks.map, blocks.weights, rate, kMaxSpp, context.seed, context.frame);
   return std::move(blocks.map);
 }
@@ -125,14 +114,7 @@ SamplingMap make_sampling_map(const FoveationSettings& settings, const PlanarVie
                               const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
   check_foveation(settings);
   check_view(view);
-  SamplingMap map = map_of_falloff(settings, view, gaze_direction, context);
-  if (settings.pass_through_samples) {
-    map.enough_samples =
-        *settings.pass_through_samples == 0
-            ? kNoneIsEnough
-            : static_cast<std::uint32_t>(std::min<std::uint64_t>(*settings.pass_through_samples, kNoneIsEnough));
-  }
-  return map;
+  return map_of_falloff(settings, view, gaze_direction, context);
 }
 
 std::optional<ImageGray> falloff_density(const FoveationSettings& settings, const PlanarView& view,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What settings are allowed.
+// Checks settings, and widens regions for an uncertain gaze.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kMaxBlockPx = 64;  // a site counts its pixels in 16 bits
+constexpr int kMaxBlockPx = 64;  // since a site counts its pixels in 16 bits
 constexpr int kMaxDensityBlockPx = 16;
 constexpr std::uint32_t kMaxSamples = 1'000'000;  // times 64 x 64 pixels still fits 32 bits
 
@@ -42,7 +42,7 @@ void check_angles(const FoveationSettings& settings) {
   constexpr std::string_view kPlace = "`region-angles`";
   // tan(a/2) of eq. (1) ends at 180 degrees; a cone ends at 180 degrees of eccentricity.
   const bool cone = settings.shape == RegionShape::cone;
-  const double limit = cone && settings.reading == AngleReading::full_angle ? 360.0 : 180.0;
+  const double limit = cone ? 180.0 / eccentricity_share(settings.reading) : 180.0;
   for (const double angle : settings.region_angles_deg) {
     require(std::isfinite(angle) && angle >= 0 && (cone ? angle <= limit : angle < limit), kPlace,
             shown(angle) + " degrees are not possible",
@@ -88,7 +88,7 @@ void check_density(const FoveationSettings& settings) {
                   "the share of the density that a saccade leaves");
 }
 
-// What multiplies a density has nothing to multiply in a layout of whole rates.
+// Terms multiply a density, which a layout of whole rates does not have.
 void check_terms(const FoveationSettings& settings) {
   const bool hard_regions = settings.falloff == "regions" && settings.border_blend_deg == 0;
   if (!hard_regions && settings.falloff != "uniform") {
@@ -157,11 +157,11 @@ void check_foveation(const FoveationSettings& settings) {
 
 FoveationSettings widened(const FoveationSettings& settings, double by_deg) {
   FoveationSettings wider = settings;
-  const bool is_diameter = settings.reading == AngleReading::full_angle;
+  const double share = eccentricity_share(settings.reading);
   // tan(a/2) of a disc has its pole at 180 degrees.
-  const double most = settings.shape == RegionShape::disc ? 179.0 : is_diameter ? 360.0 : 180.0;
+  const double most = settings.shape == RegionShape::disc ? 179.0 : 180.0 / share;
   for (double& angle : wider.region_angles_deg) {
-    angle = std::max(angle, std::min(angle + (is_diameter ? 2 : 1) * by_deg, most));
+    angle = std::max(angle, std::min(angle + by_deg / share, most));
   }
   return wider;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the region of each pixel to the sites that the tracer walks, in tiles that stay in the cache.
+// Makes the sites that the tracer walks from the region of each pixel, in tiles that stay in the cache.
 //
-// A block that straddles a border gives one site to each region in it, and each of them gets the block's full tau
-// (per_block): its estimate is then as good as its neighbours', and traced counts exceed nominal ones slightly.
+// A block that straddles a border has one site for each region in it, and each of them gets the block's full tau
+// (per_block). Its estimate is then as good as its neighbours', and traced counts exceed nominal ones slightly.
 #include "foveation/sites.hpp"
 
 #include <algorithm>
@@ -31,8 +31,8 @@ struct Offset {
   std::uint8_t x, y;
 };
 
-// Every position of a size x size square along a Z-curve (Morton order), so that neighbours in the list are
-// neighbours in the picture at every scale.
+// Every position of a size x size square along a Z-curve (Morton order), so that neighbours in the list are neighbours
+// in the picture at every scale.
 std::vector<Offset> z_curve(int size) {
   std::vector<Offset> order;
   order.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
@@ -91,7 +91,7 @@ class SiteBuilder {
   }
 
  private:
-  // One look at every 8th row is enough for a good guess; the vector grows if it was too small.
+  // A guess from every 8th pixel of every 8th row; the vector grows where it was too small.
   [[nodiscard]] std::size_t expected_sites() const {
     if (regions_.size() == 1 && regions_[0].block_px == 1) {
       return map_.region.pixels.size();
@@ -199,9 +199,9 @@ class SiteBuilder {
   std::vector<LayoutRegion> regions_;
   int tile_px_;
   std::vector<Offset> order_;
-  std::vector<std::vector<Offset>> block_origins_;  // per region, those of a tile whose corner is on the block grid
+  std::vector<std::vector<Offset>> block_origins_;  // per region, for a tile whose corner is on the block grid
   bool aligned_ = true;                             // every tile's corner is on every block grid
-  std::uint64_t samples_ = 0;                       // of the tile in work
+  std::uint64_t samples_ = 0;                       // of the tile that is being built
   SamplingMap map_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sites and their blocks: how a layout becomes a map, and how a site's pixels are walked.
+// Sites and their blocks: how a layout becomes a map, and how to visit a site's pixels.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void for_each_pixel(const SamplingMap& map, const Site& site, const Visit& visit
   }
 }
 
-// Cuts a layout into sites, tile by tile, and adds up the totals.
+// Divides a layout into sites, tile by tile, and adds up the totals.
 SamplingMap map_from_layout(Layout layout);
 
 }  // namespace gazetrace

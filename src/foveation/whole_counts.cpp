@@ -40,7 +40,7 @@ double expectation(double weight, double rate, double most_spp, const Site& site
 
 double total(const SamplingMap& map, const std::vector<double>& weights, double rate, double most_spp) {
   double sum = 0;
-  double lost = 0;  // Kahan: a frame has up to 10^9 sites
+  double lost = 0;  // Kahan summation, since a frame may have up to 10^9 sites
   for (std::size_t i = 0; i < weights.size(); ++i) {
     const double term = expectation(weights[i], rate, most_spp, map.sites[i]) - lost;
     const double next = sum + term;
@@ -60,7 +60,7 @@ double rate_of_budget(const SamplingMap& map, const std::vector<double>& weights
                     std::to_string(map.height_px) + " pixels can have",
                 "give at most " + std::to_string(most_spp) + " a pixel");
   }
-  // Without limits the sum is proportional to the rate; with them it is less, and grows up to the last site's limit.
+  // Without limits the sum is proportional to the rate. With limits it is less, and grows until every site is limited.
   double low = samples / total(map, weights, 1, most_spp * pixels);
   if (total(map, weights, low, most_spp) >= samples * (1 - 1e-12)) {
     return low;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazetrace/gaze_privacy.hpp"
 
+#include <fmt/format.h>
+
 #include <regex>
 #include <utility>
 
@@ -55,6 +57,17 @@ LogWithoutTimesOfDay without_times_of_day(GazeLog log) {
     result.taken_off_ns = count_from_first_sample(result.log);
   }
   return result;
+}
+
+Warnings leave_out_identities(GazeLog& log) {
+  log.clock = without_dates(log.clock);
+  const std::size_t left_out =
+      std::erase_if(log.events, [](const GazeEvent& event) { return event.type == GazeEventType::message; });
+  if (left_out == 0) {
+    return {};
+  }
+  return {fmt::format("{}: {} left out, as messages may say who was recorded; `keep-ids` keeps them", log.source,
+                      left_out == 1 ? "1 message is" : fmt::format("{} messages are", left_out))};
 }
 
 }  // namespace gazetrace

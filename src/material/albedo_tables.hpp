@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedos over (cosine, roughness), which keep the material's energy: computed at build time in double
-// precision by generate_albedo_tables.cpp.
-//   e      GGX lobe with Fresnel 1, single scattering
-//   b      the same weighted with Schlick's (1 - v.h)^5, so that Schlick's lobe has f0 (e - b) + b
+// Directional albedos over (cosine, roughness), by which the BSDF conserves energy. generate_albedo_tables.cpp computes
+// them at build time in double precision.
+//   e      of the GGX lobe with Fresnel 1, single scattering
+//   b      the same, weighted with Schlick's (1 - v.h)^5, so that a lobe with Schlick's Fresnel has f0 (e - b) + b
 //   lambert, burley   s(mu): the diffuse lobe is  c / pi  s(o) s(i) shape(o, i)  with  s(o) * integral of
 //          s(i) shape(o, i) cos_i / pi  =  1 - (albedo of the whole dielectric specular lobe at o),
 //          so that a white dielectric reflects everything, and the lobe is reciprocal. For shape = 1 this is the
 //          diffuse term of Kulla and Conty ("Revisiting Physically Based Shading at Imageworks", 2017).
 //   e_average, b_average  2 * integral of e(mu) mu dmu, of b(mu) mu dmu
 //   sheen  {raw, kept}: directional albedo of the lobe of lobes/sheen.hpp for colour 1, as its authors state it, and
-//          after sheen_gain has taken out what exceeds 1;  sheen_average: of `kept`, like e_average
-// Nodes: mu = (k / (n - 1))^2, roughness = j / (n - 1); in between bilinear in (sqrt(mu), roughness).
+//          after sheen_gain has removed what exceeds 1;  sheen_average: the average of `kept`, like e_average
+// Nodes: mu = (k / (n - 1))^2, roughness = j / (n - 1); interpolated bilinearly in (sqrt(mu), roughness).
 #pragma once
 
 #include <algorithm>
@@ -23,9 +23,9 @@ namespace gazetrace {
 inline constexpr int kAlbedoNodes = 32;
 inline constexpr float kDielectricF0 = 0.04F;
 
-// Share of the multiple-scattering lobe that is kept. On smooth surfaces that lobe is nothing but grazing directions,
-// which its cosine sampling finds once in a million times with a weight to match; the fade trades those fireflies for
-// light lost within 3 degrees of grazing at roughness below 0.2.
+// The share of the multiple-scattering lobe that is kept. On smooth surfaces that lobe consists of grazing directions
+// only, which its cosine sampling finds once in a million samples with an accordingly large weight. Fading it out
+// avoids those fireflies, and loses light within 3 degrees of grazing at roughness below 0.2.
 template <class T>
 constexpr T repeated_share(T lost_average) noexcept {
   return lost_average * lost_average / (lost_average * lost_average + T(1e-6));
@@ -48,7 +48,7 @@ struct AlbedoTables {
 
 extern const AlbedoTables kAlbedoTables;
 
-// Where a roughness lies between two rows.
+// The position of a roughness between two rows of the tables.
 struct AlbedoRow {
   int row;
   float fraction;

@@ -27,7 +27,7 @@ struct FacetMeans {
   double e, cosine;
 };
 
-// Places over the sample square of visible normals: midpoint rule, as in generate_albedo_tables.cpp.
+// Midpoint rule over the sample square of visible normals, as in generate_albedo_tables.cpp.
 class FacetQuadrature {
  public:
   FacetQuadrature() {
@@ -41,7 +41,8 @@ class FacetQuadrature {
     }
   }
 
-  // w, m: of the direction, see the header. sample_visible_normal(), written out for many normals of one view.
+  // m and w give the direction, see the header. This is sample_visible_normal(), written out for many normals of one
+  // view.
   [[nodiscard]] FacetMeans means(const GgxAlpha<double>& alpha, double m, double w) const {
     const double sine = std::sqrt(1 - m * m);
     const Vec3d s{sine * std::sqrt(1 - w), sine * std::sqrt(w), m};
@@ -79,13 +80,13 @@ Table::Elevations over_directions(const FacetQuadrature& facets, const GgxAlpha<
   Table::Elevations out{};
   for (std::size_t k = 0; k < Table::kElevations; ++k) {
     const double root = fraction_of(k, Table::kElevations);
-    // Near the normal of s, v may still be far from its own, across facets that are smooth one way.
+    // Clamped, since v may be far from the normal while s is near it, where facets are smooth in one direction only.
     const double m = std::clamp(root * root / (root * root + (1 - root) * (1 - root)), 1e-4, 1 - 3e-6);
     Table::Entry& entry = out[k];
     const auto loss = [&](const FacetMeans& means) {
       return k + 1 == Table::kElevations ? 0.0F : static_cast<float>((at_normal - means.e) / std::sqrt(1 - m));
     };
-    // Both kinds of nodes begin and end with the axes.
+    // The nodes of e and of b both begin and end at the axes.
     const FacetMeans first = facets.means(alpha, m, 0);
     const FacetMeans last = alpha.x == alpha.y ? first : facets.means(alpha, m, 1);
     entry.loss.fill(loss(first));
@@ -108,10 +109,10 @@ Table::Elevations over_directions(const FacetQuadrature& facets, const GgxAlpha<
   return out;
 }
 
-// 1 / pi * integral of f(v) v.z over the hemisphere, midpoints with many near the horizon.
+// 1 / pi * integral of f(v) v.z over the hemisphere, by midpoints that are denser near the horizon.
 Table::Average average_of(const Table& table, const GgxAlpha<float>& alpha) {
   constexpr int kCosines = 32;
-  constexpr int kTurns = 8;  // of a quarter
+  constexpr int kTurns = 8;  // steps of azimuth in a quadrant
   const AnisotropicTerms terms(table, alpha);
   double lost = 0;
   double b = 0;
@@ -143,7 +144,7 @@ AnisotropicAlbedo make_anisotropic_albedo() {
       table.lost_at_normal[i][j] = static_cast<float>(1 - at_normal);
       table.lost_at_normal[j][i] = table.lost_at_normal[i][j];
       table.entries[i][j] = over_directions(facets, alphas, at_normal);
-      // The same with x and y exchanged.
+      // By symmetry, the same with x and y exchanged.
       for (std::size_t k = 0; k < Table::kElevations; ++k) {
         const Table::Entry& from = table.entries[i][j][k];
         Table::Entry& to = table.entries[j][i][k];

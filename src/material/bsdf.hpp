@@ -7,10 +7,10 @@
 //     + (1 - metallic) base colour / pi * s(o) s(i) * shape(o, i)                       (albedo_tables.hpp explains s)
 //         shape = 1 (Lambert) or (1 + t (1-o.z)^5) (1 + t (1-i.z)^5), t = roughness (1 + o.i) - 0.5
 //         (Burley, "Physically Based Shading at Disney", 2012, section 5.3, with 2 cos^2 theta_d = 1 + o.i)
-// A white surface reflects exactly the light it receives, up to the tables' interpolation (bsdf_test states the bound).
-// Burley's own lobe absorbs light at grazing angles when smooth and makes light when rough; s takes both out and leaves
-// the angular shape. DiffuseModel::matte is base colour / pi alone. Directions point away from the surface; z is the
-// shading normal.
+// A white surface reflects exactly the light it receives, up to the interpolation of the tables (bsdf_test states the
+// bound). Burley's own lobe loses light at grazing angles on smooth surfaces and gains light on rough ones; s removes
+// both and keeps the angular shape. DiffuseModel::matte is base colour / pi alone. Directions point away from the
+// surface; z is the shading normal.
 #pragma once
 
 #include "core/luminance.hpp"
@@ -20,7 +20,7 @@
 
 namespace gazetrace {
 
-// Values at a hit, after textures.
+// The material at a hit, with textures applied.
 struct Surface {
   Vec3f base_color;
   float metallic = 0;
@@ -29,7 +29,7 @@ struct Surface {
 
 struct BsdfEval {
   Vec3f f_cos;    // f times the cosine at wi
-  float pdf = 0;  // of sample_bsdf, all lobes, over solid angle
+  float pdf = 0;  // density of sample_bsdf over solid angle, all lobes together
 };
 
 struct BsdfSample {
@@ -37,10 +37,11 @@ struct BsdfSample {
   Vec3f weight;  // f cos / pdf
   float pdf = 0;
   bool valid = false;  // false: the path ends here (a direction below the surface, or black)
-  bool delta = false;  // no lobe of this model is
+  bool delta = false;  // always false: no lobe of this model is a delta function
 };
 
-// One hit seen from one direction. Make it once, then evaluate for light samples and sample the next direction.
+// The BSDF of one hit seen from one direction. It is made once, then evaluated for light samples and sampled for the
+// next direction.
 template <DiffuseModel kDiffuse>
 class Bsdf {
  public:
@@ -48,8 +49,8 @@ class Bsdf {
       : Bsdf(surface, wo, table_row(surface), albedo_terms(table_row(surface), std::clamp(wo.z, 0.0F, 1.0F)),
              albedo_average(table_row(surface))) {}
 
-  // In steps, for loops over many hits: table reads apart from arithmetic, which then runs in vectors. `terms` are
-  // those at wo.z, `e_average` the row's.
+  // For loops over many hits, which read the tables first so that the arithmetic vectorises. `terms` are the table's
+  // values at wo.z, `e_average` is that of the row.
   Bsdf(const Surface& surface, const Vec3f& wo, const AlbedoRow& row, const AlbedoTerms& terms,
        float e_average) noexcept
       : wo_(wo),
@@ -75,13 +76,13 @@ class Bsdf {
     const Vec3f repeats = Vec3f{repeated(c.x), repeated(c.y), repeated(c.z)} * surface.metallic +
                           Vec3f{dielectric, dielectric, dielectric};
     const float lost = 1.0F - terms.e;
-    // Where nothing is lost the lobe is 0/0 with a limit of 0.
+    // Where nothing is lost, the lobe is 0/0 with a limit of 0.
     multiple_ = repeats * (lost * kInvPi / std::max(lost_average, 1e-7F));
     const float scale = kDiffuse == DiffuseModel::burley ? terms.burley : terms.lambert;
     diffuse_ = c * ((1.0F - surface.metallic) * scale * kInvPi);
     weight_o_ = schlick_weight(wo.z);
 
-    // Lobe choice by directional albedo.
+    // A lobe is chosen in proportion to its directional albedo.
     const float specular = luminance(f0_) * (terms.e - terms.b) + terms.b;
     const float diffuse =
         luminance(c) * (1.0F - surface.metallic) * (1.0F - (kDielectricF0 * (terms.e - terms.b) + terms.b)) +
@@ -108,7 +109,7 @@ class Bsdf {
   struct Direction {
     Vec3f direction, half;
   };
-  // Both lobes are sampled and one is taken: no branches.
+  // Both lobes are sampled and one result is selected, which avoids branches.
   [[nodiscard]] Direction sample_direction(const Vec2f& u, float u_lobe) const noexcept {
     const bool specular = u_lobe < specular_probability_;
     const Vec3f facet = sample_visible_normal(wo_, alpha_, u);
@@ -168,8 +169,8 @@ class Bsdf {
   float alpha_;
   Vec3f f0_;
   float smith_o_;
-  Vec3f multiple_;  // everything of that lobe but (1 - e(i))
-  Vec3f diffuse_;   // everything of that lobe but s(i) shape
+  Vec3f multiple_;  // the multiple-scattering lobe without its factor (1 - e(i))
+  Vec3f diffuse_;   // the diffuse lobe without its factor s(i) shape
   float weight_o_ = 0;
   float specular_probability_ = 1;
 };

@@ -44,7 +44,7 @@ double single_scattering(double mu, double roughness, double eta) {
   return std::min(kept / (kAzimuths * kRings), 1.0);
 }
 
-// 2 * integral of f(mu) mu dmu with f linear in x = sqrt(mu) between nodes: Simpson's rule with many steps.
+// 2 * integral of f(mu) mu dmu, with f linear in x = sqrt(mu) between nodes, by Simpson's rule with many steps.
 double cosine_average(const DielectricAlbedo::Row& row) {
   constexpr int kSteps = 8 * (kNodes - 1);
   double sum = 0;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Share of even light from all around that a metallic-roughness surface reflects towards the viewer: the integral of
-// f cos over the hemisphere, from the tables that keep the BSDF's energy (bsdf.hpp, albedo_tables.hpp).
+// The share of uniform light from all around that a metallic-roughness surface reflects towards the viewer: the
+// integral of f cos over the hemisphere, from the tables by which the BSDF conserves energy (bsdf.hpp,
+// albedo_tables.hpp).
 #pragma once
 
 #include "material/bsdf.hpp"
 
 namespace gazetrace {
 
-// f0: of the dielectric part, at normal incidence. `cosine`: of the view to the shading normal, 0..1.
+// `f0`: reflectance of the dielectric part at normal incidence. `cosine`: between view and shading normal, 0..1.
 inline Vec3f directional_albedo(const Surface& surface, float f0, float cosine) noexcept {
   const AlbedoRow row = albedo_row(std::clamp(surface.roughness, 0.0F, 1.0F));
   const AlbedoTerms terms = albedo_terms(row, cosine);
@@ -21,7 +22,7 @@ inline Vec3f directional_albedo(const Surface& surface, float f0, float cosine) 
   };
   const float dielectric = specular(f0);
   const Vec3f& c = surface.base_color;
-  if (surface.metallic == 0) {  // most are, and it is the same for less
+  if (surface.metallic == 0) {  // the usual case; the same result at less cost
     const float left = 1.0F - dielectric;
     return {dielectric + c.x * left, dielectric + c.y * left, dielectric + c.z * left};
   }

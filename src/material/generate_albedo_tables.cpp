@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Build-time program: writes the tables of albedo_tables.hpp as a C++ source to the file named on its command line.
+// A build-time program that writes the tables of albedo_tables.hpp as a C++ source to the file named on its command
+// line.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -25,9 +26,9 @@ double node_mu(std::size_t k) {
   return x * x;
 }
 
-// Averages of G2 / G1 and of G2 / G1 (1 - v.h)^5 over visible-normal samples: midpoint rule over the unit square, half
-// of it in azimuth because of mirror symmetry. The quintic crowds points at both ends of u.y: the lobe's centre, and
-// its tail of steep facets, which lies within alpha^2 of 1.
+// Averages of G2 / G1 and of G2 / G1 (1 - v.h)^5 over visible normals, by the midpoint rule over half of the unit
+// square (the other half of the azimuth is a mirror image). A quintic crowds points at both ends of u.y: the centre of
+// the lobe, and its tail of steep facets, which lies within alpha^2 of 1.
 void lobe_albedo(double mu, double roughness, double& e, double& b) {
   constexpr int kAzimuths = 48;
   constexpr int kRings = 256;
@@ -55,8 +56,8 @@ void lobe_albedo(double mu, double roughness, double& e, double& b) {
   b /= kAzimuths * kRings;
 }
 
-// Points and weights for 2 * integral of f(mu) mu dmu, per interval between nodes in x = sqrt(mu): exact for f linear
-// in x (Gauss-Legendre, four points; the integrand is 4 f x^3 dx).
+// Points and weights for 2 * integral of f(mu) mu dmu, for each interval between nodes of x = sqrt(mu); exact for f
+// linear in x (Gauss-Legendre with four points; the integrand is 4 f x^3 dx).
 Quadrature cosine_quadrature() {
   constexpr std::array<double, 4> kX{-0.861136311594052575, -0.339981043584856265, 0.339981043584856265,
                                      0.861136311594052575};
@@ -118,8 +119,8 @@ Row balance_burley(const Quadrature& q, double roughness, const Row& target) {
   return s;
 }
 
-// Integral of the sheen lobe times cosine: midpoint rule over the hemisphere, nodes crowded at the horizon. `raw`: the
-// same without any gain, nullptr for that one.
+// Integral of the sheen lobe times cosine, by the midpoint rule over the hemisphere with nodes crowded at the horizon.
+// `raw` is the same integral without any gain; nullptr to compute that one.
 double sheen_lobe_albedo(double mu, double roughness, const Row* raw) {
   constexpr int kRings = 96;
   constexpr int kAzimuths = 96;
@@ -169,7 +170,7 @@ bool write_tables(std::FILE* out) {
     const double f0 = kDielectricF0;
     const double f = f0 + (1 - f0) / 21;
     const double repeats = repeated_share(1 - averages[j]) * f * f * averages[j] / (1 - f * (1 - averages[j]));
-    Row passed{};  // what the dielectric's specular lobes leave for the diffuse one
+    Row passed{};  // what the specular lobes of a dielectric leave for the diffuse lobe
     for (std::size_t k = 0; k < kNodes; ++k) {
       passed[k] = 1 - (f0 * (e[k] - b[k]) + b[k] + (1 - e[k]) * repeats);
       passed[k] = std::max(passed[k], 0.0);

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of bsdf.hpp with glTF's extensions. From the top:
+// The surface of bsdf.hpp with glTF's extensions. From the top, its layers are:
 //   clearcoat                                                                    lobes/clearcoat.hpp
 //   sheen                                                                        lobes/sheen.hpp
 //   base = metallic * metal + (1 - metallic) ((1 - t) * opaque + t * clear)      t: transmission
 //     metal   facets that reflect the base colour
 //     opaque  facets that reflect f0..f90, over diffuse light, a share of which may leave on the other side
-//     clear   facets that reflect and let through: of a solid body as Walter et al. (lobes/dielectric.hpp), of a sheet
+//     clear   facets that reflect and transmit: for a solid body as Walter et al. (lobes/dielectric.hpp), for a sheet
 //             mirrored through it with the same roughness (KHR_materials_transmission)
-// All facets are the same (lobes/ggx.hpp). An iridescent film changes their Fresnel (lobes/thin_film.hpp). Every part
-// has its repeated scattering, so that each is white by itself where its colours are; lobes/layering.hpp says how a
-// layer takes from what is below. Reciprocal: f / (index on o's side)^2 is symmetric.
+// All parts have the same facets (lobes/ggx.hpp). An iridescent film changes their Fresnel term (lobes/thin_film.hpp).
+// Every part has its own repeated scattering, so that each is white by itself where its colours are white.
+// lobes/layering.hpp says how much light a layer leaves for what is below it. The BSDF is reciprocal:
+// f / (index on o's side)^2 is symmetric.
 // Energy: layered_bsdf_test and layered_furnace_test state the bounds, and what films of high index lose. Anisotropic
-// facets have tables of their own (lobes/anisotropic_albedo.hpp); their diffuse light is Lambertian. Left isotropic: a
-// body's repeated scattering (lobes/dielectric_albedo.hpp) at their mean roughness. White glass of any strength returns
-// 0.98 to 1.01 as a sheet, but 0.64 to 1.27 as a body near its horizon. Left out: light that a clearcoat throws back to
-// the base, coats' own absorption, sheen on the inside of bodies, the change of a film's colours under repeated
-// scattering.
+// facets have tables of their own (lobes/anisotropic_albedo.hpp), and their diffuse light is Lambertian; the repeated
+// scattering of a body (lobes/dielectric_albedo.hpp) remains isotropic, at their mean roughness. White glass of any
+// strength returns 0.98 to 1.01 of the light as a sheet, but 0.64 to 1.27 as a body near its horizon. Left out are
+// light that a clearcoat reflects back to the base, the absorption of coats, sheen on the inside of bodies, and the
+// change of a film's colours under repeated scattering.
 #pragma once
 
 #include <algorithm>
@@ -69,7 +70,7 @@ class LayeredBsdf {
       lost_average_ = {1.0F - kept_average(*s_.dielectric, 0, dielectric_row_),
                        1.0F - kept_average(*s_.dielectric, 1, dielectric_row_)};
       lost_share_ = repeated_share(std::min(lost_average_[0], lost_average_[1]));
-      // Both sides pass the same; see dielectric_albedo.hpp.
+      // Both sides must exchange the same amount of light; see dielectric_albedo.hpp.
       const float square = s_.inside ? s_.ior * s_.ior : 1.0F;
       passed_ = s_.dielectric->passed_average * std::min(lost_average_[0], lost_average_[1]) /
                 (std::max(lost_average_[side], 1e-7F) * square);
@@ -77,7 +78,7 @@ class LayeredBsdf {
     choose_probabilities();
   }
 
-  // f |cosine|; wi.z < 0: light from the other side.
+  // f |cosine| and its density; wi.z < 0 means light from the other side.
   [[nodiscard]] BsdfEval evaluate(const Vec3f& wi) const noexcept {
     BsdfEval result{{0, 0, 0}, 0};
     const bool through = wi.z < 0;
@@ -135,7 +136,7 @@ class LayeredBsdf {
     } else if (coat_probability_ > 0) {
       const Vec3f coat_wi = coat_.sample(coat_wo_, u);
       wi = coat_frame_.to_world(coat_wi);
-      found = found && wi.z > 0 && coat_wi.z > 0;  // beneath either surface it has no density
+      found = found && wi.z > 0 && coat_wi.z > 0;  // a direction below either surface has no density
     } else {
       found = false;
     }
@@ -158,14 +159,15 @@ class LayeredBsdf {
 
  private:
   static constexpr float kInvPi = static_cast<float>(1 / kPi);
-  static constexpr float kMiddle = 0.7F;  // a film's reflectance on average: that under one middling angle
+  static constexpr float kMiddle = 0.7F;  // cosine of the angle at which a film's reflectance stands for its average
 
   struct Scale {
-    float broad = 1, narrow = 1, coat = 1;  // for the base's lobes; for the sheen lobe
+    float broad = 1, narrow = 1, coat = 1;  // for the base's broad and narrow lobes; for the sheen lobe
   };
   [[nodiscard]] bool is_bent() const noexcept { return s_.solid && facets_.clear() > 0 && s_.dielectric != nullptr; }
 
-  // A body's layers lie on its outside: light that stays inside does not meet them. A sheet has them on both sides.
+  // The layers of a body are on its outside, so light that stays inside does not meet them. A sheet has them on both
+  // sides.
   [[nodiscard]] Scale layer_scale(const Vec3f& wi, bool through) const noexcept {
     Scale scale;
     if (!has_coat_ && !has_sheen_) {
@@ -196,27 +198,28 @@ class LayeredBsdf {
     return scale;
   }
 
-  // Burley's shape belongs to one roughness.
+  // Burley's shape needs a single roughness, so anisotropic surfaces are Lambertian.
   [[nodiscard]] bool lambertian() const noexcept { return kDiffuse != DiffuseModel::burley || facets_.anisotropic(); }
   [[nodiscard]] AlbedoTerms terms_at(const Vec3f& v) const noexcept { return facets_.terms_at(terms_, v); }
 
-  // The normal reflectance of Schlick's formula that shows what the film does under one angle; strongest channel.
+  // The reflectance at normal incidence with which Schlick's formula gives what the film reflects at this angle; for
+  // the strongest channel.
   [[nodiscard]] float film_f0(float cosine) const noexcept {
     const float at = std::clamp(cosine, 0.0F, 1.0F);
     const float rise = schlick_weight(at);
     const float f = largest_channel(facets_.opaque_fresnel(at));
     return std::clamp((f - rise) / std::max(1.0F - rise, 1e-3F), 0.0F, 1.0F);
   }
-  // What the opaque part's facets reflect in all, the strongest channel.
+  // The total reflectance of the opaque part's facets, for the strongest channel.
   [[nodiscard]] float opaque_albedo(float cosine, const AlbedoTerms& terms) const noexcept {
     if (s_.film > 0) {
-      // As if Schlick's under the angle that facets of this roughness are mostly seen at.
+      // Approximated by Schlick's formula at the angle at which facets of this roughness are mostly seen.
       const float f0 = film_f0(cosine + (kMiddle - cosine) * std::min(s_.base.roughness, 1.0F));
       return terms_.albedo(terms, f0, 1.0F);
     }
     return terms_.albedo(terms, largest_channel(s_.f0), s_.f90);
   }
-  // s of bsdf.hpp. For other reflectances than its 0.04 the Lambertian form, with Burley's correction as at 0.04.
+  // s of bsdf.hpp. For reflectances other than 0.04, the Lambertian form with Burley's correction for 0.04.
   [[nodiscard]] float diffuse_scale(float cosine, const AlbedoTerms& terms) const noexcept {
     if (plain_) {
       return lambertian() ? terms.lambert : terms.burley;
@@ -227,7 +230,7 @@ class LayeredBsdf {
     return lambertian() || terms.lambert < 1e-6F ? left : left * terms.burley / terms.lambert;
   }
 
-  // Lobes over the whole hemisphere: diffuse light and repeated scattering. f without cosine.
+  // The lobes over the whole hemisphere, diffuse light and repeated scattering: f without the cosine.
   [[nodiscard]] Vec3f broad(const Vec3f& wi, bool through) const noexcept {
     const Vec3f up{wi.x, wi.y, std::fabs(wi.z)};
     const AlbedoTerms at_i = terms_at(up);
@@ -247,7 +250,7 @@ class LayeredBsdf {
       f += s_.base.base_color * (facets_.clear() * sheet_passed() * repeated);
     }
     if (is_bent()) {
-      const std::size_t side = s_.inside != through ? 1 : 0;  // where wi is
+      const std::size_t side = s_.inside != through ? 1 : 0;  // the side of wi
       const float average = lost_average_[side];
       const float lost_i = 1.0F - kept_at(*s_.dielectric, side, dielectric_row_, up.z);
       const float lobe = facets_.clear() * lost_o_ * lost_i * lost_share_ * kInvPi / std::max(average, 1e-7F);
@@ -261,7 +264,8 @@ class LayeredBsdf {
     return f;
   }
 
-  // Diffuse light into a denser body, and the smaller share of it that gets out again, so that f stays reciprocal.
+  // The colour of diffuse light into a denser body, and of the smaller share that gets out again, which keeps f
+  // reciprocal.
   [[nodiscard]] Vec3f diffuse_color(bool through) const noexcept {
     const float share = s_.diffuse_transmission;
     const Vec3f passed = s_.diffuse_transmission_color * share;
@@ -273,7 +277,7 @@ class LayeredBsdf {
     return s_.inside ? reflected + passed * (1.0F - 1.0F / n2) : reflected;
   }
 
-  // Reflectance of the repeated-scattering lobe, a body's clear part apart.
+  // The reflectance of the repeated-scattering lobe, without the clear part of a body.
   [[nodiscard]] Vec3f repeated_color() const noexcept {
     Vec3f color{0, 0, 0};
     const auto repeated = [&](const Vec3f& f0, float f90) {
@@ -290,13 +294,13 @@ class LayeredBsdf {
     }
     return color;
   }
-  // Of a sheet's clear part: what repeated scattering does not reflect goes through.
+  // For the clear part of a sheet: what repeated scattering does not reflect is transmitted.
   [[nodiscard]] float sheet_passed() const noexcept {
     const float lost_average = 1.0F - terms_.e_average;
     return std::max(repeated_share(lost_average) - terms_.repeated(largest_channel(s_.f0), s_.f90), 0.0F);
   }
 
-  // By what each lobe carries, as far as the view alone tells.
+  // In proportion to the light of each lobe, as far as it is known from the view direction alone.
   void choose_probabilities() noexcept {
     const float coat = has_coat_ ? under_coat_.o : 0.0F;
     const float sheen = has_sheen_ ? under_sheen_.o : 0.0F;
@@ -325,7 +329,7 @@ class LayeredBsdf {
     coat_probability_ = s_.inside ? 0.0F : coat;
     sheen_probability_ = s_.inside ? 0.0F : (1.0F - coat) * luminance(s_.sheen_color) * sheen_o_.kept;
     facet_probability_ = base * facets;
-    // A coat's repeated scattering is found by the diffuse lobe.
+    // The repeated scattering of a coat is sampled by the diffuse lobe.
     diffuse_probability_ = base * diffuse + 0.05F * coat_probability_ * s_.clearcoat_roughness;
     through_probability_ = base * through;
     const float sum =

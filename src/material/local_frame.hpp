@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames whose z is a given normal.
+// Orthonormal frames whose z axis is a given normal.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace gazetrace {
 
-// Orthonormal frame about a unit normal without a branch (Duff et al., "Building an Orthonormal Basis, Revisited",
-// JCGT 6(1), 2017).
+// A frame about a unit normal, made without a branch (Duff et al., "Building an Orthonormal Basis, Revisited", JCGT
+// 6(1), 2017).
 struct LocalFrame {
   Vec3f s, t, n;
   explicit LocalFrame(const Vec3f& normal) : n(normal) {
@@ -19,7 +19,7 @@ struct LocalFrame {
     s = {1.0F + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
     t = {b, sign + normal.y * normal.y * a, -normal.y};
   }
-  // About the same normal, with s along `tangent` as far as it lies in the plane; some frame where it does not.
+  // A frame with s along the part of `tangent` that is perpendicular to the normal; any frame where there is none.
   static LocalFrame along(const Vec3f& normal, const Vec3f& tangent) {
     LocalFrame frame(normal);
     const Vec3f in_plane = tangent - normal * dot(tangent, normal);

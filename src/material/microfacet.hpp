@@ -2,9 +2,9 @@
 // GGX (Trowbridge-Reitz) microfacets with height-correlated Smith masking, in a frame whose z is the normal.
 //   D(h)      = 1 / (pi alpha^2 ((h.x^2 + h.y^2) / alpha^2 + h.z^2)^2)
 //   G2/(4 o i) = 0.5 / (o.z L(i) + i.z L(o)),  L(v) = sqrt(alpha^2 (1 - v.z^2) + v.z^2)
-// (Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014, eqs. 71, 72, 99.) D is written with h.x and
-// h.y, not with 1 - h.z^2, which has no digits left where alpha is small. Templates over the scalar, so that tests can
-// differentiate the very same mapping in double precision.
+// (Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014, eqs. 71, 72, 99.) D is computed from h.x and
+// h.y, not from 1 - h.z^2, which has no digits left where alpha is small. The functions are templates over the scalar,
+// so that tests can differentiate the same mapping in double precision.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace gazetrace {
 
-// Smoother surfaces are rendered with this alpha (a lobe 0.06 degrees wide): roughness below 0.0224. A mirror is then
-// an ordinary lobe that light sampling and MIS can see, and nothing divides by zero.
+// Surfaces of a roughness below 0.0224 are rendered with this alpha (a lobe 0.06 degrees wide). A mirror is then an
+// ordinary lobe that light sampling and MIS can handle, and nothing divides by zero.
 inline constexpr double kAlphaMin = 5e-4;
 
 template <class T>
@@ -31,14 +31,15 @@ T ggx_distribution(const Vec3<T>& h, T alpha) noexcept {
   return T(1 / kPi) / (a2 * tangent * tangent);
 }
 
-// L(v) of the head comment; Smith's G1 = 2 cos / (cos + L).
+// L(v) of the comment above; Smith's G1 = 2 cos / (cos + L).
 template <class T>
 T smith_length(T cosine, T alpha2) noexcept {
   return std::sqrt(alpha2 + (T(1) - alpha2) * cosine * cosine);
 }
 
-// Half-vector distributed as the visible normals of `wo` (Dupuy and Benyoub, "Sampling Visible GGX Normals with
-// Spherical Caps", 2023, listing 3): a point on the cap of reflected directions in the stretched, unit-roughness space.
+// A half-vector distributed as the visible normals of `wo` (Dupuy and Benyoub, "Sampling Visible GGX Normals with
+// Spherical Caps", 2023, listing 3), from a point on the cap of reflected directions in the stretched space of unit
+// roughness.
 template <class T>
 [[gnu::always_inline]] inline Vec3<T> sample_visible_normal(const Vec3<T>& wo, T alpha, const Vec2<T>& u) noexcept {
   const Vec3<T> stretched = normalize(Vec3<T>{wo.x * alpha, wo.y * alpha, wo.z});
@@ -56,7 +57,7 @@ Vec3<T> reflect(const Vec3<T>& wo, const Vec3<T>& h) noexcept {
   return h * (T(2) * dot(wo, h)) - wo;
 }
 
-// Density over solid angle of reflect(wo, sample_visible_normal(...)): G1(wo) D(h) / (4 wo.z).
+// The density of reflect(wo, sample_visible_normal(...)) over solid angle: G1(wo) D(h) / (4 wo.z).
 template <class T>
 T visible_reflection_pdf(T wo_z, T smith_o, T distribution) noexcept {
   return distribution * T(0.5) / (wo_z + smith_o);

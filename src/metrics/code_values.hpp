@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of the colour channels, and display code values as light.
+// The luma of code values, and the light that a display makes of them.
 #pragma once
 
 #include "gazetrace/image.hpp"
@@ -13,7 +13,7 @@ inline double luma_601(const Vec3f& code) {
          0.114 * static_cast<double>(code.z);
 }
 
-// The light of a picture of code values, through a table where they are 8-bit ones.
+// The light of a picture of code values, relative to the peak; 8-bit code values go through a table.
 ImageRgb light_of_code(const ImageRgb& code, DisplayResponse response, double peak_cd_m2, int threads);
 
 }  // namespace gazetrace

@@ -25,8 +25,8 @@ double spatio_velocity(double r_cpd, double omega_hz) {
   return k * kC0 * kC1 * kC2 * v * angular * angular * std::exp(-2 * angular / r_max);
 }
 
-// A mechanism of the spatio-chromatic sensitivity (Wuerger et al. 2020) with the stimulus-size model of Rovamo et al.
-// 1993.
+// One mechanism of the spatio-chromatic sensitivity (Wuerger et al. 2020), with the stimulus-size model of Rovamo et
+// al. 1993.
 struct Mechanism {
   double peak, peak_cpd, bandwidth, gamma, c;
   bool low_pass;
@@ -43,7 +43,7 @@ double mechanism_response(const Mechanism& m, double r_cpd, double area) {
 }  // namespace
 
 double contrast_sensitivity(double rho_cpd, double omega_hz, double luminance_cd_m2, double eccentricity_deg) {
-  // Relative cortical magnification (Dougherty et al. 2003) turns frequency and size into those of the fovea.
+  // Relative cortical magnification (Dougherty et al. 2003) converts frequency and size to their foveal equivalents.
   constexpr double kHalfDeg = 3.67;
   const double magnification = std::pow(kHalfDeg / (eccentricity_deg + kHalfDeg), 0.604562);
   const double r = rho_cpd / magnification;
@@ -62,7 +62,7 @@ double contrast_sensitivity(double rho_cpd, double omega_hz, double luminance_cd
                              false};
   const Mechanism red_green{rise(423.978, 15.4032, 0.50343), 0.122699, 2.70669, 1.72903, 1.38437, true};
   const Mechanism blue_yellow{rise(11811.9, 196.342, 0.339396), 7.1099e-8, 5.3416, 1.47263, 0.282573, true};
-  // What an achromatic contrast of D65 drives each mechanism with.
+  // The response of each mechanism to an achromatic contrast of D65.
   const double s1 = 1.25886094 * mechanism_response(achromatic, r, area);
   const double s2 = 0.06546161 * mechanism_response(red_green, r, area);
   const double s3 = 0.16614262 * mechanism_response(blue_yellow, r, area);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FovVideoVDP's contrast sensitivity: spatio-temporal frequency, luminance and eccentricity.
+// FovVideoVDP's contrast sensitivity as a function of spatial and temporal frequency, luminance and eccentricity.
 #pragma once
 
 #include <array>
@@ -8,19 +8,19 @@
 
 namespace gazetrace {
 
-// The formula, before FovVideoVDP's sensitivity correction. rho in cycles per degree, omega in Hz, L in cd/m2.
+// The formula, without FovVideoVDP's sensitivity correction.
 double contrast_sensitivity(double rho_cpd, double omega_hz, double luminance_cd_m2, double eccentricity_deg);
 
-// Its values on the metric's grid, for the two temporal channels, and trilinear interpolation of their logarithms.
+// Its values on the metric's grid for the two temporal channels, with trilinear interpolation of their logarithms.
 class SensitivityTable {
  public:
-  // The one table there is, made when it is first asked for (about 0.1 s).
+  // The only table, which is made when it is first asked for (about 0.1 s).
   static const SensitivityTable& get();
 
   struct Query {
     float log2_rho, log2_luminance, sqrt_eccentricity;
   };
-  // log2 S of the sustained (0 Hz) and transient (5 Hz) channel; queries beyond the grid are clamped to it.
+  // log2 S of the sustained (0 Hz) and transient (5 Hz) channels; queries outside the grid are clamped to it.
   [[nodiscard]] std::array<float, 2> log2_sensitivity(const Query& query) const;
 
  private:
@@ -29,7 +29,7 @@ class SensitivityTable {
   struct Node {
     float sustained, transient;
   };
-  std::vector<Node> nodes_;  // luminance, then rho, then eccentricity runs fastest
+  std::vector<Node> nodes_;  // luminance is the slowest index, then rho, then eccentricity
 };
 
 }  // namespace gazetrace

@@ -21,21 +21,21 @@ namespace {
 
 constexpr std::size_t kScales = 4;
 constexpr double kFinestCpd = 4;
-constexpr double kLeastLuminance = 0.1;  // of a background, cd/m2
+constexpr double kLeastLuminance = 0.1;  // of the background L, cd/m2
 
 int finest_cell_px(double pixels_per_degree) {
   return std::max(1, static_cast<int>(std::lround(pixels_per_degree / (2 * kFinestCpd))));
 }
 
-// Both sequences' spectra of the cells of one size.
+// The spectra of both sequences in the cells of one size.
 struct CellSpectra {
   int cell_px = 0, columns = 0, rows = 0;
   std::vector<std::complex<double>> reference, test;  // k = 0 .. N/2 of each cell
   std::vector<double> luminance;                      // mean of the reference
-  std::vector<double> pixels;                         // of the cell that lie in the picture
+  std::vector<double> pixels;                         // number of the cell's pixels inside the picture
 };
 
-// Cells of twice the side.
+// The spectra of cells of twice the side, as means over four cells.
 CellSpectra paired(const CellSpectra& fine, std::size_t bins, int threads) {
   CellSpectra coarse;
   coarse.cell_px = 2 * fine.cell_px;
@@ -95,7 +95,7 @@ FlickerRange flicker_range(double frames_per_second, double luminance_cd_m2) {
   const int frames = frames_of_a_second(frames_per_second);
   FlickerRange range;
   range.lowest_hz = frames_per_second / frames;
-  const int whole_periods = frames / 2;  // of the highest frequency, in a second
+  const int whole_periods = frames / 2;  // of the highest frequency, within a second
   range.highest_hz = range.lowest_hz * whole_periods;
   const auto sees = [&](double hz) {
     double most = 0;
@@ -116,12 +116,13 @@ FlickerRange flicker_range(double frames_per_second, double luminance_cd_m2) {
 
 std::string flicker_range_text(const FlickerRange& range) {
   return fmt::format(
-      "from {:g} to {:g} Hz, of which a frame sees the second before it; {}", range.lowest_hz, range.highest_hz,
+      "from {:g} to {:g} Hz, over the second up to each frame; {}", range.lowest_hz, range.highest_hz,
       range.fusion_hz > range.highest_hz
-          ? fmt::format("up to {:.0f} Hz would be seen, but what is faster than {:g} Hz cannot be told at "
-                        "this frame rate and shows as something slower, or not",
-                        range.fusion_hz, range.highest_hz)
-          : "all that is seen can be told at this frame rate");
+          ? fmt::format(
+                "flicker of up to {:.0f} Hz would be visible, but what is faster than {:g} Hz cannot be measured "
+                "at this frame rate: it appears as something slower, or not at all",
+                range.fusion_hz, range.highest_hz)
+          : "all visible flicker can be measured at this frame rate");
 }
 
 struct FlickerMeter::Impl {
@@ -129,7 +130,7 @@ struct FlickerMeter::Impl {
   int frames;
   int cell_px;
   SlidingSpectrum reference, test;
-  std::vector<FlickerSensitivity> sensitivity;  // one a scale
+  std::vector<FlickerSensitivity> sensitivity;  // one per scale
 
   Impl(const FlickerSettings& given, int frame_count, int cell, int columns, int rows)
       : settings(given),
@@ -166,7 +167,7 @@ struct FlickerMeter::Impl {
     return cells;
   }
 
-  // F of each cell of a scale, before the largest of all scales is taken.
+  // F of each cell at one scale, before the maximum over the scales is taken.
   [[nodiscard]] ImageGray excess(const CellSpectra& cells, std::size_t scale, const Vec3d& gaze) const {
     ImageGray result(cells.columns, cells.rows);
     const std::size_t bins = reference.bins();

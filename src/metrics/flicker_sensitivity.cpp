@@ -17,7 +17,7 @@ constexpr double kLeastLog2L = -10;  // about 0.001 cd/m2
 constexpr double kMostLog2L = 14;    // 16384 cd/m2
 constexpr double kMostEccentricityDeg = 120;
 
-// Where a value lies among `count` nodes: the node before it and the share of the next.
+// Where a value lies among `count` nodes: the node before it, and the weight of the next one.
 struct Place {
   std::size_t node;
   float share;

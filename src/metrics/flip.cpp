@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// FLIP over tiles that stay in the second-level cache: every tile reads its pixels and a rim as wide as the kernels,
-// and all steps up to the final value happen there. Section numbers are those of Andersson et al. 2020.
+// FLIP, computed in tiles that stay in the second-level cache: every tile reads its pixels and a rim as wide as the
+// kernels, and does all steps up to the final value. Section numbers are those of Andersson et al. 2020.
 //
-// The opponent space YyCxCz is linear in x = X/Xn, y = Y/Yn, z = Z/Zn, so the filters run on y, x - y and y - z; the
-// scales 116, 500 and 200 would cancel.
+// The opponent space YyCxCz is linear in x = X/Xn, y = Y/Yn, z = Z/Zn, so the filters are applied to y, x - y and y -
+// z; the scales 116, 500 and 200 would cancel.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,7 +47,7 @@ constexpr float kBz = static_cast<float>(1.057148933 * kWhiteZ);
 
 // Section 4.1.3: exponent of the colour distance, its largest value, and the knee of the remapping.
 constexpr float kColorExponent = 0.7F;
-constexpr float kColorMax = 41.2760984F;  // green against blue
+constexpr float kColorMax = 41.2760984F;  // between green and blue
 constexpr float kKnee = 0.4F * kColorMax;
 constexpr float kKneeValue = 0.95F;
 
@@ -58,7 +58,7 @@ constexpr int rounded_up(int count) {
 }
 
 struct Tile {
-  int x0_px, y0_px, width_px, height_px;  // what is scored
+  int x0_px, y0_px, width_px, height_px;  // the pixels that are scored
   int rim_px;
   int stride;  // of planes with a rim, a multiple of the lanes
   [[nodiscard]] int rows_with_rim() const { return height_px + 2 * rim_px; }
@@ -74,7 +74,7 @@ struct RgbTile {
   Plane r, g, b;
 };
 
-// Pixels outside the picture are those of its border.
+// Outside the picture the pixels of its border are repeated.
 RgbTile load(const ImageRgb& image, const Tile& tile) {
   RgbTile rgb{Plane(tile.size_with_rim()), Plane(tile.size_with_rim()), Plane(tile.size_with_rim())};
   for (int row = 0; row < tile.rows_with_rim(); ++row) {
@@ -91,7 +91,7 @@ RgbTile load(const ImageRgb& image, const Tile& tile) {
   return rgb;
 }
 
-// y, x - y and y - z of display light.
+// The planes y, x - y and y - z of display light.
 struct OpponentTile {
   Plane achromatic, red_green, blue_yellow;
 };
@@ -111,7 +111,7 @@ void to_opponent(const RgbTile& light, OpponentTile& opponent) {
   }
 }
 
-// Weighted sum of `taps` inputs that lie `step` apart, for kTileWidth outputs.
+// The sums of inputs that lie `step` apart, weighted by the kernel, for kTileWidth outputs.
 void convolve(const float* in, std::size_t step, const std::vector<float>& kernel, float* out) {
   const std::size_t taps = kernel.size();
   for (int x = 0; x < kTileWidth; x += kLanes) {
@@ -152,8 +152,8 @@ inline float lab_f(float t) {
   return t > kDelta * kDelta * kDelta ? root : line;
 }
 
-// What is compared of one picture: Hunt-adjusted L*a*b* after the filters (sections 4.1.1 and 4.1.2), and the strengths
-// of edges and points (4.2). kTileWidth wide.
+// The features of one picture that are compared: Hunt-adjusted L*a*b* after the filters (sections 4.1.1 and 4.1.2), and
+// the strengths of edges and points (4.2). Planes are kTileWidth wide.
 struct Features {
   explicit Features(const Tile& tile)
       : lightness(static_cast<std::size_t>(tile.height_px * kTileWidth)),
@@ -189,7 +189,7 @@ void magnitude(const Row& x, const Row& y, float* out) {
   }
 }
 
-// Buffers of a tile, for both pictures and all exposures in turn.
+// The buffers of a tile, used for both pictures and for all exposures in turn.
 struct Scratch {
   explicit Scratch(const Tile& tile)
       : opponent{Plane(tile.size_with_rim()), Plane(tile.size_with_rim()), Plane(tile.size_with_rim())} {

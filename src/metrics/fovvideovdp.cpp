@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The metric itself: temporal channels, contrast in the bands of a Laplacian pyramid, division by the threshold, masked
-// difference, pooling. Section numbers are those of the paper.
+// difference and pooling. Section numbers are those of the paper.
 #include "gazetrace/fovvideovdp.hpp"
 
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ constexpr double kTransientWeight = 0.25;
 constexpr double kJodScale = 0.0161713;
 constexpr double kLog10JodExponent = -0.2280;
 
-// The planes of one moment; transient ones are empty for stills.
+// The channels of both sequences at one moment; the transient ones are empty for stills.
 struct Planes {
   ImageGray reference_sustained, test_sustained, reference_transient, test_transient;
 };
@@ -40,10 +40,10 @@ struct LuminancePair {
   ImageGray reference, test;
 };
 
-// Directions of a band's columns and rows, and log2 of the frequency at each pixel.
+// The directions of a band's columns and rows, and log2 of the band's frequency at each pixel.
 struct BandGeometry {
   std::vector<float> azimuth_deg, elevation_deg;
-  ImageGray log2_rho;  // empty when not foveated: that of the centre everywhere
+  ImageGray log2_rho;  // empty where the metric is not foveated: the frequency of the centre holds everywhere
   float log2_rho_centre = 0;
 };
 
@@ -72,7 +72,7 @@ BandGeometry band_geometry(const FovVideoVdpSettings& settings, double rho_cpd, 
   return band;
 }
 
-// Both channels of a row: what a pixel's detection is divided by, from the reference's background.
+// Buffers of a row: background, sensitivities by which contrasts are multiplied, and results.
 struct RowBuffers {
   std::vector<float> scratch, background, sensitivity_sustained, sensitivity_transient, blurred, difference;
   void resize(std::size_t width) {
@@ -83,7 +83,7 @@ struct RowBuffers {
   }
 };
 
-// (G - E) / Lb, at most 1000, times `gain` and the sensitivity: in multiples of the threshold.
+// The contrast (G - E) / Lb, at most 1000, times `gain` and the sensitivity, which makes it multiples of the threshold.
 void normalised_contrast(const float* plane, const std::vector<float>& blurred, const std::vector<float>& background,
                          const std::vector<float>& sensitivity, float gain, std::vector<float>& out) {
   for (std::size_t x = 0; x < out.size(); ++x) {
@@ -110,8 +110,8 @@ double sum_of_powers(const std::vector<float>& values, float exponent) {
 
 }  // namespace
 
-// Band frequencies: the first is Nyquist's, the others are the peaks of the pyramid's bands. Bands stop at the first at
-// or below half a cycle a degree, and where a band would have less than a few pixels.
+// The first frequency is Nyquist's, the others are the peaks of the pyramid's bands. The last band is the first one at
+// or below half a cycle per degree; small pictures have fewer bands.
 std::vector<double> fovvideovdp_bands_cpd(double pixels_per_degree, int width_px, int height_px) {
   constexpr int kMostBands = 15;
   constexpr double kPeakOfNyquist = 0.3228;
@@ -141,10 +141,10 @@ struct FovVideoVdp::Impl {
   FovVideoVdpSettings settings;
   int width_px, height_px;
   const SensitivityTable& table = SensitivityTable::get();
-  TemporalFilters filters;  // empty: stills
+  TemporalFilters filters;  // empty for stills
   std::vector<double> frequencies_cpd;
   std::vector<BandGeometry> bands;
-  std::deque<LuminancePair> history;  // the newest first
+  std::deque<LuminancePair> history;  // newest first
 
   Impl(const FovVideoVdpSettings& given, int width, int height) : settings(given), width_px(width), height_px(height) {
     constexpr int kLeastSide = 8;
@@ -176,7 +176,7 @@ struct FovVideoVdp::Impl {
       }
     }
     if (history.size() == taps()) {
-      // The oldest pair's memory is used again.
+      // Reuses the memory of the oldest pair.
       LuminancePair oldest = std::move(history.back());
       history.pop_back();
       oldest.reference.pixels.assign(reference.pixels.begin(), reference.pixels.end());
@@ -187,7 +187,7 @@ struct FovVideoVdp::Impl {
     }
   }
 
-  // Section 3.2. Frames before the oldest known one are that one.
+  // Section 3.2. Frames before the oldest known one are taken to equal it.
   [[nodiscard]] ImageGray filtered(const std::vector<double>& weights, ImageGray LuminancePair::*which) const {
     ImageGray plane(width_px, height_px);
     parallel_for(static_cast<std::size_t>(height_px), settings.threads, [&](std::size_t row) {
@@ -233,10 +233,10 @@ struct FovVideoVdp::Impl {
 
   struct BandResult {
     double sustained = 0, transient = 0;
-    ImageGray map;  // difference over channels; empty unless asked for
+    ImageGray map;  // difference, pooled over channels; empty unless asked for
   };
 
-  // Sections 3.3 to 3.6 for one band: `planes` and the same planes one level coarser.
+  // Sections 3.3 to 3.6 for one band; `coarse` are the same planes one level coarser.
   [[nodiscard]] BandResult band_difference(std::size_t b, const Planes& planes, const Planes& coarse,
                                            const Vec2f& gaze_deg, bool want_map) const {
     const int width = planes.reference_sustained.width_px;
@@ -300,7 +300,7 @@ struct FovVideoVdp::Impl {
             half(planes.test_transient)};
   }
 
-  // The pyramid of differences collapsed, each band but the finest at half its value, and put on the JOD scale.
+  // Collapses the pyramid of differences, with each band but the finest at half its value, and converts it to JOD.
   [[nodiscard]] ImageGray collapsed(std::vector<ImageGray> maps) const {
     ImageGray sum = std::move(maps.back());
     const auto scale = [](ImageGray& map, float factor) {

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact quantiles without sorting: floats are counted by the upper half of their bits, then, within the one bin that
-// holds a quantile, by the lower half.
+// Exact quantiles without sorting: floats are counted by the upper half of their bits and then, within the bin that
+// holds the quantile, by the lower half.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/metrics.hpp"
 
 namespace gazetrace {
 namespace {
 
-// Orders as the floats do, negative ones included.
+// An integer that orders as the float does, also for negative values.
 std::uint32_t key_of(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   return (bits & 0x80000000U) != 0 ? ~bits : bits | 0x80000000U;
@@ -72,7 +73,7 @@ class Quantiles {
   }
 
  private:
-  // The bin of the upper halves for which `inside` first holds, then that of the lower halves within it.
+  // Finds the first bin of upper halves for which `inside` holds, and within it the first bin of lower halves.
   template <class Inside>
   [[nodiscard]] double find(const Inside& inside) const {
     const auto holds = [&](const Bin& bin) { return bin.count > 0 && inside(bin); };
@@ -91,7 +92,7 @@ class Quantiles {
       }
     }
     auto found = std::find_if(lower.begin(), lower.end(), holds);
-    // Sums of a bin and of its parts may differ in their last digit: then it is the last of them.
+    // The sum of a bin and the sums of its parts may differ in the last digit; then the last part is taken.
     while (found == lower.end() || found->count == 0) {
       --found;
     }
@@ -120,8 +121,7 @@ MapStatistics map_statistics(const ImageGray& map, int margin_px) {
   statistics.min = static_cast<double>(*least);
   statistics.max = static_cast<double>(*most);
   for (std::size_t i = 0; i < kShares.size(); ++i) {
-    const auto rank = static_cast<std::uint64_t>(kShares[i] * static_cast<double>(values.size()));
-    statistics.quantiles[i] = quantiles.at_rank(std::min<std::uint64_t>(rank, values.size() - 1));
+    statistics.quantiles[i] = quantiles.at_rank(upper_rank(kShares[i], values.size()));
   }
   for (std::size_t i = 0; i < kWeightedShares.size(); ++i) {
     statistics.weighted_quartiles[i] = quantiles.at_sum(kWeightedShares[i] * quantiles.total());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// FovVideoVDP's masked difference (section 3.5 of the paper): how much of two contrasts' difference is left when the
-// contrast that both share hides it. Contrasts are in multiples of their threshold.
+// FovVideoVDP's masked difference (section 3.5 of the paper): how much of the difference between two contrasts is
+// visible where the contrast that both share masks it. Contrasts are in multiples of their threshold.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a metric is: a map and its mean from two pictures of the same size, and the printed number of a mean.
+// A metric consists of two functions: one makes a map and its mean from two pictures of the same size, the other turns
+// a mean into the printed number.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +10,19 @@
 
 namespace gazetrace {
 
-// Two functions per line of metrics.def.
+// Both are declared for each line of metrics.def.
 #define METRIC(name, input, better, description)                                                                      \
   MetricMap metric_##name(const MetricPicture& reference, const MetricPicture& test, const MetricSettings& settings); \
   double metric_value_##name(double mean);
 #include "metrics/metrics.def"
 #undef METRIC
 
-// A value a pixel, each from the two pixels alone, and their mean: rows are summed in double, then the rows.
+// For metrics whose value at a pixel depends on that pixel alone: the map and its mean, summed in double over each row
+// and then over the rows.
 MetricMap map_of_pixels(const ImageRgb& reference, const ImageRgb& test, int threads,
                         const std::function<double(const Vec3f& reference, const Vec3f& test)>& value);
 
-// Mean of a map without its margin, summed the same way.
+// The mean of a map without its margin, summed in the same way.
 double mean_of_map(const ImageGray& map, int margin_px, int threads);
 
 }  // namespace gazetrace

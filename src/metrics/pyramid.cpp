@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<float, 5> kKernel{0.05F, 0.25F, 0.4F, 0.25F, 0.05F};
 
-// Half-sample mirror: -1 is 0, n is n - 1. Rasters of one pixel have nothing else.
+// Mirrors about the pixels' edges: -1 becomes 0, n becomes n - 1. The result is clamped for very small rasters.
 int mirrored(int i, int n) {
   const int j = i < 0 ? -1 - i : (i >= n ? 2 * n - 1 - i : i);
   return std::max(std::min(j, n - 1), 0);
@@ -37,7 +37,8 @@ void filter_across(const std::vector<float>& in, bool odd_rule, float* out) {
     out[count - 1] = mirrored_sum(count - 1);
     return;
   }
-  // The other parity's rule: samples outside count nothing, and what is added is that of a raster of the other parity.
+  // The rule of the other parity: samples outside count as 0, and the terms are added that a raster of the other parity
+  // would have.
   const int centre = 2 * (count - 1);
   float sum = 0;
   for (int k = 0; k < 5; ++k) {
@@ -70,7 +71,7 @@ ImageGray halved(const ImageGray& image, bool original_border, int threads) {
 }
 
 void doubled_row(const ImageGray& image, int y, int width_px, std::vector<float>& buffer, float* out) {
-  // Down the columns: even rows see three rows of the small picture, odd ones two.
+  // First along the columns: even rows depend on three rows of the small picture, odd ones on two.
   const auto width = static_cast<std::size_t>(image.width_px);
   const auto row_at = [&](int i) { return &image.pixels[image.index(0, std::clamp(i, 0, image.height_px - 1))]; };
   buffer.resize(width + 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The spectrum of the last N values of many series, carried on from frame to frame: adding a value costs as much as
-// there are frequencies (Jacobsen and Lyons, "The sliding DFT", IEEE Signal Processing Magazine, 2003).
+// The spectrum of the last N values of many series, updated from frame to frame: the cost of adding a value grows with
+// the number of frequencies only (Jacobsen and Lyons, "The sliding DFT", IEEE Signal Processing Magazine, 2003).
 #pragma once
 
 #include <complex>
@@ -11,8 +11,8 @@
 
 namespace gazetrace {
 
-// X_k = sum over n = 0 .. N-1, the oldest first, of x_n exp(-2 pi i k n / N), for k = 0 .. N/2. Of the values the first
-// one of each series is taken off: a series that never changes has zeros and nothing else.
+// X_k = sum over n = 0 .. N-1, oldest first, of x_n exp(-2 pi i k n / N), for k = 0 .. N/2. The first value of each
+// series is subtracted from all its values, so that the spectrum of a series that never changes is exactly 0.
 class SlidingSpectrum {
  public:
   SlidingSpectrum(int width, int height, int frames);
@@ -34,8 +34,9 @@ class SlidingSpectrum {
   std::vector<std::complex<double>> spectrum_;
 };
 
-// Power at k = 1 .. N/2 under a Hann window, the mean taken off: their sum is the mean square of a series that the
-// window holds whole periods of, but for what a period of N leaks to 0. X holds k = 0 .. N/2.
+// The power at k = 1 .. N/2 under a Hann window, with the mean subtracted. The sum over k is the mean square of a
+// series of which the window holds whole periods, except for what a period of N values leaks to k = 0. `spectrum` holds
+// k = 0 .. N/2.
 void hann_power(const std::complex<double>* spectrum, int frames, std::vector<double>& power);
 
 }  // namespace gazetrace

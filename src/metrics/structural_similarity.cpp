@@ -31,7 +31,7 @@ Window gaussian_window() {
   return window;
 }
 
-// Means of r, t, r^2, t^2 and r t down the columns of one output row.
+// The means of r, t, r^2, t^2 and r t along the columns, for one output row.
 struct ColumnMoments {
   explicit ColumnMoments(std::size_t width) : r(width), t(width), rr(width), tt(width), rt(width) {}
   std::vector<double> r, t, rr, tt, rt;

@@ -18,7 +18,7 @@ TemporalFilters temporal_filters(double frames_per_second) {
   if (!(frames_per_second > 0) || frames_per_second > kMostRate) {
     throw Error(ErrorKind::usage, "fovvideovdp", fmt::format("{} frames a second", frames_per_second));
   }
-  // Less a rounding error of the product: 60 frames a second are 15 taps.
+  // The small number absorbs a rounding error of the product: 60 frames per second are 15 taps.
   const int taps = static_cast<int>(std::ceil(kSpan * frames_per_second - 1e-9));
   if (taps < 2) {
     throw Error(ErrorKind::usage, "fovvideovdp",

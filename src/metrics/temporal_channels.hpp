@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// FovVideoVDP's sustained and transient temporal channels: weights of the current frame (tap 0) and those before it.
+// FovVideoVDP's sustained and transient temporal channels: the weights of the current frame (tap 0) and of those
+// before.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@ struct TemporalFilters {
   std::vector<double> sustained, transient;
 };
 
-// 250 ms of taps (section 3.2 of the paper). Error(usage) where that is less than two.
+// Taps over 250 ms (section 3.2 of the paper). Error(usage) where that is less than two.
 TemporalFilters temporal_filters(double frames_per_second);
 
 }  // namespace gazetrace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics 2021: tone curves, and the
-// exposures that cover what a reference shows.
+// The tone curves of HDR-FLIP, and the exposures that cover a reference's range (Andersson et al., "Visualizing Errors
+// in Rendered High Dynamic Range Images", Eurographics 2021).
 #include "metrics/tone_curve.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -18,14 +19,14 @@ namespace {
 using Rational = std::array<double, 6>;
 
 const Rational& curve_of(FlipToneMapper tone_mapper) {
-  // Narkowicz's fit of ACES with its pre-exposure of 0.6; Hable's curve; Reinhard's, of luminance.
+  // Narkowicz's fit of ACES with its pre-exposure of 0.6, Hable's curve, and Reinhard's curve of luminance.
   static constexpr Rational kAces{0.36 * 2.51, 0.6 * 0.03, 0, 0.36 * 2.43, 0.6 * 0.59, 0.14};
   static constexpr Rational kHable{0.231683, 0.013791, 0, 0.18, 0.3, 0.018};
   static constexpr Rational kReinhard{0, 1, 0, 0, 1, 1};
   return tone_mapper == FlipToneMapper::aces ? kAces : tone_mapper == FlipToneMapper::hable ? kHable : kReinhard;
 }
 
-// Where the curve reaches 0.85: the larger root.
+// The light at which the curve reaches 0.85, as the larger root.
 double bright_end(FlipToneMapper tone_mapper) {
   constexpr double kShare = 0.85;
   const Rational& k = curve_of(tone_mapper);
@@ -52,7 +53,7 @@ void check_flip_exposures(const FlipExposures& e) {
   constexpr int kMostExposures = 1000;
   if (!std::isfinite(e.start_ev) || !std::isfinite(e.stop_ev) || e.start_ev > e.stop_ev) {
     throw Error(ErrorKind::usage, "hdr_flip",
-                fmt::format("exposures from {} to {} are no range", e.start_ev, e.stop_ev));
+                fmt::format("exposures from {} to {} are not a range", e.start_ev, e.stop_ev));
   }
   if (e.count < 1 || e.count > kMostExposures || (e.count == 1 && e.start_ev != e.stop_ev)) {
     throw Error(ErrorKind::usage, "hdr_flip", fmt::format("{} exposures from {} to {}", e.count, e.start_ev, e.stop_ev),
@@ -80,10 +81,9 @@ FlipExposures flip_exposures(const ImageRgb& reference, const FlipExposureSettin
     const std::size_t dark = reference.pixels.size() - luminance.size();
     const std::size_t half = reference.pixels.size() / 2;
     const std::size_t rank = half >= dark ? half - dark : luminance.size() / 2;
-    const auto middle = luminance.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(luminance.begin(), middle, luminance.end());
+    const float middle = value_at_rank(luminance, rank);
     exposures.start_ev = std::log2(x_max / *std::max_element(luminance.begin(), luminance.end()));
-    exposures.stop_ev = std::log2(x_max / *middle);
+    exposures.stop_ev = std::log2(x_max / middle);
   }
   exposures.start_ev = settings.start_ev.value_or(exposures.start_ev);
   exposures.stop_ev = settings.stop_ev.value_or(exposures.stop_ev);

@@ -44,13 +44,14 @@ ImageGray display_luminance(const ImageRgb& code, const DisplayPhotometry& photo
   if (photometry.response == DisplayResponse::linear_hdr) {
     return linear_luminance(code, 1, peak, black, threads);
   }
-  // Light of absolute codes is what it is, up to the peak, and what the room adds; others fill the range above black.
+  // Absolute codes state the light itself, up to the peak, to which the room adds; relative codes fill the range from
+  // black to peak.
   const double range = is_absolute(photometry.response) ? peak : peak - black;
   const auto level = [&](double v) {
     const double light = range * display_light(photometry.response, v, peak);
     return (is_absolute(photometry.response) ? std::max(light, kLeastLuminance) : light) + black;
   };
-  // 8-bit code values, which most are, through a table.
+  // A table for 8-bit code values, which are the usual case.
   std::array<float, 256> codes{};
   std::array<double, 256> levels{};
   for (std::size_t i = 0; i < codes.size(); ++i) {
@@ -82,7 +83,7 @@ double FovVideoVdpGeometry::magnification(const Vec2d& direction_deg) const {
   constexpr double kMostDeg = 89.9;
   const double a = std::min(std::hypot(direction_deg.x, direction_deg.y), kMostDeg) * kRadPerDeg;
   const double delta = 0.5 / pixels_per_degree() * kRadPerDeg;
-  // (tan(a + delta) - tan a) / tan delta, without the cancellation.
+  // (tan(a + delta) - tan a) / tan delta, written without cancellation.
   return std::cos(delta) / (std::cos(a + delta) * std::cos(a));
 }
 

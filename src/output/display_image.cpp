@@ -15,7 +15,7 @@ namespace {
 struct Format {
   std::string_view suffix;
   int min_bits, max_bits;
-  int max_side_px;  // what the file's header or the library behind it can hold; the latter would end the process
+  int max_side_px;  // what the file's header or the library that writes it can hold; some of these end the process
 };
 constexpr std::array<Format, 6> kFormats{{{".png", 8, 16, 1000000},
                                           {".jpg", 8, 8, 65500},
@@ -47,7 +47,7 @@ int display_image_bits(const DisplaySettings& settings) {
                 fmt::format("a display image has 8 or 16 bits a channel, not {}", settings.bits));
   }
   if (format.min_bits == 10) {
-    return 16;  // reduced to 10 when written
+    return 16;  // rounded to 10 bits when it is written
   }
   if (settings.bits > format.max_bits) {
     throw Error(ErrorKind::usage, settings.pattern, fmt::format("JPEG holds 8 bits a channel, not {}", settings.bits),
@@ -63,7 +63,7 @@ void check_display_image_size(const DisplaySettings& settings, int width_px, int
   const Format& format = format_of(settings.pattern);
   if (std::max(width_px, height_px) > format.max_side_px) {
     throw Error(ErrorKind::usage, settings.pattern,
-                fmt::format("{}x{} pixels are more than such a file holds ({} a side)", width_px, height_px,
+                fmt::format("{}x{} pixels are more than such a file can hold ({} a side)", width_px, height_px,
                             format.max_side_px),
                 "write PNG or EXR");
   }

@@ -60,8 +60,8 @@ Imf::Compression compression_by_name(const std::string& name) {
   throw Error(ErrorKind::usage, "", unknown_name_message("EXR compression", name, exr_compression_names()));
 }
 
-// A whole file in memory. OpenEXR's own file stream drops the error when its last buffer meets a full disk, so the
-// bytes are handed to write_bytes_atomically, which does not.
+// Collects a whole file in memory. OpenEXR's own file stream loses the error where its last buffer meets a full disk,
+// so write_bytes_atomically writes the bytes.
 class MemoryStream : public Imf::OStream {
  public:
   explicit MemoryStream(const std::string& name) : Imf::OStream(name.c_str()) {}
@@ -82,7 +82,7 @@ class MemoryStream : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
-// OpenEXR's worker threads are the library's own pool, shared by the process; it only ever grows here.
+// OpenEXR has one pool of worker threads for the process; it is only ever enlarged here.
 void want_exr_threads(int threads) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
@@ -91,7 +91,7 @@ void want_exr_threads(int threads) {
   }
 }
 
-// Channels of one picture with the buffers they are written from.
+// The channels of one picture, and the buffers that they are written from.
 class ExrPicture {
  public:
   ExrPicture(int width_px, int height_px, int threads)
@@ -151,14 +151,14 @@ class ExrPicture {
  private:
   void insert(const std::string& name, Imf::PixelType type, const char* first, std::size_t stride) {
     header_.channels().insert(name, Imf::Channel(type));
-    // OpenEXR reads through this pointer only, though the type says char*.
+    // OpenEXR only reads through this pointer, although its type is char*.
     buffer_.insert(name,
                    Imf::Slice(type, const_cast<char*>(first), stride, stride * static_cast<std::size_t>(width_px_)));
   }
 
   Imf::Header header_;
   Imf::FrameBuffer buffer_;
-  std::deque<std::vector<half>> halves_;  // deques: the buffers must not move
+  std::deque<std::vector<half>> halves_;  // a deque, since the buffers must not move
   std::deque<ImageGray> constants_;
   int width_px_, height_px_, threads_;
   std::uint64_t clamped_ = 0;
@@ -173,7 +173,8 @@ void add_color_space(Imf::Header& header) {
   header.insert("colorSpace", Imf::StringAttribute("lin_rec709"));
 }
 
-// From world to the camera space of the EXR standard: left-handed, +z forward. Imath multiplies row vectors, p M.
+// From world space to the camera space of the EXR standard, which is left-handed with +z forward. Imath multiplies row
+// vectors: p M.
 Imath::M44d world_to_camera(const CameraPose& pose) {
   const Vec3d right = rotate(pose.orientation, {1, 0, 0});
   const Vec3d up = rotate(pose.orientation, {0, 1, 0});
@@ -185,7 +186,8 @@ Imath::M44d world_to_camera(const CameraPose& pose) {
           -dot(right, p), -dot(up, p), -dot(forward, p), 1};
 }
 
-// From that camera space to NDC: (0, 0) top left, (1, 1) bottom right. Depth is what is left over: 0 at the near plane.
+// From that camera space to NDC, with (0, 0) at the top left and (1, 1) at the bottom right. Depth, which the standard
+// leaves open, is 0 at the near plane.
 Imath::M44d camera_to_ndc(const Projection& projection, double aspect) {
   const double near_m = projection.near_m > 0 ? projection.near_m : 1e-3;
   if (projection.kind == ProjectionKind::orthographic) {
@@ -256,7 +258,7 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(frame.camera.projection, aspect)));
   header.insert("gazetrace:frame", Imf::IntAttribute(frame.frame));
   header.insert("gazetrace:exposure_ev", Imf::DoubleAttribute(frame.exposure_ev));
-  // 64-bit integers have no attribute type of their own.
+  // Stored as text, since there is no attribute type for 64-bit integers.
   add_text(header, "t_video_ns", std::to_string(frame.t_video_ns));
   add_text(header, "seed", std::to_string(frame.seed));
   add_text(header, "settings_digest", frame.settings_digest);
@@ -280,7 +282,7 @@ std::array<std::string, 3> names_of(const std::string& layer, const char* letter
 
 void require(const std::string& aov, bool present) {
   if (!present) {
-    throw Error(ErrorKind::usage, "", "AOV '" + aov + "' was asked for, but this frame does not carry it",
+    throw Error(ErrorKind::usage, "", "AOV '" + aov + "' was asked for, but this frame does not have it",
                 "trace with guides on");
   }
 }
@@ -301,7 +303,8 @@ void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, co
     if (eccentricity_deg != nullptr) {
       picture.add_float("eccentricity", *eccentricity_deg);
     } else {
-      // A frame without gaze has none; the channel stays, so that all frames of a sequence have the same ones.
+      // A frame without gaze has no eccentricity; the channel is written all the same, so that all frames of a sequence
+      // have the same channels.
       picture.add_constant("eccentricity", std::numeric_limits<float>::quiet_NaN());
     }
   } else {
@@ -392,7 +395,7 @@ std::string read_exr_text(const std::string& path, const std::string& attribute)
     if (text == nullptr || !file.isComplete()) {
       return {};
     }
-    // A copy that was cut short still has its table of offsets: ask for the last block, which ends the file.
+    // A truncated copy still has its table of offsets, so the last block, at the end of the file, is read.
     const char* pixels = nullptr;
     int size = 0;
     file.rawPixelData(file.header().dataWindow().max.y, pixels, size);

@@ -9,9 +9,9 @@ namespace gazetrace {
 
 const std::vector<std::string>& exr_compression_names();
 
-// The value of a string attribute; empty where the file is no EXR, lacks the attribute or lacks its last pixels.
+// The value of a string attribute; empty where the file is not an EXR, lacks the attribute, or is truncated.
 std::string read_exr_text(const std::string& path, const std::string& attribute);
-// A number of the header: a double, or a fraction as its value. Empty where there is none.
+// A number in the header, stored as a double or as a fraction; empty where there is none.
 std::optional<double> read_exr_number(const std::string& path, const std::string& attribute);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What headers say of a frame's gaze.
+// What the headers of files state about a frame's gaze.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace gazetrace {
 
-// "state=measured u=0.5 v=0.5 ... event=fixation since_saccade_ns=84000000 no_gaze=0"; without what is not known.
+// "state=measured u=0.5 v=0.5 ... event=fixation since_saccade_ns=84000000 no_gaze=0"; what is not known is left out.
 std::string gaze_words(const GazeAtTime& gaze);
 
 }  // namespace gazetrace

@@ -45,8 +45,8 @@ void check_histories(const FrameOwners& frames, Warnings& warnings) {
   if (first == frames.end()) {
     return;
   }
-  std::map<const RunPart*, Frames> passed;  // by each part
-  Frames all = found_by(*first->second);    // by one run, which begins as the first part did
+  std::map<const RunPart*, Frames> passed;  // the frames in each part's history so far
+  Frames all = found_by(*first->second);    // those in the history of a single run that begins as the first part did
   const RunPart* before = first->second;
   for (const auto& [frame, part] : frames) {
     if (part != nullptr) {

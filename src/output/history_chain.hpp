@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether parts of a sequence whose frames depend on those before them are what one run would have made.
+// For sequences whose frames depend on those before them: checks whether the parts are what a single run would have
+// made.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +11,13 @@
 
 namespace gazetrace {
 
-// The frames of the sequence in order with the parts they belong to; for missing ones nullptr, or the part that
-// promised them.
+// The frames of the sequence in order, each with the part that it belongs to. A missing frame has the part that should
+// have rendered it, or nullptr.
 using FrameOwners = std::map<std::int32_t, const RunPart*>;
 
-// Frames and settings decide a history to the bit, so that it is known by the frames that it has passed. Error(input)
-// for the first part that found another one than a single run would have handed it; a warning where it found that of
-// the last few frames before it.
+// A history is determined, bit for bit, by the settings and the frames that went into it, so comparing lists of frames
+// is enough. Error(input) for the first part that began with another history than a single run would have had there; a
+// warning where it began with the history of only the last few frames before it.
 void check_histories(const FrameOwners& frames, Warnings& warnings);
 
 }  // namespace gazetrace

@@ -22,8 +22,8 @@ std::vector<std::int32_t> frames_of(const FrameOwners& owners) {
   return frames;
 }
 
-// Frames that a part promised and did not deliver, and holes between the frames of all parts: the step of the whole is
-// the smallest distance between neighbours.
+// Frames that a part lists but did not render, and gaps between the frames of all parts, where the step of the sequence
+// is the smallest distance between neighbours.
 std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, const FrameOwners& owners) {
   std::set<std::int32_t> missing;
   for (const RunPart& part : parts) {
@@ -55,7 +55,7 @@ bool have_history(const std::vector<RunPart>& parts) {
                      [](const RunPart& part) { return !part.record.history.settings_digest.empty(); });
 }
 
-// The frames that are there and those that are missing, which may still have gone into the history of others.
+// The frames that exist together with the missing ones, which may still have gone into the history of others.
 FrameOwners all_frames(const std::vector<RunPart>& parts, FrameOwners owners,
                        const std::vector<std::int32_t>& missing) {
   for (const std::int32_t frame : missing) {
@@ -71,7 +71,7 @@ FrameOwners all_frames(const std::vector<RunPart>& parts, FrameOwners owners,
   return owners;
 }
 
-// As if one run had made all frames, beginning as the first part did.
+// Sets history and digest as if a single run, which began as the first part did, had made all frames.
 void continue_history(RunRecord& whole, const RunPart& first) {
   whole.history = first.record.history;
   const auto checkpoint = first.record.input_digests.find(whole.history.checkpoint);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be said against output settings before the first ray.
+// Checks output settings before the first ray.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What runs over parts left behind, and the record of the whole.
+// Reads what the runs over parts left in a directory, and joins their records.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ RunPart read_part(const std::filesystem::path& timing) {
   return part;
 }
 
-// Parts whose frames depend on those before them have digests of their own, and share that of all else.
+// Parts whose frames depend on those before them have different digests, but share the digest of everything else.
 bool of_one_job(const RunRecord& a, const RunRecord& b) {
   const bool shared = !a.history.settings_digest.empty() && !b.history.settings_digest.empty();
   return shared ? a.history.settings_digest == b.history.settings_digest : a.settings_digest == b.settings_digest;
@@ -50,7 +50,7 @@ void check_same_settings(const std::vector<RunPart>& parts) {
     for (const auto& [path, digest] : part.record.input_digests) {
       const auto other = first.record.input_digests.find(path);
       if (path == part.record.history.checkpoint || path == first.record.history.checkpoint) {
-        continue;  // runs may hand the history on in one file
+        continue;  // successive runs may pass the history on in one file
       }
       if (other != first.record.input_digests.end() && other->second != digest) {
         throw Error(ErrorKind::input, part.timing_path,
@@ -88,7 +88,7 @@ std::vector<RunPart> read_run_parts(const std::string& directory) {
     throw Error(ErrorKind::input, directory, "cannot be listed: " + error.message());
   }
   if (paths.empty()) {
-    throw Error(ErrorKind::input, directory, "holds no parts of a run (timing.<part>.csv)",
+    throw Error(ErrorKind::input, directory, "contains no parts of a run (timing.<part>.csv)",
                 "give the folder that the parts were rendered into");
   }
   std::sort(paths.begin(), paths.end());

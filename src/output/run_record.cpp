@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// 255 bytes is the limit of common file systems; long lists keep their beginning and become distinct by a digest.
+// Common file systems limit names to 255 bytes, so a long list of frames is cut and gets a digest that makes it unique.
 std::string part_file_name(const std::string& directory, const std::string& stem, const std::string& suffix,
                            const std::string& frames, bool is_part) {
   constexpr std::size_t kMaxFrames = 120;
@@ -75,7 +75,7 @@ std::string run_record_json(const RunRecord& record) {
                   {"warnings", record.warnings},
                   {"bad_samples", bad_samples},
                   {"config_toml", record.config_toml}};
-  // Paths need not be UTF-8; what is not becomes a replacement character rather than an exception.
+  // Paths need not be UTF-8; invalid bytes become replacement characters instead of an exception.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
@@ -95,7 +95,7 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    // Not in records of earlier versions: samples, parts and history.
+    // Records of earlier versions have no samples, parts and history.
     record.samples = json.value("samples", "");
     record.part_digests = json.value("part_digests", record.part_digests);
     if (const auto history = json.find("history"); history != json.end()) {
@@ -112,7 +112,7 @@ RunRecord read_run_record(const std::string& path) {
     }
     return record;
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, path, std::string("is no run record: ") + e.what());
+    throw Error(ErrorKind::input, path, std::string("is not a run record: ") + e.what());
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of a sequence's files. The number's place is looked for in the file name only: folders keep their # and %.
+// Names of a sequence's files. The place of the number is searched in the last part of the path only, so folders keep
+// their # and %.
 #include <fmt/format.h>
 
 #include <cctype>
@@ -12,11 +13,11 @@ namespace gazetrace {
 namespace {
 
 struct Placeholder {
-  std::size_t length = 0;  // characters of the pattern it takes up
-  int min_digits = 0;      // zero-padded to this many
+  std::size_t length = 0;  // of the placeholder in the pattern, in characters
+  int min_digits = 0;      // the number is padded with zeros to this many digits
 };
 
-// %d, %4d (as %04d: a file name has no use for spaces) and %04d.
+// %d, %04d, and %4d, which means the same as %04d since file names should not contain spaces.
 std::optional<Placeholder> printf_placeholder(const std::string& pattern, std::size_t at) {
   std::size_t end = at + 1;
   int digits = 0;
@@ -60,7 +61,7 @@ Expanded expand(const std::string& pattern, std::int32_t frame) {
       ++result.numbers;
       at += placeholder->length;
     } else if (pattern[at] == '%') {
-      throw Error(ErrorKind::usage, pattern, "a % stands in front of something that is no frame number",
+      throw Error(ErrorKind::usage, pattern, "a % is followed by something that is not a frame number",
                   "write %04d, ####, <frame>, or %% for a percent sign");
     } else {
       result.name += pattern[at++];

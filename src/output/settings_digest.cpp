@@ -25,7 +25,7 @@ std::string read_settings_digest(const std::string& path) {
 std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings) {
   Digest digest;
   for (const auto& [name, value] : settings) {
-    // Lengths keep ("ab", "c") and ("a", "bc") apart.
+    // The lengths make ("ab", "c") and ("a", "bc") different.
     digest.add(std::to_string(name.size()) + ":" + name + std::to_string(value.size()) + ":" + value);
   }
   return digest.hex();

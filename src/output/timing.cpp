@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// timing.csv: one row a frame. One table says each column's name, how it is written and how it is read.
+// timing.csv, with one row per frame. A single list of the columns serves both writing and reading.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -83,7 +83,7 @@ TimingRow parse_row(std::string_view line, const std::string& place) {
     } else {
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), field);
       if (error != std::errc() || end != cell.data() + cell.size()) {
-        throw Error(ErrorKind::input, place, fmt::format("'{}' is no number for column {}", cell, name),
+        throw Error(ErrorKind::input, place, fmt::format("'{}' is not a number for column {}", cell, name),
                     "remove the line or render the frame again");
       }
     }
@@ -110,7 +110,7 @@ std::string timing_row_text(const TimingRow& row) {
   for_each_column(row, [&](const std::string& name, const auto& field) {
     line += line.empty() ? "" : ",";
     if constexpr (std::is_same_v<std::decay_t<decltype(field)>, double>) {
-      // Tenths of a microsecond are below any clock's noise; exposure is a setting and keeps every digit.
+      // A tenth of a microsecond is below the noise of any clock. Exposure is a setting and keeps every digit.
       line += name == "exposure_ev" ? fmt::format("{}", field) : fmt::format("{:.4f}", field);
     } else {
       line += fmt::format("{}", field);
@@ -139,9 +139,9 @@ std::vector<TimingRow> read_timing_csv(const std::string& path) {
     const std::size_t end = text.find('\n', begin);
     if (end == std::string::npos) {
       if (number == 1) {
-        throw Error(ErrorKind::input, path, "is no timing table: its first line is not complete");
+        throw Error(ErrorKind::input, path, "is not a timing table: its first line is not complete");
       }
-      return rows;  // what follows the last line's end was cut off by the end of the run
+      return rows;  // the last line has no line break: it was cut off when the run ended
     }
     std::string_view line(text.data() + begin, end - begin);
     if (line.ends_with('\r')) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run record says about program and machine.
+// What a run record says about the program and the machine.
 #include <sys/resource.h>
 
 #include <string>

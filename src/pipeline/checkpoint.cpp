@@ -8,9 +8,9 @@
 namespace gazetrace {
 namespace {
 
-constexpr SealedKind kCheckpoint{"gazetrace history 2", "checkpoint", "give the file that --checkpoint wrote",
-                                 "render from the beginning, or with --preroll",
-                                 "render with the same options, or with --preroll"};
+constexpr SealedKind kCheckpoint{"gazetrace history 2", "checkpoint", "give the file that `checkpoint` wrote",
+                                 "render from the beginning, or with `preroll`",
+                                 "render with the same options, or with `preroll`"};
 
 template <class History, class Visit>
 void each_field(History& history, bool& has_camera, bool& has_ev, auto& camera, auto& ev, const Visit& visit) {

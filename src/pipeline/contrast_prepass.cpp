@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // After the idea of Stengel et al. 2016 ("Adaptive image-space sampling for gaze-contingent real-time rendering") and
 // Tursun et al. 2019 ("Luminance-contrast-aware foveated rendering") that a picture without contrast needs less detail.
-// The multiplier's shape and constants are choices made here: their models need the picture at full resolution.
+// The shape and the constants of the multiplier are choices made here, since the models of both papers need the picture
+// at full resolution.
 #include "pipeline/contrast_prepass.hpp"
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ Luminance luminance_of(const SparseFrame& sparse, std::size_t site) {
   return {mean, n > 1 ? std::max(0.0, square - mean * mean) / (n - 1) : 0.0};
 }
 
-// What is pictured is the same: a frame's rays follow from its height and the camera's field of view.
+// It pictures the same as the frame does, since a frame's rays follow from its height and the camera's field of view.
 PlanarView small_view(const FrameRequest& request) {
   PlanarView view = request.view;
   view.height_px = (request.height_px + kReduction - 1) / kReduction;
@@ -100,11 +101,11 @@ FoveationSettings less_first_look(const FoveationSettings& settings, const Frame
   const double pixels = static_cast<double>(request.width_px) * request.height_px;
   const double budget = in_all ? static_cast<double>(*settings.budget_samples) : *settings.budget_spp * pixels;
   if (!(budget > static_cast<double>(taken))) {
-    throw Error(ErrorKind::usage, in_all ? "--budget-samples" : "--budget-spp",
-                fmt::format("the first look of --contrast-strength takes {} samples of a frame of {} x {} pixels, the "
+    throw Error(ErrorKind::usage, in_all ? "`budget-samples`" : "`budget-spp`",
+                fmt::format("the first look of `contrast-strength` takes {} samples of a frame of {} x {} pixels, the "
                             "budget is {:.0f}",
                             taken, request.width_px, request.height_px, budget),
-                "give more, or leave out --contrast-strength");
+                "give more, or leave out `contrast-strength`");
   }
   FoveationSettings rest = settings;
   if (in_all) {
@@ -115,7 +116,7 @@ FoveationSettings less_first_look(const FoveationSettings& settings, const Frame
   return rest;
 }
 
-ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
+ContrastPrepass trace_contrast(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
                                double strength) {
   FoveationSettings uniform;
   uniform.uniform_spp = kSpp;
@@ -125,7 +126,7 @@ ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& req
   own.guides = false;
   own.surfaces = false;
   own.only_pixel.reset();
-  SparseFrame sparse = tracer.trace(request.camera, request.frame, map, own);
+  SparseFrame sparse = scene.trace(request.camera, request.frame, map, own);
   return {contrast_multiplier(local_contrast(sparse, map), strength), std::move(sparse.stats)};
 }
 

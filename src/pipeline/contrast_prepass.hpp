@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A first look at the frame, small and cheap, that tells where there is contrast to be seen.
+// A first look at the frame: a small and cheap rendering that shows where there is contrast to be seen.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@ struct ContrastPrepass {
 };
 
 // Traces the request's picture at an eighth of its size with 4 samples a pixel (a sixteenth of a sample for each pixel
-// of the frame), under a seed of its own: the density does not depend on the samples that it places, and estimates stay
-// unbiased.
-ContrastPrepass trace_contrast(const PathTracer& tracer, const FrameRequest& request, const TraceSettings& settings,
+// of the frame). It has a seed of its own, so that the density does not depend on the samples that it places, and
+// estimates stay unbiased.
+ContrastPrepass trace_contrast(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
                                double strength);
 
-// The settings for the frame itself: a budget less the samples of the first look, which count among the frame's. Others
-// stay as they are. Error(usage) for a budget that leaves nothing.
+// The settings for the frame itself: from a budget the samples of the first look are subtracted, since they count among
+// the frame's. Other settings are unchanged. Error(usage) for a budget that leaves nothing.
 FoveationSettings less_first_look(const FoveationSettings& settings, const FrameRequest& request);
 
-// Root mean square contrast of the luminance in the 3 x 3 pixels about each pixel, the part of its square that the
-// samples' own noise explains taken off.
+// Root mean square contrast of the luminance in the 3 x 3 pixels around each pixel. The part of its square that the
+// noise of the samples explains is subtracted.
 ImageGray local_contrast(const SparseFrame& sparse, const SamplingMap& map);
 // 1 where the contrast is 1/4 or more, less in proportion below it, 1 - 3/4 strength where there is none.
 ImageGray contrast_multiplier(const ImageGray& contrast, double strength);

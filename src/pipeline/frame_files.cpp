@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/frame_files.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "gazetrace/enhance.hpp"
 #include "gazetrace/version.hpp"
+#include "pipeline/frame_stages.hpp"
 
 namespace gazetrace {
 namespace {
@@ -41,34 +39,6 @@ bool writes_anything(const OutputSettings& output) {
 
 }  // namespace
 
-void tell_gaze(const FrameRequest& request, TimingRow& row) {
-  const GazeAtTime& gaze = request.gaze_render;
-  row.gaze_state = to_string(gaze.state);
-  row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
-  const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
-  row.gaze_age_ms = !has_row            ? ""
-                    : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
-                                        : "unknown";
-  if (request.gaze_effective_age_ns) {
-    row.gaze_effective_age_ms = fmt::format("{:.3f}", static_cast<double>(*request.gaze_effective_age_ns) * 1e-6);
-  }
-  row.no_gaze = gaze.no_gaze ? 1 : 0;
-}
-
-void expose(const FrameRequest& request, const PipelineSettings& settings, TemporalHistory& history,
-            RenderedFrame& rendered, TimingRow& row) {
-  rendered.exposure_ev = timed(row.exposure_ms, [&] {
-    return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
-  });
-  if (settings.enhance_contrast > 0) {
-    rendered.frame.radiance = timed(row.reconstruct_ms, [&] {
-      return enhance_contrast(std::move(rendered.frame.radiance), rendered.map, settings.enhance_contrast,
-                              settings.threads);
-    });
-  }
-  row.exposure_ev = rendered.exposure_ev;
-}
-
 void write_frame_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
                        const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row,
                        SequenceResult& result) {
@@ -82,7 +52,7 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   if (wants_eccentricity && request.gaze_direction_true) {
     eccentricity = eccentricity_image(request.view, *request.gaze_direction_true);
   } else if (wants_eccentricity) {
-    // Without gaze there is none, and a sequence keeps its channels through a gap.
+    // Without gaze there is no eccentricity; the channel stays, so that a sequence has the same ones in every frame.
     eccentricity = ImageGray(request.width_px, request.height_px, std::numeric_limits<float>::quiet_NaN());
   }
   const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;

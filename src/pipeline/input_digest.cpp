@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which files a run reads, and what they hold.
+// Which files a run reads, and digests of their content.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -45,7 +45,7 @@ std::string read_bytes(std::ifstream& file, std::size_t count) {
   return bytes;
 }
 
-// Eight bytes a step: scenes are hundreds of megabytes, and this stands before every run.
+// Takes eight bytes a step: scenes are hundreds of megabytes, and every run begins with this.
 std::uint64_t hash_chunk(const std::string& bytes) {
   std::array<std::uint64_t, 4> lanes{1, 2, 3, 4};
   std::size_t at = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the samples -> sums of all -> what render_sequence() does after tracing.
+// Adds up parts of the samples, and does with the sums what render_sequence() does after tracing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,8 @@
 
 #include "gazetrace/pipeline.hpp"
 #include "pipeline/frame_files.hpp"
+#include "pipeline/frame_stages.hpp"
+#include "pipeline/timing_row.hpp"
 
 namespace gazetrace {
 namespace {
@@ -32,7 +34,7 @@ SampleRange range_of(const RunPart& part) {
   return range;
 }
 
-// By sample.
+// In the order of their samples.
 std::vector<FramePart> parts_of_frame(const std::vector<RunPart>& parts, std::int32_t frame) {
   std::vector<FramePart> found;
   for (const RunPart& part : parts) {
@@ -54,7 +56,7 @@ std::uint32_t most_samples_of_a_site(const SamplingMap& map) {
   return most;
 }
 
-// Every sample that a site has is there once.
+// Checks that every sample that a site has is there, and only once.
 void check_ranges(const std::vector<FramePart>& parts, std::int32_t frame, std::uint32_t samples) {
   std::uint32_t done = 0;
   for (const FramePart& part : parts) {
@@ -73,7 +75,7 @@ void check_ranges(const std::vector<FramePart>& parts, std::int32_t frame, std::
     const auto next = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.range.begin > done; });
     const std::uint32_t until = next == parts.end() ? samples : std::min(next->range.begin, samples);
     throw Error(ErrorKind::input, "", fmt::format("samples {}:{} of frame {} are missing", done, until, frame),
-                fmt::format("render them with --sample-range {}:{}", done, until));
+                fmt::format("render them with `sample-range` {}:{}", done, until));
   }
 }
 
@@ -90,7 +92,7 @@ SampleSums join_sums(const std::vector<FramePart>& parts, std::int32_t frame, co
   return sums;
 }
 
-// What tracing took, in all parts.
+// Adds what a part says of its tracing: times, counts and rays.
 void add_traced(const TimingRow& part, TimingRow& whole) {
   whole.trace_ms += part.trace_ms;
   whole.trace_cpu_ms += part.trace_cpu_ms;
@@ -109,15 +111,12 @@ void add_traced(const TimingRow& part, TimingRow& whole) {
 }
 
 TimingRow row_of(const std::vector<FramePart>& parts, const FrameRequest& request) {
-  TimingRow row;
-  row.frame = request.frame;
-  row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
-  tell_gaze(request, row);
+  TimingRow row = timing_row(request);
   for (const FramePart& part : parts) {
     const auto traced = part.run->rows.find(request.frame);
     if (traced == part.run->rows.end()) {
       throw Error(ErrorKind::input, part.run->timing_path, fmt::format("frame {} is not in it", request.frame),
-                  "finish this part with --resume");
+                  "finish this part with `resume`");
     }
     add_traced(traced->second, row);
   }
@@ -130,8 +129,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (uses_history(settings)) {
     return "frames depend on those before them";
   }
-  if (filter_needs_guides(settings.filter)) {
-    return fmt::format("the filter '{}' looks at every sample", settings.filter);
+  const Reconstruction reconstruction(settings.reconstruction);
+  if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind
+    return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);
   }
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";
@@ -157,6 +157,7 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
     rows.push_back(row_of(found.back(), request));
     frames.push_back(request.frame);
   }
+  const Reconstruction reconstruction(settings.reconstruction);
   SequenceResult written;
   TemporalHistory none;
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
@@ -164,12 +165,14 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
     TimingRow& row = rows[i];
     const Stopwatch total;
     RenderedFrame rendered;
-    rendered.map = timed(row.plan_ms, [&] { return map_of(request); });
+    rendered.map = timed(rendered.times.plan_ms, [&] { return map_of(request); });
     const SampleSums sums = join_sums(found[i], request.frame, settings);
-    rendered.frame = timed(row.reconstruct_ms, [&] {
-      return reconstruct(sparse_frame_of(sums, rendered.map), rendered.map, settings.filter, settings.threads);
+    rendered.frame = timed(rendered.times.reconstruct_ms, [&] {
+      return reconstruction.frame(sparse_frame_of(sums, rendered.map), rendered.map, nullptr, settings.threads);
     });
-    expose(request, settings, none, rendered, row);
+    expose(request, settings, none, rendered);
+    row.exposure_ev = rendered.exposure_ev;
+    add_times(rendered.times, row);
     write_frame_files(request, plan, rendered, color, settings, row, written);
     row.total_ms += total.elapsed_ms();
     row.peak_memory_mib = peak_memory_mib();

@@ -1,154 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-// map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure -> colour -> files,
-// frame by frame. Only the history and the timing log outlive a frame.
+// Frames in order, each to its files: what is skipped or done again, the row of timing.csv, the checkpoint. Only the
+// history and the timing log outlive a frame.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <optional>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/stopwatch.hpp"
 #include "gazetrace/pipeline.hpp"
-#include "pipeline/contrast_prepass.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
+#include "pipeline/timing_row.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr int kEdgeRays = 4;  // measured in tests/benchmarks/filters.cpp
-
-void count_trace(const TraceStats& stats, const SamplingMap& map, TimingRow& row) {
-  row.samples = stats.samples;
-  row.rays_primary = stats.rays_primary;
-  row.rays_bounce = stats.rays_bounce;
-  row.rays_shadow = stats.rays_shadow;
-  row.rejected_rays = stats.rejected_rays;
-  row.non_finite_samples = stats.non_finite_samples;
-  const std::vector<std::string>& names = timing_regions();
-  for (std::size_t i = 0; i < map.regions.size(); ++i) {
-    const auto name = std::find(names.begin(), names.end(), map.regions[i].name);
-    if (name != names.end()) {
-      const auto column = static_cast<std::size_t>(name - names.begin());
-      row.region_pixels.at(column) += map.regions[i].pixels;
-      row.region_samples.at(column) += stats.regions[i].samples;
-      row.region_cpu_ms.at(column) += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
-    }
-    row.trace_cpu_ms += static_cast<double>(stats.regions[i].cpu_ns) * 1e-6;
-  }
+// What a sequence traces in every frame: what its files show of first hits is summed over the samples.
+FrameSettings frame_settings(const PipelineSettings& settings) {
+  FrameSettings frame = settings;
+  const std::vector<std::string>& aovs = settings.output.exr.aovs;
+  frame.trace.guides = frame.trace.guides || std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
+                         return aov == "albedo" || aov == "normal" || aov == "depth";
+                       });
+  return frame;
 }
 
-// Samples of the first look belong to no region of the map.
-void count_first_look(const TraceStats& stats, TimingRow& row) {
-  row.samples += stats.samples;
-  row.rays_primary += stats.rays_primary;
-  row.rays_bounce += stats.rays_bounce;
-  row.rays_shadow += stats.rays_shadow;
-  row.rejected_rays += stats.rejected_rays;
-  row.non_finite_samples += stats.non_finite_samples;
-  for (const RegionTraceStats& region : stats.regions) {
-    row.trace_cpu_ms += static_cast<double>(region.cpu_ns) * 1e-6;
-  }
-}
-
-// One ray stands for a pixel: texture of less than a pixel's width would be noise, which no sample averages.
-GuideSettings guide_settings(const TraceSettings& trace) {
-  return {.pixel_cone = std::max(trace.pixel_cone, GuideSettings{}.pixel_cone),
-          .diffuse = trace.diffuse,
-          .edge_rays = kEdgeRays};
-}
-
-Frame plain_frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides, const FrameRequest& request,
-                  const PipelineSettings& settings, TemporalHistory& history, TimingRow& row) {
-  Frame dense =
-      timed(row.reconstruct_ms, [&] { return reconstruct(sparse, map, settings.filter, settings.threads, guides); });
-  return timed(row.temporal_ms,
-               [&] { return accumulate(std::move(dense), request, settings.accumulate, history, settings.threads); });
-}
-
-Frame reprojected_frame(const PathTracer& tracer, const SparseFrame& sparse, const SamplingMap& map,
-                        const Guides* guides, const FrameRequest& request, const PipelineSettings& settings,
-                        TemporalHistory& history, TimingRow& row) {
-  // A filter that works on surfaces takes the samples apart by them, which a frame cannot give back.
-  const bool before = settings.accumulate.order == AccumulateOrder::before && guides == nullptr;
-  const auto filtered = [&](const SparseFrame& sites, const std::string& filter) {
-    return timed(row.reconstruct_ms, [&] { return reconstruct(sites, map, filter, settings.threads, guides); });
-  };
-  Frame dense = filtered(sparse, before ? "none" : settings.filter);
-  Frame merged = timed(row.temporal_ms, [&] {
-    const EarlierView earlier{history.camera.value_or(request.camera),
-                              history.camera ? history.t_video_ns : request.t_video_ns};
-    const SurfaceMotion motion = tracer.surface_motion(request.camera, map.width_px, map.height_px, earlier);
-    return reproject(std::move(dense), map, motion, request, settings.accumulate, history, settings.threads);
-  });
-  if (before) {
-    merged = filtered(sites_of_frame(merged, sparse, map), settings.filter);
-  }
-  return merged;
-}
-
-struct TracedFrame {
-  SamplingMap map;
-  SparseFrame sparse;
-};
-
-TracedFrame trace_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
-                        TimingRow& row, SequenceResult& result) {
-  TracedFrame traced;
-  MapContext context = map_context(request, settings.trace.seed, settings.threads);
-  ContrastPrepass first_look;
-  FoveationSettings foveation = settings.foveation;
-  if (settings.foveation.contrast_strength > 0 && request.gaze_direction_render) {
-    foveation = less_first_look(foveation, request);
-    first_look = timed(row.trace_ms, [&] {
-      tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
-      return trace_contrast(tracer, request, settings.trace, settings.foveation.contrast_strength);
-    });
-    context.contrast = &first_look.multiplier;
-  }
-  traced.map = timed(
-      row.plan_ms, [&] { return make_sampling_map(foveation, request.view, request.gaze_direction_render, context); });
-  TraceSettings trace = settings.trace;
-  trace.surfaces = filter_needs_guides(settings.filter);
-  traced.sparse = timed(row.trace_ms, [&] {
-    tracer.move_to({request.shutter_open_ns, request.shutter_close_ns});
-    return tracer.trace(request.camera, request.frame, traced.map, trace);
-  });
-  const TraceStats& stats = traced.sparse.stats;
-  count_trace(stats, traced.map, row);
-  count_first_look(first_look.stats, row);
-  result.bad_samples.insert(result.bad_samples.end(), stats.bad_samples.begin(), stats.bad_samples.end());
-  return traced;
-}
-
-RenderedFrame render_frame(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings,
-                           TemporalHistory& history, TimingRow& row, SequenceResult& result) {
-  TracedFrame traced = trace_frame(tracer, request, settings, row, result);
-  std::optional<Guides> guides;
-  if (filter_needs_guides(settings.filter)) {
-    guides = timed(row.guides_ms, [&] {
-      return tracer.guides(request.camera, request.width_px, request.height_px, guide_settings(settings.trace));
-    });
-  }
-  const Guides* of_filter = guides ? &*guides : nullptr;
-  RenderedFrame rendered;
-  rendered.frame =
-      settings.accumulate.mode == AccumulateMode::reproject
-          ? reprojected_frame(tracer, traced.sparse, traced.map, of_filter, request, settings, history, row)
-          : plain_frame(traced.sparse, traced.map, of_filter, request, settings, history, row);
-  rendered.map = std::move(traced.map);
-  history.passed.push_back(request.frame);
-  expose(request, settings, history, rendered, row);
-  return rendered;
+void count_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row,
+                   SequenceResult& result) {
+  add_samples(samples, first_look, map, row);
+  result.bad_samples.insert(result.bad_samples.end(), samples.bad_samples.begin(), samples.bad_samples.end());
 }
 
 // A part of the samples: their sums are all that becomes of the frame.
-void render_samples(PathTracer& tracer, const FrameRequest& request, const PipelineSettings& settings, TimingRow& row,
-                    SequenceResult& result) {
-  const TracedFrame traced = trace_frame(tracer, request, settings, row, result);
+void render_samples(const FrameRenderer& renderer, const FrameRequest& request, const PipelineSettings& settings,
+                    TimingRow& row, SequenceResult& result) {
+  const TracedFrame traced = renderer.trace(request);
+  count_samples(traced.sparse.stats, traced.first_look, traced.map, row, result);
+  add_times(traced.times, row);
   const Stopwatch watch;
   save_samples(samples_file_name(settings.output.run_directory, request.frame, *settings.trace.samples),
                traced.sparse.unrounded, settings.settings_digest);
@@ -179,8 +72,8 @@ TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& 
   if (settings.resume_from.empty()) {
     if (settings.is_part && first > 1 && settings.preroll == 0 && uses_history(settings)) {
       warnings.push_back(
-          fmt::format("--part: frame {} begins without the history of those before it; where the sequence begins "
-                      "earlier, this part differs from one run: give --resume-from, or --preroll",
+          fmt::format("`part`: frame {} begins without the history of those before it; where the sequence begins "
+                      "earlier, this part differs from one run: give `resume-from`, or `preroll`",
                       first));
     }
     return {};
@@ -188,7 +81,7 @@ TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& 
   TemporalHistory history = load_checkpoint(settings.resume_from, settings.history_digest);
   const std::int32_t last = history.passed.empty() ? 0 : history.passed.back();
   if (last >= first) {
-    throw Error(ErrorKind::usage, "--resume-from",
+    throw Error(ErrorKind::usage, "`resume-from`",
                 fmt::format("{} holds the history after frame {}, the run begins with frame {}", settings.resume_from,
                             last, first),
                 fmt::format("begin with frame {}", last + 1));
@@ -206,6 +99,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history) {
   SequenceResult result;
+  const FrameRenderer renderer(tracer, frame_settings(settings));
   const std::string timing_path = timing_path_of(plan, settings);
   const ResumePlan resume = plan_resume(plan, settings, timing_path, history);
   result.warnings = resume.warnings;
@@ -217,19 +111,19 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
 
   for (std::size_t i = 0; i < plan.frames.size(); ++i) {
     const FrameRequest& request = plan.frames[i];
-    TimingRow row;
-    row.frame = request.frame;
-    tell_gaze(request, row);
-    row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
+    TimingRow row = timing_row(request);
     if (resume.work[i] != FrameWork::skip) {
       if (observer.frame_begins) {
         observer.frame_begins(request);
       }
       const Stopwatch total;
       if (settings.trace.samples) {
-        render_samples(tracer, request, settings, row, result);
+        render_samples(renderer, request, settings, row, result);
       } else {
-        const RenderedFrame rendered = render_frame(tracer, request, settings, history, row, result);
+        const RenderedFrame rendered = renderer.render(request, history);
+        count_samples(rendered.samples, rendered.first_look, rendered.map, row, result);
+        add_times(rendered.times, row);
+        row.exposure_ev = rendered.exposure_ev;
         if (observer.frame_ready) {
           observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
         }
@@ -258,17 +152,6 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   }
   timing.finish();
   return result;
-}
-
-MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads) {
-  MapContext context;
-  context.seed = seed;
-  context.frame = request.frame;
-  context.uncertainty_deg = request.gaze_uncertainty_deg;
-  context.gaze_speed_deg_s = request.eye_speed_deg_s;
-  context.in_saccade = request.eye_in_saccade;
-  context.threads = threads;
-  return context;
 }
 
 }  // namespace gazetrace

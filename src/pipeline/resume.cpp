@@ -33,7 +33,7 @@ bool files_are_complete(const PipelineSettings& settings, std::int32_t frame) {
   return output.map_pattern.empty() || fs::exists(frame_file_name(output.map_pattern, frame));
 }
 
-// The checkpoint that is asked for holds the history after the plan's last frame, of the same settings.
+// Whether the checkpoint that is asked for holds the history after the plan's last frame, under the same settings.
 bool checkpoint_is_there(const FramePlan& plan, const PipelineSettings& settings, const TemporalHistory& history) {
   if (!fs::exists(settings.checkpoint)) {
     return false;
@@ -45,16 +45,11 @@ bool checkpoint_is_there(const FramePlan& plan, const PipelineSettings& settings
   try {
     return load_checkpoint(settings.checkpoint, settings.history_digest).passed == passed;
   } catch (const Error&) {
-    return false;  // damaged, or of other settings: it is to be replaced
+    return false;  // damaged, or of other settings: it will be replaced
   }
 }
 
 }  // namespace
-
-bool uses_history(const PipelineSettings& settings) {
-  return settings.accumulate.mode != AccumulateMode::off ||
-         (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
-}
 
 RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
                                  const TemporalHistory& history) {
@@ -83,6 +78,11 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
   if (!output.resume || (output.exr.pattern.empty() && output.display.pattern.empty())) {
     return resume;
   }
+  // Every file that is not of ours has an empty digest, too.
+  if (settings.settings_digest.empty()) {
+    throw Error(ErrorKind::usage, "`resume`", "no settings digest tells frames of these settings from others",
+                "resolve the job, or set PipelineSettings::settings_digest");
+  }
   const bool has_timing = fs::exists(timing_path);
   resume.kept_rows = read_earlier_rows(timing_path);
   std::size_t last_to_render = plan.frames.size();
@@ -90,7 +90,8 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
   for (std::size_t i = first_wanted; i < plan.frames.size(); ++i) {
     const std::int32_t frame = plan.frames[i].frame;
     const bool has_row = resume.kept_rows.contains(frame);
-    // Killed between the last file and the row of timing.csv: once more, so that the row is not missing for good.
+    // A run that was killed between the last file and the row of timing.csv renders the frame once more, so that the
+    // row does not stay missing.
     if (files_are_complete(settings, frame) && (has_row || !has_timing)) {
       resume.work[i] = FrameWork::skip;
       without_row += has_row ? 0 : 1;

@@ -10,7 +10,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr SealedKind kSums{"gazetrace samples 1", "file of samples", "give the folder that --sample-range wrote into",
+constexpr SealedKind kSums{"gazetrace samples 1", "file of samples", "give the folder that `sample-range` wrote into",
                            "render this part again", "render this part again with the others' settings"};
 
 }  // namespace

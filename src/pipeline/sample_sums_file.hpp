@@ -5,7 +5,7 @@
 
 namespace gazetrace {
 
-// The settings' digest of a file of save_samples(); empty: not there, or another file.
+// The settings' digest of a file of save_samples(); empty where there is no file, or one of another kind.
 std::string read_samples_digest(const std::string& path);
 
 }  // namespace gazetrace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file of numbers: a line of text that says what it is and under which settings it was made, then every number as it
-// stands in memory, then a digest of all before.
+// A file of numbers. It begins with a line of text that says what it is and under which settings it was made, then
+// holds every number as it is in memory, and ends with a digest of everything before.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@ namespace gazetrace {
 struct SealedKind {
   const char* title;         // "gazetrace history 2": begins the file
   const char* name;          // "checkpoint"
-  const char* wanted;        // what to give in place of a file of another kind
-  const char* when_damaged;  // what to do then
+  const char* wanted;        // what to give instead of a file of another kind
+  const char* when_damaged;  // what to do about a damaged file
   const char* when_other_settings;
 };
 
@@ -45,7 +45,7 @@ class SealedWriter {
     (*this)(image.height_px);
     (*this)(image.pixels);
   }
-  // Appears under its name when it is complete. Error(runtime) where it cannot be written.
+  // The file appears under its name only when it is complete. Error(runtime) where it cannot be written.
   void save(const std::string& path);
 
  private:
@@ -98,7 +98,7 @@ class SealedReader {
   std::size_t at_ = 0, end_ = 0;
 };
 
-// The settings' digest in the first line of a file; empty: not there, or not of this kind.
+// The settings' digest in the first line of a file; empty where there is no file, or one of another kind.
 std::string read_sealed_digest(const SealedKind& kind, const std::string& path);
 
 }  // namespace gazetrace

@@ -12,12 +12,12 @@
 
 namespace gazetrace {
 
-// Rows of an earlier run by frame; empty when there is no file.
+// The rows of an earlier run, by frame; empty where there is no file.
 std::map<std::int32_t, TimingRow> read_earlier_rows(const std::string& path);
 
 class TimingLog {
  public:
-  // An empty path keeps no file. The file starts with the rows to keep.
+  // The file starts with the rows to keep. With an empty path no file is written.
   TimingLog(std::string path, std::map<std::int32_t, TimingRow> kept);
 
   void add(const TimingRow& row);  // appends and flushes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frame rates and frame lists as people write them.
+// Parses and formats frame rates and frame lists.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -125,7 +125,7 @@ std::vector<std::int32_t> parse_frame_list(std::string_view text) {
 std::string format_frame_list(const std::vector<std::int32_t>& frames) {
   std::string text;
   for (std::size_t i = 0; i < frames.size();) {
-    // The longest run of one step from here; a step of two needs three frames to be worth a range.
+    // Finds the longest run with one step; with a step of two or more, a range is worth it from three frames on.
     std::size_t end = i + 1;
     const std::int64_t step = end < frames.size() ? std::int64_t{frames[end]} - frames[i] : 1;
     while (end < frames.size() && std::int64_t{frames[end]} - frames[end - 1] == step) {

@@ -8,7 +8,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kSameSize = 0.02;  // of size over distance
+constexpr double kSameSize = 0.02;  // relative difference of size over distance that still counts as the same
 
 const DisplayGeometry& display_for_screen_log(const GazeLog& log, const PlanSettings& settings) {
   constexpr std::string_view kRemedy = "give `screen` NAME, or `screen-px` W,H `screen-cm` W,H `screen-distance-cm` D";
@@ -36,12 +36,12 @@ void warn_about_pixels(const DisplayGeometry& display, Warnings& warnings) {
   }
 }
 
-// Only ratios to the distance matter; pixels do not.
+// Only the ratios of the size to the distance matter, so pixels may be missing.
 bool is_complete(const std::optional<DisplayGeometry>& g) {
   return g && g->width_cm > 0 && g->height_cm > 0 && g->distance_cm > 0;
 }
 
-// What is known of angles in the recording, by size and distance or by pixels a degree.
+// The recording's screen as far as angles on it are known, by size and distance or by pixels per degree.
 std::optional<DisplayGeometry> recording_screen(const GazeLog& log) {
   if (is_complete(log.recording_geometry)) {
     return log.recording_geometry;
@@ -63,7 +63,7 @@ bool same_place(const DisplayGeometry& a, const DisplayGeometry& b) {
          close(a.eye_y_cm / a.distance_cm, b.eye_y_cm / b.distance_cm, height);
 }
 
-// The recording's screen where gaze is carried over by angle; empty where places are the same.
+// The recording's screen where gaze is carried over by angle; empty where positions are kept.
 std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometry& display,
                                         const std::optional<GazeTransfer>& how, Warnings& warnings) {
   const std::optional<DisplayGeometry> known = recording_screen(log);
@@ -100,7 +100,7 @@ std::optional<DisplayGeometry> transfer(const GazeLog& log, const DisplayGeometr
                   log.source, what, 1 / gain));
   DisplayGeometry screen = recording;
   if (screen.width_px <= 0 || screen.height_px <= 0) {
-    screen.width_px = screen.height_px = 1;  // fractions are all that is asked of it
+    screen.width_px = screen.height_px = 1;  // only fractions of it are used
   }
   return screen;
 }
@@ -138,7 +138,7 @@ GazeGeometry::GazeGeometry(const CameraPath& camera, const GazeLog* log, const P
     if (settings.display) {
       warnings.push_back(fmt::format("{}: gaze directions need no display; the given one is not used", log->source));
     }
-    // Without a display the camera's own frustum is the view; an orthographic camera has none and gets the default's.
+    // Without a display the camera's own frustum is the view. An orthographic camera has none and gets the default one.
     const Projection projection =
         camera.projection.kind == ProjectionKind::perspective ? camera.projection : Projection{};
     view_ = view_of_perspective(projection.yfov_rad, settings.width_px, settings.height_px);
@@ -150,7 +150,7 @@ void GazeGeometry::settle(GazeAtTime& gaze) const {
   if (gaze.state == GazeState::none || (!is_center && !recording_)) {
     return;
   }
-  // The view's center belongs to the frame, which need not fill the display.
+  // This is the center of the frame, which need not fill the display.
   const Vec3d direction = is_center
                               ? normalize(view_.direction(0.5 * view_.width_px, 0.5 * view_.height_px))
                               : recording_->direction(gaze.u * recording_->width_px, gaze.v * recording_->height_px);

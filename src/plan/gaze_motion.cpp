@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/statistics.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -21,7 +23,7 @@ double frame_ns(const PlanSettings& settings) {
 
 GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings)
     : log_(log), uncertainty_(settings.uncertainty) {
-  // A gaze of one row is one that never moves.
+  // Gaze of a single row never moves.
   if (log == nullptr || log->samples.size() < 2 || !knows_angles(*log)) {
     return;
   }
@@ -57,13 +59,13 @@ bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64
   }
   const auto first = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(std::min(after_log_ns, t_log_ns)));
   const auto last = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(t_log_ns));
-  // The row before the time after which it begins was the frame before's; alone it is this frame's, too.
+  // The first row was already counted for the frame before; where it is the only one, it counts for this frame, too.
   return std::find(first == last ? first : first + 1, last + 1, movement) != last + 1;
 }
 
 double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
   const auto age_ns = effective_age_ns(request);
-  // A fixed gaze has no rows and no age: it does not move, and may be off all the same.
+  // A fixed gaze has no rows and no age. It does not move, but may be off all the same.
   const bool is_fixed = !age_ns && request.gaze_render.state == GazeState::measured;
   if (!uncertainty_ || (!age_ns && !is_fixed)) {
     return 0;
@@ -101,9 +103,7 @@ std::optional<GazeAges> gaze_ages(const FramePlan& plan, const PlanSettings& set
   ages.frames = all.size();
   if (!all.empty()) {
     std::sort(all.begin(), all.end());
-    const auto at = [&](double share) {
-      return all[static_cast<std::size_t>(std::ceil(share * static_cast<double>(all.size()))) - 1];
-    };
+    const auto at = [&](double share) { return all[covering_rank(share, all.size())]; };
     ages.min_ns = all.front();
     ages.median_ns = at(0.5);
     ages.p95_ns = at(0.95);

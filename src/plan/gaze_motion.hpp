@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the eye does at the time of a frame, how fast it goes, and how old a frame's gaze is.
+// What the eye does at the time of a frame, how fast it moves, and how old a frame's gaze is.
 #pragma once
 
 #include <cstddef>
@@ -12,24 +12,24 @@
 
 namespace gazetrace {
 
-// Of one log. Without angles nothing is known.
+// The movements and speed of the eye in one log. Where the log has no angles, nothing is known.
 class GazeMotion {
  public:
   GazeMotion(const GazeLog* log, const PlanSettings& settings);
 
-  // One for each sample, or nothing.
+  // One for each sample of the log; nullptr where nothing is known.
   [[nodiscard]] const std::vector<EyeMovement>* movements() const { return movements_.empty() ? nullptr : &movements_; }
-  // accuracy + precision + age x speed of the gaze that steers the frame; 0 where not asked for or without gaze.
+  // accuracy + precision + age x speed of the gaze that steers the frame; 0 where it is not asked for or has no gaze.
   [[nodiscard]] double uncertainty_deg(const FrameRequest& request) const;
-  // At a time on the log's clock: how fast the gaze goes (0 where nobody asked or nothing is known), and whether the
-  // eye is in a saccade.
+  // At a time on the log's clock: the speed of the gaze (0 where it is not asked for or not known), and whether the eye
+  // is in a saccade.
   [[nodiscard]] double speed_deg_s(std::int64_t t_log_ns) const;
   [[nodiscard]] bool in_saccade(std::int64_t t_log_ns) const;
-  // Whether the eye did this at any time after the first and up to the second.
+  // Whether the eye made this movement at any time after the first time and up to the second.
   [[nodiscard]] bool did(EyeMovement movement, std::int64_t after_log_ns, std::int64_t t_log_ns) const;
 
  private:
-  // The last sample that is not after the time; the first, where all are.
+  // The last sample that is not after the time; where all are after it, the first.
   [[nodiscard]] std::size_t row_at(std::int64_t t_log_ns) const;
 
   const GazeLog* log_;
@@ -38,12 +38,13 @@ class GazeMotion {
   std::vector<double> speed_deg_s_;
 };
 
-// The age in log time of what steers the frame, from the middle of the frame: of interpolated gaze, of the time that it
-// was interpolated for. Empty without rows.
+// The age, in log time and at the middle of the frame, of the gaze that steers it. Interpolated gaze is as old as the
+// time that it was interpolated for. Empty where the gaze does not come from rows of a log.
 std::optional<std::int64_t> effective_age_ns(const FrameRequest& request);
 
 std::optional<GazeAges> gaze_ages(const FramePlan& plan, const PlanSettings& settings);
-// A frame shows one gaze for its whole time: below 4 frames the age of a latency is not a number but a range.
+// Warns of latencies below 4 frames: since a frame shows one gaze for its whole time, such a latency is more of a range
+// than a number.
 void warn_about_latency(const PlanSettings& settings, Warnings& warnings);
 
 }  // namespace gazetrace

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "gazetrace/plan.hpp"
-#include "gazetrace/plan_join.hpp"
 #include "plan/gaze_geometry.hpp"
 #include "plan/gaze_motion.hpp"
 
@@ -41,7 +40,7 @@ void check_settings(const PlanSettings& settings) {
   }
 }
 
-// start + (frame - 1 + part) / fps, for times inside a frame: half a nanosecond does not matter here.
+// start + (frame - 1 + part) / fps, for times inside a frame, where half a nanosecond does not matter.
 std::int64_t time_in_frame_ns(const PlanSettings& settings, std::int32_t frame, double part) {
   const double period_ns =
       1e9 * static_cast<double>(settings.fps.denominator) / static_cast<double>(settings.fps.numerator);
@@ -52,7 +51,7 @@ CameraPose pose_at(const CameraPath& camera, std::int64_t t_ns) {
   return camera.pose_at(camera.is_static ? t_ns : std::clamp(t_ns, camera.begin_ns, camera.end_ns));
 }
 
-// A camera's path need not be even while the shutter is open: it is taken at this many steps.
+// A camera need not move evenly while the shutter is open, so its path is sampled at this many steps.
 constexpr int kShutterSteps = 16;
 
 // Empty where the camera stands still.
@@ -100,8 +99,8 @@ std::int64_t earlier(std::int64_t t_ns, std::int64_t by_ns) {
   return __builtin_sub_overflow(t_ns, by_ns, &result) ? std::numeric_limits<std::int64_t>::min() : result;
 }
 
-// Of the first frame itself where none comes before it; frames before it are taken to be as far apart as those after
-// it.
+// The frame before this one. For the first of the list it is guessed: frames before it are taken to be as far apart as
+// those after it, and where that would be below 1, it is the frame itself.
 std::int32_t likely_predecessor(const std::vector<std::int32_t>& frames, std::size_t index) {
   const std::int32_t frame = frames[index];
   const std::size_t next = std::max<std::size_t>(index, 1);
@@ -117,7 +116,7 @@ void say_what_the_eye_did(FrameRequest& request, std::int32_t frame_before, cons
   request.blink_since_last_frame = motion.did(EyeMovement::blink, since_ns, request.gaze_render.t_log_ns);
 }
 
-// A clock that begins with the log's first sample, also where processing has lost it.
+// Fixes the beginning of the clock to the log's first sample, since processing may remove that sample.
 PlanSettings with_clock(const GazeLog* log, PlanSettings settings) {
   if (log != nullptr && !settings.gaze.event_ns && !log->samples.empty()) {
     settings.gaze.event_ns = log->samples.front().t_ns;

@@ -46,7 +46,7 @@ std::string age_text(const GazeAtTime& gaze) {
                              : "unknown";
 }
 
-// Below the table: what was done to the gaze that steers, and how old it is when it is seen.
+// The lines below the table: what was done to the gaze that steers, and how old it is when it is seen.
 std::string notes_text(const FramePlan& plan) {
   std::string text;
   for (const std::string& line : plan.gaze_processing) {
@@ -159,7 +159,7 @@ std::string plan_as_table(const FramePlan& plan) {
   std::string text;
   for (const Row& row : rows) {
     for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-      // Text to the left, numbers to the right.
+      // Text is aligned to the left, numbers to the right.
       const std::string& title = rows.front()[i];
       const bool is_text = title == "state" || title == "valid" || title == "event";
       text += is_text ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);

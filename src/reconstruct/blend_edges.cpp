@@ -41,7 +41,7 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
     }
     while (k < std::min((task + 1) * kRaysPerTask, rays.size())) {
       const std::uint32_t pixel = rays[k].pixel;
-      const bool changed = needs_filtering(input.map, site_of_pixel.pixels[pixel]);
+      const bool changed = input.pass_through.needs_filtering(site_of_pixel.pixels[pixel]);
       PixelValue sum{frame.radiance.pixels[pixel], frame.variance.pixels[pixel]};
       float count = 1;
       for (; k < rays.size() && rays[k].pixel == pixel; ++k) {
@@ -53,7 +53,7 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
         }
       }
       if (changed) {
-        // Variance at most: they may share their samples.
+        // An upper bound of the variance: the values may share their samples.
         blended[task].push_back({pixel, {sum.radiance / count, sum.variance / count}});
       }
     }

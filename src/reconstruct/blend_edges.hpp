@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that edges cross become the mean of what all their rays see (guides.hpp: EdgeRay).
+// Each pixel that an edge crosses becomes the mean of what its rays see (guides.hpp: EdgeRay).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace gazetrace {
 
-// `frame`: filled, and needed as it is until all means are known.
+// `frame` is filled; its values are read until all means are known.
 void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Image<std::uint32_t>& site_of_pixel,
                  Frame& frame);
 

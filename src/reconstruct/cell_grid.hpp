@@ -13,10 +13,10 @@
 namespace gazetrace {
 
 enum class CellKind : std::uint8_t {
-  missing,     // nothing known here
+  missing,     // nothing is known here
   whole,       // a site that covers its block: its centroid is the block's centre
   part,        // a site that covers a part of its block
-  substitute,  // no pixel of the region: stands for what other regions' sites say about these pixels
+  substitute,  // it has no pixel of the region, and stands for what the sites of other regions say about its pixels
 };
 
 // The value of a block and the point where it sits.
@@ -42,7 +42,7 @@ struct CellGrid {
   }
 };
 
-// One grid a region of the map; no cells for regions of single pixels, which are painted into `frame` instead.
+// One grid for each region of the map. Regions of single pixels have no cells; they are painted into `frame` instead.
 // Every cell that touches one of a region's sites, corners included, and lies in the frame has a value. Where the
 // region itself has none (beyond its border) the cell is a substitute:
 //   value     the mean of the sites of other regions in it, weighted by samples per pixel times pixels

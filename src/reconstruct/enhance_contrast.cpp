@@ -8,15 +8,15 @@
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
-#include "gazetrace/enhance.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/math.hpp"
+#include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr float kFarthest = 2;     // of a logarithm from its surroundings
-constexpr double kDarkest = 1e-4;  // of the mean luminance: darker pixels are as dark as that to their neighbours
+constexpr float kFarthest = 2;     // difference of a logarithm from that of its surroundings, as far as it is used
+constexpr double kDarkest = 1e-4;  // share of the mean luminance: darker pixels count as that dark for their neighbours
 constexpr double kReachSigmas = 3;
 
 // Half of a Gaussian, from its middle outwards; not normalised.
@@ -29,7 +29,7 @@ std::vector<float> half_gaussian(double sigma_px) {
   return weights;
 }
 
-// The weighted mean about place `at` of a line of `count` values; beyond its ends there is nothing to weigh.
+// The weighted mean about place `at` of a line of `count` values; what lies beyond its ends has no weight.
 float mean_about(const float* values, std::size_t stride, int count, int at, const std::vector<float>& weights) {
   const int reach = static_cast<int>(weights.size()) - 1;
   float sum = 0;

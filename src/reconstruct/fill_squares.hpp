@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fills all pixels that need filtering with the light of the four blocks between which each lies (surface_gather.hpp);
-// where those have not enough on like surfaces, with that of farther ones (surface_lookup.hpp).
+// Fills every pixel that needs filtering with the light of the four blocks around it (surface_gather.hpp). Where these
+// have too few samples on similar surfaces, farther blocks are asked (surface_lookup.hpp).
 #pragma once
 
 #include "reconstruct/surface_lookup.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reconstruction filter is: from the values of the sites to every pixel.
+// What a reconstruction filter is: it states what it needs, and goes from the values of the sites to every pixel.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,27 @@ struct FilterInput {
   const SparseFrame& sparse;
   const SiteValues& values;
   const SamplingMap& map;
+  const PassThrough& pass_through;
   const Guides* guides;  // of the map's size where the filter needs them
   int threads;
 };
 
-// One function `filter_<name>` per line of filters.def.
-#define FILTER(name, needs_guides, description) Frame filter_##name(const FilterInput& input);
+struct FilterDefinition {
+  ReconstructionNeeds needs = {};  // reconstruct.cpp checks that they are met
+  bool blurs_blocks = true;        // as in FilterInfo
+  Frame (*frame)(const FilterInput& input);
+};
+
+// One definition `filter_<name>` per line of filters.def.
+#define FILTER(name, description) extern const FilterDefinition filter_##name;
 #include "reconstruct/filters.def"
 #undef FILTER
 
 // A frame of the map's size; guide images only where `guides` is set.
 Frame make_frame(const SamplingMap& map, bool guides);
 
-// Gives every pixel of a site the site's own values. Pixels of 1x1 sites take this way in every filter, so that
-// they are bit-equal whichever filter is used.
+// Gives every pixel of a site the site's own values. Every filter uses it for the pixels of 1x1 sites that it does not
+// change, so that these have the same bits whichever filter is used.
 void paint_site(Frame& frame, const SamplingMap& map, const SiteValues& values, std::size_t site);
 
 }  // namespace gazetrace

@@ -28,18 +28,18 @@ void check(OIDNDevice device) {
   const char* message = nullptr;
   if (oidnGetDeviceError(device, &message) != OIDN_ERROR_NONE) {
     throw Error(ErrorKind::runtime, "filter oidn", message != nullptr ? message : "the library reports an error",
-                "render with another --filter");
+                "render with another `filter`");
   }
 }
 
 }  // namespace
 
 ImageRgb open_image_denoise(const ImageRgb& radiance, const ImageRgb& albedo, const ImageRgb& normal, int threads) {
-  // Memory of ours can be handed to the CPU's device only.
+  // Only the CPU device takes memory that we have allocated.
   const Device device(oidnNewDevice(OIDN_DEVICE_TYPE_CPU));
   check(device.get());
   oidnSetDeviceInt(device.get(), "numThreads", resolve_threads(threads));
-  // Pinned threads would fight with the tracer's.
+  // Pinned threads would compete with those of the tracer.
   oidnSetDeviceBool(device.get(), "setAffinity", false);
   oidnCommitDevice(device.get());
   check(device.get());
@@ -47,7 +47,7 @@ ImageRgb open_image_denoise(const ImageRgb& radiance, const ImageRgb& albedo, co
   ImageRgb result(radiance.width_px, radiance.height_px);
   const Filter filter(oidnNewFilter(device.get(), "RT"));
   const auto image = [&](const char* name, const ImageRgb& picture) {
-    // The library's interface takes what it only reads without const.
+    // The library's interface takes pointers without const, also to what it only reads.
     oidnSetSharedFilterImage(filter.get(), name, const_cast<Vec3f*>(picture.pixels.data()),  // NOLINT
                              OIDN_FORMAT_FLOAT3, static_cast<std::size_t>(picture.width_px),
                              static_cast<std::size_t>(picture.height_px), 0, sizeof(Vec3f), 0);

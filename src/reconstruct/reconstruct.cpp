@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,48 @@ std::string user_name(std::string name) {
   return name;
 }
 
-void check_guides(const FilterInput& input) {
-  if (input.guides == nullptr || input.sparse.first_surface.size() != input.map.sites.size() + 1) {
-    throw Error(ErrorKind::runtime, "reconstruct", "the filter needs guides and sums per surface",
-                "trace with TraceSettings::surfaces and pass PathTracer::guides");
+struct NamedFilter {
+  std::string name;
+  const FilterDefinition* definition;
+  std::string description;
+};
+
+std::vector<NamedFilter> named_filters() {
+  return {
+#define FILTER(name, description) {user_name(#name), &filter_##name, description},
+#include "reconstruct/filters.def"
+#undef FILTER
+  };
+}
+
+NamedFilter filter_named(const std::string& name) {
+  if (name.empty()) {
+    throw Error(ErrorKind::usage, "filter", "no reconstruction filter is named",
+                "name one of reconstruction_filters(), most often the one that choose_filter() chooses");
   }
-  if (input.guides->albedo.width_px != input.map.width_px || input.guides->albedo.height_px != input.map.height_px) {
+  const std::vector<NamedFilter> filters = named_filters();
+  const auto found = std::find_if(filters.begin(), filters.end(), [&](const auto& f) { return f.name == name; });
+  if (found == filters.end()) {
+    std::vector<std::string> names;
+    for (const NamedFilter& filter : filters) {
+      names.push_back(filter.name);
+    }
+    throw Error(ErrorKind::usage, "filter", unknown_name_message("reconstruction filter", name, names));
+  }
+  return *found;
+}
+
+FilterInfo info_of(const NamedFilter& filter) {
+  return {filter.name, filter.description, filter.definition->needs, filter.definition->blurs_blocks};
+}
+
+void check_needs(const ReconstructionNeeds& needs, const SparseFrame& sparse, const SamplingMap& map,
+                 const Guides* guides) {
+  if ((needs.guides && guides == nullptr) || (needs.surfaces && sparse.first_surface.size() != map.sites.size() + 1)) {
+    throw Error(ErrorKind::runtime, "reconstruct", "the filter needs guides and sums per surface",
+                "trace with Reconstruction::trace_settings and pass guides of Reconstruction::guide_settings");
+  }
+  if (needs.guides && (guides->albedo.width_px != map.width_px || guides->albedo.height_px != map.height_px)) {
     throw Error(ErrorKind::runtime, "reconstruct", "the guides are of another size than the sampling map",
                 "make them for the map's frame");
   }
@@ -35,37 +72,41 @@ void check_guides(const FilterInput& input) {
 }  // namespace
 
 std::vector<FilterInfo> reconstruction_filters() {
-  return {
-#define FILTER(name, needs_guides, description) {user_name(#name), description, needs_guides},
-#include "reconstruct/filters.def"
-#undef FILTER
-  };
+  std::vector<FilterInfo> filters;
+  for (const NamedFilter& filter : named_filters()) {
+    filters.push_back(info_of(filter));
+  }
+  return filters;
 }
 
-bool filter_needs_guides(const std::string& filter) {
-  const std::vector<FilterInfo> filters = reconstruction_filters();
-  return std::any_of(filters.begin(), filters.end(),
-                     [&](const FilterInfo& info) { return info.name == filter && info.needs_guides; });
+Reconstruction::Reconstruction(const ReconstructionSettings& settings)
+    : pass_through_samples_(settings.pass_through_samples) {
+  const NamedFilter named = filter_named(settings.filter);
+  definition_ = named.definition;
+  filter_ = info_of(named);
 }
 
-Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads,
-                  const Guides* guides) {
+TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
+  settings.surfaces = filter_.needs.surfaces;
+  settings.pass_through_samples = pass_through_samples_;
+  return settings;
+}
+
+std::optional<GuideSettings> Reconstruction::guide_settings(const TraceSettings& trace) const {
+  std::optional<GuideSettings> settings = filter_.needs.guides;
+  if (settings) {
+    settings->pixel_cone = std::max(trace.pixel_cone, settings->pixel_cone);
+    settings->diffuse = trace.diffuse;
+  }
+  return settings;
+}
+
+Frame Reconstruction::frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides,
+                            int threads) const {
   const SiteValues values(sparse, map);
-  const FilterInput input{sparse, values, map, guides, threads};
-  if (filter_needs_guides(filter)) {
-    check_guides(input);
-  }
-#define FILTER(name, needs_guides, description) \
-  if (filter == user_name(#name)) {             \
-    return filter_##name(input);                \
-  }
-#include "reconstruct/filters.def"
-#undef FILTER
-  std::vector<std::string> names;
-  for (const FilterInfo& info : reconstruction_filters()) {
-    names.push_back(info.name);
-  }
-  throw Error(ErrorKind::usage, "filter", unknown_name_message("reconstruction filter", filter, names));
+  check_needs(filter_.needs, sparse, map, guides);
+  const PassThrough pass_through(map, pass_through_samples_);
+  return definition_->frame({sparse, values, map, pass_through, guides, threads});
 }
 
 Frame make_frame(const SamplingMap& map, bool guides) {

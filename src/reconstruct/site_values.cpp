@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::uint32_t kNoSite = 0xffffffffU;
 
-// A weighted mean of sites. Variances are averaged, not divided: what was never sampled is no better known than
-// its neighbours.
+// A weighted mean of sites. Variances are averaged and not divided by the number of sites, since a place that was never
+// sampled is known no better than its neighbours.
 struct Average {
   Vec3d radiance, albedo, normal;
   double variance = 0, depth_m = 0, hits = 0, weight = 0;
@@ -85,7 +85,7 @@ SiteGuides SiteValues::guides_from_sums(std::size_t site) const {
 }
 
 // Ring by ring outwards from the sampled sites: each empty site takes the mean of the neighbouring pixels whose values
-// were known a ring earlier, weighted by samples per pixel. Two visits a site, however large the hole is.
+// were known a ring earlier, weighted by samples per pixel. Each site is visited twice, however large the hole is.
 void SiteValues::fill_empty_sites(const SamplingMap& map) {
   const std::size_t sites = map.sites.size();
   filled_.resize(sites);

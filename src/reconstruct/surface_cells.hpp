@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the samples of a site say about the light on each surface they fell on, ready to be smoothed over neighbours.
+// What the samples of a site say about the light on each surface that they hit, ready to be smoothed over neighbours.
 #pragma once
 
 #include <cstddef>
@@ -31,17 +31,17 @@ struct BlockExtent {
   int x = 0, y = 0, x_end = 0, y_end = 0;
 };
 
-// Which cells stand for each block of a region's grid: those of the region's own site in it, also where borders or the
-// frame's edge cut the block; where the region has no pixel, those of the site in the block's middle.
+// Which cells stand for each block of a region's grid: those of the region's own site in it, also where a border or the
+// frame's edge cuts the block; where the region has no pixel in it, those of the site in the block's middle.
 class BlockCells {
  public:
   static constexpr int kReach = 16;  // blocks around the region's own that may be asked for
 
-  // None yet. `own`: what holds all blocks of the region; empty for a region without pixels.
+  // Begins without cells. `own` is the extent of all blocks of the region; it is empty for a region without pixels.
   explicit BlockCells(const BlockExtent& own);
 
   [[nodiscard]] const BlockExtent& own() const { return own_; }
-  // The first of the cells, shifted left by two bits, and their number; 0 where none are.
+  // The index of the first cell, shifted left by two bits, and the number of cells; 0 where there are none.
   [[nodiscard]] std::uint32_t& at(int bx, int by) { return codes_[index(bx, by)]; }
   [[nodiscard]] std::uint32_t at(int bx, int by) const { return codes_[index(bx, by)]; }
 

@@ -18,11 +18,11 @@ Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
   smooth(lattice, map, settings, input.threads);
 
   // AOVs are those of the linear filter.
-  Frame frame = input.values.has_guides() ? filter_linear(input) : make_frame(map, false);
+  Frame frame = input.values.has_guides() ? filter_linear.frame(input) : make_frame(map, false);
   parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
     for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-      if (!needs_filtering(map, i)) {
+      if (!input.pass_through.needs_filtering(i)) {
         paint_site(frame, map, input.values, i);
         continue;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How pixels take up the light on the surfaces of the blocks about them: those that lie between the same four blocks
-// together, one a lane.
+// How pixels take the light from the surfaces of the blocks around them. Pixels that lie between the same four blocks
+// are computed together, one in each lane.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct alignas(64) GatherArray {
 };
 using GatherLane = GatherArray<float>;
 
-// What pixels see; lanes past `count` hold anything.
+// What the pixels see; lanes from `count` on hold arbitrary values.
 struct SurfaceLanes {
   GatherLane x_px, y_px, depth_m;  // continuous coordinates from the frame's centre; as in Guides
   GatherLane normal_x, normal_y, normal_z, place_x, place_y, place_z;
@@ -36,7 +36,7 @@ struct SurfaceLanes {
 struct LightLanes {
   GatherLane reflected_r, reflected_g, reflected_b, albedo_r, albedo_g, albedo_b;
   GatherLane variance, weight;
-  GatherLane all;  // weight without regard to likeness
+  GatherLane all;  // sum of the weights without regard to likeness
 };
 
 // Places from coordinates and depths, and tents: the first of the four blocks' centres is at (x_px, y_px).

@@ -45,7 +45,7 @@ void SurfaceLookup::add_block(std::size_t region, int bx, int by, float tent, co
   });
 }
 
-// Bilinear between blocks of the pixel's own size.
+// Bilinear interpolation between blocks of the pixel's own size.
 GatheredLight SurfaceLookup::nearest_four(int x, int y, const PixelSurface& pixel) const {
   GatheredLight light;
   const std::size_t region = map_.region(x, y);
@@ -65,7 +65,7 @@ GatheredLight SurfaceLookup::nearest_four(int x, int y, const PixelSurface& pixe
   return light;
 }
 
-// Seven by seven blocks about the pixel's own, near ones first in weight.
+// Seven by seven blocks around the pixel's own, weighted by nearness.
 GatheredLight SurfaceLookup::square(int x, int y, const PixelSurface& pixel, bool alike) const {
   constexpr int kRadius = 3;
   static_assert(kRadius <= BlockCells::kReach);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What falls on the surface that a pixel or a ray sees: light of like surfaces of the blocks near by, one pixel at a
-// time. Pixels that lie between the same blocks are computed together where those suffice: fill_squares.hpp.
+// The light that falls on the surface that a pixel or a ray sees, taken from similar surfaces of the blocks near by,
+// for one pixel at a time. Where the four nearest blocks suffice, fill_squares.hpp computes several pixels together.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct GatheredLight {
   Vec3f reflected, albedo;
   float variance = 0;
   float weight = 0;
-  float all = 0;  // weight without regard to likeness
+  float all = 0;  // sum of the weights without regard to likeness
 
   void add(float w, const SurfaceCell& cell) {
     reflected += w * cell.reflected;
@@ -28,7 +28,7 @@ struct GatheredLight {
   }
 };
 
-// Where less than this share of the nearest samples is on a like surface, farther blocks are asked too.
+// Where less than this share of the nearest samples is on a similar surface, farther blocks are used as well.
 inline constexpr float kEnoughLike = 0.02F;
 inline bool enough_alike(float weight, float all) {
   return weight > kEnoughLike * all && weight > 0;
@@ -44,9 +44,9 @@ class SurfaceLookup {
   SurfaceLookup(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings)
       : map_(input.map), guides_(*input.guides), lattice_(lattice), settings_(settings) {}
 
-  // What falls on a surface that pixel (x, y) sees; nothing (weight 0) where no sample is near.
+  // The light that falls on a surface that pixel (x, y) sees; its weight is 0 where no sample is near.
   [[nodiscard]] GatheredLight light_at(int x, int y, const PixelSurface& pixel) const;
-  // Where the nearest four blocks have not enough.
+  // For places where the nearest four blocks have too few samples.
   [[nodiscard]] GatheredLight farther(int x, int y, const PixelSurface& pixel) const;
 
   [[nodiscard]] PixelSurface surface_of(int x, int y) const;
@@ -64,7 +64,7 @@ class SurfaceLookup {
   const SmoothingSettings& settings_;
 };
 
-// Guides of a miss or an unlit surface say all there is to know.
+// For a miss or an unlit surface the guides say everything: no light has to be taken from samples.
 inline bool only_shines(SurfaceKind kind) {
   return kind == SurfaceKind::miss || kind == SurfaceKind::unlit;
 }
@@ -74,7 +74,7 @@ struct PixelValue {
   float variance = 0;
 };
 
-// Of a surface that reflects. `unknown`: says what is there instead where no sample is near.
+// The value of a surface that reflects. `unknown()` returns what to show where no sample is near.
 template <class Unknown>
 PixelValue shaded(const GatheredLight& light, const Vec3f& albedo, const Vec3f& emission, const Unknown& unknown) {
   if (!(light.weight > 0)) {

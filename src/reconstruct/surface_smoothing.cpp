@@ -16,29 +16,29 @@ namespace gazetrace {
 namespace {
 
 constexpr std::array<float, 2> kBinomial{0.5F, 0.25F};  // 1 2 1 in x and y, half
-// What a surface itself counts among its neighbours. Less than the binomial's quarter, since what is above the largest
-// sum of weights near by is kept anyway.
+// The weight of a surface itself among its neighbours. It is less than the binomial's quarter, since a surface keeps
+// what is above the largest sum of weights near by in any case.
 constexpr float kOwnShare = 0.1F;
 
-// What is smoothed of a cell; the rest of it stays.
+// The part of a cell that is smoothed; the rest of it stays.
 struct CellLight {
   Vec3f reflected, albedo;
   float light = 0, variance = 0;
 };
 
-// Another surface near by, and how much it counts by place and orientation: the same both ways.
+// Another surface near by, and its weight by place and orientation, which is the same in both directions.
 struct Tie {
   std::uint32_t other = 0;
   float like = 0;
 };
 
-// Of the cells of a map's tile, one after the other.
+// The ties of the cells of one tile of the map, one cell after the other.
 struct TileTies {
   std::vector<Tie> ties;
   std::vector<std::uint32_t> end;  // of each cell's
 };
 
-// The part of a SurfaceCell that says how it lies: half a cache line.
+// The part of a SurfaceCell that says where it lies and how it faces: half a cache line.
 struct alignas(32) Orientation {
   Vec3f normal, place_m;
   float footprint_m = 0;
@@ -302,7 +302,7 @@ void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const Smoothin
     smoother.find_ties(1 << level, wide);
     smoother.exchange(wide);
   }
-  // What wide steps leave is dots as far apart as the first of them.
+  // Wide steps leave dots that are as far apart as the first step; a last narrow one removes them.
   smoother.exchange(near);
   smoother.store();
 }

@@ -19,16 +19,16 @@ struct SmoothingSettings {
   float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance
 };
 
-// Less than this is nothing: squares of weights, which variances need, stay far from float's smallest.
+// Smaller weights count as 0, so that their squares, which variances need, stay far from float's smallest.
 constexpr float kLeastLikeness = 1e-6F;
 
-// 1 at 0, falls like exp(-x) and ends at x = 3: what is across an edge weighs nothing, not little.
+// 1 at 0, falls like exp(-x) and ends at x = 3, so that what lies across an edge has no weight at all.
 inline float falling(float x) {
   const float t = std::max(1.0F - x * (1.0F / 3.0F), 0.0F);
   return t * t * t;
 }
 
-// Of the cosine between normals: its 16th power.
+// The 16th power of the cosine between normals.
 inline float facing_power(float cosine) {
   const float c = std::max(cosine, 0.0F);
   const float c2 = c * c;
@@ -37,8 +37,8 @@ inline float facing_power(float cosine) {
   return c8 * c8;
 }
 
-// How alike two places are: 1 on one plane with one normal, 0 across an edge. `way`: from one to the other; `slack_m`:
-// as much apart is nothing. Without branches, so that loops over lanes become vectors.
+// How alike two places are: 1 on one plane with one normal, 0 across an edge. `way` leads from one to the other;
+// distances up to `slack_m` count as none. There are no branches, so that loops over lanes become vectors.
 [[gnu::always_inline]] inline float likeness(const Vec3f& normal_a, const Vec3f& normal_b, const Vec3f& way,
                                              float slack_m, const SmoothingSettings& settings) {
   const float off = std::max(std::fabs(dot(normal_a, way)), std::fabs(dot(normal_b, way)));

@@ -13,15 +13,15 @@ namespace {
 
 enum class Verdict { better, worse, undecided, unresolved, missing };
 
-Verdict verdict(const ReportScore* test, const ReportScore* baseline, bool is_lower_better) {
+Verdict verdict(const ResultScore* test, const ResultScore* baseline, bool is_lower_better) {
   if (test == nullptr || baseline == nullptr || !test->value || !baseline->value) {
     return Verdict::missing;
   }
   if (!test->is_resolved && !baseline->is_resolved) {
     return Verdict::unresolved;
   }
-  const Estimate& a = *test->value;
-  const Estimate& b = *baseline->value;
+  const Interval& a = *test->value;
+  const Interval& b = *baseline->value;
   if (!a.low || !b.low) {
     return Verdict::undecided;
   }
@@ -34,11 +34,11 @@ Verdict verdict(const ReportScore* test, const ReportScore* baseline, bool is_lo
   return Verdict::undecided;
 }
 
-std::string speed_sentence(const ReportRow& test) {
+std::string speed_sentence(const ResultRow& test) {
   if (!test.speed_up) {
     return "No speed-up was measured.";
   }
-  const Estimate& s = *test.speed_up;
+  const Interval& s = *test.speed_up;
   if (s.low && *s.low <= 1 && *s.high >= 1) {
     return fmt::format("Its speed-up of {} is not told apart from 1.", with_interval(s));
   }
@@ -46,12 +46,12 @@ std::string speed_sentence(const ReportRow& test) {
                      : fmt::format("Slower than uniform at the reference rate: speed-up {}.", with_interval(s));
 }
 
-std::string compared_sentence(const ReportData& data, const ReportRow& test, const ReportRow& baseline) {
+std::string compared_sentence(const Results& data, const ResultRow& test, const ResultRow& baseline) {
   std::vector<std::string> better;
   std::vector<std::string> worse;
   std::vector<std::string> undecided;
   std::vector<std::string> unresolved;
-  for (const ReportMetric& metric : data.metrics) {
+  for (const ResultMetric& metric : data.metrics) {
     switch (verdict(find_score(test, metric.name, "whole"), find_score(baseline, metric.name, "whole"),
                     metric.is_lower_better)) {
       case Verdict::better:
@@ -83,19 +83,19 @@ std::string compared_sentence(const ReportData& data, const ReportRow& test, con
   return text.empty() ? std::string() : fmt::format(" Beside {}: {}.", report_role(baseline.role).words, text);
 }
 
-std::string place_of(const ReportRow& test) {
+std::string place_of(const ResultRow& test) {
   return fmt::format("{}, {}", scene_gaze_text({test.scene, test.gaze}), test.label);
 }
 
-void add_losses(const ReportData& data, const ReportRow& test, const ReportRow& baseline,
+void add_losses(const Results& data, const ResultRow& test, const ResultRow& baseline,
                 std::vector<std::string>& losses) {
-  std::vector<std::string> parts{"whole"};
-  parts.insert(parts.end(), data.bands.begin(), data.bands.end());
-  for (const ReportMetric& metric : data.metrics) {
+  std::vector<std::string> parts = band_names(data.bands_deg);
+  parts.insert(parts.begin(), "whole");
+  for (const ResultMetric& metric : data.metrics) {
     std::vector<std::string> lost;
     for (const std::string& part : parts) {
-      const ReportScore* const ours = find_score(test, metric.name, part);
-      const ReportScore* const theirs = find_score(baseline, metric.name, part);
+      const ResultScore* const ours = find_score(test, metric.name, part);
+      const ResultScore* const theirs = find_score(baseline, metric.name, part);
       if (verdict(ours, theirs, metric.is_lower_better) == Verdict::worse) {
         lost.push_back(fmt::format("{} against {}{} in {}", with_interval(ours->value), with_interval(theirs->value),
                                    theirs->is_resolved ? "" : " (unresolved)", part_text(part)));
@@ -108,9 +108,9 @@ void add_losses(const ReportData& data, const ReportRow& test, const ReportRow& 
   }
 }
 
-bool has_scores(const ReportData& data, const ReportRow& row) {
-  for (const ReportMetric& metric : data.metrics) {
-    const ReportScore* const score = find_score(row, metric.name, "whole");
+bool has_scores(const Results& data, const ResultRow& row) {
+  for (const ResultMetric& metric : data.metrics) {
+    const ResultScore* const score = find_score(row, metric.name, "whole");
     if (score != nullptr && score->value) {
       return true;
     }
@@ -118,8 +118,8 @@ bool has_scores(const ReportData& data, const ReportRow& row) {
   return false;
 }
 
-// What sweep/frames.cpp has scored: fixations where there are any.
-std::string scored_frames_sentence(const ReportData& data, const std::string& gaze) {
+// Which frames a sweep has scored: those with a fixation where there are any.
+std::string scored_frames_sentence(const Results& data, const std::string& gaze) {
   const auto shares = data.event_shares.find(gaze);
   if (shares == data.event_shares.end()) {
     return {};
@@ -130,7 +130,7 @@ std::string scored_frames_sentence(const ReportData& data, const std::string& ga
              : " No frame is a fixation: scores are of the others that are seen.";
 }
 
-std::string control_sentence(const ReportData& data, const ReportControl& control) {
+std::string control_sentence(const Results& data, const ResultControl& control) {
   const std::string start = fmt::format(
       "{}: {} is {} when the gaze is {}, against {} when it is right", scene_gaze_text({control.scene, control.gaze}),
       control.metric, value_text(control.wrong_score), control.wrong, value_text(control.right_score));
@@ -145,30 +145,30 @@ std::string control_sentence(const ReportData& data, const ReportControl& contro
          ", and it supports no claim about foveation.";
 }
 
-// Of whole frames, in the order of Verdict.
+// How many comparisons of whole frames came out how, in the order of Verdict.
 using Tally = std::array<int, 5>;
 
-void count(const ReportData& data, const ReportRow& test, const ReportRow& baseline, Tally& tally) {
-  for (const ReportMetric& metric : data.metrics) {
+void count(const Results& data, const ResultRow& test, const ResultRow& baseline, Tally& tally) {
+  for (const ResultMetric& metric : data.metrics) {
     ++tally[static_cast<std::size_t>(verdict(find_score(test, metric.name, "whole"),
                                              find_score(baseline, metric.name, "whole"), metric.is_lower_better))];
   }
 }
 
-bool is_honest_baseline(const ReportRow& row) {
-  return row.role == "equal-time" || row.role == "equal-samples" || row.role == "low-resolution";
+bool is_honest_baseline(const ResultRow& row) {
+  return row.role == RowRole::equal_time || row.role == RowRole::equal_samples || row.role == RowRole::low_resolution;
 }
 
 }  // namespace
 
-ReportFindings report_findings(const ReportData& data) {
+ReportFindings report_findings(const Results& data) {
   ReportFindings findings;
   Tally tally{};
-  for (const ReportRow* const test : test_rows(data)) {
+  for (const ResultRow* const test : test_rows(data)) {
     std::string sentence = place_of(*test) + ": " + speed_sentence(*test);
     bool has_baseline = false;
-    for (const ReportRow* const row : family_of(data, *test)) {
-      if (row->role != "test" && row->role != "wrong-gaze") {
+    for (const ResultRow* const row : family_of(data, *test)) {
+      if (row->role != RowRole::test && row->role != RowRole::wrong_gaze) {
         sentence += compared_sentence(data, *test, *row);
       }
       has_baseline = has_baseline || is_honest_baseline(*row);
@@ -198,16 +198,17 @@ ReportFindings report_findings(const ReportData& data) {
       "worse, "
       "{} not told apart, {} under the reference's own noise, {} not known.",
       tally[0], tally[1], tally[2], tally[3], tally[4]);
-  for (const ReportFixedQuality& fixed : data.fixed_quality) {
-    if (!fixed.speed_up || !fixed.bound.empty()) {
-      findings.caveats.push_back(fmt::format(
-          "{}{}: speed-up at {} {} is {}{}{}.", scene_gaze_text({fixed.scene, fixed.gaze}),
-          fixed.curve.empty() ? "" : ", " + fixed.curve, fixed.metric, value_text(fixed.at),
-          fixed.speed_up ? fixed.bound + " " : "", fixed.speed_up ? value_text(fixed.speed_up) : "not known",
-          fixed.why.empty() ? "" : ", " + fixed.why));
+  for (const ResultFixedQuality& fixed : data.fixed_quality) {
+    if (!fixed.result.speed_up || !fixed.result.bound.empty()) {
+      findings.caveats.push_back(
+          fmt::format("{}{}: speed-up at {} {} is {}{}{}.", scene_gaze_text({fixed.scene, fixed.gaze}),
+                      fixed.curve.empty() ? "" : ", " + fixed.curve, fixed.metric, value_text(fixed.at),
+                      fixed.result.speed_up ? fixed.result.bound + " " : "",
+                      fixed.result.speed_up ? value_text(fixed.result.speed_up) : "not known",
+                      fixed.result.why.empty() ? "" : ", " + fixed.result.why));
     }
   }
-  for (const ReportControl& control : data.controls) {
+  for (const ResultControl& control : data.controls) {
     if (!control.is_sensitive) {
       findings.caveats.push_back(control_sentence(data, control));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page from its template: texts and tables as HTML, diagrams and pictures as data for its script.
+// Fills the template of the page: texts and tables as HTML, diagrams and pictures as data for its script.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,27 +36,27 @@ std::string set_id(const SceneGaze& both) {
 // What the viewer offers of a scene and gaze: the reference and every run that has pictures.
 struct ViewerRun {
   std::string label;
-  const ReportRow* row = nullptr;                // empty: the reference
+  const ResultRow* row = nullptr;                // nullptr: the reference
   std::map<std::int32_t, std::string> pictures;  // frame -> path
   std::map<std::int32_t, std::string> maps;      // of FLIP
 };
 struct ViewerSet {
   SceneGaze both;
-  std::vector<const ReportFrame*> frames;  // in the order of time; of the run that has most
+  std::vector<const ResultFrame*> frames;  // in the order of time, of the run that has the most frames
   std::vector<ViewerRun> runs;
 };
 
-ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
+ViewerSet viewer_set(const Results& data, const SceneGaze& both) {
   ViewerSet set{both, {}, {}};
-  const ReportRow* longest = nullptr;
-  for (const ReportRow& row : data.rows) {
+  const ResultRow* longest = nullptr;
+  for (const ResultRow& row : data.rows) {
     const bool has_pictures =
-        std::any_of(row.frames.begin(), row.frames.end(), [](const ReportFrame& frame) { return !frame.png.empty(); });
+        std::any_of(row.frames.begin(), row.frames.end(), [](const ResultFrame& frame) { return !frame.png.empty(); });
     if (!(SceneGaze{row.scene, row.gaze} == both) || !has_pictures) {
       continue;
     }
     ViewerRun run{row.label, &row, {}, {}};
-    for (const ReportFrame& frame : row.frames) {
+    for (const ResultFrame& frame : row.frames) {
       if (!frame.png.empty()) {
         run.pictures[frame.index] = (fs::path(data.directory) / frame.png).string();
       }
@@ -66,25 +66,25 @@ ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
     }
     set.runs.push_back(std::move(run));
     if (longest == nullptr || row.frames.size() > longest->frames.size() ||
-        (row.frames.size() == longest->frames.size() && row.role == "test" && longest->role != "test")) {
+        (row.frames.size() == longest->frames.size() && row.role == RowRole::test && longest->role != RowRole::test)) {
       longest = &row;
     }
   }
   if (longest == nullptr) {
     return set;
   }
-  for (const ReportFrame& frame : longest->frames) {
+  for (const ResultFrame& frame : longest->frames) {
     set.frames.push_back(&frame);
   }
-  const std::vector<const ReportScene*> scenes = find_scenes(data, both);
+  const std::vector<const ResultReference*> scenes = find_references(data, both);
   std::vector<ViewerRun> references;
-  for (const ReportScene* const scene : scenes) {
-    if (scene->reference_pattern.empty()) {
+  for (const ResultReference* const scene : scenes) {
+    if (scene->png.empty()) {
       continue;
     }
     ViewerRun reference{reference_text(*scene, scenes.size()), nullptr, {}, {}};
-    const std::string pattern = (fs::path(data.directory) / scene->reference_pattern).string();
-    for (const ReportFrame* const frame : set.frames) {
+    const std::string pattern = (fs::path(data.directory) / scene->png).string();
+    for (const ResultFrame* const frame : set.frames) {
       const std::string path = has_frame_number(pattern) ? frame_file_name(pattern, frame->index) : pattern;
       if (fs::is_regular_file(path)) {
         reference.pictures[frame->index] = path;
@@ -102,7 +102,7 @@ ViewerSet viewer_set(const ReportData& data, const SceneGaze& both) {
 std::vector<std::vector<std::string>> paths_of_frames(const std::vector<ViewerSet>& sets) {
   std::vector<std::vector<std::string>> paths;
   for (const ViewerSet& set : sets) {
-    for (const ReportFrame* const frame : set.frames) {
+    for (const ResultFrame* const frame : set.frames) {
       std::vector<std::string> of_frame;
       for (const ViewerRun& run : set.runs) {
         for (const auto* const kind : {&run.pictures, &run.maps}) {
@@ -117,17 +117,17 @@ std::vector<std::vector<std::string>> paths_of_frames(const std::vector<ViewerSe
   return paths;
 }
 
-const ReportFrame* find_frame(const ReportRow* row, std::int32_t index) {
+const ResultFrame* find_frame(const ResultRow* row, std::int32_t index) {
   if (row == nullptr) {
     return nullptr;
   }
   const auto found = std::find_if(row->frames.begin(), row->frames.end(),
-                                  [&](const ReportFrame& frame) { return frame.index == index; });
+                                  [&](const ResultFrame& frame) { return frame.index == index; });
   return found == row->frames.end() ? nullptr : &*found;
 }
 
-// Gaze and rings as fractions of the frame's width and height: pictures may be reduced.
-Json frame_json(const ReportFrame& frame, const EmbeddedPicture* picture) {
+// Gaze and rings become fractions of the frame's width and height, because pictures may be reduced.
+Json frame_json(const ResultFrame& frame, const EmbeddedPicture* picture) {
   Json json{{"index", frame.index},
             {"t_s", number(frame.t_s)},
             {"event", frame.event},
@@ -172,14 +172,14 @@ class PictureList {
   std::map<const EmbeddedPicture*, std::size_t> indices_;
 };
 
-Json run_json(const ViewerRun& run, const std::vector<const ReportFrame*>& frames, PictureList& pictures) {
+Json run_json(const ViewerRun& run, const std::vector<const ResultFrame*>& frames, PictureList& pictures) {
   Json json{{"label", run.label},
             {"pictures", Json::array()},
             {"maps", Json::array()},
             {"times", Json::array()},
             {"scores", Json::array()}};
-  for (const ReportFrame* const frame : frames) {
-    const ReportFrame* const own = find_frame(run.row, frame->index);
+  for (const ResultFrame* const frame : frames) {
+    const ResultFrame* const own = find_frame(run.row, frame->index);
     json["pictures"].push_back(pictures.index(run.pictures, frame->index));
     json["maps"].push_back(pictures.index(run.maps, frame->index));
     json["times"].push_back(own == nullptr ? Json() : number(own->time_s));
@@ -199,8 +199,8 @@ Json set_json(const ViewerSet& set, PictureList& pictures) {
             {"name", scene_gaze_text(set.both)},
             {"frames", Json::array()},
             {"runs", Json::array()}};
-  std::vector<const ReportFrame*> shown;  // frames of which some picture found room
-  for (const ReportFrame* const frame : set.frames) {
+  std::vector<const ResultFrame*> shown;  // the frames of which at least one picture found room
+  for (const ResultFrame* const frame : set.frames) {
     const EmbeddedPicture* any = nullptr;
     for (const ViewerRun& run : set.runs) {
       any = any != nullptr ? any : pictures.find(run.pictures, frame->index);
@@ -218,10 +218,10 @@ Json set_json(const ViewerSet& set, PictureList& pictures) {
   return json;
 }
 
-std::string facts_line(const ReportData& data) {
+std::string facts_line(const Results& data) {
   std::vector<std::string> facts;
-  for (const ReportSettingsList* const list : {&data.build, &data.machine}) {
-    for (const auto& [name, value] : *list) {
+  for (const NamedValues& list : {facts_of(data.build), facts_of(data.machine)}) {
+    for (const auto& [name, value] : list) {
       facts.push_back(fmt::format("{} {}", name, value));
     }
   }
@@ -233,16 +233,16 @@ std::string facts_line(const ReportData& data) {
 
 }  // namespace
 
-ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
+ReportPage report_page(const Results& data, const ReportSettings& settings) {
   Json json{{"metrics", Json::array()},
             {"tests", Json::array()},
             {"plots", Json::array()},
             {"sets", Json::array()},
             {"pictures", Json::array()}};
-  for (const ReportMetric& metric : data.metrics) {
+  for (const ResultMetric& metric : data.metrics) {
     json["metrics"].push_back(metric.name);
   }
-  for (const ReportRow* const test : test_rows(data)) {
+  for (const ResultRow* const test : test_rows(data)) {
     json["tests"].push_back({{"id", test->id}, {"label", test->label}, {"set", set_id({test->scene, test->gaze})}});
   }
   for (const ReportPlot& plot : report_plots(data)) {
@@ -263,7 +263,7 @@ ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
       {"facts", facts_line(data)},
       {"summary", findings_html(report_findings(data))},
       {"tables", tables_html(data)},
-      {"methods", escaped(report_methods(data))},
+      {"methods", escaped(results_methods(data))},
       {"notes", data.notes.empty() ? "<p>None.</p>" : list_html(data.notes)},
   };
   const auto dumped = [&] { return script_safe(json.dump(-1, ' ', false, Json::error_handler_t::replace)); };
@@ -271,7 +271,7 @@ ReportPage report_page(const ReportData& data, const ReportSettings& settings) {
   for (const auto& [name, value] : values) {
     other_bytes += static_cast<double>(value.size());
   }
-  // Frames' gaze, times and scores come to so much each; the page must stay below its limit with them.
+  // The gaze, times and scores of each frame take about this much; with them the page must stay below its limit.
   constexpr double kBytesOfFrame = 400;
   const std::vector<std::vector<std::string>> paths = paths_of_frames(sets);
   for (const std::vector<std::string>& of_frame : paths) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of page/, put into the program when it is built.
+// The files of page/, which are put into the program when it is built.
 #pragma once
 
 #include <string_view>

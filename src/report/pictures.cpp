@@ -22,10 +22,10 @@ namespace {
 
 constexpr int kLeastWidthPx = 480;   // pictures are not reduced below this
 constexpr int kQuality = 90;         // JPEG
-constexpr std::size_t kSampled = 6;  // pictures from which sizes are foretold
+constexpr std::size_t kSampled = 6;  // pictures from which sizes are predicted
 
 struct Form {
-  int block_px = 1;  // averaged over so many pixels a side
+  int block_px = 1;  // pixels are averaged over blocks of so many pixels a side
   bool jpeg = false;
   int frame_step = 1;
 };
@@ -59,7 +59,7 @@ std::uint8_t code_of_light(double light) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(code, 0.0, 1.0)));
 }
 
-// The last block of a row or column may be smaller.
+// Averages blocks of pixels; the last block of a row or column may be smaller.
 Rgb8 averaged(const Rgb8& image, int block_px) {
   if (block_px == 1) {
     return image;
@@ -129,7 +129,7 @@ std::vector<std::string> paths_with(const std::vector<std::vector<std::string>>&
   return paths;
 }
 
-// Bytes of all, foretold from a few that lie evenly among them.
+// Predicts the bytes of all pictures from a few that are spread evenly among them.
 double foretold_bytes(const std::vector<Rgb8>& sampled, const Form& form, std::size_t count, int threads) {
   std::vector<double> sizes(sampled.size());
   parallel_for(sampled.size(), threads,
@@ -167,7 +167,7 @@ EmbeddedPictures embed_pictures(const std::vector<std::vector<std::string>>& pat
     try {
       sampled.push_back(read_rgb8(path));
     } catch (const Error&) {
-      continue;  // said when all are read
+      continue;  // warned about when all have been read
     }
   }
   if (sampled.empty()) {

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLegendLine = 19;
 constexpr std::size_t kLegendLetters = 46;
 
-// Cuts at a letter, not inside one of several bytes.
+// Cuts a text between letters, never inside a letter of several bytes.
 std::string shortened(const std::string& words, std::size_t most) {
   if (words.size() <= most) {
     return words;
@@ -51,7 +51,7 @@ PlotScale::PlotScale(const std::vector<double>& values, double begin, double end
     low = std::min(low, 0.0);
     high = std::max(high, 0.0);
   }
-  // A single value gets room about it; the smallest room keeps ticks apart in a double's digits.
+  // A single value gets room on both sides. The least room keeps ticks apart within the digits of a double.
   const double least = std::max(1e-9 * std::max(std::fabs(low), std::fabs(high)), log_ ? 0.05 : 1e-12);
   const double room = high - low > least ? 0.08 * (high - low) : std::max(0.1 * std::fabs(high), 10 * least);
   const bool at_zero = from_zero && !log_ && low == 0;
@@ -69,10 +69,10 @@ double PlotScale::within(double value) const {
   return std::clamp(at(value), std::min(axis_.begin, axis_.end), std::max(axis_.begin, axis_.end));
 }
 
-std::vector<double> plotted_range(const std::vector<Estimate>& estimates) {
+std::vector<double> plotted_range(const std::vector<Interval>& estimates) {
   std::vector<double> values;
   values.reserve(3 * estimates.size());
-  for (const Estimate& estimate : estimates) {
+  for (const Interval& estimate : estimates) {
     values.push_back(estimate.mean);
   }
   if (values.empty()) {
@@ -82,7 +82,7 @@ std::vector<double> plotted_range(const std::vector<Estimate>& estimates) {
   const double high = *std::max_element(values.begin(), values.end());
   const double room = std::max(0.5 * (high - low), 0.1 * std::fabs(high));
   const double least = low >= 0 ? std::max(low / 2, low - room) : low - room;
-  for (const Estimate& estimate : estimates) {
+  for (const Interval& estimate : estimates) {
     if (estimate.low) {
       values.push_back(std::max(*estimate.low, least));
       values.push_back(std::min(*estimate.high, high + room));

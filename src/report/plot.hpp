@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the diagrams are drawn with. Colors and sizes stand in attributes, so that a file shows the same everywhere;
-// classes let the page change colors for a dark background.
+// What the diagrams are drawn with. Colors and sizes are attributes, so that a file looks the same everywhere; classes
+// let the page change colors for a dark background.
 #pragma once
 
 #include <optional>
@@ -15,39 +15,39 @@ namespace gazetrace {
 
 inline constexpr double kPlotWidth = 640;
 
-// Values to picture coordinates, linear or logarithmic.
+// Maps values to picture coordinates on a linear or logarithmic scale.
 class PlotScale {
  public:
-  // Holds all `values` with some room; logarithmic where asked for and all are positive.
+  // A scale that holds all `values` with some room. It is logarithmic where that is asked for and all are positive.
   PlotScale(const std::vector<double>& values, double begin, double end, bool log, bool from_zero = false);
   [[nodiscard]] double at(double value) const;
-  // The same, but not beyond the ends: of intervals that are wider than the picture.
+  // The coordinate, kept within the ends of the scale: for intervals that are wider than the picture.
   [[nodiscard]] double within(double value) const;
   [[nodiscard]] std::vector<double> ticks(double count) const;
   [[nodiscard]] bool is_log() const { return log_; }
 
  private:
   bool log_ = false;
-  Axis axis_;  // of logarithms where logarithmic
+  Axis axis_;  // holds logarithms where the scale is logarithmic
 };
 
-// Whether so wide a range of positive values is better seen on a logarithmic scale.
+// Whether a range of positive values is so wide that it is better shown on a logarithmic scale.
 bool wants_log(const std::vector<double>& values);
 
-// What a scale should hold of measured values: all means, and intervals as far as they do not make the means small.
-std::vector<double> plotted_range(const std::vector<Estimate>& estimates);
+// The values that a scale should hold: all means, and intervals as far as they do not squeeze the means together.
+std::vector<double> plotted_range(const std::vector<Interval>& estimates);
 
 class PlotSvg {
  public:
   PlotSvg(double height, const std::string& title);
   void add(const std::string& element) { text_ += element + '\n'; }
-  // anchor: start, middle, end
+  // `anchor` is start, middle or end.
   void text(double x, double y, const std::string& words, const char* anchor = "start", const char* more = "");
   void mark(const ReportRole& role, double x, double y, double radius = 5);
-  // Frame, ticks and labels of a diagram whose scales end at its borders.
+  // Draws the frame, ticks and labels of a diagram whose scales end at its borders.
   void axes(const PlotScale& x, const PlotScale& y, double left, double top, double right, double bottom,
             const std::string& x_label, const std::string& y_label, bool with_x_numbers = true);
-  // Marks and words of runs below a diagram, in two columns; returns where it ends.
+  // Draws the marks and words of runs in two columns below a diagram; returns where the legend ends.
   double legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top);
   [[nodiscard]] std::string str() const { return text_ + "</svg>\n"; }
 
@@ -55,14 +55,15 @@ class PlotSvg {
   std::string text_;
 };
 
-// Rows of a legend in two columns take so much height.
+// The height of a legend in two columns.
 double legend_height(std::size_t entries);
 
 std::string plot_file_name(const std::vector<std::string>& parts);  // letters, digits, . _ -
 
-// One for each scene, gaze and metric; for each test row and metric.
-std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& both, const ReportMetric& metric);
-std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
-std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric);
+// The first is drawn for each scene, gaze and metric, the others for each test row and metric. Empty where there is
+// nothing to draw.
+std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both, const ResultMetric& metric);
+std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test, const ResultMetric& metric);
+std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, const ResultMetric& metric);
 
 }  // namespace gazetrace

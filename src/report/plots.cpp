@@ -6,23 +6,23 @@
 
 namespace gazetrace {
 
-std::vector<ReportPlot> report_plots(const ReportData& data) {
+std::vector<ReportPlot> report_plots(const Results& data) {
   std::vector<ReportPlot> plots;
   const auto add = [&](std::optional<ReportPlot> plot) {
     if (plot) {
       plots.push_back(std::move(*plot));
     }
   };
-  for (const ReportMetric& metric : data.metrics) {
+  for (const ResultMetric& metric : data.metrics) {
     for (const SceneGaze& both : scene_gazes(data)) {
       add(pareto_plot(data, both, metric));
     }
-    for (const ReportRow* const test : test_rows(data)) {
+    for (const ResultRow* const test : test_rows(data)) {
       add(time_plot(data, *test, metric));
       add(bands_plot(data, *test, metric));
     }
   }
-  // Names that differ only in letters that a file name cannot hold get a number.
+  // Names that differ only in letters that a file name cannot hold are told apart by a number.
   std::set<std::string> names;
   for (ReportPlot& plot : plots) {
     std::string name = plot.name;

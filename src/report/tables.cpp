@@ -31,11 +31,11 @@ class Html {
   }
   void end_table() { add("</tbody></table></div>\n"); }
   void cell(const std::string& text) { add("<td>{}</td>", text); }
-  void estimate(const std::optional<Estimate>& value) {
+  void estimate(const std::optional<Interval>& value) {
     const std::string interval = interval_text(value);
     add("<td>{}{}</td>", mean_text(value), interval.empty() ? "" : "<small>" + interval + "</small>");
   }
-  void score(const ReportScore* score) {
+  void score(const ResultScore* score) {
     if (score == nullptr || !score->value) {
       add("<td>–</td>");
     } else if (score->is_resolved) {
@@ -50,22 +50,22 @@ class Html {
   std::string text_;
 };
 
-std::string metric_head(const ReportMetric& metric) {
+std::string metric_head(const ResultMetric& metric) {
   return fmt::format("{}<small>{} is better</small>", escaped(metric_text(metric)),
                      metric.is_lower_better ? "lower" : "higher");
 }
 
-std::string row_head(const ReportRow& row) {
+std::string row_head(const ResultRow& row) {
   std::string role = report_role(row.role).words;
   if (row.reached) {
     role += fmt::format(": {} of its time", with_interval(row.reached));
   }
-  return fmt::format("<tr class=\"role-{}\"><th scope=\"row\">{}<small>{}</small></th>", escaped(row.role),
+  return fmt::format("<tr class=\"role-{}\"><th scope=\"row\">{}<small>{}</small></th>", to_string(row.role),
                      escaped(row.label), escaped(role));
 }
 
 // "Frames: fixation 80 %, in-flight 20 %."
-std::string shares_text(const ReportData& data, const std::string& gaze) {
+std::string shares_text(const Results& data, const std::string& gaze) {
   const auto found = data.event_shares.find(gaze);
   std::vector<std::string> shares;
   if (found != data.event_shares.end()) {
@@ -78,23 +78,23 @@ std::string shares_text(const ReportData& data, const std::string& gaze) {
   return shares.empty() ? std::string() : "Frames: " + list_text(shares) + ".";
 }
 
-// What belongs to no single test, then every test with its own baselines.
-std::vector<const ReportRow*> rows_of(const ReportData& data, const SceneGaze& both) {
+// The rows of a scene and gaze: first those that belong to no single test, then every test with its own baselines.
+std::vector<const ResultRow*> rows_of(const Results& data, const SceneGaze& both) {
   std::map<std::string, int> tests_of;  // baseline -> how many tests stand beside it
-  for (const ReportRow* const test : test_rows(data)) {
-    for (const ReportRow* const row : family_of(data, *test)) {
+  for (const ResultRow* const test : test_rows(data)) {
+    for (const ResultRow* const row : family_of(data, *test)) {
       ++tests_of[row->id];
     }
   }
-  std::vector<const ReportRow*> rows;
-  for (const ReportRow& row : data.rows) {
-    if (SceneGaze{row.scene, row.gaze} == both && row.role != "test" && tests_of[row.id] != 1) {
+  std::vector<const ResultRow*> rows;
+  for (const ResultRow& row : data.rows) {
+    if (SceneGaze{row.scene, row.gaze} == both && row.role != RowRole::test && tests_of[row.id] != 1) {
       rows.push_back(&row);
     }
   }
-  for (const ReportRow* const test : test_rows(data)) {
+  for (const ResultRow* const test : test_rows(data)) {
     if (SceneGaze{test->scene, test->gaze} == both) {
-      for (const ReportRow* const row : family_of(data, *test)) {
+      for (const ResultRow* const row : family_of(data, *test)) {
         if (tests_of[row->id] == 1) {
           rows.push_back(row);
         }
@@ -104,27 +104,27 @@ std::vector<const ReportRow*> rows_of(const ReportData& data, const SceneGaze& b
   return rows;
 }
 
-void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const std::vector<const ReportRow*>& rows) {
+void add_runs(Html& html, const Results& data, const SceneGaze& both, const std::vector<const ResultRow*>& rows) {
   if (const std::string shares = shares_text(data, both.gaze); !shares.empty()) {
     html.add("<p class=\"small\">{}: {}</p>\n", escaped(scene_gaze_text(both)), escaped(shares));
   }
   html.begin_table(scene_gaze_text(both));
   std::vector<std::string> names{"run", "time<small>s a frame</small>", "speed-up",
                                  "end-to-end<small>with output</small>", "efficiency"};
-  for (const ReportMetric& metric : data.metrics) {
+  for (const ResultMetric& metric : data.metrics) {
     names.push_back(metric_head(metric));
   }
   for (const char* const cost : {"samples a pixel", "samples", "rays", "peak<small>MiB</small>"}) {
     names.emplace_back(cost);
   }
   html.head(names);
-  for (const ReportRow* const row : rows) {
+  for (const ResultRow* const row : rows) {
     html.add("{}", row_head(*row));
     html.estimate(row->time_s);
     html.estimate(row->speed_up);
     html.cell(value_text(row->end_to_end));
     html.cell(value_text(row->efficiency));
-    for (const ReportMetric& metric : data.metrics) {
+    for (const ResultMetric& metric : data.metrics) {
       html.score(find_score(*row, metric.name, "whole"));
     }
     html.cell(value_text(row->spp_mean));
@@ -133,13 +133,13 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
     html.cell(value_text(row->peak_mib));
     html.add("</tr>\n");
   }
-  const std::vector<const ReportScene*> scenes = find_scenes(data, both);
-  for (const ReportScene* const scene : scenes) {
+  const std::vector<const ResultReference*> scenes = find_references(data, both);
+  for (const ResultReference* const scene : scenes) {
     html.add(
         "<tr class=\"role-floor\"><th scope=\"row\">{} from itself<small>floor</small></th>"
         "<td></td><td></td><td></td><td></td>",
         escaped(reference_text(*scene, scenes.size())));
-    for (const ReportMetric& metric : data.metrics) {
+    for (const ResultMetric& metric : data.metrics) {
       html.cell(value_text(find_floor(scene, both.gaze, metric.name, "whole")));
     }
     html.add("<td></td><td></td><td></td><td></td></tr>\n");
@@ -147,26 +147,27 @@ void add_runs(Html& html, const ReportData& data, const SceneGaze& both, const s
   html.end_table();
 }
 
-void add_bands(Html& html, const ReportData& data, const SceneGaze& both, const std::vector<const ReportRow*>& rows) {
+void add_bands(Html& html, const Results& data, const SceneGaze& both, const std::vector<const ResultRow*>& rows) {
   const std::vector<std::string> parts = scored_parts(data);
   if (parts.empty()) {
     return;
   }
   html.add("<details><summary>By eccentricity, {}</summary>\n", escaped(scene_gaze_text(both)));
   const auto shares = data.band_pixel_share.find(both.gaze);
-  for (const ReportMetric& metric : data.metrics) {
+  const std::vector<std::string> bands = band_names(data.bands_deg);
+  for (const ResultMetric& metric : data.metrics) {
     html.begin_table(metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
     std::vector<std::string> names{"run"};
     for (const std::string& part : parts) {
-      const auto band = std::find(data.bands.begin(), data.bands.end(), part);
-      const auto b = static_cast<std::size_t>(band - data.bands.begin());
-      const bool known = band != data.bands.end() && shares != data.band_pixel_share.end() && b < shares->second.size();
+      const auto band = std::find(bands.begin(), bands.end(), part);
+      const auto b = static_cast<std::size_t>(band - bands.begin());
+      const bool known = band != bands.end() && shares != data.band_pixel_share.end() && b < shares->second.size();
       names.push_back(
-          fmt::format("{}{}{}", escaped(part), band != data.bands.end() ? " deg" : "",
+          fmt::format("{}{}{}", escaped(part), band != bands.end() ? " deg" : "",
                       known ? fmt::format("<small>{:.3g} % of pixels</small>", 100 * shares->second[b]) : ""));
     }
     html.head(names);
-    for (const ReportRow* const row : rows) {
+    for (const ResultRow* const row : rows) {
       html.add("{}", row_head(*row));
       for (const std::string& part : parts) {
         html.score(find_score(*row, metric.name, part));
@@ -178,15 +179,15 @@ void add_bands(Html& html, const ReportData& data, const SceneGaze& both, const 
   html.add("</details>\n");
 }
 
-void add_published(Html& html, const ReportData& data) {
-  const auto has = [](const ReportRow& row) { return !row.published.empty(); };
+void add_published(Html& html, const Results& data) {
+  const auto has = [](const ResultRow& row) { return !row.published.empty(); };
   if (std::none_of(data.rows.begin(), data.rows.end(), has)) {
     return;
   }
   html.begin_table("Speed-up beside what was published");
   html.head({"scene and gaze", "run", "here", "published", "where"});
-  for (const ReportRow& row : data.rows) {
-    for (const ReportPublished& other : row.published) {
+  for (const ResultRow& row : data.rows) {
+    for (const PublishedSpeedUp& other : row.published) {
       html.add("<tr><th scope=\"row\">{}</th>", escaped(scene_gaze_text({row.scene, row.gaze})));
       html.cell(escaped(row.label));
       html.estimate(row.speed_up);
@@ -197,31 +198,32 @@ void add_published(Html& html, const ReportData& data) {
   html.end_table();
 }
 
-void add_fixed_quality(Html& html, const ReportData& data) {
+void add_fixed_quality(Html& html, const Results& data) {
   if (data.fixed_quality.empty()) {
     return;
   }
   html.begin_table("Speed-up at fixed quality");
   html.head({"scene and gaze", "metric", "at", "speed-up", "why not"});
-  for (const ReportFixedQuality& fixed : data.fixed_quality) {
+  for (const ResultFixedQuality& fixed : data.fixed_quality) {
     html.add("<tr><th scope=\"row\">{}</th>",
              escaped(scene_gaze_text({fixed.scene, fixed.gaze}) + (fixed.curve.empty() ? "" : ", " + fixed.curve)));
     html.cell(escaped(fixed.metric));
     html.cell(value_text(fixed.at));
-    html.cell(fixed.speed_up ? escaped(fixed.bound.empty() ? "" : fixed.bound + " ") + value_text(fixed.speed_up)
-                             : std::string("not known"));
-    html.add("<td class=\"words\">{}</td></tr>\n", escaped(fixed.why));
+    html.cell(fixed.result.speed_up ? escaped(fixed.result.bound.empty() ? "" : fixed.result.bound + " ") +
+                                          value_text(fixed.result.speed_up)
+                                    : std::string("not known"));
+    html.add("<td class=\"words\">{}</td></tr>\n", escaped(fixed.result.why));
   }
   html.end_table();
 }
 
-void add_controls(Html& html, const ReportData& data) {
+void add_controls(Html& html, const Results& data) {
   if (data.controls.empty()) {
     return;
   }
   html.begin_table("Controls: the same settings rendered with a wrong gaze and scored with the right one");
   html.head({"scene and gaze", "metric", "gaze", "right", "wrong", "does the metric notice", "why"});
-  for (const ReportControl& control : data.controls) {
+  for (const ResultControl& control : data.controls) {
     html.add("<tr><th scope=\"row\">{}</th>", escaped(scene_gaze_text({control.scene, control.gaze})));
     html.cell(escaped(control.metric));
     html.cell(escaped(control.wrong));
@@ -238,13 +240,13 @@ void add_controls(Html& html, const ReportData& data) {
 
 }  // namespace
 
-std::string tables_html(const ReportData& data) {
+std::string tables_html(const Results& data) {
   Html html;
   if (data.rows.empty()) {
     html.add("<p>Nothing has been measured yet.</p>\n");
   }
   for (const SceneGaze& both : scene_gazes(data)) {
-    const std::vector<const ReportRow*> rows = rows_of(data, both);
+    const std::vector<const ResultRow*> rows = rows_of(data, both);
     add_runs(html, data, both, rows);
     add_bands(html, data, both, rows);
   }
@@ -255,7 +257,7 @@ std::string tables_html(const ReportData& data) {
 }
 
 std::string list_html(const std::vector<std::string>& items) {
-  constexpr std::size_t kShown = 10;  // the rest is folded away
+  constexpr std::size_t kShown = 10;  // further items are folded away
   const auto list = [&](std::size_t begin, std::size_t end) {
     std::string text = "<ul>\n";
     for (std::size_t i = begin; i < end; ++i) {

@@ -7,8 +7,9 @@
 
 namespace gazetrace {
 
-// HTML: runs of each scene and gaze with the bands below, speed-up at fixed quality, wrong-gaze controls.
-std::string tables_html(const ReportData& data);
+// Tables as HTML: the runs of each scene and gaze with their bands below, speed-up at fixed quality, and controls with
+// a wrong gaze.
+std::string tables_html(const Results& data);
 std::string findings_html(const ReportFindings& findings);
 std::string list_html(const std::vector<std::string>& items);
 

@@ -13,7 +13,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // vertices a thread takes at once
+constexpr std::size_t kBlock = 4096;  // vertices that a thread takes at once
 
 Affine& operator+=(Affine& a, const Affine& b) {
   a.x += b.x;
@@ -38,13 +38,13 @@ Affine blended(const JointInfluences& influences, const std::vector<Affine>& joi
   return sum;
 }
 
-// Outwards for mirroring maps too.
+// The result points outwards also for mirroring maps.
 Vec3d transformed_normal(const Affine& a, const Vec3d& n) {
   const Vec3d turned = cross(a.y, a.z) * n.x + cross(a.z, a.x) * n.y + cross(a.x, a.y) * n.z;
   return determinant(a) < 0 ? -turned : turned;
 }
 
-// A direction of length 1, or `otherwise` where what is there has none.
+// `v` at length 1, or `otherwise` where `v` has no direction.
 Vec3f unit_or(const Vec3d& v, const Vec3f& otherwise) {
   const double len = length(v);
   return len > 0 && std::isfinite(len) ? to_float(v / len) : otherwise;
@@ -67,7 +67,7 @@ void remake_tangents(const Geometry& geometry, const TextureRef& normal_texture,
   shape.uv0 = geometry.uv0;
   shape.uv1 = geometry.uv1;
   shape.triangles = geometry.triangles;
-  // No vertex is doubled: that depends on texture coordinates only, and was done at loading.
+  // No vertex is duplicated here: that depends on texture coordinates only, and was done at loading.
   make_tangents(shape, normal_texture);
   out.tangents = std::move(shape.tangents);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from far away: a picture, a constant, or a sky of our own.
+// Light from far away: a picture, a constant, or the built-in sky.
 #include <algorithm>
 #include <cmath>
 
@@ -16,9 +16,9 @@ Vec3d mix(const Vec3d& a, const Vec3d& b, double t) {
   return a * (1 - t) + b * t;
 }
 
-// A gradient by elevation, joined smoothly at the horizon, and a wide glow about the sun's direction. Not a model of
-// the atmosphere: it has the colours and the ratio of light (some 4 : 1 from the sun's side) of a clear day, without
-// the disc that would need many samples.
+// A gradient over elevation that is smooth at the horizon, and a wide glow around the sun's direction. This is not a
+// model of the atmosphere: it has the colours of a clear day and about its ratio of light (4 : 1 from the sun's side),
+// without a sun disc, which would need many samples.
 Vec3d sky_radiance(const Vec3d& direction) {
   constexpr Vec3d kZenith{0.16, 0.32, 0.72};
   constexpr Vec3d kHorizon{0.78, 0.86, 0.95};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a file to a Scene: read, check, parse, convert.
+// Loads a Scene from a file: reads, checks, parses and converts it.
 #include <algorithm>
 #include <functional>
 #include <mutex>
@@ -20,7 +20,7 @@
 namespace gazetrace {
 namespace {
 
-// The bytes of all buffers; those not in the .glb itself are owned by `storage`.
+// The bytes of all buffers; `storage` owns those that are not in the .glb itself.
 std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
                                                         const std::vector<GltfBufferSource>& sources,
                                                         std::vector<std::vector<std::uint8_t>>& storage) {
@@ -37,7 +37,7 @@ std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
     } else if (i == 0 && file.is_binary && !source.fallback) {
       bytes = file.bin_chunk;
     } else {
-      buffers.emplace_back();  // no data: an error where something reads from it
+      buffers.emplace_back();  // no data; it is an error only where something reads from it
       continue;
     }
     if (bytes.size() < source.byte_length) {
@@ -58,7 +58,7 @@ void list_extensions(const GltfDocument& document, Scene& scene) {
       scene.ignored.push_back("extension " + name);
       scene.warnings.push_back("the scene uses " + name +
                                (name == "KHR_texture_basisu"
-                                    ? ", which cannot be read; textures show their fallback pictures"
+                                    ? ", which cannot be read; the textures' fallback pictures are used"
                                     : ", which is not supported and is left out"));
     }
   }
@@ -71,7 +71,8 @@ void list_unshown(const GltfDocument& document, Scene& scene) {
   }
 }
 
-// Index of the material of primitives that name none; appended when one needs it, or when there is no other.
+// The index of the material for primitives that name none. It is appended where a primitive needs it, or where there is
+// no other material.
 std::int32_t default_material(const GltfDocument& document, std::vector<Material>& materials) {
   bool needed = materials.empty();
   for (const GltfMesh& mesh : document.meshes) {
@@ -85,7 +86,7 @@ std::int32_t default_material(const GltfDocument& document, std::vector<Material
   return static_cast<std::int32_t>(materials.size()) - 1;
 }
 
-// Counts what is loaded, over threads.
+// Counts what is loaded, from several threads.
 class LoadCount {
  public:
   LoadCount(const std::function<void(std::size_t, std::size_t)>& report, std::size_t total)

@@ -10,8 +10,8 @@
 
 namespace gazetrace {
 
-// parallel_for that runs every body and rethrows the error of the lowest index, so that a file with two faults is
-// refused with the same message each time.
+// A parallel_for that runs every body and then rethrows the error of the lowest index, so that a file with several
+// faults is always refused with the same message.
 inline void parallel_for_first_error(std::size_t count, int threads, const std::function<void(std::size_t)>& body) {
   std::vector<std::exception_ptr> errors(count);
   parallel_for(count, threads, [&](std::size_t i) {

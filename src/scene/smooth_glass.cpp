@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kSmooth = 0.2F;  // perceptual roughness
 
-// Of channel G, where roughness is.
+// The least value of channel G, which holds the roughness.
 float least_green(const Texture& texture) {
   float least = 1;
   const std::vector<std::uint8_t>& rgba = texture.levels.front().rgba;
@@ -56,8 +56,8 @@ void warn_of_lights_behind_glass(const Scene& scene, Warnings& warnings) {
     warnings.push_back(
         "light of punctual lights through smooth glass (" + first +
         (count > 1 ? ", and " + std::to_string(count - 1) + " more" : "") +
-        ") arrives as rare bright pixels, and hardly at all in few samples; a roughness of 0.3, or lights "
-        "that have a size, mend that");
+        ") arrives as rare bright pixels, and hardly at all with few samples; a roughness of 0.3, or lights "
+        "that have a size, avoid that");
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in a scene, for people and for the choice of a kernel.
+// Summarises the content of a scene, for the user and for the choice of a kernel.
 #include <algorithm>
 #include <limits>
 
@@ -27,7 +27,8 @@ struct Box {
   }
 };
 
-// The world box of a mesh's own box: exact for one that is not turned, generous for one that is.
+// Adds the corners of a mesh's own box to the world's; the result is exact where the mesh is not rotated, else too
+// large.
 void add_corners(Box& world, const Box& own, const Affine& to_world) {
   for (unsigned corner = 0; corner < 8; ++corner) {
     world.add(transform_point(to_world,

@@ -38,7 +38,7 @@ JointInfluences gathered(const JointInfluences& from, const std::vector<std::arr
   return result;
 }
 
-// Twice the area times the normal, in double: needle and tiny triangles keep a direction.
+// Twice the area times the normal. In double, so that needle-shaped and tiny triangles keep a direction.
 Vec3d area_normal(const Geometry& geometry, const std::array<std::uint32_t, 3>& triangle) {
   const Vec3d a = to_double(geometry.positions[triangle[0]]);
   const Vec3d b = to_double(geometry.positions[triangle[1]]);
@@ -51,7 +51,7 @@ Vec3d any_perpendicular(const Vec3d& normal) {
   return normalize(cross(axis, normal));
 }
 
-// The unit vector along the part of `direction` that lies in the plane of `normal`; zero when there is none.
+// The unit vector along the part of `direction` that is perpendicular to `normal`; zero where there is none.
 Vec3d in_plane(const Vec3d& direction, const Vec3d& normal) {
   const Vec3d projected = direction - normal * dot(normal, direction);
   const double len = length(projected);
@@ -76,7 +76,7 @@ void append_copy(JointInfluences& influences, std::uint32_t vertex) {
   }
 }
 
-// Appends a copy of a vertex with all its attributes.
+// Appends a copy of a vertex with all its attributes, and returns its index.
 std::uint32_t double_vertex(Geometry& geometry, std::uint32_t vertex) {
   const auto copy = [vertex](auto& values) {
     if (!values.empty()) {
@@ -98,8 +98,8 @@ std::uint32_t double_vertex(Geometry& geometry, std::uint32_t vertex) {
 }
 
 struct UvFrame {
-  Vec3d along_u;           // direction of growing u, unnormalised; zero without uv area
-  std::int8_t handedness;  // +1 where cross(normal, along_u) points along falling v
+  Vec3d along_u;           // direction of growing u, not normalised; zero where the uvs have no area
+  std::int8_t handedness;  // +1 where cross(normal, along_u) points along falling v, else -1
 };
 
 UvFrame uv_frame(const Geometry& geometry, const TextureRef& texture, const std::array<std::uint32_t, 3>& triangle) {
@@ -121,7 +121,8 @@ UvFrame uv_frame(const Geometry& geometry, const TextureRef& texture, const std:
   return {(e1 * dv2 - e2 * dv1) * sign, static_cast<std::int8_t>(area > 0 ? -1 : 1)};
 }
 
-// Gives every vertex one handedness, doubling those between triangles that disagree. Returns it per vertex.
+// Gives every vertex one handedness by duplicating vertices between triangles that disagree. Returns one entry per
+// vertex.
 std::vector<std::int8_t> split_by_handedness(Geometry& geometry, const std::vector<UvFrame>& frames) {
   std::vector<std::int8_t> handedness(geometry.positions.size(), 0);
   std::vector<std::uint32_t> other(geometry.positions.size(), std::numeric_limits<std::uint32_t>::max());

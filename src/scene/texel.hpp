@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One texel of any format as floats.
+// Reads a texel of any format as floats.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ constexpr std::size_t texel_bytes(TexelFormat format) {
   return format == TexelFormat::unorm8 ? 4 : 8;
 }
 
-// Of the formats with two bytes a channel; RGB of half are linear light, never encoded.
+// For the formats with two bytes per channel. With TexelFormat::half, RGB is linear light.
 inline Vec4f deep_texel(const std::uint8_t* texel, TexelFormat format) {
   std::uint16_t code[4];
   std::memcpy(code, texel, sizeof code);

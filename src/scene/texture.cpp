@@ -15,10 +15,11 @@
 namespace gazetrace {
 namespace {
 
-// A texel while levels are made. Colour: linear RGB times weight, weight; else the stored values, 0..1.
+// A texel while levels are made. For colours: linear RGB times a weight, and the weight; else the stored values, 0..1.
 using Texel = Vec4f;
 
-// Keeps a wholly transparent area's own colour: its texels weigh next to nothing against any visible one.
+// The weight of transparent texels. It keeps the colour of wholly transparent areas, and is negligible against that of
+// any visible texel.
 constexpr float kLeastWeight = 1.0F / 65536.0F;
 
 float srgb_to_linear(float encoded) {  // IEC 61966-2-1
@@ -62,7 +63,7 @@ Texel decode_texel(const std::uint8_t* p, TextureUse use, const SrgbTables& tabl
           static_cast<float>(p[3]) * kScale};
 }
 
-// Of a stored normal, 0..1.
+// The unit normal for a stored one, whose components are 0..1.
 Vec3f unit_normal(const Vec3f& v) {
   const Vec3f signed_v = v * 2.0F - Vec3f{1, 1, 1};
   const float len = length(signed_v);
@@ -92,7 +93,8 @@ void encode_texel(const Texel& texel, TextureUse use, const SrgbTables& tables, 
   p[3] = to_byte(texel.w);
 }
 
-// The texels of the level above that one texel of the level below covers: up to three, since sizes halve rounded down.
+// The texels of a level that one texel of the next coarser level covers; up to three, since sizes are halved and
+// rounded down.
 struct Taps {
   int first = 0, count = 1;
   std::array<float, 3> weights{1, 0, 0};
@@ -122,12 +124,12 @@ void add_weighted(Texel& sum, const Texel& texel, float weight) {
   sum.w += weight * texel.w;
 }
 
-// One level from the one above, which `read(x, y)` gives texel by texel.
+// Makes one level from the next finer one, whose texels `read(x, y)` returns.
 template <class Read>
 std::vector<Texel> halved(int width, int height, int half_width, int half_height, Read read) {
   std::vector<Texel> texels;
   texels.reserve(static_cast<std::size_t>(half_width) * static_cast<std::size_t>(half_height));
-  if (width == 2 * half_width && height == 2 * half_height) {  // nearly all pictures: four equal shares
+  if (width == 2 * half_width && height == 2 * half_height) {  // the usual case: the mean of four texels
     for (int y = 0; y < half_height; ++y) {
       for (int x = 0; x < half_width; ++x) {
         Texel sum{0, 0, 0, 0};
@@ -157,7 +159,7 @@ std::vector<Texel> halved(int width, int height, int half_width, int half_height
   return texels;
 }
 
-// What levels are made of: reads a texel of the picture, and stores one of a level.
+// Reads texels of an 8-bit picture, and stores texels of a level.
 struct Codec8 {
   const std::vector<std::uint8_t>& bytes;
   TextureUse use;
@@ -171,7 +173,7 @@ struct Codec8 {
 struct DeepCodec {
   const std::vector<float>& floats;
   TextureUse use;
-  bool is_linear;  // else colours are sRGB-encoded
+  bool is_linear;  // otherwise colours are sRGB-encoded
 
   [[nodiscard]] TexelFormat format() const {
     return is_linear || use == TextureUse::color ? TexelFormat::half : TexelFormat::unorm16;
@@ -245,7 +247,7 @@ Texture make_texture(ImageRgba&& image, TextureUse use) {
     return texture;
   }
   const DeepCodec codec{image.floats, use, image.is_linear};
-  // The picture's own normals keep the length they have.
+  // On level 0, normals keep the length that they have in the picture.
   const DeepCodec first{image.floats, use == TextureUse::normal ? TextureUse::data : use, image.is_linear};
   const std::size_t bytes = texel_bytes(codec.format());
   texture.levels[0].rgba.resize(image.floats.size() / 4 * bytes);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/parallel.hpp"
+#include "gazetrace/pipeline.hpp"
 #include "sweep/state.hpp"
 
 namespace gazetrace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curves of quality over time.
+// Curves of quality over time: their Pareto fronts, and the ratio of the times at which two of them reach a level.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@ bool is_usable(const QualityAtTime& point) {
   return std::isfinite(point.time_s) && point.time_s > 0 && std::isfinite(point.quality);
 }
 
-// When a curve reaches a level; without a time, on which side of the curve's times it would.
+// When a curve reaches a level. Without a time, it reaches it before its first point or not at all.
 struct Crossing {
   std::optional<double> time_s;
-  double least_s = 0, most_s = 0;  // of the curve
+  double least_s = 0, most_s = 0;  // the first and the last time of the curve
   bool is_later = false;           // it never gets there
 };
 
@@ -100,8 +100,8 @@ FixedQuality speed_up_at_quality(const std::vector<QualityAtTime>& uniform, cons
   const std::string of_uniform = told(u, "uniform");
   const std::string of_foveated = told(f, "foveated");
   result.why = of_uniform + (of_uniform.empty() || of_foveated.empty() ? "" : ", ") + of_foveated;
-  // At least so much where the uniform time can only be longer and the foveated one only shorter; the other way round,
-  // at most.
+  // Where the uniform time can only be longer and the foveated time only shorter, the ratio is a lower bound; the other
+  // way round it is an upper bound.
   const bool more = (u.time_s || u.is_later) && (f.time_s || !f.is_later);
   const bool less = (u.time_s || !u.is_later) && (f.time_s || f.is_later);
   if (more || less) {

@@ -18,7 +18,7 @@ SweepDirectory::SweepDirectory(const std::string& path) {
   lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock_ < 0) {
     throw Error(ErrorKind::input, file, "cannot be written: " + std::system_category().message(errno),
-                "choose another --output folder");
+                "choose another `output` folder");
   }
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     const int problem = errno;
@@ -26,7 +26,7 @@ SweepDirectory::SweepDirectory(const std::string& path) {
     throw Error(ErrorKind::input, path,
                 problem == EWOULDBLOCK ? "another sweep is at work there"
                                        : "cannot be locked: " + std::system_category().message(problem),
-                "wait for it, or give another --output folder");
+                "wait for it, or give another `output` folder");
   }
 }
 

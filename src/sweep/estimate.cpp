@@ -10,7 +10,8 @@
 namespace gazetrace {
 namespace {
 
-// What is rendered of each. References of a scene follow each other, so that it is loaded once and none beside it.
+// The frames of each reference that are rendered. References of one scene follow each other, so that each scene is
+// loaded once and only one is in memory.
 std::vector<FramePlan> pictures_of_references(const SweepPlan& plan) {
   std::vector<FramePlan> pictures;
   std::shared_ptr<const Scene> scene;
@@ -67,12 +68,12 @@ SweepEstimate estimate_sweep(const SweepPlan& plan) {
     std::vector<PlannedRow> rows = baselines_known_before(plan, test, notes);
     std::vector<PlannedRow> more = baselines_of_samples(plan, test, spp);
     if (plan.measure.baselines.equal_time && is_foveated(plan.tests[t])) {
-      more.push_back(uniform_row(plan, test, SweepRole::equal_time, spp));
+      more.push_back(uniform_row(plan, test, RowRole::equal_time, spp));
       more.back().row.label = "uniform, equal time: about so many samples";
     }
     rows.insert(rows.end(), more.begin(), more.end());
     for (const PlannedRow& row : rows) {
-      if (row.row.role == SweepRole::equal_time || known.insert(row.digest + row.row.reference).second) {
+      if (row.row.role == RowRole::equal_time || known.insert(row.digest + row.row.reference).second) {
         add(row, planned_spp(row), plan.measure.repeats);
       }
     }

@@ -26,12 +26,12 @@ bool is_still(const FramePlan& plan) {
                      [&](const FrameRequest& request) { return request.gaze_direction_true == first; });
 }
 
-// By the angles along a row through the middle of the view.
+// Radii of the region borders in pixels, measured along a row of pixels through the middle of the view.
 std::vector<double> rings_of(const FoveationSettings& foveation, const PlanarView& view) {
   std::vector<double> rings;
   if (foveation.falloff == "regions" && view.step_x > 0) {
     for (const double angle : foveation.region_angles_deg) {
-      const double eccentricity = foveation.reading == AngleReading::full_angle ? angle / 2 : angle;
+      const double eccentricity = eccentricity_share(foveation.reading) * angle;
       if (eccentricity < 90) {
         rings.push_back(std::tan(eccentricity * kRadPerDeg) / view.step_x);
       }
@@ -68,7 +68,7 @@ FramePlan shuffled(const FramePlan& plan) {
   std::stable_sort(order.begin(), order.end(), [](std::size_t a, std::size_t b) { return hash64(a) < hash64(b); });
   FramePlan result = plan;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    // One step on along a cycle through all frames: none keeps its own gaze.
+    // Each frame takes the gaze of the next one in a cycle through all frames, so that none keeps its own.
     steer_by(plan.frames[order[(i + 1) % order.size()]], result.frames[order[i]]);
   }
   return result;
@@ -76,11 +76,14 @@ FramePlan shuffled(const FramePlan& plan) {
 
 }  // namespace
 
-std::vector<SweepFrame> sweep_frames(const FramePlan& plan, const FoveationSettings& foveation, double leave_out_s) {
-  std::vector<SweepFrame> frames;
+std::vector<ResultFrame> sweep_frames(const FramePlan& plan, const FoveationSettings& foveation, double leave_out_s) {
+  std::vector<ResultFrame> frames;
   const bool still = is_still(plan);
   for (const FrameRequest& request : plan.frames) {
-    SweepFrame frame{request.frame, request.t_video_ns, event_of(request, still), {}, {}};
+    ResultFrame frame;
+    frame.index = request.frame;
+    frame.t_s = static_cast<double>(request.t_video_ns) * 1e-9;
+    frame.event = event_of(request, still);
     const auto into_clip_s = static_cast<double>(request.t_video_ns - plan.frames.front().t_video_ns) * 1e-9;
     if (into_clip_s < leave_out_s) {
       frame.event = "start";
@@ -97,24 +100,24 @@ std::vector<SweepFrame> sweep_frames(const FramePlan& plan, const FoveationSetti
   return frames;
 }
 
-std::vector<bool> scored_frames(const std::vector<SweepFrame>& frames) {
-  const auto fixates = [](const SweepFrame& frame) { return frame.event == "fixation"; };
-  const auto looks = [](const SweepFrame& frame) {
+std::vector<bool> scored_frames(const std::vector<ResultFrame>& frames) {
+  const auto fixates = [](const ResultFrame& frame) { return frame.event == "fixation"; };
+  const auto looks = [](const ResultFrame& frame) {
     return frame.gaze_px && frame.event != "start" && frame.event != "blink";
   };
   const bool any_fixates = std::any_of(frames.begin(), frames.end(), fixates);
   const bool any_looks = std::any_of(frames.begin(), frames.end(), looks);
   std::vector<bool> scored;
-  for (const SweepFrame& frame : frames) {
+  for (const ResultFrame& frame : frames) {
     scored.push_back(any_fixates ? fixates(frame) : any_looks ? looks(frame) : frame.event != "start");
   }
   return scored;
 }
 
-std::map<std::string, double> event_shares(const std::vector<SweepFrame>& frames) {
+std::map<std::string, double> event_shares(const std::vector<ResultFrame>& frames) {
   std::map<std::string, double> shares;
   double all = 0;
-  for (const SweepFrame& frame : frames) {
+  for (const ResultFrame& frame : frames) {
     if (frame.event != "start") {
       shares[frame.event] += 1;
       all += 1;

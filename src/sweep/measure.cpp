@@ -22,11 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Linux, proc(5): the high-water mark of resident memory, and setting it back.
+// The high-water mark of resident memory, and resetting it (Linux, proc(5)).
 void restart_peak_memory() {
   std::ofstream("/proc/self/clear_refs") << "5";
 }
-// A program that keeps freed memory would count that of earlier rows, scenes and references as this row's.
+// A program that keeps freed memory would otherwise count what earlier rows, scenes and references have used as this
+// row's.
 void give_back_freed_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
@@ -47,7 +48,7 @@ double render_ms(const TimingRow& row) {
   return row.plan_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms;
 }
 
-// What the timing of the frames adds up to; scores apart.
+// Adds up the timing of the frames of one run; the scores are added later.
 class RunSum {
  public:
   void add(const TimingRow& row, double upscale_ms) {
@@ -97,7 +98,7 @@ PipelineSettings settings_of(const PlannedRow& row, int repeat) {
   return settings;
 }
 
-// The scorers of the gazes that these rows are of.
+// One scorer for each gaze among these rows.
 struct GazeScorer {
   std::string gaze;
   Scorer scorer;
@@ -114,7 +115,7 @@ std::vector<GazeScorer> scorers_of(const std::vector<const PlannedRow*>& rows, c
     settings.want_maps = want_maps && scorers.empty();
     const auto& metrics = settings.metrics;
     if (std::find(metrics.begin(), metrics.end(), "hdr_flip") != metrics.end()) {
-      // One set of exposures for all rows, or they would not compare.
+      // All rows are scored at the same exposures: otherwise their scores would not be comparable.
       const FlipExposures exposures = flip_exposures(first_reference, settings.metric.hdr_flip);
       settings.metric.hdr_flip.start_ev = exposures.start_ev;
       settings.metric.hdr_flip.stop_ev = exposures.stop_ev;
@@ -186,7 +187,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
     const MetricPicture reference =
         metric_picture(read_exr_rgb(scene.reference.mean_path(request.frame)), scene.color, ev, settings.threads);
     if (scorers.empty()) {
-      // Scores are taken at full size, whatever the size of the row.
+      // Scores are taken at full size, whatever the size at which the row was rendered.
       scorers = scorers_of(rows, measure, resized(first.plan, first.size), reference.light, write);
       frame_scores.resize(scorers.size());
     }
@@ -274,7 +275,7 @@ RateSearch find_rate(double target_s, const std::vector<std::pair<double, double
     }
     const double spp = next_guess();
     if (std::any_of(points.begin(), points.end(), [&](const auto& point) { return point.first == spp; })) {
-      break;  // a bound, tried before
+      break;  // at a bound that has been tried before
     }
     search.tried.emplace_back(spp, time_s(spp));
     points.push_back(search.tried.back());
@@ -283,7 +284,7 @@ RateSearch find_rate(double target_s, const std::vector<std::pair<double, double
   return search;
 }
 
-std::string scoring_digest(const SweepMeasure& measure, const std::vector<SweepFrame>& frames) {
+std::string scoring_digest(const SweepMeasure& measure, const std::vector<ResultFrame>& frames) {
   const ComparisonSettings& c = measure.comparison;
   const auto optional = [](const auto& value) { return value ? fmt::format("{}", *value) : std::string("auto"); };
   NamedValues parts{{"metrics", fmt::format("{}", fmt::join(c.metrics, ","))},
@@ -297,9 +298,9 @@ std::string scoring_digest(const SweepMeasure& measure, const std::vector<SweepF
                                                c.photometry.ambient_lux, c.photometry.reflectivity)},
                     {"original border", c.original_border ? "yes" : "no"},
                     {"pictures", fmt::format("{} {}", measure.write_png, measure.write_exr)}};
-  for (const SweepFrame& frame : frames) {
+  for (const ResultFrame& frame : frames) {
     parts.emplace_back(
-        std::to_string(frame.frame),
+        std::to_string(frame.index),
         frame.gaze_px ? fmt::format("{} {} {}", frame.event, frame.gaze_px->x, frame.gaze_px->y) : frame.event);
   }
   return digest_settings(parts);

@@ -18,22 +18,23 @@ struct MeasuredScene {
   const CertifiedReference& reference;
 };
 
-// `rows` show the same pixels; each is scored with its own gaze. Pictures of the first repeat are written to `folder`
-// within the sweep's directory.
+// All `rows` show the same pixels; each is scored with its own gaze. Pictures of the first repeat are written to
+// `folder` within the sweep's directory.
 StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const PlannedRow*>& rows, int repeat,
                        const SweepMeasure& measure, const std::string& directory, const std::string& folder);
-// Time and samples alone, of at most so many frames (0: all).
+// Measures only time and samples, over at most `frames` frames (0: all).
 StoredRun time_row(PathTracer& tracer, const ColorPipeline& color, const PlannedRow& row, int repeat,
                    std::size_t frames = 0);
 
-// Samples a pixel of uniform frames that take `target_s`: by linear interpolation between what was tried, at most
-// kRateTries times more, until one is within kRateTolerance. `known` are rates and times from before.
+// Finds the samples per pixel at which uniform frames take `target_s`, by linear interpolation between the rates that
+// were tried, until one is within kRateTolerance; at most kRateTries further rates are tried. `known` are rates and
+// times from before.
 inline constexpr int kRateTries = 5;
 inline constexpr double kRateTolerance = 0.02;
 RateSearch find_rate(double target_s, const std::vector<std::pair<double, double>>& known, double least_spp,
                      double most_spp, const std::function<double(double spp)>& time_s);
 
-// What scores depend on beside the pictures, as text.
-std::string scoring_digest(const SweepMeasure& measure, const std::vector<SweepFrame>& frames);
+// A digest of what scores depend on besides the pictures.
+std::string scoring_digest(const SweepMeasure& measure, const std::vector<ResultFrame>& frames);
 
 }  // namespace gazetrace

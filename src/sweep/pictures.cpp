@@ -14,7 +14,7 @@ struct Between {
   float part = 0;
 };
 
-// Of an output pixel's centre, on the input's raster.
+// Where the centre of an output pixel lies on the raster of the input.
 Between between(int at, int size, int of_size) {
   const double place = (at + 0.5) * of_size / size - 0.5;
   const double low = std::floor(place);

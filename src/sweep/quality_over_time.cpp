@@ -8,51 +8,47 @@
 #include <set>
 #include <string_view>
 
+#include "results/lookup.hpp"
 #include "sweep/scorer.hpp"
 
 namespace gazetrace {
 namespace {
 
-bool is_uniform(SweepRole role) {
-  return role == SweepRole::uniform_reference_rate || role == SweepRole::equal_samples ||
-         role == SweepRole::equal_time || role == SweepRole::uniform_rate;
+bool is_uniform(RowRole role) {
+  return role == RowRole::uniform_reference_rate || role == RowRole::equal_samples || role == RowRole::equal_time ||
+         role == RowRole::uniform_rate;
 }
 
-// On the curves of uniform and of foveated rendering; what is rendered on fewer pixels is on neither.
-bool is_on_uniform_curve(const SweepRow& row) {
-  return row.resolution_scale == 1 && (is_uniform(row.role) || (row.role == SweepRole::test && !row.is_foveated));
+// Whether a row is a point of the curve of uniform or of foveated rendering. What is rendered on fewer pixels is on
+// neither.
+bool is_on_uniform_curve(const MeasuredRow& row) {
+  return row.resolution_scale == 1 && (is_uniform(row.role) || (row.role == RowRole::test && !row.is_foveated));
 }
-bool is_on_foveated_curve(const SweepRow& row) {
-  return row.resolution_scale == 1 && row.role == SweepRole::test && row.is_foveated;
+bool is_on_foveated_curve(const MeasuredRow& row) {
+  return row.resolution_scale == 1 && row.role == RowRole::test && row.is_foveated;
 }
 
-std::optional<QualityAtTime> point_of(const SweepRow& row, const std::string& metric) {
+std::optional<QualityAtTime> point_of(const MeasuredRow& row, const std::string& metric) {
   const auto parts = row.scores.find(metric);
   if (parts == row.scores.end() || !parts->second.contains("whole")) {
     return std::nullopt;
   }
-  return QualityAtTime{row.time_s.mean, parts->second.at("whole").value.mean};
+  return QualityAtTime{row.time_s->mean, parts->second.at("whole").value->mean};
 }
 
-std::string place_of(const SweepRow& row) {
+std::string place_of(const MeasuredRow& row) {
   return row.scene + "/" + row.gaze;
 }
 
-std::optional<double> floor_of(const SweepResults& results, const SweepRow& row, const std::string& metric) {
-  for (const SweepReferenceResult& reference : results.references) {
-    if (reference.key == row.reference) {
-      for (const SweepFloor& floor : reference.floors) {
-        if (floor.gaze == row.gaze && floor.scores.contains(metric) && floor.scores.at(metric).contains("whole")) {
-          return floor.scores.at(metric).at("whole");
-        }
-      }
-    }
-  }
-  return std::nullopt;
+std::optional<double> floor_of(const std::vector<ResultReference>& references, const MeasuredRow& row,
+                               const std::string& metric) {
+  const auto found = std::find_if(references.begin(), references.end(),
+                                  [&](const ResultReference& reference) { return reference.key == row.reference; });
+  return found == references.end() ? std::nullopt : find_floor(&*found, row.gaze, metric, "whole");
 }
 
-// What a row varies but how many samples it takes: rows alike in it climb one curve.
-std::string family_of(const SweepRow& row) {
+// Everything that a row varies except how many samples it takes: rows that agree in it lie on one curve.
+std::string family_of(const MeasuredRow& row) {
   static constexpr std::array<std::string_view, 4> kRates{"spp", "region-samples", "budget-spp", "budget-samples"};
   std::string text;
   for (const auto& [option, value] : row.settings) {
@@ -63,17 +59,18 @@ std::string family_of(const SweepRow& row) {
   return text;
 }
 
-// A uniform curve and the foveated ones that share all but the sampling with it.
+// A curve of uniform rendering, and the foveated ones that share everything but the sampling with it.
 struct QualityCurves {
   struct Foveated {
     std::vector<QualityAtTime> points;
-    const SweepRow* any = nullptr;
+    const MeasuredRow* any = nullptr;
   };
   std::vector<QualityAtTime> uniform;
   std::map<std::string, Foveated> foveated;  // by family
 };
 
-// Where no family has a second rate, what varies is itself what trades time for quality: one curve.
+// Where no family has a second rate, what the rows vary is itself what trades time for quality: then all of them
+// together are one curve.
 void join_single_points(QualityCurves& curves) {
   const bool all_single = std::all_of(curves.foveated.begin(), curves.foveated.end(),
                                       [](const auto& family) { return family.second.points.size() == 1; });
@@ -91,21 +88,21 @@ void join_single_points(QualityCurves& curves) {
 }  // namespace
 
 std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto_fronts(
-    const std::vector<std::string>& metrics, const std::vector<SweepRow>& rows) {
+    const std::vector<std::string>& metrics, const std::vector<MeasuredRow>& rows) {
   std::map<std::string, std::map<std::string, std::vector<std::string>>> fronts;
   std::map<std::string, std::set<std::string>> references;  // by place
-  for (const SweepRow& row : rows) {
+  for (const MeasuredRow& row : rows) {
     references[place_of(row)].insert(row.reference);
   }
-  const auto front_of = [&](const SweepRow& row) {
+  const auto front_of = [&](const MeasuredRow& row) {
     const std::string place = place_of(row);
     return references.at(place).size() == 1 ? place : place + "/" + row.reference;
   };
   for (const std::string& metric : metrics) {
     std::map<std::string, std::pair<std::vector<QualityAtTime>, std::vector<std::string>>> by_place;
-    for (const SweepRow& row : rows) {
+    for (const MeasuredRow& row : rows) {
       const auto point = point_of(row, metric);
-      if (point && row.role != SweepRole::wrong_gaze) {
+      if (point && row.role != RowRole::wrong_gaze) {
         auto& [points, ids] = by_place[front_of(row)];
         points.push_back(*point);
         ids.push_back(row.id);
@@ -120,11 +117,13 @@ std::map<std::string, std::map<std::string, std::vector<std::string>>> pareto_fr
   return fronts;
 }
 
-std::vector<SweepFixedQuality> speed_ups_at_quality(const SweepMeasure& measure, const SweepResults& results) {
-  std::vector<SweepFixedQuality> speed_ups;
+std::vector<ResultFixedQuality> speed_ups_at_quality(const SweepMeasure& measure,
+                                                     const std::vector<ResultReference>& references,
+                                                     const std::vector<MeasuredRow>& rows) {
+  std::vector<ResultFixedQuality> speed_ups;
   for (const auto& [metric, level] : measure.fixed_quality) {
     std::map<std::string, QualityCurves> places;
-    for (const SweepRow& row : results.rows) {
+    for (const MeasuredRow& row : rows) {
       QualityCurves& curves = places[place_of(row) + "/" + row.reference + "/" + row.curve];
       const auto point = point_of(row, metric);
       if (point && is_on_uniform_curve(row)) {
@@ -141,8 +140,8 @@ std::vector<SweepFixedQuality> speed_ups_at_quality(const SweepMeasure& measure,
       }
       join_single_points(curves);
       for (const auto& [family, foveated] : curves.foveated) {
-        SweepFixedQuality one{metric, foveated.any->scene, foveated.any->gaze, family, level, {}};
-        const auto floor = floor_of(results, *foveated.any, metric);
+        ResultFixedQuality one{metric, foveated.any->scene, foveated.any->gaze, family, level, {}};
+        const auto floor = floor_of(references, *foveated.any, metric);
         if (floor && is_better(metric, level, *floor)) {
           one.result.why = fmt::format("the reference itself is only known to {:.4g}", *floor);
         } else {

@@ -51,7 +51,7 @@ void write_mean(const std::string& path, const Frame& frame, const FrameRequest&
   write_frame_exr(path, frame, nullptr, header, settings, reference.pipeline.threads);
 }
 
-// Mean of some scramblings of a frame, added up in double.
+// The mean of some scramblings of a frame, summed in double precision.
 ImageRgb mean_of(const std::string& directory, std::size_t first, std::size_t count, std::int32_t frame, int threads) {
   Image<Vec3d> sum;
   for (std::size_t k = first; k < first + count; ++k) {
@@ -81,7 +81,8 @@ ImageRgb mean_of_two(const ImageRgb& a, const ImageRgb& b) {
   return mean;
 }
 
-// The halves first, the mean last: where it is, the frame is complete. Frames between two pictures show the one before.
+// Writes the two halves first and the mean last, so that a frame that has its mean is complete. A frame between two
+// pictures shows the earlier one.
 void average_frames(const SweepReference& reference, const std::vector<std::int32_t>& pictures,
                     const ColorPipeline& color, CertifiedReference& certified) {
   TemporalHistory history;
@@ -112,7 +113,7 @@ void average_frames(const SweepReference& reference, const std::vector<std::int3
   }
 }
 
-// Pictures may have been lost since: rendered again they are the same, to the bit.
+// Pictures may have been lost since; rendered again they are the same to the bit.
 bool has_pictures(const CertifiedReference& certified, const SweepReference& reference) {
   return std::all_of(reference.plan.frames.begin(), reference.plan.frames.end(), [&](const FrameRequest& request) {
     const std::int32_t frame = request.frame;
@@ -204,7 +205,7 @@ CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, cons
 }
 
 ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline& color,
-                        const ComparisonSettings& settings, const std::vector<SweepFrame>& frames,
+                        const ComparisonSettings& settings, const std::vector<ResultFrame>& frames,
                         const std::string& digest) {
   const std::string path = reference.directory + "/floor-" + digest + ".json";
   if (auto kept = load_scores(path)) {
@@ -212,14 +213,14 @@ ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline
   }
   const int threads = settings.metric.threads;
   std::unique_ptr<Scorer> scorer;
-  for (const SweepFrame& frame : frames) {
-    const double ev = reference.ev.at(frame.frame);
-    const MetricPicture a = metric_picture(read_exr_rgb(reference.half_path(0, frame.frame)), color, ev, threads);
-    const MetricPicture b = metric_picture(read_exr_rgb(reference.half_path(1, frame.frame)), color, ev, threads);
+  for (const ResultFrame& frame : frames) {
+    const double ev = reference.ev.at(frame.index);
+    const MetricPicture a = metric_picture(read_exr_rgb(reference.half_path(0, frame.index)), color, ev, threads);
+    const MetricPicture b = metric_picture(read_exr_rgb(reference.half_path(1, frame.index)), color, ev, threads);
     if (!scorer) {
-      // The exposures that tests are scored with, those of the whole reference's first frame.
+      // The exposures that tests are scored at: those of the first frame of the whole reference.
       ComparisonSettings fixed = settings;
-      fix_flip_exposures(fixed, read_exr_rgb(reference.mean_path(frame.frame)));
+      fix_flip_exposures(fixed, read_exr_rgb(reference.mean_path(frame.index)));
       scorer = std::make_unique<Scorer>(fixed, frames, a.light.width_px, a.light.height_px);
     }
     scorer->add(a, b);

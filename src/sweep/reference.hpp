@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture that stands for the truth: independent scramblings, rendered once and kept.
+// The pictures that stand for the truth: the mean of independent scramblings, rendered once and kept.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 namespace gazetrace {
 
 struct CertifiedReference {
-  std::string directory;              // with the sweep's folder before it
-  std::map<std::int32_t, double> ev;  // exposure by frame: tests are shown under it, too
+  std::string directory;              // its path begins with the sweep's folder
+  std::map<std::int32_t, double> ev;  // exposure by frame, at which tests are shown, too
   double spp = 0;                     // of all scramblings together
   std::size_t pictures = 0;           // see reference_pictures()
   [[nodiscard]] std::string half_path(int half, std::int32_t frame) const;
@@ -22,21 +22,24 @@ struct CertifiedReference {
 
 std::string reference_folder(const SweepReference& reference);  // within the sweep's folder
 
-// The frames of a reference that are rendered: all, or the first for all of them where neither camera nor scene moves.
-// A clip of a standing picture is then known as well as its one frame.
+// The frames of a reference that are rendered: all of them, or only the first where neither camera nor scene moves.
+// Then that one picture stands for every frame of the clip.
 std::vector<std::int32_t> reference_pictures(const SweepReference& reference, const Scene& scene);
-// Whether reference_pictures() depends on the scene: of frames that are seen alike and gather nothing over time.
+// Whether reference_pictures() depends on the scene: where all frames have the same view and no history.
 bool scene_decides_pictures(const SweepReference& reference);
-FramePlan only_frames(const FramePlan& plan, const std::vector<std::int32_t>& frames);  // the plan of these
+FramePlan only_frames(const FramePlan& plan,
+                      const std::vector<std::int32_t>& frames);  // the part of the plan with these frames
 
-// Renders what is missing: each scrambling by itself, frame by frame, then the means of the two halves and of all.
+// Renders what is missing: each scrambling by itself, frame by frame; then forms the means of the two halves and of
+// all.
 CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, const SweepReference& reference,
                                     const ColorPipeline& color, const std::string& sweep_directory,
                                     const SweepObserver& observer);
 
-// The halves against each other, see SweepFloor. Kept as well, by what it depends on.
+// The score of the two halves against each other, see ResultReference. It is kept, too, under a digest of what it
+// depends on.
 ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline& color,
-                        const ComparisonSettings& settings, const std::vector<SweepFrame>& frames,
+                        const ComparisonSettings& settings, const std::vector<ResultFrame>& frames,
                         const std::string& digest);
 
 MetricPicture metric_picture(ImageRgb light, const ColorPipeline& color, double ev, int threads);

@@ -17,7 +17,7 @@ bool is_whole(double value) {
   return value == std::floor(value) && value >= 1 && value < 4e9;
 }
 
-PlannedRow beside(const PlannedRow& test, SweepRole role, const std::string& suffix, const std::string& label) {
+PlannedRow beside(const PlannedRow& test, RowRole role, const std::string& suffix, const std::string& label) {
   PlannedRow result = test;
   result.row.id = test.row.id + "-" + suffix;
   result.row.role = role;
@@ -25,7 +25,7 @@ PlannedRow beside(const PlannedRow& test, SweepRole role, const std::string& suf
   result.row.label = label;
   result.row.baselines.clear();
   result.row.published.clear();
-  result.row.runs.clear();  // it is measured by itself
+  result.row.runs.clear();  // it has measurements of its own
   return result;
 }
 
@@ -33,7 +33,7 @@ std::string digest_of(const std::string& base, const std::string& what) {
   return digest_settings({{"base", base}, {"what", what}});
 }
 
-// Of the full size, unless its plan is of another.
+// Makes a row uniform. It is rendered at full size unless its plan has another.
 void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   FoveationSettings& foveation = row.pipeline.foveation;
   foveation.falloff = "uniform";
@@ -52,26 +52,26 @@ void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   settings = plan.tests[row.test].uniform_settings;
   settings.emplace_back("falloff", "uniform");
   settings.emplace_back(is_whole(spp) ? "spp" : "budget-spp", fmt::format("{:.6g}", spp));
-  for (SweepFrame& frame : row.row.frames) {
+  for (ResultFrame& frame : row.row.frames) {
     frame.rings_px.clear();
   }
-  // A row of equal time is rendered apart from rows of other roles even where their rates are the same: its time is
-  // measured anew, not taken from the row that its rate was found by.
-  const char* purpose = row.row.role == SweepRole::equal_time ? "equal time, " : "";
+  // A row of equal time is rendered apart from rows of other roles even where their rates are the same: its time must
+  // be measured anew, and not be taken from the row by which its rate was found.
+  const char* purpose = row.row.role == RowRole::equal_time ? "equal time, " : "";
   const RasterSize size = size_of(row.plan);
   row.digest =
       digest_of(row.uniform, fmt::format("{}uniform {} on {}x{}", purpose, spp, size.width_px, size.height_px));
 }
 
-const char* suffix_of(SweepRole role) {
+const char* suffix_of(RowRole role) {
   switch (role) {
-    case SweepRole::uniform_reference_rate:
+    case RowRole::uniform_reference_rate:
       return "uniform";
-    case SweepRole::equal_samples:
+    case RowRole::equal_samples:
       return "samples";
-    case SweepRole::equal_time:
+    case RowRole::equal_time:
       return "time";
-    case SweepRole::low_resolution:
+    case RowRole::low_resolution:
       return "lowres";
     default:
       return "rate";
@@ -79,26 +79,6 @@ const char* suffix_of(SweepRole role) {
 }
 
 }  // namespace
-
-std::string to_string(SweepRole role) {
-  switch (role) {
-    case SweepRole::test:
-      return "test";
-    case SweepRole::uniform_reference_rate:
-      return "uniform-reference-rate";
-    case SweepRole::equal_samples:
-      return "equal-samples";
-    case SweepRole::equal_time:
-      return "equal-time";
-    case SweepRole::low_resolution:
-      return "low-resolution";
-    case SweepRole::uniform_rate:
-      return "uniform-rate";
-    case SweepRole::wrong_gaze:
-      return "wrong-gaze";
-  }
-  return {};
-}
 
 bool is_foveated(const SweepTest& test) {
   return test.pipeline.foveation.falloff != "uniform" &&
@@ -109,7 +89,7 @@ bool is_foveated(const SweepTest& test) {
 PlannedRow test_row(const SweepPlan& plan, std::size_t test) {
   const SweepTest& from = plan.tests[test];
   PlannedRow result;
-  SweepRow& row = result.row;
+  MeasuredRow& row = result.row;
   row.id = from.id;
   row.scene = plan.scenes[from.scene].name;
   row.gaze = from.gaze;
@@ -137,12 +117,12 @@ PlannedRow test_row(const SweepPlan& plan, std::size_t test) {
   return result;
 }
 
-PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, SweepRole role, double spp) {
+PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, RowRole role, double spp) {
   const char* suffix = suffix_of(role);
-  const std::string label = role == SweepRole::equal_samples ? fmt::format("uniform, equal samples: {:.4g} spp", spp)
-                            : role == SweepRole::equal_time  ? fmt::format("uniform, equal time: {:.4g} spp", spp)
-                                                             : fmt::format("uniform, {:g} spp", spp);
-  const bool is_rate = role == SweepRole::uniform_rate;
+  const std::string label = role == RowRole::equal_samples ? fmt::format("uniform, equal samples: {:.4g} spp", spp)
+                            : role == RowRole::equal_time  ? fmt::format("uniform, equal time: {:.4g} spp", spp)
+                                                           : fmt::format("uniform, {:g} spp", spp);
+  const bool is_rate = role == RowRole::uniform_rate;
   PlannedRow result = beside(test, role, is_rate ? fmt::format("{}{:g}", suffix, spp) : suffix, label);
   if (is_rate) {
     result.row.of.clear();
@@ -161,16 +141,16 @@ std::vector<PlannedRow> baselines_known_before(const SweepPlan& plan, const Plan
     return rows;
   }
   if (wanted.reference_rate) {
-    rows.push_back(uniform_row(plan, test, SweepRole::uniform_reference_rate, wanted.reference_spp));
+    rows.push_back(uniform_row(plan, test, RowRole::uniform_reference_rate, wanted.reference_spp));
   }
   for (const double spp : wanted.uniform_rates) {
     if (!wanted.reference_rate || spp != wanted.reference_spp) {
-      rows.push_back(uniform_row(plan, test, SweepRole::uniform_rate, spp));
+      rows.push_back(uniform_row(plan, test, RowRole::uniform_rate, spp));
     }
   }
   for (const std::string& wrong : wanted.wrong_gaze ? wrong_gazes() : std::vector<std::string>()) {
     if (const auto other = with_wrong_gaze(test.plan, wrong)) {
-      PlannedRow row = beside(test, SweepRole::wrong_gaze, wrong, test.row.label + ", gaze " + wrong);
+      PlannedRow row = beside(test, RowRole::wrong_gaze, wrong, test.row.label + ", gaze " + wrong);
       row.row.wrong = wrong;
       row.plan = *other;
       row.digest = digest_of(test.digest, "gaze " + wrong);
@@ -190,14 +170,14 @@ std::vector<PlannedRow> baselines_of_samples(const SweepPlan& plan, const Planne
     return rows;
   }
   if (wanted.equal_samples) {
-    rows.push_back(uniform_row(plan, test, SweepRole::equal_samples, spp));
+    rows.push_back(uniform_row(plan, test, RowRole::equal_samples, spp));
   }
   const double full = wanted.reference_spp;
   if (wanted.low_resolution && spp < full) {
     const RasterSize small = scaled_size(test.size, std::sqrt(spp / full));
     const double pixels = static_cast<double>(test.size.width_px) * test.size.height_px;
     const double small_spp = spp * pixels / (static_cast<double>(small.width_px) * small.height_px);
-    PlannedRow row = uniform_row(plan, test, SweepRole::low_resolution, small_spp);
+    PlannedRow row = uniform_row(plan, test, RowRole::low_resolution, small_spp);
     row.plan = resized(plan.tests[test.test].plan, small);
     make_uniform(plan, row, small_spp);
     row.row.label =

@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kVarianceOfHalves = 4;  // of their difference, over that of their mean
+constexpr double kVarianceOfHalves = 4;  // the variance of their difference over that of their mean
 
 ScoreParts parts_of(const Scores& scores) {
   ScoreParts parts;
@@ -35,8 +35,8 @@ ScoreParts parts_of(const Scores& scores) {
   return parts;
 }
 
-// Scored frames are told from the others by the class: what else the eye did is not asked for.
-GazeClass class_of(const SweepFrame& frame, bool is_scored) {
+// Comparison tells frames apart by what the eye did. Here the class only tells scored frames from the others.
+GazeClass class_of(const ResultFrame& frame, bool is_scored) {
   if (is_scored) {
     return frame.gaze_px ? GazeClass::fixation : GazeClass::no_gaze;
   }
@@ -46,7 +46,7 @@ GazeClass class_of(const SweepFrame& frame, bool is_scored) {
 }  // namespace
 
 ComparisonSettings comparison_of(const ComparisonSettings& settings, const FramePlan& plan,
-                                 const std::vector<SweepFrame>& frames, const FrameRate& fps) {
+                                 const std::vector<ResultFrame>& frames, const FrameRate& fps) {
   ComparisonSettings result = settings;
   result.frames_per_second =
       frames.size() > 1 ? static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator) : 0;
@@ -68,10 +68,10 @@ ComparisonSettings comparison_of(const ComparisonSettings& settings, const Frame
 std::vector<std::string> flicker_ranges(const SweepPlan& plan) {
   std::vector<std::string> ranges;
   for (const SweepTest& test : plan.tests) {
-    const std::vector<SweepFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, plan.measure.leave_out_s);
+    const std::vector<ResultFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, plan.measure.leave_out_s);
     const ComparisonSettings settings = comparison_of(plan.measure.comparison, test.plan, frames, test.pipeline.fps);
     if (std::find(settings.metrics.begin(), settings.metrics.end(), "flicker") == settings.metrics.end()) {
-      continue;  // without gaze
+      continue;  // it has no gaze
     }
     const FlickerRange range = flicker_range(settings.frames_per_second, settings.photometry.peak_cd_m2 / 2);
     const std::string text =
@@ -83,7 +83,7 @@ std::vector<std::string> flicker_ranges(const SweepPlan& plan) {
   return ranges;
 }
 
-Scorer::Scorer(const ComparisonSettings& settings, const std::vector<SweepFrame>& frames, int width_px, int height_px)
+Scorer::Scorer(const ComparisonSettings& settings, const std::vector<ResultFrame>& frames, int width_px, int height_px)
     : frames_(frames),
       scored_(scored_frames(frames)),
       comparison_(std::make_unique<Comparison>(settings, width_px, height_px)) {
@@ -93,9 +93,9 @@ Scorer::Scorer(const ComparisonSettings& settings, const std::vector<SweepFrame>
 }
 
 ScoreTable Scorer::add(const MetricPicture& reference, const MetricPicture& test) {
-  const SweepFrame& frame = frames_[next_];
+  const ResultFrame& frame = frames_[next_];
   FramePair pair;
-  pair.frame = frame.frame;
+  pair.frame = frame.index;
   pair.reference = reference;
   pair.test = test;
   pair.gaze_px = frame.gaze_px;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scores of one row's frames against the reference, with the row's gaze.
+// Scores of the frames of one row against the reference, with the gaze of the row.
 #pragma once
 
 #include <memory>
@@ -11,40 +11,40 @@
 
 namespace gazetrace {
 
-// `settings` with the view and rate of a plan; without gaze there are no bands and no FovVideoVDP.
+// `settings` with the view and the frame rate of a plan. Without gaze there are no bands and no metrics that need it.
 ComparisonSettings comparison_of(const ComparisonSettings& settings, const FramePlan& plan,
-                                 const std::vector<SweepFrame>& frames, const FrameRate& fps);
+                                 const std::vector<ResultFrame>& frames, const FrameRate& fps);
 
-// What each frame rate of the tests that are scored for flicker lets it tell, and what not: "flicker at 24 frames a
-// second: from 1 to 12 Hz, ...".
+// For each frame rate of the tests that are scored for flicker, which frequencies the metric can tell at that rate:
+// "flicker at 24 frames a second: from 1 to 12 Hz, ...".
 std::vector<std::string> flicker_ranges(const SweepPlan& plan);
 
 class Scorer {
  public:
-  // `frames` are those that will be added, in their order.
-  Scorer(const ComparisonSettings& settings, const std::vector<SweepFrame>& frames, int width_px, int height_px);
-  // Light and code values of both pictures. Returns the frame's own scores.
+  // `frames` are those that will be added, in this order; they must outlive the scorer.
+  Scorer(const ComparisonSettings& settings, const std::vector<ResultFrame>& frames, int width_px, int height_px);
+  // Takes the light and the code values of the next frame. Returns the scores of that frame alone.
   ScoreTable add(const MetricPicture& reference, const MetricPicture& test);
-  // Of the frame added last; nullptr unless the settings want maps and the metric has one.
+  // The map of the frame that was added last; nullptr unless the settings ask for maps and the metric has one.
   [[nodiscard]] const ImageGray* map_of(const std::string& metric) const;
   [[nodiscard]] ScoreTable over_scored_frames() const;
 
  private:
-  const std::vector<SweepFrame>& frames_;
+  const std::vector<ResultFrame>& frames_;
   std::vector<bool> scored_;
-  bool scores_gaze_ = false;  // the scored frames have gaze
+  bool scores_gaze_ = false;  // whether the scored frames have gaze
   std::size_t next_ = 0;
   FrameScores last_;
   std::unique_ptr<Comparison> comparison_;
 };
 
-// Of any metric that can be scored; unknown ones: lower.
+// Which direction is better; lower for names that no metric has.
 MetricDirection direction_of(const std::string& metric);
-bool is_better(const std::string& metric, double a, double b);  // a than b
-// A metric that squares the error, so that a noisy reference adds its variance.
+bool is_better(const std::string& metric, double a, double b);  // whether a is better than b
+// Whether the metric squares the error, so that the variance of a noisy reference is added to it.
 bool is_squared_error(const std::string& metric);
-// A squared error's mean with the reference's variance, a quarter of the halves' `floor`, taken off; never below 0.
-// Other metrics: as they are.
+// Takes the variance of the reference, a quarter of the halves' `floor`, off the mean of a squared error; the result is
+// never below 0. Other metrics keep their value.
 double without_reference_variance(const std::string& metric, double value, double floor);
 
 }  // namespace gazetrace

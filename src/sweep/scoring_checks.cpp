@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the metrics of a sweep can score a test, told before hours of rendering.
+// Checks that the metrics of a sweep can score a test, before hours are spent on rendering it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-// A picture as large as metrics of single frames can tell: what they refuse is small.
+// The largest picture that is tried on metrics of single frames. What they refuse are small pictures.
 MetricPicture small_picture(int width_px, int height_px) {
   constexpr int kLargeEnough = 256;
   const bool is_large = std::min(width_px, height_px) >= kLargeEnough;
@@ -30,9 +30,9 @@ MetricPicture small_picture(int width_px, int height_px) {
 }  // namespace
 
 void check_scoring(const SweepMeasure& sweep, const SweepTest& test) {
-  const std::vector<SweepFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, sweep.leave_out_s);
+  const std::vector<ResultFrame> frames = sweep_frames(test.plan, test.pipeline.foveation, sweep.leave_out_s);
   const ComparisonSettings settings = comparison_of(sweep.comparison, test.plan, frames, test.pipeline.fps);
-  if (std::all_of(frames.begin(), frames.end(), [](const SweepFrame& frame) { return frame.event == "start"; })) {
+  if (std::all_of(frames.begin(), frames.end(), [](const ResultFrame& frame) { return frame.event == "start"; })) {
     throw Error(
         ErrorKind::usage, "leave-out",
         fmt::format("all {} frames lie in the first {:g} s, and none is scored", frames.size(), sweep.leave_out_s),
@@ -54,7 +54,8 @@ void check_scoring(const SweepMeasure& sweep, const SweepTest& test) {
                   fmt::format("looks at whole seconds; {} frames at {:g} a second are less", frames.size(), rate),
                   "render more frames, or leave the metric out");
     }
-    // Where one end of the exposures is found from the reference, nobody knows yet whether it fits the other.
+    // Where one end of the range of exposures is found from the reference, it is not known yet whether it fits the
+    // other.
     const FlipExposureSettings& flip = settings.metric.hdr_flip;
     const bool is_open = name == "hdr_flip" && flip.start_ev.has_value() != flip.stop_ev.has_value();
     const auto is_it = [&](const MetricInfo& info) { return info.name == name; };

@@ -10,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,9 +20,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "gazetrace-sweep-state-1";
 constexpr const char* kStateFile = "/state.json";
-constexpr const char* kOtherFolder = "give another --output folder, or --restart to measure all again";
+constexpr const char* kOtherFolder = "give another `output` folder, or `restart` to measure all again";
 
-// Numbers come back to the bit; what JSON cannot hold is null.
+// Numbers are read back to the bit. JSON has no infinity, which is written as a text, and no NaN, which is null. This
+// differs from results.json, which other programs read: there both are null.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : std::isnan(value) ? Json() : Json(value > 0 ? "inf" : "-inf");
 }
@@ -100,7 +102,8 @@ SweepRun run_of(const Json& json) {
   return run;
 }
 
-// Empty where there is no such file. What is there was written by save() of the same build, or it is damaged.
+// Empty where there is no such file. A file that is there was written by save() of the same build; otherwise it is
+// damaged.
 template <class Read>
 auto load(const std::string& path, const Read& read,
           const char* remedy = "remove it, and what it held is measured again")
@@ -155,7 +158,7 @@ void claim_directory(const std::string& directory) {
   }
 }
 
-// A state that is damaged is thrown away like any other.
+// A damaged state is thrown away like any other.
 void clear_directory(const std::string& directory) {
   if (!fs::is_regular_file(directory + kStateFile)) {
     return;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sweep has finished, in files that are there completely or not at all: a killed sweep goes on from them.
+// What a sweep has finished, in files that are there completely or not at all, so that a killed sweep goes on from
+// them. They are the sweep's own: only the build that wrote them reads them. Results for others are in
+// gazetrace/results.hpp.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +10,21 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/sweep.hpp"
+#include "sweep/runs.hpp"
 
 namespace gazetrace {
 
-// Content digest of the file that this code runs from: the program, or the library where it is a shared one.
+// A digest of the file that this code runs from: the program, or the library where that is a shared one.
 std::string build_digest();
 std::string machine_description();  // processor and number of threads
 
-// Error(input) where the folder holds work of another build or machine; marks an empty one as this build's.
+// Marks an empty folder as this build's. Error(input) where the folder holds work of another build or machine.
 void claim_directory(const std::string& directory);
 // Removes what a sweep has left in the folder, and nothing else.
 void clear_directory(const std::string& directory);
 
-// One rendering, with one set of scores for each gaze it was scored for. Empty: not finished.
+// One rendering, with a set of scores for each gaze that it was scored with. Loading gives nothing where it has not
+// been finished.
 struct StoredRun {
   std::string png;  // pattern relative to the sweep's folder
   std::map<std::string, double> region_cpu_ms;
@@ -34,11 +37,11 @@ void save_run(const std::string& path, const StoredRun& run);
 std::optional<ScoreTable> load_scores(const std::string& path);
 void save_scores(const std::string& path, const ScoreTable& scores);
 
-// Exposures of a finished reference; empty unless its digest is this one.
+// The exposures of a finished reference; empty unless it was stored under this digest.
 std::optional<std::map<std::int32_t, double>> load_exposures(const std::string& path, const std::string& digest);
 void save_exposures(const std::string& path, const std::string& digest, const std::map<std::int32_t, double>& ev);
 
-// Times that were tried for an equal-time rate, by samples a pixel, and the rate chosen.
+// The rates that were tried to find equal time, with their times, and the rate that was chosen.
 struct RateSearch {
   double spp = 0;
   std::vector<std::pair<double, double>> tried;  // samples a pixel, seconds a frame

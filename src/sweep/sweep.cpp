@@ -4,7 +4,7 @@
 //                 -> the rates of equal time, found by measuring -> those rows
 //   other rounds  every row once, forwards and backwards in turn, so that a machine that grows slower or faster does so
 //                 for all of them
-// Whatever is finished lies in a file, and is not done again.
+// Whatever has been finished is in a file, and is not done again.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@
 #include "compare/eccentricity_bands.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
+#include "sweep/conclude.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/reference.hpp"
 #include "sweep/rows.hpp"
 #include "sweep/scorer.hpp"
 #include "sweep/state.hpp"
-#include "sweep/tables.hpp"
 
 namespace gazetrace {
 namespace {
@@ -36,8 +36,8 @@ std::string digest_of_reference(const SweepReference& reference) {
 
 class SceneSweep {
  public:
-  SceneSweep(const SweepPlan& plan, std::size_t scene, SweepResults& results, const SweepObserver& observer)
-      : plan_(plan), scene_(scene), results_(results), observer_(observer) {}
+  SceneSweep(const SweepPlan& plan, std::size_t scene, Measurements& measured, const SweepObserver& observer)
+      : plan_(plan), scene_(scene), measured_(measured), observer_(observer) {}
 
   void run() {
     plan_rows();
@@ -65,11 +65,11 @@ class SceneSweep {
     }
   }
 
-  // Adds a row, unless one of the same pixels stands there for the same gaze. Returns its id. Every test has a row of
-  // equal time of its own, whose time is held against that test's.
+  // Adds a row unless there is one with the same pixels, gaze and reference, and returns the id of the row that is
+  // there. Every test has its own row of equal time, whose time is compared with that of the test.
   std::string add(PlannedRow row) {
     for (const PlannedRow& other : rows_) {
-      if (row.row.role != SweepRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
+      if (row.row.role != RowRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
           other.row.reference == row.row.reference) {
         return other.row.id;
       }
@@ -79,9 +79,9 @@ class SceneSweep {
   }
   void add_baselines(std::size_t test, std::vector<PlannedRow> rows) {
     for (PlannedRow& row : rows) {
-      const SweepRole role = row.row.role;
+      const RowRole role = row.row.role;
       const std::string id = add(std::move(row));
-      if (role != SweepRole::wrong_gaze && role != SweepRole::uniform_rate) {
+      if (role != RowRole::wrong_gaze && role != RowRole::uniform_rate) {
         rows_[test].row.baselines[to_string(role)] = id;
       }
     }
@@ -95,7 +95,7 @@ class SceneSweep {
     }
     tests_ = rows_.size();
     for (std::size_t t = 0; t < tests_; ++t) {
-      add_baselines(t, baselines_known_before(plan_, rows_[t], results_.notes));
+      add_baselines(t, baselines_known_before(plan_, rows_[t], measured_.notes));
     }
   }
 
@@ -110,7 +110,7 @@ class SceneSweep {
     }
   }
 
-  // Rows that show the same pixels as this one, itself among them, in their order.
+  // All rows that show the same pixels as this one, itself among them, in the order of the rows.
   [[nodiscard]] std::vector<const PlannedRow*> sharing(const PlannedRow& row) const {
     std::vector<const PlannedRow*> rows;
     for (const PlannedRow& other : rows_) {
@@ -121,8 +121,8 @@ class SceneSweep {
     return rows;
   }
 
-  // By what these rows show, how it is scored and what its time depends on: the same work has the same key in a longer
-  // plan, unless that has more rows of these pixels.
+  // A key from what these rows show, how they are scored and what their time depends on. The same work has the same key
+  // in a longer plan, unless that plan has further rows with these pixels.
   [[nodiscard]] std::string key_of(const std::vector<const PlannedRow*>& rows) const {
     NamedValues parts{{"pixels", rows.front()->digest},
                       {"reference", digest_of_reference(*references_.at(rows.front()->row.reference))},
@@ -214,8 +214,8 @@ class SceneSweep {
       for (const PlannedRow& row : rows_) {
         const bool same = row.uniform == of.uniform && row.row.reference == of.row.reference &&
                           row.row.gaze == of.row.gaze && !row.row.runs.empty();
-        const bool is_uniform = row.row.role == SweepRole::equal_samples || row.row.role == SweepRole::uniform_rate ||
-                                row.row.role == SweepRole::uniform_reference_rate;
+        const bool is_uniform = row.row.role == RowRole::equal_samples || row.row.role == RowRole::uniform_rate ||
+                                row.row.role == RowRole::uniform_reference_rate;
         if (same && is_uniform) {
           const SweepRun& run = row.row.runs.front();
           known.emplace_back(run.samples / run.pixels, run.time_s);
@@ -223,7 +223,7 @@ class SceneSweep {
       }
       search = find_rate(of.row.runs.front().time_s, known, kLeastSpp, 4.0 * plan_.measure.baselines.reference_spp,
                          [&](double spp) {
-                           const PlannedRow row = uniform_row(plan_, of, SweepRole::equal_time, spp);
+                           const PlannedRow row = uniform_row(plan_, of, RowRole::equal_time, spp);
                            const StoredRun run = time_row(*tracer_, colors_.at(row.row.reference), row, 0);
                            return run.by_gaze.begin()->second.time_s;
                          });
@@ -231,10 +231,11 @@ class SceneSweep {
       tell(fmt::format("{}: equal time at {:.4g} samples a pixel, {} rates tried", of.row.id, search->spp,
                        search->tried.size()));
     }
-    return uniform_row(plan_, of, SweepRole::equal_time, search->spp);
+    return uniform_row(plan_, of, RowRole::equal_time, search->spp);
   }
 
-  // Expected over measured time: the samples of each region times what one costs there at an even rate.
+  // Expected over measured time. The expected time is that of the samples of each region at what a sample costs there
+  // when all regions have the same rate.
   [[nodiscard]] std::optional<double> efficiency_of(std::size_t test) const {
     const auto found = costs_.find(test);
     if (found == costs_.end() || !(found->second.trace_cpu_ms > 0)) {
@@ -257,11 +258,11 @@ class SceneSweep {
     return sum / static_cast<double>(rows_[test].row.runs.size());
   }
 
-  // Floors of every gaze, then the rows.
+  // Hands over the references with the floor of every gaze, then the rows.
   void hand_over() {
     for (const auto& [key, reference] : references_) {
       const CertifiedReference& certified = certified_.at(key);
-      SweepReferenceResult result;
+      ResultReference result;
       result.scene = plan_.scenes[scene_].name;
       result.key = key;
       result.directory = reference_folder(*reference);
@@ -282,18 +283,18 @@ class SceneSweep {
                                    band_shares(row.row, plan), event_shares(row.row.frames)});
         }
       }
-      results_.references.push_back(std::move(result));
+      measured_.references.push_back(std::move(result));
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (i < tests_) {
         rows_[i].row.efficiency = efficiency_of(i);
       }
-      results_.rows.push_back(std::move(rows_[i].row));
+      measured_.rows.push_back(std::move(rows_[i].row));
     }
   }
 
-  // Of the pixels of frames with gaze; empty without.
-  [[nodiscard]] std::vector<double> band_shares(const SweepRow& row, const FramePlan& plan) const {
+  // The share of the pixels in each band of eccentricity, over the frames with gaze; empty without any.
+  [[nodiscard]] std::vector<double> band_shares(const MeasuredRow& row, const FramePlan& plan) const {
     std::vector<double> shares(kEccentricityBandsDeg.size());
     double pixels = 0;
     for (std::size_t f = 0; f < row.frames.size(); ++f) {
@@ -318,9 +319,9 @@ class SceneSweep {
 
   const SweepPlan& plan_;
   std::size_t scene_;
-  SweepResults& results_;
+  Measurements& measured_;
   const SweepObserver& observer_;
-  std::deque<PlannedRow> rows_;  // tests first; rows keep their place
+  std::deque<PlannedRow> rows_;  // tests first; a row keeps its address when others are added
   std::size_t tests_ = 0;
   PathTracer* tracer_ = nullptr;
   std::map<std::string, const SweepReference*> references_;
@@ -340,7 +341,7 @@ SweepDirectory prepare_sweep(const SweepPlan& plan) {
   std::filesystem::create_directories(plan.directory, problem);
   if (!std::filesystem::is_directory(plan.directory)) {
     throw Error(ErrorKind::input, plan.directory, "the folder cannot be made: " + problem.message(),
-                "choose another --output folder");
+                "choose another `output` folder");
   }
   SweepDirectory directory(plan.directory);
   if (plan.restart) {
@@ -350,15 +351,13 @@ SweepDirectory prepare_sweep(const SweepPlan& plan) {
   return directory;
 }
 
-SweepResults run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
-  SweepResults results;
-  results.build = build_digest();
-  results.machine = machine_description();
-  results.threads = resolve_threads(plan.tests.front().pipeline.threads);
+Results run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
+  Measurements measured;
   for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
-    SceneSweep(plan, scene, results, observer).run();
+    SceneSweep(plan, scene, measured, observer).run();
   }
-  complete_tables(plan, results);
+  Results results = conclude(facts_of_plan(plan), plan, measured);
+  results.methods = sweep_methods(plan, results);
   return results;
 }
 

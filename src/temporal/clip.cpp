@@ -12,7 +12,8 @@ namespace gazetrace {
 namespace {
 
 constexpr int kReach = 2;  // the neighborhood is 5x5 sites
-// Light that no float holds: in the dark the past fades towards it, and its square leaves what doubles can hold.
+// Light below what a float can hold: in the dark the past fades towards it, and its square would leave the range of
+// doubles.
 constexpr double kNoLight = std::numeric_limits<float>::min();
 
 }  // namespace
@@ -43,7 +44,8 @@ Spread spread_around(const Frame& frame, const SurfaceMotion& motion, int x, int
   const double n = spread.taps;
   spread.mean = spread.mean / n;
   const double mean_luminance = luminance_sum / n;
-  // What the samples say of their own noise, for a neighborhood that agrees by chance; channels in proportion.
+  // The noise that the samples themselves state, for a neighborhood whose pixels agree by chance; the channels share it
+  // in proportion.
   const double own = mean_luminance > 0 ? sample_variance / n / (mean_luminance * mean_luminance) : 0;
   spread.known = spread.taps > 1 || own > 0;
   const Vec3d& m = spread.mean;
@@ -58,7 +60,7 @@ void clip(const Spread& spread, double sigmas, PastSums& past) {
     return;
   }
   const Vec3d mean = past.radiance / past.count;
-  // The past has noise of its own: a variance of its luminance, shared out in proportion.
+  // The past has noise of its own: the variance of its luminance, which the channels share in proportion.
   const double past_luminance = luminance(mean);
   const double own =
       past_luminance > kNoLight ? past.variance / (past.count * past.count) / (past_luminance * past_luminance) : 0;

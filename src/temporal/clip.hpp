@@ -12,14 +12,15 @@ namespace gazetrace {
 struct Spread {
   Vec3d mean, variance;
   int taps = 0;
-  bool known = false;  // a single tap of a single sample tells nothing of its spread
+  bool known = false;  // false where there is a single tap of a single sample, which says nothing of its spread
 };
 
-// Of the current frame about a pixel, on the same object, a site's width apart, so that each tap is another site.
+// The spread of the current frame around a pixel, over taps on the same object. They are a site's width apart, so that
+// each tap reads another site.
 Spread spread_around(const Frame& frame, const SurfaceMotion& motion, int x, int y, float footprint_px);
 
-// Brings the past to within the limits; a past that was r times as far off keeps 1 / r^4 of its count: it is
-// contradicted, and the limit is no place to rest.
+// Clips the past to the limits. A past that was r times as far off keeps 1 / r^4 of its count, since the frame
+// contradicts it, and a value that merely sits at the limit deserves little trust.
 void clip(const Spread& spread, double sigmas, PastSums& past);
 
 }  // namespace gazetrace

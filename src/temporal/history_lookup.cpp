@@ -9,13 +9,14 @@
 namespace gazetrace {
 namespace {
 
-// A tap counts where it lies this close to the plane of the surface, relative to its distance from the camera, ...
+// A tap is accepted where it lies this close to the plane of the surface, relative to its distance from the camera, ...
 constexpr double kPlaneTolerance = 0.01;
 // ... and where its normal is within about 25 degrees.
 constexpr float kNormalTolerance = 0.9F;
-// Rounding of the projection, which must not blur what stands still.
+// Offsets below this are rounding of the projection. They count as none, so that what stands still is not blurred.
 constexpr double kSnap_px = 1e-3;
-// Sixteen taps stand for one value only where each is a pixel of its own and worth at least this share of the best.
+// Sixteen taps are used together only where each was sampled as a pixel of its own and is worth at least this share of
+// the best one.
 constexpr float kSharpFootprint_px = 1.5F;
 constexpr double kSharpCounts = 0.5;
 
@@ -24,7 +25,7 @@ double snapped(double x) {
   return std::abs(x - whole) < kSnap_px ? whole : x;
 }
 
-// What a surface point of the current frame was: its taps are to be of the same.
+// A surface point of the current frame, as it was in the earlier view; taps of other surfaces are rejected.
 struct Surface {
   const HistorySurfaces& was;
   const PixelProjection& view;
@@ -59,8 +60,9 @@ struct Sharp {
   double residual = 0;
 };
 
-// The mean between pixels, sharper than the bilinear one, which takes texture away with every frame. No farther than
-// the four pixels about the place go. Empty where a tap is of another surface, of a coarser site or worth far less.
+// A mean between pixels that is sharper than the bilinear one, which takes some texture away with every frame. It is
+// clamped to the range of the four pixels around the place. Empty where a tap is rejected, comes from a coarser site,
+// or is worth far less than the others.
 std::optional<Sharp> sharp_mean(const TemporalHistory& history, const Surface& surface, int x0, int y0, double fx,
                                 double fy) {
   const std::array<double, 4> wx = cubic_weights(fx);
@@ -112,7 +114,7 @@ PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_
   const Vec2d at = motion.earlier_px.pixels[pixel];
   const int width = history.count_sum.width_px;
   const int height = history.count_sum.height_px;
-  // Written so that NaN fails.
+  // Written so that NaN is rejected.
   if (!(at.x > -0.5 && at.y > -0.5 && at.x < width + 0.5 && at.y < height + 0.5)) {
     return past;
   }
@@ -143,7 +145,7 @@ PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_
     past.count += weight * count;
     past.footprint_px += weight * count * static_cast<double>(was.footprint_px.pixels[from]);
     past.residual += weight * count * static_cast<double>(was.residual.pixels[from]);
-    // Neighbors may stem from one and the same sample, so deviations are added, not variances.
+    // Neighboring pixels may share one and the same sample, so that deviations are added and not variances.
     deviation += weight * std::sqrt(std::max(history.variance_weight_sum.pixels[from], 0.0));
   }
   past.variance = deviation * deviation;

@@ -15,10 +15,11 @@ struct PastSums {
   double variance = 0;  // count^2 * variance
   double footprint_px = 0;
   double residual = 0;     // as HistorySurfaces, of the frame before
-  bool resampled = false;  // from between pixels
+  bool resampled = false;  // it was looked up between pixels
 };
 
-inline constexpr double kRounding = 1e-3;  // of a flat surface without noise: floats, and what bilinear weights blur
+// On a flat surface without noise, relative differences below this come from rounding and from bilinear weights.
+inline constexpr double kRounding = 1e-3;
 
 inline void scale_worth(PastSums& past, double factor) {
   past.radiance = past.radiance * factor;
@@ -26,7 +27,7 @@ inline void scale_worth(PastSums& past, double factor) {
   past.variance *= factor * factor;
 }
 
-// `pixel` of the current frame.
+// `pixel` is an index into the images of the current frame.
 PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_view, const SurfaceMotion& motion,
                  std::size_t pixel);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accumulation along the ways of surfaces, with counts for worth.
+// Accumulation that follows surfaces from frame to frame; counts of samples say what each past is worth.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
+#include "core/statistics.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/temporal.hpp"
 #include "temporal/clip.hpp"
@@ -18,8 +19,9 @@ namespace gazetrace {
 namespace {
 
 constexpr float kFullRatePx = 1.5F;
-constexpr float kKnowsNoise = 2;  // samples
-// Samples: a past worth less is none. It would show in no digit, and squares of its count leave what numbers can hold.
+constexpr float kKnowsNoise = 2;  // from so many samples on a pixel states its own variance
+// In samples: a past that is worth less counts as none. It would show in no digit, and squares of its count would leave
+// the range of numbers.
 constexpr double kLeastWorth = 1e-9;
 
 ImageGray footprints_of(const SamplingMap& map) {
@@ -36,7 +38,7 @@ bool eye_forbids(const FrameRequest& request, const AccumulateSettings& settings
          (settings.reset_at_blinks && request.blink_since_last_frame);
 }
 
-// Between the two passes over a frame, the next history holds the past alone.
+// Between the two passes over a frame, the next history holds only what was looked up of the past.
 void put(const PastSums& past, std::size_t i, TemporalHistory& next) {
   next.radiance_sum.pixels[i] = past.radiance;
   next.count_sum.pixels[i] = past.count;
@@ -57,12 +59,7 @@ double median_depth_m(const ImageGray& depth_m) {
       depths.push_back(depth_m.pixels[i]);
     }
   }
-  if (depths.empty()) {
-    return HUGE_VAL;
-  }
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return static_cast<double>(*middle);
+  return depths.empty() ? HUGE_VAL : static_cast<double>(upper_median(depths));
 }
 
 }  // namespace

@@ -9,10 +9,10 @@ namespace gazetrace {
 namespace {
 
 constexpr int kReach = 2;  // the neighborhood is 5x5 pixels
-// Of residuals: by how many standard deviations of what noise does by chance they must tell of a bias, from frame to
-// frame and against the stated variance, and how much more a bias counts than its mean over the neighborhood, since
-// pixels differ. Measured: fewer deviations take away more of what is gathered (with none three quarters), more of them
-// and less caution blur texture.
+// Residuals count as a bias where they exceed what noise does by chance by so many standard deviations: kLasting in the
+// product of two frames, kBeyondStated against the stated variance. kCaution weights a bias above its mean over the
+// neighborhood, since pixels differ. All three are measured: fewer deviations take away more of what was gathered (with
+// none three quarters), and more deviations or less caution blur texture.
 constexpr double kLasting = 1.5;
 constexpr double kBeyondStated = 2.5;
 constexpr double kCaution = 4;
@@ -20,6 +20,11 @@ constexpr double kCaution = 4;
 }  // namespace
 
 double Residuals::share_kept(const SurfaceMotion& motion, double count, double past_count, int x, int y) const {
+  // A single sample says nothing of its own variance: the deviations below divide by count - 1. Nor is anything known
+  // against a past without samples.
+  if (!(count > 1) || !(past_count > 0)) {
+    return 1;
+  }
   const std::uint32_t object = motion.object(x, y);
   double squares = 0;
   double squares_before = 0;
@@ -42,8 +47,8 @@ double Residuals::share_kept(const SurfaceMotion& motion, double count, double p
   if (taps == 0) {
     return 1;
   }
-  // By chance, for normal noise: a sum of products has the first of these deviations. A sum of squares has the second
-  // by its mean, and so has, the fewer the samples the more, the variance that they state.
+  // Standard deviations by chance, for normal noise: the first is that of a sum of products. The second, relative to
+  // its mean, is that of a sum of squares; it includes that of the stated variance, which grows as samples get fewer.
   const double of_products = std::sqrt(squares * squares_before / taps);
   const double of_squares = std::sqrt(2.0 / taps * count / (count - 1));
   const double stated = variance * (1 + count / past_count);
@@ -52,7 +57,7 @@ double Residuals::share_kept(const SurfaceMotion& motion, double count, double p
   if (!(bias > 0)) {
     return 1;
   }
-  const double apart = 0.5 * (squares + squares_before) - products;  // half of what the two differ by, squared
+  const double apart = 0.5 * (squares + squares_before) - products;  // half of the squared difference of the two
   const double ratio = bias / std::max(std::min(variance, apart), 1e-12 * bias);
   return 1 / (1 + kCaution * past_count / count * ratio * (1 + ratio));
 }

@@ -8,15 +8,17 @@
 
 namespace gazetrace {
 
-// How far the past was off from two frames running, at full rate: noise differs from one to the other, the blur of
-// resampled texture does not.
+// How far the past was off in two consecutive frames, at full rate. Noise differs from one to the other; the blur of
+// texture that was resampled does not.
 struct Residuals {
   const ImageGray& now;
-  const ImageGray& before;  // luminance of past - frame; 0: not known
-  const ImageGray& noise;   // variance of the frame, as its samples tell; in truth well-spread samples have less
+  const ImageGray& before;  // luminance of the past minus that of the frame; 0: not known
+  const ImageGray& noise;   // variance of the frame as its samples state it; well-spread samples have less in truth
 
   // A squared bias b^2, beside a variance v of one sample, makes n samples worth n / (1 + n b^2 / v); less where the
-  // bias is far above the noise. The pixel itself has no say: what is kept must not hang on whether it came out bright.
+  // bias is far above the noise. The pixel itself is left out, since what is kept must not depend on whether it came
+  // out bright. `count` and `past_count` are the samples of the frame and of the past at the pixel. All is kept of a
+  // past beside a frame of one sample or less, which does not know its own noise.
   [[nodiscard]] double share_kept(const SurfaceMotion& motion, double count, double past_count, int x, int y) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accumulated pixels as samples of their sites again, for filters that come after.
+// Turns accumulated pixels back into sums per site, for a filter that follows accumulation.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

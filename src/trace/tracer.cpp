@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// PathTracer: tiles in parallel, batches in order, sums without rounding.
+// PathTracer: traces tiles in parallel and the batches of a tile in order, and adds up samples without rounding.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -26,9 +27,9 @@ constexpr std::size_t kReportedBadSamples = 16;
 struct TileResult {
   KernelCounts counts;
   std::uint64_t samples = 0, non_finite = 0;
-  std::vector<BadSample> bad;  // the first ones in pixel order
+  std::vector<BadSample> bad;  // the first ones, in pixel order
   std::vector<RegionTraceStats> regions;
-  std::vector<SurfaceSums> surfaces;  // of the tile's sites, one after the other
+  std::vector<SurfaceSums> surfaces;  // of all sites of the tile, in their order
 };
 
 bool before(const BadSample& a, const BadSample& b) {
@@ -42,7 +43,8 @@ void keep_first(std::vector<BadSample>& list, BadSample sample) {
   }
 }
 
-// One site at a time: its samples are neighbours in the list, possibly over several batches.
+// The sums of one site. Sites are finished one at a time, since the samples of a site follow each other in the list,
+// possibly over several batches.
 struct SiteSum {
   SiteSums light;
   SiteGuideSums guides;
@@ -64,7 +66,8 @@ void add_light(const Vec3f& radiance, SiteSums& sums) {
   sums.green.add(static_cast<double>(radiance.y));
   sums.blue.add(static_cast<double>(radiance.z));
   const double shone = luminance(to_double(radiance));
-  // A float, as all terms of an ExactSum. It saturates: squares leave float's range at a radiance of 1.8e19.
+  // Rounded to float, as all terms of an ExactSum must be. It saturates, since squares exceed float's range from a
+  // radiance of 1.8e19 on.
   constexpr double kMost = std::numeric_limits<float>::max();
   sums.square_luminance.add(static_cast<double>(static_cast<float>(std::min(shone * shone, kMost))));
 }
@@ -79,7 +82,7 @@ void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
   }
 }
 
-// Workspaces are handed from tile to tile: a thread never waits for memory twice.
+// Workspaces are reused from tile to tile, so that memory is allocated only once per thread.
 class WorkspacePool {
  public:
   std::unique_ptr<Workspace> take() {
@@ -107,7 +110,8 @@ struct SiteRange {
   std::uint32_t first = 0, count = 0;
 };
 
-// Tiles' surfaces in the order of the sites; first_surface holds each site's number of them before.
+// Puts the surfaces of all tiles into the order of the sites. On entry first_surface holds the number of surfaces of
+// each site.
 void join_surfaces(const std::vector<SiteRange>& ranges, std::vector<TileResult>& tiles, SparseFrame& out) {
   std::uint32_t total = 0;
   for (std::uint32_t& entry : out.first_surface) {
@@ -121,7 +125,7 @@ void join_surfaces(const std::vector<SiteRange>& ranges, std::vector<TileResult>
   }
 }
 
-// The one site that holds a pixel; an empty range outside the frame.
+// The site that contains a pixel, as a range of one; an empty range where the pixel is outside the frame.
 SiteRange site_of_pixel(const SamplingMap& map, const PixelIndex& pixel) {
   if (pixel.x >= map.width_px || pixel.y >= map.height_px) {
     return {};
@@ -146,7 +150,19 @@ struct PathTracer::Impl {
         render_scene(source, tracer_options),
         lights(source, tracer_options.light_choice) {}
 
-  // Compensated tables are made when they are first asked for; only MIS finds what they leave out.
+  // Puts the scene into a pose, unless it is in it: empty times are the pose at rest, in which it begins.
+  void pose(const std::optional<ShutterTimes>& times) {
+    if (is_posed && times == posed) {
+      return;
+    }
+    is_posed = false;  // until it is done: an error leaves the scene between two poses
+    render_scene.move_to(*scene, times);
+    posed = times;
+    is_posed = true;
+  }
+
+  // Compensated tables are made when they are first needed. They are used with MIS only, which finds what they leave
+  // out.
   const LightSampler& lights_for(const TraceSettings& settings) {
     if (!settings.compensate_environment || settings.light_sampling != LightSampling::mis ||
         !scene->environment.present()) {
@@ -165,6 +181,8 @@ struct PathTracer::Impl {
   LightSampler lights;
   std::once_flag compensated_once;
   std::unique_ptr<LightSampler> compensated_lights;
+  std::optional<ShutterTimes> posed;
+  bool is_posed = true;
 
   void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
                    const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
@@ -176,6 +194,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
                                    TileResult& tile, SparseFrame& out) const {
   tile.regions.resize(map.regions.size());
   const bool surfaces = context.settings.surfaces;
+  const PassThrough pass_through(map, context.settings.pass_through_samples);
   SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
                        context.camera->is_perspective());
   const auto finish_site = [&](std::size_t site) {
@@ -226,7 +245,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         continue;
       }
       add_light({r, g, b}, sum.light);
-      if (surfaces && needs_filtering(map, current)) {
+      if (surfaces && pass_through.needs_filtering(current)) {
         sorter.add(work.surfaces, i, {r, g, b});
       }
     }
@@ -249,20 +268,30 @@ PathTracer::~PathTracer() = default;
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
-void PathTracer::move_to(const ShutterTimes& times) {
-  impl_->render_scene.move_to(*impl_->scene, times);
+PosedScene PathTracer::at(const ShutterTimes& times) {
+  return {*impl_, times};
 }
 
-SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
+PosedScene PathTracer::at_rest() {
+  return {*impl_, std::nullopt};
+}
+
+PosedScene::PosedScene(PathTracer::Impl& tracer, const std::optional<ShutterTimes>& times)
+    : tracer_(&tracer), times_(times) {
+  tracer_->pose(times_);
+}
+
+SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                               const TraceSettings& settings) const {
+  tracer_->pose(times_);
   const CameraRays rays(camera, map.height_px);
   const PixelFilterSampler filter(settings.filter);
-  const SceneFeatures& features = impl_->render_scene.features;
+  const SceneFeatures& features = tracer_->render_scene.features;
   const NamedKernel& variant =
-      choose_kernel(kernel_features(features, impl_->render_scene), impl_->options.all_features);
+      choose_kernel(kernel_features(features, tracer_->render_scene), tracer_->options.all_features);
 
   const FrameContext context =
-      make_frame_context(*impl_->scene, impl_->render_scene, impl_->lights_for(settings), rays, settings);
+      make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
 
   SparseFrame out;
   out.width_px = map.width_px;
@@ -290,10 +319,10 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
-  parallel_for(ranges.size(), impl_->options.threads, [&](std::size_t i) {
+  parallel_for(ranges.size(), tracer_->options.threads, [&](std::size_t i) {
     const FlushDenormals flush;
     auto work = pool.take();
-    impl_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
+    tracer_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
     pool.give(std::move(work));
   });
 
@@ -319,15 +348,17 @@ SparseFrame PathTracer::trace(const Camera& camera, std::int32_t frame, const Sa
   return out;
 }
 
-Guides PathTracer::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {
-  return trace_guides(impl_->render_scene, impl_->lights, CameraRays(camera, height_px), width_px, height_px, settings,
-                      impl_->options.threads);
+Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {
+  tracer_->pose(times_);
+  return trace_guides(tracer_->render_scene, tracer_->lights, CameraRays(camera, height_px), width_px, height_px,
+                      settings, tracer_->options.threads);
 }
 
-SurfaceMotion PathTracer::surface_motion(const Camera& camera, int width_px, int height_px,
+SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int height_px,
                                          const EarlierView& earlier) const {
-  return trace_surface_motion(*impl_->scene, impl_->render_scene, camera, width_px, height_px, earlier,
-                              impl_->options.threads);
+  tracer_->pose(times_);
+  return trace_surface_motion(*tracer_->scene, tracer_->render_scene, camera, width_px, height_px, earlier,
+                              tracer_->options.threads);
 }
 
 TracerMemory PathTracer::memory() const {

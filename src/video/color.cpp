@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the name of a display to what a video says of its colors.
+// Finds the colors that a video states from the name of a display.
 #include <algorithm>
 
 #include "core/text.hpp"
@@ -12,7 +12,7 @@ struct ViewNames {
   std::string display, view;
 };
 
-// Of "CONFIG: display DISPLAY, view VIEW".
+// Takes the names from "CONFIG: display DISPLAY, view VIEW".
 ViewNames names_of(const std::string& description) {
   constexpr std::string_view kDisplay = ": display ", kView = ", view ";
   const std::string text = to_lower(description);
@@ -34,7 +34,7 @@ bool has(const std::string& text, std::string_view part) {
 const std::vector<VideoColor>& video_colors() {
   static const std::vector<VideoColor> kColors{
       {"srgb", "bt709", "iec61966-2-1"},
-      // H.273 has no code for BT.1886; a player shows what says bt709 on a display of that kind.
+      // H.273 has no code for BT.1886, but players show bt709 as such a display does.
       {"rec709", "bt709", "bt709"},
       {"display-p3", "smpte432", "iec61966-2-1"},
       {"linear", "bt709", "linear"}};

@@ -19,7 +19,7 @@ void blend(DisplayImage& image, int x, int y, const Rgb8Color& color, double cov
   }
 }
 
-// Calls paint(x, y) for the pixels of a square about a point, as far as they are in the picture.
+// Calls paint(x, y) for the pixels of a square about a point, as far as they are inside the picture.
 template <class Paint>
 void around(const DisplayImage& image, const Vec2d& middle, double reach_px, const Paint& paint) {
   if (!std::isfinite(middle.x) || !std::isfinite(middle.y)) {
@@ -35,7 +35,7 @@ void around(const DisplayImage& image, const Vec2d& middle, double reach_px, con
   }
 }
 
-// A disc with an edge a pixel wide.
+// Draws a disc whose antialiased edge is one pixel wide.
 void draw_disc(DisplayImage& image, const Vec2d& middle, double radius_px, const Rgb8Color& color) {
   around(image, middle, radius_px + 1, [&](int x, int y) {
     const double distance = std::hypot(x + 0.5 - middle.x, y + 0.5 - middle.y);
@@ -88,7 +88,7 @@ void draw_eccentricity_ring(DisplayImage& image, const PlanarView& view, const V
   const Across plane = across(gaze);
   const double cosine = std::cos(eccentricity_deg * kRadPerDeg);
   const double sine = std::sin(eccentricity_deg * kRadPerDeg);
-  // Steps of at most half a pixel where the picture is seen at right angles, of at most one far from there.
+  // Steps are at most half a pixel where the view's axis meets the picture, and at most one pixel far from there.
   const double circumference_px = 2 * kPi * sine / std::min(view.step_x, view.step_y);
   const auto steps = static_cast<int>(std::clamp(4 * circumference_px, 64.0, 200'000.0));
   for (const auto& [color, radius] : {std::pair{kBlack, width_px}, std::pair{kWhite, width_px / 2}}) {

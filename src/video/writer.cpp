@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ffmpeg program as a child that reads raw frames from a socket: unlike a pipe, a socket tells a writer that the
-// reader has gone without a signal.
+// Runs ffmpeg as a child process that reads raw frames from a socket. Unlike a pipe, a socket reports without a signal
+// that the reader has gone.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -37,7 +37,7 @@ std::string temporary_name(const std::string& path) {
       .string();
 }
 
-// FFV1 keeps RGB, H.264 and HEVC code luma and two color differences of half the size.
+// FFV1 keeps RGB; H.264 and HEVC store luma, and two color differences at half the resolution.
 std::vector<std::string> arguments_of(const std::string& output, int width_px, int height_px,
                                       const VideoSettings& settings) {
   std::vector<std::string> list{settings.program,
@@ -93,7 +93,8 @@ void check_video_settings(const std::string& path, const VideoSettings& settings
     throw Error(ErrorKind::usage, path, "a video ends in .mp4, .mov or .mkv", "give it such a name");
   }
   if (settings.codec == VideoCodec::ffv1 && suffix != ".mkv") {
-    throw Error(ErrorKind::usage, path, "FFV1 is written into .mkv files", "give it such a name, or take `codec` h264");
+    throw Error(ErrorKind::usage, path, "FFV1 can be written into .mkv files only",
+                "give it such a name, or choose `codec` h264");
   }
   if (settings.crf < 0 || settings.crf > 51) {
     throw Error(ErrorKind::usage, "`crf`", std::to_string(settings.crf) + " is not possible", "give 0 to 51");
@@ -109,7 +110,7 @@ struct VideoWriter::Impl {
   int coded_width_px = 0, coded_height_px = 0;  // of the video
   pid_t child = -1;
   int socket = -1;
-  std::FILE* errors = nullptr;  // what the program says
+  std::FILE* errors = nullptr;  // the program's messages
   bool is_finished = false;
 
   ~Impl() {
@@ -202,7 +203,7 @@ struct VideoWriter::Impl {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ::fileno(errors), STDERR_FILENO);
-    // A group of its own: an interrupt from the keyboard is ours to handle.
+    // In a process group of its own, so that an interrupt from the keyboard does not reach it.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);

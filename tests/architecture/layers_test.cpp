@@ -17,13 +17,27 @@ namespace fs = std::filesystem;
 
 const fs::path kSource = GAZETRACE_SOURCE_DIR;
 
-// A module may include modules of a smaller number, and itself.
-const std::map<std::string, int> kLayer = {
-    {"core", 0},   {"display", 1}, {"camera", 1},      {"material", 1}, {"gazelog", 1},  {"gaze", 1},
-    {"scene", 2},  {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4},
-    {"output", 4}, {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"sweep", 6},
-    {"report", 6}, {"video", 6},   {"cli", 7},
+// The layers from the bottom up. A module may include modules of the layers below it, and itself.
+const std::vector<std::vector<std::string>> kLayers = {
+    {"core"},
+    {"display", "camera", "material", "gazelog", "gaze"},
+    {"scene", "plan", "foveation"},
+    {"trace"},
+    {"reconstruct", "temporal", "color", "output", "metrics"},
+    {"pipeline", "compare", "results"},
+    {"job"},
+    {"sweep", "report", "video"},
+    {"cli"},
 };
+const std::map<std::string, int> kLayer = [] {
+  std::map<std::string, int> layer;
+  for (std::size_t i = 0; i < kLayers.size(); ++i) {
+    for (const std::string& module : kLayers[i]) {
+      layer[module] = static_cast<int>(i);
+    }
+  }
+  return layer;
+}();
 
 // Within a layer, the order of the data: what may be seen sideways.
 const std::set<std::pair<std::string, std::string>> kSideways = {
@@ -37,49 +51,40 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
     {"output", "reconstruct"},    // writes frames
 };
 
-// The module of each public header.
-const std::map<std::string, std::string> kPublicHeader = {
-    {"math", "core"},
-    {"image", "core"},
-    {"error", "core"},
-    {"version", "core"},
-    {"display", "display"},
-    {"gaze", "gaze"},
-    {"gaze_log", "gazelog"},
-    {"gaze_read", "gazelog"},
-    {"gaze_raw", "gazelog"},
-    {"gaze_conventions", "gazelog"},
-    {"gaze_privacy", "gaze"},
-    {"gaze_write", "gazelog"},
-    {"camera", "camera"},
-    {"material", "material"},
-    {"scene", "scene"},
-    {"plan", "plan"},
-    {"foveation", "foveation"},
-    {"trace", "trace"},
-    {"guides", "trace"},
-    {"sample_sums", "trace"},
-    {"reconstruct", "reconstruct"},
-    {"enhance", "reconstruct"},
-    {"temporal", "temporal"},
-    {"color", "color"},
-    {"output", "output"},
-    {"pipeline", "pipeline"},
-    {"metrics", "metrics"},
-    {"fovvideovdp", "metrics"},
-    {"flicker", "metrics"},
-    {"compare", "compare"},
-    {"gaze_inspect", "gaze"},
-    {"gaze_events", "gaze"},
-    {"gaze_process", "gaze"},
-    {"gaze_synth", "gaze"},
-    {"motion", "camera"},
-    {"deformation", "scene"},
-    {"report", "report"},
-    {"video", "video"},
-    {"sweep", "sweep"},
-    {"plan_join", "plan"},
+// The public headers of each module.
+const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
+    {"core", {"math", "image", "error", "version"}},
+    {"display", {"display"}},
+    {"camera", {"camera", "motion"}},
+    {"material", {"material"}},
+    {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_read", "gaze_write"}},
+    {"gaze", {"gaze", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process", "gaze_synth"}},
+    {"scene", {"scene", "deformation"}},
+    {"plan", {"plan"}},
+    {"foveation", {"foveation"}},
+    {"trace", {"trace", "guides", "sample_sums"}},
+    {"reconstruct", {"reconstruct"}},
+    {"temporal", {"temporal"}},
+    {"color", {"color"}},
+    {"output", {"output"}},
+    {"metrics", {"metrics", "fovvideovdp", "flicker"}},
+    {"pipeline", {"pipeline", "frame_renderer"}},
+    {"compare", {"compare"}},
+    {"results", {"results"}},
+    {"job", {"job", "job_schema", "job_settings", "option_schema", "option_values", "metric_options", "resolve"}},
+    {"sweep", {"sweep", "sweep_plan"}},
+    {"report", {"report"}},
+    {"video", {"video"}},
 };
+const std::map<std::string, std::string> kPublicHeader = [] {
+  std::map<std::string, std::string> module_of;
+  for (const auto& [module, headers] : kPublicHeaders) {
+    for (const std::string& header : headers) {
+      module_of[header] = module;
+    }
+  }
+  return module_of;
+}();
 
 // Which files may meet which dependency.
 const std::vector<std::pair<std::string, std::string>> kDependency = {
@@ -93,7 +98,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"((OpenEXR/|Imf|Imath|Iex))", R"(src/output/exr\.cpp)"},
     {R"(tbb/|oneapi/)", R"(src/core/parallel\.cpp)"},
     {R"(CLI/)", R"(src/cli/.*)"},
-    {R"(toml\+\+/|toml\.hpp)", R"(src/cli/toml_tree\.cpp)"},
+    {R"(toml\+\+/|toml\.hpp)", R"(src/job/toml_tree\.cpp)"},
     {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp))"},
     {R"(pugixml)", R"(src/gazelog/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},

@@ -160,14 +160,12 @@ int run(int argc, char** argv) {
     PathTracer all(scene, options);
     // The far copy turns while the shutter is open.
     const ShutterTimes times{0, length(view.slide_m) > 0 ? 20'000'000 : 0};
-    chosen.move_to(times);
-    all.move_to(times);
     std::vector<double> small;
     std::vector<double> large;
     std::vector<double> ratio;
     for (int round = 0; round < rounds; ++round) {
-      small.push_back(measure(chosen, {}, view, 1, spp, round).us_per_sample);
-      large.push_back(measure(all, {}, view, 1, spp, round).us_per_sample);
+      small.push_back(measure(chosen.at(times), {}, view, 1, spp, round).us_per_sample);
+      large.push_back(measure(all.at(times), {}, view, 1, spp, round).us_per_sample);
       ratio.push_back(large.back() / small.back());
     }
     fmt::print("{:<22} {:<22} {:12.3f} {:16.3f} {:7.3f}\n", step.name,

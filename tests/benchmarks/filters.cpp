@@ -101,7 +101,7 @@ Options parse(int argc, char** argv) {
 struct Bench {
   Options options;
   PlanarView view;
-  PathTracer tracer;
+  PosedScene scene;
   Camera camera;
   ImageRgb reference, reference_shown;
   ImageGray eccentricity_deg;
@@ -159,7 +159,7 @@ ImageRgb reference_of(const Bench& bench) {
   TraceSettings settings;
   settings.seed = 12345;
   const SamplingMap map = map_of(bench, std::to_string(o.reference_spp), 1);
-  image = reconstruct(bench.tracer.trace(bench.camera, 0, map, settings), map, "none").radiance;
+  image = Reconstruction({"none", {}}).frame(bench.scene.trace(bench.camera, 0, map, settings), map).radiance;
   std::ofstream(o.reference, std::ios::binary).write(reinterpret_cast<const char*>(image.pixels.data()), bytes);
   return image;
 }
@@ -297,20 +297,21 @@ auto timed(double& ms, const Function& function) {
 Run run_filter(const Bench& bench, const std::string& filter, const SamplingMap& map) {
   const bool proto = filter == "prototype";
   TraceSettings settings;
-  settings.surfaces = filter_needs_guides(filter);
+  const Reconstruction reconstruction({proto ? "none" : filter, {}});
+  settings = reconstruction.trace_settings(settings);
   Run best;
   for (int round = 0; round < bench.options.rounds; ++round) {
     Run run;
-    const SparseFrame sparse = timed(run.trace_ms, [&] { return bench.tracer.trace(bench.camera, 0, map, settings); });
+    const SparseFrame sparse = timed(run.trace_ms, [&] { return bench.scene.trace(bench.camera, 0, map, settings); });
     run.samples = static_cast<double>(sparse.stats.samples);
     Guides guides;
     if (proto || settings.surfaces) {
       const GuideSettings guide_settings{.spp = proto ? 2 : 1, .edge_rays = proto ? 0 : bench.options.edge_rays};
       guides = timed(run.guides_ms,
-                     [&] { return bench.tracer.guides(bench.camera, map.width_px, map.height_px, guide_settings); });
+                     [&] { return bench.scene.guides(bench.camera, map.width_px, map.height_px, guide_settings); });
     }
     run.frame = timed(run.filter_ms, [&] {
-      return proto ? prototype(sparse, map, guides) : reconstruct(sparse, map, filter, 0, &guides);
+      return proto ? prototype(sparse, map, guides) : reconstruction.frame(sparse, map, &guides);
     });
     if (run.trace_ms + run.guides_ms + run.filter_ms < best.trace_ms + best.guides_ms + best.filter_ms) {
       best = std::move(run);
@@ -325,9 +326,10 @@ int run(int argc, char** argv) {
   if (!options.sky.empty()) {
     scene.environment = options.sky == "sky" ? builtin_sky() : load_environment(options.sky);
   }
+  PathTracer tracer(scene, {});
   Bench bench{options,
               view_of_display(display_by_name("paper"), {}, options.width_px, options.height_px),
-              PathTracer(scene, {}),
+              tracer.at_rest(),
               {},
               {},
               {},

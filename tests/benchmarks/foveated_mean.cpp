@@ -168,7 +168,7 @@ struct Comparison {
 };
 
 // Luminance of each pixel for each uniform seed, kept in single precision: every model's bands are sums over them.
-std::vector<std::vector<float>> uniform_frames(const PathTracer& tracer, const World& world, const Options& options) {
+std::vector<std::vector<float>> uniform_frames(PathTracer& tracer, const World& world, const Options& options) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, options.width_px, options.height_px);
   const Vec3d gaze = view.direction(options.gaze.x * options.width_px, options.gaze.y * options.height_px);
   Layout layout;
@@ -190,7 +190,7 @@ std::vector<std::vector<float>> uniform_frames(const PathTracer& tracer, const W
   for (int seed = 0; seed < options.uniform_seeds; ++seed) {
     TraceSettings settings;
     settings.seed = 1'000'000 + static_cast<std::uint64_t>(seed);
-    const SparseFrame frame = tracer.trace(world.camera, 0, map, settings);
+    const SparseFrame frame = tracer.at_rest().trace(world.camera, 0, map, settings);
     std::vector<float> pixels(frame.sum.size());
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
       const std::size_t at = static_cast<std::size_t>(map.sites[i].block_y) * static_cast<std::size_t>(map.width_px) +
@@ -202,7 +202,7 @@ std::vector<std::vector<float>> uniform_frames(const PathTracer& tracer, const W
   return frames;
 }
 
-void compare_model(const PathTracer& tracer, const World& world, const Options& options, const std::string& model,
+void compare_model(PathTracer& tracer, const World& world, const Options& options, const std::string& model,
                    FoveationSettings settings, const std::vector<std::vector<float>>& uniform,
                    std::vector<Comparison>& out) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, options.width_px, options.height_px);
@@ -226,7 +226,7 @@ void compare_model(const PathTracer& tracer, const World& world, const Options& 
     }
     TraceSettings trace;
     trace.seed = static_cast<std::uint64_t>(seed);
-    const SparseFrame frame = tracer.trace(world.camera, 0, map, trace);
+    const SparseFrame frame = tracer.at_rest().trace(world.camera, 0, map, trace);
     std::array<double, kBands> sums{};
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
       const std::size_t band = bands.of_site[i];
@@ -391,7 +391,7 @@ int run(int argc, char** argv) {
   std::vector<Comparison> all;
   for (const std::string& text : options.scenes) {
     const World world = benchmark::load_world(text, options.viewpoint());
-    const PathTracer tracer(world.scene, {});
+    PathTracer tracer(world.scene, {});
     const auto uniform = uniform_frames(tracer, world, options);
     for (const FalloffInfo& info : falloffs()) {
       if (!options.models.empty() &&

@@ -100,7 +100,7 @@ PixelStatistics measure_choice(const Scene& scene, const View& view, LightChoice
   TracerOptions options;
   options.threads = 1;
   options.light_choice = choice;
-  return measure(PathTracer(scene, options), TraceSettings{}, view, seeds, spp);
+  return measure(PathTracer(scene, options).at_rest(), TraceSettings{}, view, seeds, spp);
 }
 
 }  // namespace

@@ -112,8 +112,8 @@ int main(int argc, char** argv) {
         std::vector<double> trace_ms;
         for (int round = 0; round < rounds; ++round) {
           const std::int64_t t = 1'000'000'000LL + round * 20'000'000LL;
-          update_ms.push_back(ms_of([&] { tracer.move_to({t, t}); }));
-          trace_ms.push_back(ms_of([&] { (void)tracer.trace(camera, round, map, {}); }));
+          update_ms.push_back(ms_of([&] { (void)tracer.at({t, t}); }));
+          trace_ms.push_back(ms_of([&] { (void)tracer.at({t, t}).trace(camera, round, map, {}); }));
         }
         fmt::print("| {} | {} | {} | {:.2f} | {:.1f} | {:.1f} |\n", wild ? "wild" : "gentle", 2 * side * side, name,
                    median(update_ms), median(trace_ms), median(update_ms) + median(trace_ms));

@@ -35,7 +35,7 @@ inline double average(const std::vector<double>& values) {
 }
 
 // With the seeds first_seed, first_seed + 1, ...
-inline PixelStatistics measure(const PathTracer& tracer, TraceSettings settings, const View& view, int seeds,
+inline PixelStatistics measure(const PosedScene& scene, TraceSettings settings, const View& view, int seeds,
                                std::uint32_t spp, int first_seed = 1) {
   FoveationSettings uniform;
   uniform.uniform_spp = spp;
@@ -58,7 +58,7 @@ inline PixelStatistics measure(const PathTracer& tracer, TraceSettings settings,
   std::uint64_t samples = 0;
   for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);
-    const SparseFrame frame = tracer.trace(camera, 0, map, settings);
+    const SparseFrame frame = scene.trace(camera, 0, map, settings);
     for (const RegionTraceStats& region : frame.stats.regions) {
       cpu_ns += region.cpu_ns;
       samples += region.samples;

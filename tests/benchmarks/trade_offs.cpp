@@ -45,7 +45,7 @@ struct Options {
 struct Row {
   std::string name;
   TraceSettings settings, exact;
-  const PathTracer* tracer = nullptr;
+  PathTracer* tracer = nullptr;
   bool biased = true;  // false: estimates the same by construction, or something else by choice
 };
 
@@ -82,7 +82,7 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-std::vector<Row> make_rows(const PathTracer& high, const PathTracer& medium, double frame_mean) {
+std::vector<Row> make_rows(PathTracer& high, PathTracer& medium, double frame_mean) {
   std::vector<Row> rows;
   TraceSettings exact;
   exact.pixel_cone = 0;
@@ -144,15 +144,16 @@ struct Ratio {
 };
 
 // Of two estimators' noise: each group of seeds gives one ratio, measured with the same random numbers for both.
-Ratio noise_ratio(const Row& row, const PathTracer& plain, const std::vector<double>& truth, const Options& options) {
+Ratio noise_ratio(const Row& row, PathTracer& plain, const std::vector<double>& truth, const Options& options) {
   constexpr int kGroups = 4;
   const int seeds = std::max(2, options.seeds / kGroups);
   std::vector<double> ours;
   std::vector<double> theirs;
   for (int group = 0; group < kGroups; ++group) {
     const int first = 1 + group * seeds;
-    ours.push_back(relative_mse(measure(*row.tracer, row.settings, options.view, seeds, options.spp, first), truth, 1));
-    theirs.push_back(relative_mse(measure(plain, {}, options.view, seeds, options.spp, first), truth, 1));
+    ours.push_back(
+        relative_mse(measure(row.tracer->at_rest(), row.settings, options.view, seeds, options.spp, first), truth, 1));
+    theirs.push_back(relative_mse(measure(plain.at_rest(), {}, options.view, seeds, options.spp, first), truth, 1));
   }
   const double ratio = average(ours) / average(theirs);
   double spread = 0;
@@ -186,8 +187,8 @@ Bias bias_of(const Row& row, const Options& options) {
   double whole = 0;
   for (int part = 0; part < 2; ++part) {
     const int first = 1001 + part * half;
-    const PixelStatistics ours = measure(*row.tracer, row.settings, options.view, half, options.spp, first);
-    const PixelStatistics exact = measure(*row.tracer, row.exact, options.view, half, options.spp, first);
+    const PixelStatistics ours = measure(row.tracer->at_rest(), row.settings, options.view, half, options.spp, first);
+    const PixelStatistics exact = measure(row.tracer->at_rest(), row.exact, options.view, half, options.spp, first);
     for (std::size_t i = 0; i < ours.frame_means.size(); ++i) {
       changes.push_back(ours.frame_means[i] - exact.frame_means[i]);
     }
@@ -251,10 +252,10 @@ int run(int argc, char** argv) {
   scene.environment = options.sky.empty() ? builtin_sky() : load_environment(options.sky);
   TracerOptions one_thread;
   one_thread.threads = 1;
-  const PathTracer high(scene, one_thread);
+  PathTracer high(scene, one_thread);
   one_thread.bvh_quality = BvhQuality::medium;
-  const PathTracer medium(scene, one_thread);
-  const PixelStatistics plain = measure(high, {}, options.view, options.seeds, options.spp);
+  PathTracer medium(scene, one_thread);
+  const PixelStatistics plain = measure(high.at_rest(), {}, options.view, options.seeds, options.spp);
   fmt::print("{}, {} x {}, {} seeds of {} spp; default {:.3f} us/sample, mean {:.4g}, relative MSE at 1 spp {:.3f}\n",
              scene.source, options.view.width_px, options.view.height_px, options.seeds, options.spp,
              plain.us_per_sample, average(plain.mean), relative_mse(plain, plain.mean, 1));
@@ -268,12 +269,13 @@ int run(int argc, char** argv) {
     if (row.name.find(options.only) == std::string::npos) {
       continue;
     }
-    const PixelStatistics measured = measure(*row.tracer, row.settings, options.view, options.seeds, options.spp);
+    const PixelStatistics measured =
+        measure(row.tracer->at_rest(), row.settings, options.view, options.seeds, options.spp);
     std::vector<double> ratios;
     for (int round = 0; round < options.rounds; ++round) {
       const int seeds = std::max(1, options.seeds / 8);
-      const double with = measure(*row.tracer, row.settings, options.view, seeds, options.spp).us_per_sample;
-      ratios.push_back(with / measure(high, {}, options.view, seeds, options.spp).us_per_sample);
+      const double with = measure(row.tracer->at_rest(), row.settings, options.view, seeds, options.spp).us_per_sample;
+      ratios.push_back(with / measure(high.at_rest(), {}, options.view, seeds, options.spp).us_per_sample);
     }
     const double time = median(ratios);
     const Ratio noise = noise_ratio(row, high, plain.mean, options);

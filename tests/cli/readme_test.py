@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command of README.md and of the manual (docs/), top to bottom, as a reader would type it.
+"""Every command of README.md, of the manual (docs/) and of examples/README.md, top to bottom, as a reader would type it.
 
 A document's ```sh blocks run in one shell, in a folder of their own that holds examples/, scenes/ and gazelogs/, with the
 program on the PATH as `gazetrace` and as build/release/bin/gazetrace. HTML comments right above a block say what is special:
@@ -113,6 +113,9 @@ class Documents(harness.CliTest):
 
     def test_readme(self):
         self.assertGreaterEqual(self.run_document("README.md"), 7)
+
+    def test_examples(self):
+        self.assertEqual(self.run_document("examples/README.md"), 1)
 
     def test_manual(self):
         pages = sorted((harness.SOURCE / "docs").glob("*.md"))

@@ -178,14 +178,14 @@ class SweepRows(harness.CliTest):
         page = (self.folder / "report.html").read_text()
         for fps, note in zip((4, 5), notes):
             words = (f"flicker at {fps} frames a second: from 1 to 2 Hz",
-                     "what is faster than 2 Hz cannot be told at this frame rate")
+                     "what is faster than 2 Hz cannot be measured at this frame rate")
             for word in words:
                 self.assertIn(word, note)
                 self.assertIn(word, methods)
                 self.assertIn(word, page)
                 self.assertIn(word, results["methods"])
                 self.assertIn(word, table)
-            seen = float(re.search(r"up to (\d+) Hz would be seen", note)[1])
+            seen = float(re.search(r"up to (\d+) Hz would be visible", note)[1])
             self.assertGreater(seen, 20)  # nobody takes 20 Hz on a bright display for steady
         self.plan()
         self.sweep("--quiet", folder="without")

@@ -332,7 +332,7 @@ class Sweep(harness.CliTest):
             ('"flicker"', ("fps = 12", "fps = 3"), ["flicker", "3 frames a second"]),
             ('"ms_ssim"', ("fps = 12", "fps = 12"), ["ms_ssim", "176x176", "64x36"]),
             ('"fovvideovdp"', ("fps = 12", "fps = 2"), ["fovvideovdp", "2 frames a second"]),
-            ('"hdr_flip"]\nflip-start = 2\nflip-stop = 1\nflip-count = 2\n#', ("fps = 12", "fps = 12"), ["hdr_flip", "no range"]),
+            ('"hdr_flip"]\nflip-start = 2\nflip-stop = 1\nflip-count = 2\n#', ("fps = 12", "fps = 12"), ["hdr_flip", "not a range"]),
         ]:
             with self.subTest(metrics=wanted, change=change[1]):
                 text = PLAN.replace(*change).replace(metrics, f'metrics = ["mse", {wanted}]')

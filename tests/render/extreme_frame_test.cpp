@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "gazetrace/reconstruct.hpp"
 #include "render/tracer_scenes.hpp"
+#include "support/reconstruct.hpp"
 #include "trace/kernel/kernel.hpp"
 #include "trace/samples/sample_list.hpp"
 
@@ -25,13 +25,13 @@ TraceSettings emission_only() {
   return settings;
 }
 
-// A glowing rectangle at z = 0 from (x0, y0) to (x1, y1).
+// An emissive rectangle at z = 0 from (x0, y0) to (x1, y1).
 Geometry plate(double x0, double y0, double x1, double y1) {
   const auto corner = [](double x, double y) { return to_float(Vec3d{x, y, 0}); };
   return quad({{corner(x0, y0), corner(x1, y0), corner(x1, y1), corner(x0, y1)}}, 0);
 }
 
-// A plate that covers the middle half of each side covers the pixels of the middle, and no other.
+// A plate over the middle half of each side covers exactly the pixels in the middle.
 TEST(ExtremeFrame, FieldsOfViewFromATenthOfADegreeTo179) {
   for (const double yfov_deg : {0.1, 1.0, 90.0, 170.0, 179.0}) {
     const double distance = 100;
@@ -39,9 +39,10 @@ TEST(ExtremeFrame, FieldsOfViewFromATenthOfADegreeTo179) {
     Scene scene;
     scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
     add_mesh(scene, {plate(-half, -half / 2, half, half / 2)});
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
     const SamplingMap map = uniform_map(64, 32, 16);
-    const SparseFrame frame = tracer.trace(camera_at({0, 0, distance}, {0, 0, 0}, yfov_deg), 1, map, emission_only());
+    const SparseFrame frame =
+        tracer.at_rest().trace(camera_at({0, 0, distance}, {0, 0, 0}, yfov_deg), 1, map, emission_only());
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
       const Site& site = map.sites[i];
@@ -51,18 +52,18 @@ TEST(ExtremeFrame, FieldsOfViewFromATenthOfADegreeTo179) {
   }
 }
 
-// The whole of a white room is white at any field of view: no direction of a wide picture is lost.
+// A white room is white everywhere at any field of view, so no direction of a wide picture is lost.
 TEST(ExtremeFrame, AWideViewOfAFurnace) {
   Scene scene;
   scene.materials = {diffuse_material({1, 1, 1})};
   add_mesh(scene, box(0.5F, false, 0), make_affine({0, 0, -0.8}, normalize(Quatd{0.2, 0.1, 0, 1}), {1, 1, 1}));
   scene.environment = constant_environment({1, 1, 1});
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   TraceSettings settings;
   settings.diffuse = DiffuseModel::matte;
   for (const double yfov_deg : {0.1, 179.0}) {
     const SparseFrame frame =
-        tracer.trace(camera_at({0, 0, 0}, {0, 0, -1}, yfov_deg), 1, uniform_map(48, 32, 64), settings);
+        tracer.at_rest().trace(camera_at({0, 0, 0}, {0, 0, -1}, yfov_deg), 1, uniform_map(48, 32, 64), settings);
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     EXPECT_NEAR(mean_radiance(frame).y, 1, 2e-3) << yfov_deg;
   }
@@ -72,9 +73,9 @@ TEST(ExtremeFrame, OnePixel) {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
   add_mesh(scene, {plate(0, -9, 9, 9)});  // the right half
-  const PathTracer tracer(scene, threads(1));
+  PathTracer tracer(scene, threads(1));
   const SamplingMap map = uniform_map(1, 1, 1024);
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, map, emission_only());
+  const SparseFrame frame = tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, map, emission_only());
   ASSERT_EQ(frame.sum.size(), 1U);
   EXPECT_EQ(frame.sum[0].y, 512.0F);  // a net: exactly half of the samples on either side
   const Frame dense = reconstruct(frame, map, "linear");
@@ -91,8 +92,8 @@ double status_mib(const std::string& field) {
   return 0;
 }
 
-// From map to dense frame. The bound is what the arrays hold: a site (12 bytes) and its sums (20), the region map (1),
-// and the frame's five numbers (20), each at least once; twice that is room for growing and sorting.
+// From map to dense frame. The bound is the size of the arrays: a site (12 bytes) and its sums (20), the region map
+// (1), and the frame's five numbers (20), each at least once; twice that leaves room for growing and sorting.
 TEST(ExtremeFrame, SixteenThousandPixelsWide) {
   constexpr int kWidth = 16384, kHeight = 256;
   Scene scene;
@@ -101,11 +102,11 @@ TEST(ExtremeFrame, SixteenThousandPixelsWide) {
   Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
   camera.projection.kind = ProjectionKind::orthographic;
   camera.projection.ymag_m = 1.0 / 64;  // 64 times as wide: exactly from -1 to 1
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   std::ofstream("/proc/self/clear_refs") << "5";  // forgets the peak so far
   const double before_mib = status_mib("VmRSS");
   const SamplingMap map = uniform_map(kWidth, kHeight, 1);
-  const SparseFrame sparse = tracer.trace(camera, 1, map, emission_only());
+  const SparseFrame sparse = tracer.at_rest().trace(camera, 1, map, emission_only());
   const Frame frame = reconstruct(sparse, map, "linear");
   const double peak_mib = status_mib("VmHWM");
   const double megapixels = kWidth * kHeight * 1e-6;
@@ -128,7 +129,7 @@ TEST(ExtremeFrame, SixteenThousandPixelsWide) {
   EXPECT_LE(beside_edge, 2 * kWidth / 1024);
 }
 
-// 65536 samples a pixel: the very samples, summed in long double.
+// 65536 samples per pixel, compared with the same samples summed in long double.
 TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   Scene scene;
   scene.materials = {diffuse_material({0.7F, 0.6F, 0.5F}), diffuse_material({0, 0, 0}, {0.1F, 7.0F, 1e-3F})};
@@ -141,7 +142,7 @@ TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   TraceSettings settings;
   settings.max_bounces = 2;
   const TracerOptions options = threads(2);
-  const SparseFrame frame = PathTracer(scene, options).trace(camera, 1, map, settings);
+  const SparseFrame frame = PathTracer(scene, options).at_rest().trace(camera, 1, map, settings);
 
   const RenderScene render_scene(scene, options);
   const LightSampler lights(scene);
@@ -207,7 +208,7 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
     scene.materials[0].unlit = true;
     scene.materials[0].base_color_texture.texture = 0;
     scene.textures = {wide ? numbered_texture(16384, 64) : numbered_texture(64, 16384)};
-    // Turned so that the long side lies along the picture's.
+    // Turned so that its long side is along that of the picture.
     Geometry face = plate(-1, -1, 1, 1);
     if (!wide) {
       face.uv0 = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
@@ -216,24 +217,24 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
     Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
     camera.projection.kind = ProjectionKind::orthographic;
     camera.projection.ymag_m = 1.0 / 16384;
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const SamplingMap map = uniform_map(16384, 1, 4);
     TraceSettings settings = emission_only();
     settings.pixel_cone = 0;
-    const SparseFrame frame = tracer.trace(camera, 1, map, settings);
+    const SparseFrame frame = tracer.at_rest().trace(camera, 1, map, settings);
     int off = 0;
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
       EXPECT_EQ(frame.sum[i].z, 4.0F);
       const double index =
           (256.0 * static_cast<double>(frame.sum[i].x) + static_cast<double>(frame.sum[i].y)) * 255 / 4;
-      // Rounding of the coordinates may take a sample on a texel's border to its neighbour.
+      // Rounding of the coordinates may move a sample on a texel's border to the neighbour.
       ASSERT_NEAR(index, map.sites[i].block_x, 1);
       off += std::fabs(index - map.sites[i].block_x) > 1e-3 ? 1 : 0;
     }
     EXPECT_LT(off, 16384 / 50);
-    // The coarsest level is the only one a wide cone leaves.
+    // A wide cone reads the coarsest level only.
     settings.pixel_cone = 1e6;
-    const SparseFrame coarse = tracer.trace(camera, 1, uniform_map(16, 1, 4), settings);
+    const SparseFrame coarse = tracer.at_rest().trace(camera, 1, uniform_map(16, 1, 4), settings);
     for (const Vec3f& sum : coarse.sum) {
       EXPECT_EQ(sum.z, 4.0F);
       EXPECT_EQ(sum.x, coarse.sum[0].x);
@@ -253,11 +254,12 @@ TEST(ExtremeFrame, TexturesOfSixteenThousandTexelsAndOfOne) {
       Geometry face = plate(-1, -1, 1, 1);
       face.uv0 = {{-1e6F, 7}, {3.5F, 7}, {3.5F, -1e6F}, {-1e6F, -1e6F}};
       add_mesh(scene, {face});
-      const PathTracer tracer(scene, threads(1));
+      PathTracer tracer(scene, threads(1));
       for (const double cone : {0.0, 1.0}) {
         TraceSettings settings = emission_only();
         settings.pixel_cone = cone;
-        const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), settings);
+        const SparseFrame frame =
+            tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), settings);
         for (const Vec3f& sum : frame.sum) {
           EXPECT_NEAR(sum.x, 4 * 0.2, 1e-6);
           EXPECT_NEAR(sum.y, 4 * 0.4, 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles as files really hold them: needles, points, lines, duplicates, and numbers that are none.
+// Triangles as they really occur in files: needles, points, lines, duplicates, and coordinates that are not numbers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ void expect_clean(const SparseFrame& frame) {
   }
 }
 
-// Triangles (a, b, c) in a row, without normals of their own.
+// Triangles from every three vertices, without normals.
 Geometry soup(const std::vector<std::array<Vec3f, 3>>& corners, std::int32_t material) {
   Geometry geometry;
   geometry.material = material;
@@ -36,7 +36,7 @@ Geometry soup(const std::vector<std::array<Vec3f, 3>>& corners, std::int32_t mat
   return geometry;
 }
 
-// A fan of needles a million times as long as wide fills a square: each pixel still sees white, lit by a white sky.
+// A square filled by a fan of needles a million times as long as wide: every pixel is still white under a white sky.
 TEST(ExtremeGeometry, NeedlesFillASquare) {
   constexpr int kNeedles = 4096;
   for (const float length : {1.0F, 1e3F, 1e5F}) {
@@ -53,15 +53,17 @@ TEST(ExtremeGeometry, NeedlesFillASquare) {
     scene.environment = constant_environment({1, 1, 1});
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
-    const PathTracer lit(scene, threads(2));
-    const SparseFrame white = lit.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
+    PathTracer lit(scene, threads(2));
+    const SparseFrame white =
+        lit.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
     expect_clean(white);
     EXPECT_NEAR(mean_radiance(white).y, 1, 1e-3) << length;
-    // The same needles as lamps on black: no gaps between them, no light lost among 8192 emitters.
+    // The same needles as emitters on black: there are no gaps between them, and no light of 8192 emitters is lost.
     scene.environment = {};
     scene.meshes[0].geometries[0].material = 1;
-    const PathTracer lamps(scene, threads(2));
-    const SparseFrame glow = lamps.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
+    PathTracer lamps(scene, threads(2));
+    const SparseFrame glow =
+        lamps.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(32, 32, 16), settings);
     expect_clean(glow);
     EXPECT_NEAR(mean_radiance(glow).y, 1, 1e-4) << length;
   }
@@ -89,11 +91,11 @@ TEST(ExtremeGeometry, TrianglesWithoutAreaChangeNothing) {
     settings.diffuse = DiffuseModel::matte;
     const Camera camera = camera_at({0, 0, 5}, {0, 0, 0}, 30);
     const SamplingMap map = uniform_map(32, 32, 16);
-    const double without = mean_radiance(PathTracer(scene, threads(2)).trace(camera, 1, map, settings)).y;
+    const double without = mean_radiance(PathTracer(scene, threads(2)).at_rest().trace(camera, 1, map, settings)).y;
     add_mesh(scene, {soup(degenerate, 1)});
-    const SparseFrame with = PathTracer(scene, threads(2)).trace(camera, 1, map, settings);
+    const SparseFrame with = PathTracer(scene, threads(2)).at_rest().trace(camera, 1, map, settings);
     expect_clean(with);
-    // Rounding may let a ray in ten thousand meet a line of no width; it must not shine or blacken more than that.
+    // Because of rounding, one ray in ten thousand may hit a line of no width; its effect must not be larger.
     EXPECT_NEAR(mean_radiance(with).y, without, 1e-3);
   }
 }
@@ -107,11 +109,11 @@ TEST(ExtremeGeometry, DuplicatesAreOneSurface) {
   TraceSettings settings;
   settings.diffuse = DiffuseModel::matte;
   const Camera camera = camera_at({0, 0, 5}, {0, 0, 0}, 10);
-  const SparseFrame lit = PathTracer(scene, threads(1)).trace(camera, 1, uniform_map(16, 16, 16), settings);
+  const SparseFrame lit = PathTracer(scene, threads(1)).at_rest().trace(camera, 1, uniform_map(16, 16, 16), settings);
   expect_clean(lit);
   EXPECT_NEAR(mean_radiance(lit).y, 1, 1e-3);
-  // Three lamps in one place: seen as one, and a floor under them is lit as by one, however light is found. One of them
-  // begins its triangles at other corners, whose sums with an edge are rounded otherwise.
+  // Three emitters in one place look like one and light a floor as one does, however light is found. One of them begins
+  // its triangles with other corners, whose sums with an edge are rounded differently.
   scene.environment = {};
   const std::array<Vec3f, 4> lamp{
       {{-2.1F, -1.93F, 0.013F}, {2.07F, -2.03F, -0.017F}, {1.97F, 2.11F, 0.029F}, {-2.03F, 1.9F, 0.011F}}};
@@ -123,7 +125,8 @@ TEST(ExtremeGeometry, DuplicatesAreOneSurface) {
   std::array<double, 3> means{};
   for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only, LightSampling::bsdf_only}) {
     settings.light_sampling = sampling;
-    const SparseFrame frame = PathTracer(scene, threads(2)).trace(below, 1, uniform_map(32, 32, 256), settings);
+    const SparseFrame frame =
+        PathTracer(scene, threads(2)).at_rest().trace(below, 1, uniform_map(32, 32, 256), settings);
     expect_clean(frame);
     means[static_cast<std::size_t>(sampling)] = mean_radiance(frame).y;
   }
@@ -131,7 +134,8 @@ TEST(ExtremeGeometry, DuplicatesAreOneSurface) {
   EXPECT_NEAR(means[1] / means[2], 1, 0.01);
 }
 
-// What loading refuses a scene made by a program can still hold; an instance may carry finite numbers out of range.
+// A scene made by a program can still contain what loading refuses, and an instance may move finite numbers out of
+// range.
 TEST(ExtremeGeometry, VerticesThatAreNoNumbersAreRefusedByName) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
@@ -147,7 +151,7 @@ TEST(ExtremeGeometry, VerticesThatAreNoNumbersAreRefusedByName) {
         scene.instances.push_back({0, make_affine({5, 0, 0}, {}, {1, 1, 1})});
       }
       try {
-        const PathTracer tracer(scene, threads(1));
+        PathTracer tracer(scene, threads(1));
         FAIL() << bad;
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from nothing to beyond what a float can hold.
+// Light from zero to beyond float's range.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -41,8 +41,8 @@ TraceSettings one_bounce(LightSampling sampling = LightSampling::mis) {
   return settings;
 }
 
-// A sun of 1e6 in one pixel of a black sky. Bilinear lookup spreads it over a tent of two pixels each way; the mean
-// over the tent of cosine and solid angle is worked out by quadrature in double.
+// A sun of 1e6 in one pixel of a black sky. Bilinear interpolation spreads it over a tent of two pixels in each
+// direction; the mean of cosine and solid angle over the tent is computed by quadrature in double.
 TEST(ExtremeLight, ASunOfAMillionOnABlackSky) {
   constexpr int kWidth = 256, kHeight = 128, kRow = 30, kColumn = 77;
   Scene scene = floor_scene();
@@ -58,14 +58,14 @@ TEST(ExtremeLight, ASunOfAMillionOnABlackSky) {
     irradiance += tent * std::cos(polar) * std::sin(polar) * (2 * kPi / kWidth) * (kPi / kHeight) * 2.0 / kSteps;
   }
   const double expected = 1e6 * irradiance / kPi;
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   for (const bool compensated : {false, true}) {
     std::vector<double> means;
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       TraceSettings settings = one_bounce();
       settings.seed = seed;
       settings.compensate_environment = compensated;
-      const SparseFrame frame = tracer.trace(above(), 1, uniform_map(32, 32, 64), settings);
+      const SparseFrame frame = tracer.at_rest().trace(above(), 1, uniform_map(32, 32, 64), settings);
       EXPECT_EQ(frame.stats.non_finite_samples, 0U);
       means.push_back(mean_radiance(frame).y);
     }
@@ -77,30 +77,31 @@ TEST(ExtremeLight, ASunOfAMillionOnABlackSky) {
 
 TEST(ExtremeLight, AnAllBlackEnvironmentIsNone) {
   Scene scene = floor_scene();
-  const SparseFrame none = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 4), {});
+  const SparseFrame none = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 4), {});
   scene.environment = constant_environment({0, 0, 0});
   for (const bool compensated : {false, true}) {
     for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only, LightSampling::bsdf_only}) {
       TraceSettings settings;
       settings.light_sampling = sampling;
       settings.compensate_environment = compensated;
-      const SparseFrame black = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 4), settings);
+      const SparseFrame black =
+          PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 4), settings);
       EXPECT_EQ(black.stats.non_finite_samples + black.stats.rejected_rays, 0U);
       EXPECT_EQ(black.sum, none.sum);
       EXPECT_EQ(mean_radiance(black).y, 0);
     }
   }
-  // A lamp beside it is sampled as if it were alone.
+  // An emitter beside it is sampled as if it were alone.
   scene.materials.push_back(diffuse_material({0, 0, 0}, {1, 1, 1}));
   add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 1)});
-  const SparseFrame lamp = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 16), {});
+  const SparseFrame lamp = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 16), {});
   scene.environment = {};
-  const SparseFrame alone = PathTracer(scene, threads(1)).trace(above(), 1, uniform_map(16, 16, 16), {});
+  const SparseFrame alone = PathTracer(scene, threads(1)).at_rest().trace(above(), 1, uniform_map(16, 16, 16), {});
   EXPECT_GT(mean_radiance(lamp).y, 0);
   EXPECT_EQ(lamp.sum, alone.sum);
 }
 
-// Weights over all that floats can hold, against the same formula in long double, whose exponents never end.
+// Weights over float's whole range, compared with the same formula in long double, whose range is far larger.
 TEST(ExtremeLight, MisWeightsHoldOverTheWholeRangeOfFloats) {
   double worst = 0;
   for (int i = -37; i <= 38; ++i) {
@@ -119,7 +120,7 @@ TEST(ExtremeLight, MisWeightsHoldOverTheWholeRangeOfFloats) {
         } else {
           EXPECT_LT(weight, 1.1e-37F);
         }
-        // The two partners share the light without loss.
+        // The two weights sum to 1, so no light is lost.
         EXPECT_NEAR(static_cast<double>(weight) + static_cast<double>(power_heuristic(q, p)), 1, 2e-7) << p << ' ' << q;
       }
     }
@@ -127,7 +128,7 @@ TEST(ExtremeLight, MisWeightsHoldOverTheWholeRangeOfFloats) {
   std::printf("largest relative error of a weight above 1e-37: %.2g\n", worst);
 }
 
-// A lamp's radiance over the whole range of floats: the picture divided by it is the same one.
+// An emitter's radiance over float's whole range: divided by it, the picture is always the same.
 TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
   std::array<double, 3> reference{};
   for (const double emission : {1.0, 1e-30, 1e-20, 1e-10, 1e10, 1e20, 1e30}) {
@@ -138,7 +139,8 @@ TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
       add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 1)});
       TraceSettings settings = one_bounce(sampling);
       settings.max_bounces = 4;
-      const SparseFrame frame = PathTracer(scene, threads(2)).trace(above(), 1, uniform_map(16, 16, 64), settings);
+      const SparseFrame frame =
+          PathTracer(scene, threads(2)).at_rest().trace(above(), 1, uniform_map(16, 16, 64), settings);
       EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U) << emission;
       const double relative = mean_radiance(frame).y / static_cast<double>(e);
       double& expected = reference[static_cast<std::size_t>(sampling)];
@@ -149,14 +151,15 @@ TEST(ExtremeLight, EmissionFrom1eMinus30To1e30) {
   }
 }
 
-// Where it ends: said, not silent.
+// Where the range ends, this is reported.
 TEST(ExtremeLight, BeyondFloatsSamplesAreCounted) {
   Scene scene = floor_scene();
   scene.materials.push_back(diffuse_material({0, 0, 0}, {3e38F, 3e38F, 3e38F}));
   add_mesh(scene, {quad({{{-9, 3, -9}, {9, 3, -9}, {9, 3, 9}, {-9, 3, 9}}}, 1)});
-  // Light sampling divides by a density below 1: the estimate leaves float's range.
-  const SparseFrame frame =
-      PathTracer(scene, threads(2)).trace(above(), 1, uniform_map(8, 8, 16), one_bounce(LightSampling::light_only));
+  // Light sampling divides by a density below 1, so the estimate exceeds float's range.
+  const SparseFrame frame = PathTracer(scene, threads(2))
+                                .at_rest()
+                                .trace(above(), 1, uniform_map(8, 8, 16), one_bounce(LightSampling::light_only));
   EXPECT_GT(frame.stats.non_finite_samples, 0U);
   EXPECT_FALSE(frame.stats.bad_samples.empty());
 }
@@ -170,10 +173,11 @@ TEST(ExtremeLight, PunctualLightsOverTheWholeRange) {
       light.intensity = {i, i, i};
       light.position_m = to_float({0, height, 0});
       scene.lights = {light};
-      // So narrow a view that the light is straight above all of it.
+      // The view is so narrow that the light is straight above all of it.
       Camera camera = above(2 * height);
       camera.projection.yfov_rad = 0.01 * kRadPerDeg;
-      const SparseFrame frame = PathTracer(scene, threads(1)).trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
+      const SparseFrame frame =
+          PathTracer(scene, threads(1)).at_rest().trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
       EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
       const double expected = static_cast<double>(i) / (height * height) / kPi;
       EXPECT_NEAR(mean_radiance(frame).y / expected, 1, 1e-4) << intensity << ' ' << height;
@@ -193,7 +197,7 @@ TEST(ExtremeLight, APunctualLightThatOverflowsIsNotDropped) {
     options.light_choice = choice;
     Camera camera = above(2);
     camera.projection.yfov_rad = 1e-5 * kRadPerDeg;
-    const SparseFrame frame = PathTracer(scene, options).trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
+    const SparseFrame frame = PathTracer(scene, options).at_rest().trace(camera, 1, uniform_map(4, 4, 4), one_bounce());
     EXPECT_EQ(frame.stats.non_finite_samples, 64U);
     ASSERT_FALSE(frame.stats.bad_samples.empty());
     EXPECT_EQ(frame.stats.bad_samples[0].what, "non-finite radiance");

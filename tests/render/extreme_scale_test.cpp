@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of any size, anywhere: no light leaks out of or into a closed box, no surface shadows itself.
+// Scenes of any size at any place: no light leaks out of or into a closed box, and no surface shadows itself.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using namespace test;
 
 constexpr int kSize = 32;
-constexpr std::uint32_t kSpp = 64;  // one path that leaks is then less than the smallest share that is allowed
+constexpr std::uint32_t kSpp = 64;  // so that one leaking path is less than the smallest share that is allowed
 
 struct Place {
   double scale, offset;  // half the box's side; distance of its centre from the origin along each axis
@@ -25,8 +25,8 @@ struct Place {
 const std::vector<Place> kPlaces{{1e-6, 0}, {1e-3, 0}, {1, 0}, {1e3, 0}, {1e6, 0}, {1, 1e3}, {1e4, 1e7}};
 const Quatd kTurned = normalize(Quatd{0.21, 0.34, -0.13, 1});
 
-// Points on a wall are rounded by up to 2^-22 of their largest coordinate; one that lies so close to an edge of the
-// wall (2 edges across, per half side) may come to lie behind the next wall, at each of 12 bounces.
+// Points on a wall are rounded by up to 2^-22 of their largest coordinate. A point that is so close to an edge of the
+// wall (2 edges across, per half side) may end up behind the next wall, at each of 12 bounces.
 double largest_leak(const Place& place) {
   return 12 * 2 * 0x1p-22 * (place.offset + 2 * place.scale) / place.scale;
 }
@@ -75,13 +75,13 @@ void for_all_boxes(const Test& test) {
   }
 }
 
-// White walls inside, bright light outside, the camera inside. A path that gets out adds the sky's radiance times its
-// weight, which is 1 for white walls and rays alone: the mean is the share of leaking paths.
+// White walls inside, bright light outside, and the camera inside. A path that gets out adds the sky's radiance times
+// its weight, which is 1 for white walls with rays only, so the mean is the share of leaking paths.
 TEST(ExtremeScale, NoLightLeaksIntoAClosedBox) {
   for_all_boxes([](const Place& place, bool turned, Kind kind) {
     Scene scene = box_scene(place, turned, kind, true);
     scene.environment = constant_environment({1, 1, 1});
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
     settings.max_bounces = 12;
@@ -89,13 +89,16 @@ TEST(ExtremeScale, NoLightLeaksIntoAClosedBox) {
     for (int face = 0; face < 6; ++face) {
       settings.seed = static_cast<std::uint64_t>(face);
       settings.light_sampling = LightSampling::bsdf_only;
-      const SparseFrame found = tracer.trace(inside(place, face), 1, uniform_map(kSize, kSize, kSpp / 2), settings);
+      const SparseFrame found =
+          tracer.at_rest().trace(inside(place, face), 1, uniform_map(kSize, kSize, kSpp / 2), settings);
       EXPECT_EQ(found.stats.non_finite_samples + found.stats.rejected_rays, 0U);
       leaked += mean_radiance(found).y / 6;
       rays += static_cast<double>(found.stats.rays_bounce + found.stats.rays_primary);
       settings.light_sampling = LightSampling::light_only;
       by_light_samples +=
-          mean_radiance(tracer.trace(inside(place, face), 1, uniform_map(kSize, kSize, kSpp / 8), settings)).y / 6;
+          mean_radiance(tracer.at_rest().trace(inside(place, face), 1, uniform_map(kSize, kSize, kSpp / 8), settings))
+              .y /
+          6;
     }
     std::printf("%s: %.3g of the paths leak (%.3g rays), %.3g of the light\n", describe(place, turned, kind).c_str(),
                 leaked, rays, by_light_samples);
@@ -114,34 +117,34 @@ TEST(ExtremeScale, NoLightLeaksOutOfAClosedBox) {
     // itself: a wall closer to it than that, two thousandths of the box a thousand half sides away, would not be seen.
     const double lamp = place.offset > 0 ? 0.9 : 0.999;
     add_mesh(scene, box(1, false, 1), scene.instances[0].to_world * make_affine({}, {}, {lamp, lamp, lamp}));
-    // A floor below, from where light samples aim at the lamp through the walls.
+    // From a floor below, light samples aim at the emitter through the walls.
     add_mesh(scene, {quad({{{-6, -2, 6}, {6, -2, 6}, {6, -2, -6}, {-6, -2, -6}}}, 0)},
              make_affine(Vec3d{1, 1, -1} * place.offset, {}, Vec3d{1, 1, 1} * place.scale));
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const Vec3d center = Vec3d{1, 1, -1} * place.offset;
     const Camera camera = camera_at(center + Vec3d{2, 3, 4} * place.scale, center, 45);
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
-    const SparseFrame frame = tracer.trace(camera, 1, uniform_map(kSize, kSize, kSpp), settings);
+    const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(kSize, kSize, kSpp), settings);
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     EXPECT_GT(frame.stats.rays_shadow, 0U);
     EXPECT_LE(mean_radiance(frame).y, largest_leak(place));
   });
 }
 
-// A white convex body in a white room is seen white: what is missing shadowed itself.
+// A white convex body in a white room looks white; anything missing would be self-shadowing.
 TEST(ExtremeScale, NoSurfaceShadowsItself) {
   for_all_boxes([](const Place& place, bool turned, Kind kind) {
     Scene scene = box_scene(place, turned, kind, false);
     scene.environment = constant_environment({1, 1, 1});
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const Vec3d center = Vec3d{1, 1, -1} * place.offset;
     const Camera camera = camera_at(center + Vec3d{2, 3, 4} * place.scale, center, 30);
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
     settings.max_bounces = 1;
     settings.light_sampling = LightSampling::bsdf_only;
-    const SparseFrame frame = tracer.trace(camera, 1, uniform_map(kSize, kSize, kSpp), settings);
+    const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(kSize, kSize, kSpp), settings);
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     const double lost = 1 - mean_radiance(frame).y;
     std::printf("%s: %.3g of the paths meet their own surface\n", describe(place, turned, kind).c_str(), lost);
@@ -159,13 +162,13 @@ TEST(ExtremeScale, GeneratedSceneOfAllScales) {
   ASSERT_EQ(scene.warnings.size(), 1U);  // the one that is flat
   EXPECT_NE(scene.warnings[0].find("flat_zero_z"), std::string::npos) << scene.warnings[0];
   scene.environment = constant_environment({1, 1, 1});
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   Camera camera;
   camera.pose = scene.cameras.at(0).path.pose_at(0);
   camera.projection = scene.cameras.at(0).path.projection;
   TraceSettings settings;
   settings.guides = true;
-  const SparseFrame frame = tracer.trace(camera, 1, uniform_map(128, 72, 16), settings);
+  const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(128, 72, 16), settings);
   EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
   for (std::size_t i = 0; i < frame.sum.size(); ++i) {
     ASSERT_TRUE(is_finite(frame.sum[i]));
@@ -173,7 +176,7 @@ TEST(ExtremeScale, GeneratedSceneOfAllScales) {
   }
   // The tenth of a millimetre: a camera of its own sees it fill the picture's middle.
   const SparseFrame close =
-      tracer.trace(camera_at({0, 1.00005, 5e-4}, {0, 1.00005, 0}, 20), 1, uniform_map(16, 16, 16), settings);
+      tracer.at_rest().trace(camera_at({0, 1.00005, 5e-4}, {0, 1.00005, 0}, 20), 1, uniform_map(16, 16, 16), settings);
   const SamplingMap map = uniform_map(16, 16, 16);
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
     if (map.sites[i].block_x == 8 && map.sites[i].block_y == 8) {
@@ -212,8 +215,10 @@ TEST(ExtremeScale, MirroredAndZeroScales) {
     scene.instances.clear();
     add_mesh(scene, {plate}, make_affine({}, {}, scale));
     const double s = std::fabs(scale.x);
-    const PathTracer tracer(scene, threads(1));
-    EXPECT_EQ(mean_radiance(tracer.trace(camera_at({0, 0, 5 * s}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), settings)).y,
+    PathTracer tracer(scene, threads(1));
+    EXPECT_EQ(mean_radiance(
+                  tracer.at_rest().trace(camera_at({0, 0, 5 * s}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), settings))
+                  .y,
               1.0)
         << scale.x << ' ' << scale.y;
   }
@@ -224,8 +229,8 @@ TEST(ExtremeScale, MirroredAndZeroScales) {
   for (const Vec3d scale : {Vec3d{1, 1, 0}, Vec3d{1, 0, 0}, Vec3d{0, 0, 0}}) {
     scene.instances.push_back({0, make_affine({0, 0, -1}, {}, scale)});
   }
-  const PathTracer tracer(scene, threads(1));
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), {});
+  PathTracer tracer(scene, threads(1));
+  const SparseFrame frame = tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, 4), {});
   EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
   EXPECT_EQ(mean_radiance(frame).y, 1.0);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convex objects in a uniform environment of radiance 1: what they show is the directional albedo of their BRDF, here
-// from an independent double-precision quadrature. One bounce is exact, since nothing is hit twice.
+// Convex objects in a uniform environment of radiance 1 show the directional albedo of their BRDF, which is computed
+// here by an independent quadrature in double precision. One bounce is exact, since nothing is hit twice.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,8 +20,7 @@ using namespace test;
 constexpr int kSeeds = 16;
 constexpr std::array kModels{DiffuseModel::burley, DiffuseModel::lambert};
 constexpr Vec3f kColor{0.9F, 0.5F, 0.1F};
-// The library's tables are floats of a quadrature of their own: agreement with the reference's is not a matter of
-// noise.
+// The library's tables are floats from a quadrature of their own, so the difference to the reference is not noise only.
 constexpr double kTableError = 2e-4;
 
 Material surface_material(float metallic, float roughness, const Vec3f& color = kColor) {
@@ -32,7 +31,7 @@ Material surface_material(float metallic, float roughness, const Vec3f& color = 
   return material;
 }
 
-// A large square at the origin that faces +y, seen under one angle by an orthographic camera.
+// A large square at the origin that faces +y, seen at one angle by an orthographic camera.
 Scene square_scene(const Material& material) {
   Scene scene;
   scene.materials = {material};
@@ -62,7 +61,7 @@ void expect_albedos(const std::vector<Case>& cases) {
   const double level = sidak(cases.size());
   for (const Case& c : cases) {
     const Scene scene = square_scene(surface_material(c.metallic, c.roughness));
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
     const Camera camera = camera_under(c.mu);
     TraceSettings settings;
     settings.max_bounces = 1;
@@ -71,7 +70,7 @@ void expect_albedos(const std::vector<Case>& cases) {
     std::vector<double> means;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       settings.seed = seed;
-      const Vec3d mean = mean_radiance(tracer.trace(camera, 1, map, settings));
+      const Vec3d mean = mean_radiance(tracer.at_rest().trace(camera, 1, map, settings));
       means.push_back((mean.x + mean.y + mean.z) / 3);
     }
     const MeanTest result = t_test(means, c.expected, kTableError);
@@ -166,7 +165,7 @@ TEST(Furnace, ASphereShowsTheAlbedoUnderEveryAngle) {
     scene.materials = {surface_material(kind.metallic, kind.roughness)};
     add_mesh(scene, {sphere(256)});
     scene.environment = constant_environment({1, 1, 1});
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
 
     const ReferenceBsdf reference({to_double(kColor), kind.metallic, kind.roughness, DiffuseModel::burley});
     std::vector<double> albedo;  // at radius 0, 1/n ... 1 of 0.95
@@ -200,7 +199,7 @@ TEST(Furnace, ASphereShowsTheAlbedoUnderEveryAngle) {
       TraceSettings settings;
       settings.max_bounces = 1;
       settings.seed = seed;
-      const SparseFrame frame = tracer.trace(camera, 1, map, settings);
+      const SparseFrame frame = tracer.at_rest().trace(camera, 1, map, settings);
       double sum = 0;
       for (std::size_t i = 0; i < map.sites.size(); ++i) {
         if (inside(map.sites[i])) {
@@ -218,7 +217,7 @@ TEST(Furnace, ASphereShowsTheAlbedoUnderEveryAngle) {
   }
 }
 
-// A white sphere in a white room cannot be seen, whatever it is made of and however often light may scatter.
+// A white sphere in a white room is invisible, whatever its material and however often light may scatter.
 TEST(Furnace, AWhiteSphereIsInvisible) {
   const SamplingMap map = uniform_map(32, 32, 64);
   for (const float roughness : {0.25F, 0.5F, 1.0F}) {
@@ -228,10 +227,10 @@ TEST(Furnace, AWhiteSphereIsInvisible) {
         scene.materials = {surface_material(metallic, roughness, {1, 1, 1})};
         add_mesh(scene, {sphere(128)});
         scene.environment = constant_environment({1, 1, 1});
-        const PathTracer tracer(scene, threads(1));
+        PathTracer tracer(scene, threads(1));
         TraceSettings settings;
         settings.diffuse = diffuse;
-        const Vec3d mean = mean_radiance(tracer.trace(camera_at({2, 3, 4}, {0, 0, 0}, 15), 1, map, settings));
+        const Vec3d mean = mean_radiance(tracer.at_rest().trace(camera_at({2, 3, 4}, {0, 0, 0}, 15), 1, map, settings));
         // The tables' interpolation error (bsdf_test states 5e-3 for one angle; over all angles it averages out).
         EXPECT_NEAR(mean.y, 1, 2e-3) << roughness << ' ' << metallic << ' ' << static_cast<int>(diffuse);
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First hits at full resolution: against closed forms, and against the path tracer's own first hits.
+// First hits at full resolution, compared with closed forms and with the path tracer's own first hits.
 #include "gazetrace/guides.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kWidth = 90;
 constexpr int kHeight = 70;
 
-// A red floor up to the horizon, a lamp seen from the front, a leaf whose left half is cut out, an unlit sign, a
+// A red floor up to the horizon, an emitter seen from the front, a leaf whose left half is cut out, an unlit sign and a
 // mirror.
 Scene scene_of_kinds() {
   Scene scene;
@@ -59,7 +59,7 @@ PixelIndex pixel_of(const Vec3d& point) {
 }
 
 Guides guides_of(const Scene& scene, const GuideSettings& settings = {}, int thread_count = 1) {
-  return PathTracer(scene, threads(thread_count)).guides(kCamera, kWidth, kHeight, settings);
+  return PathTracer(scene, threads(thread_count)).at_rest().guides(kCamera, kWidth, kHeight, settings);
 }
 
 TEST(Guides, SayWhatIsSeen) {
@@ -122,16 +122,16 @@ TEST(Guides, SameBitsForAnyThreadCount) {
   }
 }
 
-// What many rays say is what the tracer's own first hits say: normals, coverage and directly seen light, per pixel.
+// Many rays give the same as the tracer's own first hits: normals, coverage and directly seen light of each pixel.
 TEST(Guides, AgreeWithTracedFirstHits) {
   Scene scene = scene_of_kinds();
-  const PathTracer tracer(scene, threads(2));
-  const Guides guides = tracer.guides(kCamera, kWidth, kHeight, {.spp = 64});
+  PathTracer tracer(scene, threads(2));
+  const Guides guides = tracer.at_rest().guides(kCamera, kWidth, kHeight, {.spp = 64});
   TraceSettings settings;
   settings.guides = true;
   settings.max_bounces = 0;  // emission only
   const SamplingMap map = uniform_map(kWidth, kHeight, 256);
-  const SparseFrame traced = tracer.trace(kCamera, 0, map, settings);
+  const SparseFrame traced = tracer.at_rest().trace(kCamera, 0, map, settings);
   std::vector<PixelIndex> pixels;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
     pixels_of_site(map, map.sites[i], pixels);
@@ -139,8 +139,8 @@ TEST(Guides, AgreeWithTracedFirstHits) {
     const float n = 256;
     const Vec3f normal = traced.guides[i].normal / n - guides.normal.pixels[pixel];
     const Vec3f emission = traced.sum[i] / n - guides.emission.pixels[pixel];
-    // Both estimate a share of the pixel's area with stratified points: an edge through it errs by about n^-3/4 of
-    // what it parts, 0.05 for 64 of them; the light beyond an edge is 6 at most.
+    // Both estimate a share of the pixel's area with stratified points. The error at an edge is about n^-3/4 of the
+    // difference across it, 0.05 for 64 points; the light beyond an edge is at most 6.
     EXPECT_NEAR(dot(normal, normal), 0, 0.1 * 0.1) << pixels[0].x << ',' << pixels[0].y;
     EXPECT_NEAR(emission.z, 0, 6 * 0.1) << pixels[0].x << ',' << pixels[0].y;
     if (traced.guides[i].hits == 256 && std::isfinite(guides.depth_m.pixels[pixel])) {
@@ -150,7 +150,7 @@ TEST(Guides, AgreeWithTracedFirstHits) {
   }
 }
 
-// What the rays through an edge see, by their own or by a pixel near by, is what many rays through the pixel see.
+// What the edge rays see, by a surface of their own or by a nearby pixel, is what many rays through the pixel see.
 TEST(Guides, EdgeRaysSeeWhatManyRaysSee) {
   const Scene scene = scene_of_kinds();
   constexpr int kRays = 63;
@@ -170,7 +170,7 @@ TEST(Guides, EdgeRaysSeeWhatManyRaysSee) {
       normal += ray.own_surface ? guides.edge_surfaces[ray.seen_by].normal : guides.normal.pixels[ray.seen_by];
     }
     ++pixels;
-    // As far as two nets of 64 points differ across an edge (above), of light that is 6 at most.
+    // Within the difference of two nets of 64 points across an edge (above), for light of at most 6.
     EXPECT_NEAR(emission.z / 64, many.emission.pixels[pixel].z, 6 * 0.1F) << pixel;
     const Vec3f off = normal / 64 - many.normal.pixels[pixel];
     EXPECT_LT(dot(off, off), 0.15F * 0.15F) << pixel;
@@ -178,7 +178,7 @@ TEST(Guides, EdgeRaysSeeWhatManyRaysSee) {
   EXPECT_GT(pixels, 100U);
   EXPECT_LT(own, guides.edge_rays.size() / 2);
   EXPECT_EQ(guides.edge_surfaces.size(), own);
-  // Pixels without: most of what their rays see is on no edge.
+  // In pixels without edge rays, hardly any ray sees across an edge.
   std::vector<bool> has(guides.kind.pixels.size());
   for (const EdgeRay& ray : guides.edge_rays) {
     has[ray.pixel] = true;
@@ -196,7 +196,7 @@ TEST(Guides, RaysOutOfRangeAreRefused) {
   EXPECT_THROW(guides_of(scene, {.spp = 65}), Error);
 }
 
-// The mean weight of many samples of the BSDF is the integral that the tables promise.
+// The mean weight of many BSDF samples is the integral that the tables give.
 TEST(DirectionalAlbedo, IsTheMeanWeightOfBsdfSamples) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(0, 1);

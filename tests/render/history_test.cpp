@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sequence with history: in one run, in two joined by a checkpoint, and with frames rendered before the first.
+// A sequence with history, rendered in one run, in two runs joined by a checkpoint, and with frames rendered before the
+// first.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,6 +62,7 @@ PipelineSettings settings_of(AccumulateOrder order = AccumulateOrder::after) {
   settings.exposure.mode = ExposureMode::log_average;
   settings.exposure.smoothing_s = 0.2;
   settings.foveation.region_samples = {8, 4, 4};
+  settings.reconstruction.filter = "linear";
   settings.history_digest = "0123456789abcdef0123456789abcdef";
   settings.threads = 2;
   return settings;
@@ -102,7 +104,7 @@ TEST(History, TwoRunsJoinedByACheckpointAreOneRunToTheBit) {
     for (const auto& [frame, rendered] : rest) {
       EXPECT_EQ(rendered, whole.at(frame)) << frame;
     }
-    // Without it they are others.
+    // Without the history, frames differ.
     EXPECT_NE(render(scene, plan_of(6, 8), settings_of(order)).at(6), whole.at(6));
   }
 }

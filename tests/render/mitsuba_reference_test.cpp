@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same light as another renderer: window means beside those that Mitsuba 3 gave for the same files
+// Compares light with that of another renderer: means over windows with those that Mitsuba 3 gave for the same files
 // (tests/data/mitsuba, written by tests/benchmarks/peers/write_mitsuba_reference.py, with versions and settings).
 #include <gtest/gtest.h>
 
@@ -8,12 +8,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/tracer_scenes.hpp"
 #include "support/chi2.hpp"
+#include "support/picture_evidence.hpp"
 
 namespace gazetrace {
 namespace {
@@ -54,6 +57,19 @@ std::vector<double> window_means(const SparseFrame& frame, const SamplingMap& ma
   return sums;
 }
 
+// The windows as a picture of the frame's size.
+ImageRgb picture_of_windows(const std::vector<double>& means, int size_px, int window_px) {
+  ImageRgb picture(size_px, size_px);
+  const int across = size_px / window_px;
+  for (int y = 0; y < across * window_px; ++y) {
+    for (int x = 0; x < across * window_px; ++x) {
+      const auto first = static_cast<std::size_t>(3 * (y / window_px * across + x / window_px));
+      picture(x, y) = to_float(Vec3d{means[first], means[first + 1], means[first + 2]});
+    }
+  }
+  return picture;
+}
+
 struct Sample {
   double mean = 0, variance_of_mean = 0;
   double count = 0;
@@ -90,10 +106,11 @@ TEST(MitsubaReference, NoWindowDiffers) {
   ASSERT_TRUE(file) << folder() << "reference.json";
   const json reference = json::parse(file);
   struct Window {
-    std::string place;
+    std::string scene, place;
     double p, ours, theirs, spread;
   };
   std::vector<Window> windows;
+  std::map<std::string, std::pair<ImageRgb, ImageRgb>> pictures;  // by scene: ours and theirs, as means of windows
   const int size_px = reference["size_px"];
   const int window_px = reference["window_px"];
   for (const json& entry : reference["scenes"]) {
@@ -101,7 +118,7 @@ TEST(MitsubaReference, NoWindowDiffers) {
     if (!entry["environment"].is_null()) {
       scene.environment = load_environment(folder() + entry["environment"].get<std::string>());
     }
-    const PathTracer tracer(scene, threads(0));
+    PathTracer tracer(scene, threads(0));
     const Camera camera = camera_at(vector_of(entry["eye"]), vector_of(entry["target"]), entry["yfov_deg"]);
     const SamplingMap map = uniform_map(size_px, size_px, kSpp);
     TraceSettings settings;
@@ -110,18 +127,23 @@ TEST(MitsubaReference, NoWindowDiffers) {
     std::vector<std::vector<double>> repeats;
     for (int s = 0; s < kSeeds; ++s) {
       settings.seed = static_cast<std::uint64_t>(s + 1);
-      repeats.push_back(window_means(tracer.trace(camera, 1, map, settings), map, window_px));
+      repeats.push_back(window_means(tracer.at_rest().trace(camera, 1, map, settings), map, window_px));
     }
     const std::vector<double> means = entry["mean"];
     const std::vector<double> errors = entry["standard_error"];
     ASSERT_EQ(means.size(), repeats[0].size());
+    const std::string scene_file = entry["file"];
+    std::vector<double> our_means;
     for (std::size_t w = 0; w < means.size(); ++w) {
       const Sample ours = sample_of(repeats, w);
+      our_means.push_back(ours.mean);
       const Sample theirs{means[w], errors[w] * errors[w], reference["seeds"]};
       windows.push_back(
-          {entry["file"].get<std::string>() + " window " + std::to_string(w / 3) + " channel " + std::to_string(w % 3),
+          {scene_file, scene_file + " window " + std::to_string(w / 3) + " channel " + std::to_string(w % 3),
            welch_p(ours, theirs), ours.mean, theirs.mean, std::sqrt(ours.variance_of_mean + theirs.variance_of_mean)});
     }
+    pictures[scene_file] = {picture_of_windows(our_means, size_px, window_px),
+                            picture_of_windows(means, size_px, window_px)};
   }
   // Holm 1979: the k-th smallest of n is held against the family's level / (n - k).
   std::sort(windows.begin(), windows.end(), [](const Window& a, const Window& b) { return a.p < b.p; });
@@ -131,10 +153,11 @@ TEST(MitsubaReference, NoWindowDiffers) {
     if (w.p * static_cast<double>(windows.size() - k) >= kFamilyLevel) {
       break;
     }
+    const auto& [ours, theirs] = pictures.at(w.scene);
     ADD_FAILURE() << w.place << ": " << w.ours << ", Mitsuba " << w.theirs << ", standard error " << w.spread << ", p "
-                  << w.p;
+                  << w.p << keep_pictures(ours, theirs, w.scene);
   }
-  // Else nothing could be seen: the median window tells differences of 0.4 % (two standard errors).
+  // The test must be able to see something: in the median window, differences of 0.4 % (two standard errors).
   std::vector<double> relative;
   for (const Window& w : windows) {
     relative.push_back(w.spread / w.theirs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies that move: from frame to frame, and while the shutter is open, against closed forms.
+// Bodies that move from frame to frame and while the shutter is open, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "render/tracer_scenes.hpp"
 #include "support/chi2.hpp"
 #include "support/gltf_builder.hpp"
+#include "support/picture_evidence.hpp"
 
 namespace gazetrace {
 namespace {
@@ -18,7 +19,7 @@ using namespace test;
 constexpr int kWidth = 64, kHeight = 8, kSeeds = 16;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-// Pictures x from -4 to 4 and y from -0.5 to 0.5 at any depth.
+// Shows x from -4 to 4 and y from -0.5 to 0.5 at any depth.
 Camera flat_camera() {
   Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
   camera.projection.kind = ProjectionKind::orthographic;
@@ -36,7 +37,7 @@ Affine moved(const Vec3d& by) {
   return make_affine(by, {}, {1, 1, 1});
 }
 
-// A glowing box of half width 1 that slides to the right by 2 m a second, x = 0 at t = 1 s.
+// An emissive box of half width 1 that slides to the right at 2 m/s, with x = 0 at t = 1 s.
 Scene sliding_box() {
   Scene scene;
   scene.materials = {diffuse_material({0, 0, 0}, {1, 1, 1})};
@@ -47,13 +48,13 @@ Scene sliding_box() {
   return scene;
 }
 
-std::vector<std::vector<double>> columns(const PathTracer& tracer, const TraceSettings& base, std::uint32_t spp = 64) {
+std::vector<std::vector<double>> columns(const PosedScene& posed, const TraceSettings& base, std::uint32_t spp = 64) {
   const SamplingMap map = uniform_map(kWidth, kHeight, spp);
   std::vector<std::vector<double>> result(kWidth);
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     TraceSettings settings = base;
     settings.seed = seed;
-    const SparseFrame frame = tracer.trace(flat_camera(), 1, map, settings);
+    const SparseFrame frame = posed.trace(flat_camera(), 1, map, settings);
     EXPECT_EQ(frame.stats.non_finite_samples + frame.stats.rejected_rays, 0U);
     std::vector<double> sums(kWidth, 0);
     for (std::size_t i = 0; i < map.sites.size(); ++i) {
@@ -98,10 +99,10 @@ double share(double low, double high) {
 TEST(ObjectBlur, ASlidingBoxBecomesARamp) {
   const Scene scene = sliding_box();
   PathTracer tracer(scene, threads(2));
-  tracer.move_to({kSecond, kSecond + kSecond / 2});  // from x = 0 to x = 1
+  const PosedScene posed = tracer.at({kSecond, kSecond + kSecond / 2});  // from x = 0 to x = 1
   // x is covered while |x - t| < 1, t in [0, 1].
   expect_columns(
-      columns(tracer, emission_only()), [](double x) { return share(x - 1, x + 1); }, 14);
+      columns(posed, emission_only()), [](double x) { return share(x - 1, x + 1); }, 14);
 }
 
 TEST(ObjectBlur, AnInstantIsSharpAndWhereItShouldBe) {
@@ -109,9 +110,9 @@ TEST(ObjectBlur, AnInstantIsSharpAndWhereItShouldBe) {
   PathTracer tracer(scene, threads(2));
   for (const double at_s : {0.0, 1.0, 1.75}) {
     const auto t = static_cast<std::int64_t>(at_s * 1e9);
-    tracer.move_to({t, t});
+    const PosedScene posed = tracer.at({t, t});
     const double center = 2 * (at_s - 1);
-    const auto measured = columns(tracer, emission_only(), 4);
+    const auto measured = columns(posed, emission_only(), 4);
     for (int c = 0; c < kWidth; ++c) {
       const double x = (c + 0.5 - kWidth / 2.0) / 8.0;
       EXPECT_EQ(measured[static_cast<std::size_t>(c)][0], std::fabs(x - center) < 1 ? 1.0 : 0.0) << at_s << ' ' << x;
@@ -130,11 +131,11 @@ TEST(ObjectBlur, AWheelTurnsOnACircle) {
     return make_affine({}, {0, 0, std::sin(angle / 2), std::cos(angle / 2)}, {1, 1, 1});
   });
   PathTracer tracer(scene, threads(2));
-  tracer.move_to({0, kSecond});
+  const PosedScene posed = tracer.at({0, kSecond});
   Camera camera = flat_camera();
   camera.projection.ymag_m = 4;
   const SamplingMap map = uniform_map(128, 128, 256);
-  const SparseFrame frame = tracer.trace(camera, 1, map, emission_only());
+  const SparseFrame frame = posed.trace(camera, 1, map, emission_only());
   double sum = 0, radius = 0, least = 9, most = 0;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
     const double value = static_cast<double>(frame.sum[i].y);
@@ -153,7 +154,7 @@ TEST(ObjectBlur, AWheelTurnsOnACircle) {
   EXPECT_NEAR(least, -turn / 2 - 0.05 / 3, 0.02);
 }
 
-// Shading follows: a lit plate that turns its face shows the mean of its cosine.
+// Shading follows the motion: a lit plate that turns shows the mean of the cosine.
 TEST(ObjectBlur, NormalsTurnWithTheirBody) {
   for (const double mirror : {1.0, -1.0}) {
     Scene scene;
@@ -171,7 +172,7 @@ TEST(ObjectBlur, NormalsTurnWithTheirBody) {
     sun.intensity = {1, 1, 1};
     scene.lights = {sun};
     PathTracer tracer(scene, threads(2));
-    tracer.move_to({0, kSecond});
+    const PosedScene posed = tracer.at({0, kSecond});
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
     settings.max_bounces = 1;
@@ -179,7 +180,7 @@ TEST(ObjectBlur, NormalsTurnWithTheirBody) {
     std::vector<double> means;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       settings.seed = seed;
-      means.push_back(mean_radiance(tracer.trace(flat_camera(), 1, uniform_map(8, 8, 32), settings)).y);
+      means.push_back(mean_radiance(posed.trace(flat_camera(), 1, uniform_map(8, 8, 32), settings)).y);
     }
     const double expected = std::sin(turn) / turn / kPi;
     const MeanTest result = t_test(means, expected, 2e-4 * expected);
@@ -188,7 +189,7 @@ TEST(ObjectBlur, NormalsTurnWithTheirBody) {
   }
 }
 
-// A mirroring matrix turns the winding round, not the front: a lamp that shines forwards does so while it slides, too.
+// A mirroring matrix reverses the winding, not the front: an emitter that faces forwards does so also while it slides.
 TEST(ObjectBlur, MirroredBodiesKeepTheirFront) {
   for (const double mirror : {1.0, -1.0}) {
     Scene scene;
@@ -198,10 +199,10 @@ TEST(ObjectBlur, MirroredBodiesKeepTheirFront) {
       return make_affine({1e-9 * static_cast<double>(t), 0, 0}, {}, {mirror, 1, 1});
     });
     PathTracer tracer(scene, threads(1));
-    tracer.move_to({0, kSecond});
+    const PosedScene posed = tracer.at({0, kSecond});
     const SamplingMap map = uniform_map(8, 8, 4);
-    EXPECT_EQ(mean_radiance(tracer.trace(camera_at({0, 0, 5}, {}), 1, map, emission_only())).y, 1) << mirror;
-    EXPECT_EQ(mean_radiance(tracer.trace(camera_at({0, 0, -5}, {}), 1, map, emission_only())).y, 0) << mirror;
+    EXPECT_EQ(mean_radiance(posed.trace(camera_at({0, 0, 5}, {}), 1, map, emission_only())).y, 1) << mirror;
+    EXPECT_EQ(mean_radiance(posed.trace(camera_at({0, 0, -5}, {}), 1, map, emission_only())).y, 0) << mirror;
   }
 }
 
@@ -220,13 +221,13 @@ TEST(ObjectBlur, ShadowsMoveToo) {
   sun.intensity = {1, 1, 1};
   scene.lights = {sun};
   PathTracer tracer(scene, threads(2));
-  tracer.move_to({0, kSecond});
+  const PosedScene posed = tracer.at({0, kSecond});
   TraceSettings settings;
   settings.diffuse = DiffuseModel::matte;
   settings.max_bounces = 1;
   // In the shadow while |100 t - 50 - x| < 20: 0.4 of the time, everywhere in the picture.
   expect_columns(
-      columns(tracer, settings), [](double) { return 0.6 / kPi; }, 64);
+      columns(posed, settings), [](double) { return 0.6 / kPi; }, 64);
 }
 
 TEST(ObjectBlur, AFurnaceStaysAFurnace) {
@@ -240,10 +241,10 @@ TEST(ObjectBlur, AFurnaceStaysAFurnace) {
   });
   scene.environment = constant_environment({1, 1, 1});
   PathTracer tracer(scene, threads(2));
-  tracer.move_to({0, kSecond});
+  const PosedScene posed = tracer.at({0, kSecond});
   TraceSettings settings;
   settings.diffuse = DiffuseModel::matte;
-  const SparseFrame frame = tracer.trace(camera_at({2, 2, 4}, {0, 0, 0}), 1, uniform_map(64, 48, 64), settings);
+  const SparseFrame frame = posed.trace(camera_at({2, 2, 4}, {0, 0, 0}), 1, uniform_map(64, 48, 64), settings);
   EXPECT_NEAR(mean_radiance(frame).y, 1, 1e-3);
 }
 
@@ -254,7 +255,7 @@ TEST(ObjectBlur, MovingEmittersShineByRays) {
   add_mesh(scene, {quad({{{-9, -2, 9}, {9, -2, 9}, {9, -2, -9}, {-9, -2, -9}}}, 1)});
   add_mesh(scene, {quad({{{-1, 3, -1}, {1, 3, -1}, {1, 3, 1}, {-1, 3, 1}}}, 0)});
   PathTracer tracer(scene, threads(2));
-  tracer.move_to({0, 2 * kSecond});
+  const PosedScene posed = tracer.at({0, 2 * kSecond});
   std::array<std::vector<double>, 2> means;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     for (const bool mis : {false, true}) {
@@ -262,7 +263,7 @@ TEST(ObjectBlur, MovingEmittersShineByRays) {
       settings.seed = seed;
       settings.light_sampling = mis ? LightSampling::mis : LightSampling::bsdf_only;
       means[mis ? 1 : 0].push_back(
-          mean_radiance(tracer.trace(camera_at({0, 4, 8}, {0, -2, 0}), 1, uniform_map(24, 16, 64), settings)).y);
+          mean_radiance(posed.trace(camera_at({0, 4, 8}, {0, -2, 0}), 1, uniform_map(24, 16, 64), settings)).y);
     }
   }
   std::vector<double> differences;
@@ -281,16 +282,19 @@ TEST(ObjectBlur, TheSameBitsForAnyThreadCountAndOrder) {
   scene.environment = constant_environment({1, 1, 1});
   const SamplingMap map = uniform_map(90, 60, 4);
   PathTracer one(scene, threads(1));
-  one.move_to({0, kSecond});
-  const SparseFrame a = one.trace(flat_camera(), 1, map, {});
+  const SparseFrame a = one.at({0, kSecond}).trace(flat_camera(), 1, map, {});
   PathTracer two(scene, threads(2));
-  two.move_to({kSecond, 3 * kSecond});
-  two.move_to({5, 5});
-  two.move_to({0, kSecond});
-  const SparseFrame b = two.trace(flat_camera(), 1, map, {});
-  EXPECT_EQ(a.sum, b.sum);
-  two.move_to({5, 5});
-  EXPECT_NE(a.sum, two.trace(flat_camera(), 1, map, {}).sum);
+  const SparseFrame resting = two.at_rest().trace(flat_camera(), 1, map, {});
+  const PosedScene other = two.at({kSecond, 3 * kSecond});
+  const PosedScene instant = two.at({5, 5});
+  const PosedScene same = two.at({0, kSecond});
+  EXPECT_TRUE(same_samples(same.trace(flat_camera(), 1, map, {}), a, map));
+  EXPECT_NE(a.sum, instant.trace(flat_camera(), 1, map, {}).sum);
+  EXPECT_NE(a.sum, other.trace(flat_camera(), 1, map, {}).sum);
+  // A pose stays what it is, whatever others the tracer has been in since.
+  EXPECT_TRUE(same_samples(same.trace(flat_camera(), 1, map, {}), a, map));
+  EXPECT_NE(a.sum, resting.sum);
+  EXPECT_TRUE(same_samples(two.at_rest().trace(flat_camera(), 1, map, {}), resting, map));
 }
 
 TEST(ObjectBlur, WhatShrinksToNothingIsNotThere) {
@@ -301,8 +305,8 @@ TEST(ObjectBlur, WhatShrinksToNothingIsNotThere) {
   };
   PathTracer tracer(scene, threads(1));
   const auto mean = [&](std::int64_t t) {
-    tracer.move_to({t, t});
-    return mean_radiance(tracer.trace(flat_camera(), 1, uniform_map(kWidth, kHeight, 4), emission_only())).y;
+    const PosedScene posed = tracer.at({t, t});
+    return mean_radiance(posed.trace(flat_camera(), 1, uniform_map(kWidth, kHeight, 4), emission_only())).y;
   };
   EXPECT_NEAR(mean(0), 0.25, 1e-6);
   EXPECT_EQ(mean(2 * kSecond), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near a thing may lie to a lamp, or how small it may be on large ground, and still throw a shadow; and lamps that
+// How close an object may be to an emitter, or how small on large ground, and still cast a shadow; and emitters that
 // light samples cannot aim at.
 #include <gtest/gtest.h>
 
@@ -20,12 +20,13 @@ TraceSettings one_bounce(LightSampling sampling) {
   return settings;
 }
 
-// A square that looks down, its middle at (0, y, 0).
+// A square that faces down, with its middle at (0, y, 0).
 Geometry facing_down(float half, float y, std::int32_t material) {
   return quad({{{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}}}, material);
 }
 
-// A panel that covers a lamp entirely, closer to it than a thousandth or a ten-thousandth of the way to the floor.
+// A panel that covers an emitter entirely, closer to it than a thousandth or a ten-thousandth of the distance to the
+// floor.
 TEST(ShadowPrecision, AThinCoverHidesALampFromAFarFloor) {
   for (const double distance : {20.0, 200.0}) {
     for (const bool turned : {false, true}) {
@@ -38,17 +39,19 @@ TEST(ShadowPrecision, AThinCoverHidesALampFromAFarFloor) {
       add_mesh(scene, {facing_down(1, lamp, 1)}, place);
       add_mesh(scene, {facing_down(1.5F, lamp - gap, 0)}, place);
       add_mesh(scene, {quad({{{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}}, 0)}, place);
-      const PathTracer tracer(scene, threads(1));
+      PathTracer tracer(scene, threads(1));
       const Camera camera = camera_at(transform_point(place, {0.5, 2, 0}), transform_point(place, {0, 0, 0}), 10);
       for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only, LightSampling::bsdf_only}) {
-        const SparseFrame frame = tracer.trace(camera, 1, uniform_map(16, 16, 64), one_bounce(sampling));
+        const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(16, 16, 64), one_bounce(sampling));
         EXPECT_EQ(mean_radiance(frame).y, 0) << distance << ' ' << turned;
       }
-      // Without the cover the lamp is seen.
+      // Without the cover the emitter is visible.
       scene.instances.erase(scene.instances.begin() + 1);
-      const PathTracer open(scene, threads(1));
-      EXPECT_GT(mean_radiance(open.trace(camera, 1, uniform_map(16, 16, 64), one_bounce(LightSampling::light_only))).y,
-                0.1);
+      PathTracer open(scene, threads(1));
+      EXPECT_GT(
+          mean_radiance(open.at_rest().trace(camera, 1, uniform_map(16, 16, 64), one_bounce(LightSampling::light_only)))
+              .y,
+          0.1);
     }
   }
 }
@@ -70,14 +73,14 @@ TEST(ShadowPrecision, SmallThingsShadowLargeGround) {
       sun.direction = Vec3f{1, -1, 0} * static_cast<float>(std::sqrt(0.5));
       sun.intensity = {1, 1, 1};
       scene.lights = {sun};
-      const PathTracer tracer(scene, threads(1));
+      PathTracer tracer(scene, threads(1));
       // Looks at the middle of the shadow from above, a twentieth of it wide.
       const Vec3d middle{double{side}, 0, 0};
       const Camera camera = camera_at(middle + Vec3d{0, 3, 0.3} * double{side}, middle, 1);
-      const SparseFrame frame = tracer.trace(camera, 1, uniform_map(8, 8, 4), one_bounce(LightSampling::mis));
+      const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 4), one_bounce(LightSampling::mis));
       EXPECT_EQ(mean_radiance(frame).y, 0) << "ground " << half << ", cube " << side;
       const Camera beside = camera_at(Vec3d{0, 3, 3.3} * double{side}, Vec3d{0, 0, 3} * double{side}, 1);
-      const SparseFrame lit = tracer.trace(beside, 1, uniform_map(8, 8, 4), one_bounce(LightSampling::mis));
+      const SparseFrame lit = tracer.at_rest().trace(beside, 1, uniform_map(8, 8, 4), one_bounce(LightSampling::mis));
       EXPECT_NEAR(mean_radiance(lit).y, 0.5 / kPi * std::sqrt(0.5), 1e-5) << "ground " << half << ", cube " << side;
     }
   }
@@ -91,10 +94,10 @@ TEST(ShadowPrecision, LampsThatMoveShineUnderEveryWayOfSampling) {
   add_mesh(scene, {quad({{{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}}}, 0)});
   scene.motions.push_back({[](std::int64_t) { return Affine{}; }, 1'000'000'000});
   scene.instances[0].motion = 0;
-  const PathTracer tracer(scene, threads(1));
+  PathTracer tracer(scene, threads(1));
   const Camera camera = camera_at({0.5, 1, 0}, {0, 0, 0}, 10);
   const auto seen = [&](LightSampling sampling) {
-    return mean_radiance(tracer.trace(camera, 1, uniform_map(16, 16, 64), one_bounce(sampling))).y;
+    return mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(16, 16, 64), one_bounce(sampling))).y;
   };
   const double by_rays = seen(LightSampling::bsdf_only);
   EXPECT_GT(by_rays, 0.1);

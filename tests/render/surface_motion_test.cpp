@@ -34,9 +34,9 @@ double focal_px() {
 
 TEST(SurfaceMotion, AMovingCameraShiftsAWall) {
   const Scene scene = wall_scene();
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const SurfaceMotion motion =
-      tracer.surface_motion(camera_in({0.3, 0.1, 5}), kWidth, kHeight, {camera_in({0, 0, 5}), 0});
+      tracer.at_rest().surface_motion(camera_in({0.3, 0.1, 5}), kWidth, kHeight, {camera_in({0, 0, 5}), 0});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       EXPECT_NEAR(motion.earlier_px(x, y).x, x + 0.5 + focal_px() * 0.3 / 5, 1e-4);
@@ -52,10 +52,10 @@ TEST(SurfaceMotion, AMovingCameraShiftsAWall) {
 TEST(SurfaceMotion, ATurningCameraMovesWallAndSkyAlike) {
   Scene scene = wall_scene();
   scene.meshes[0].geometries[0].positions = {{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}};  // the left half
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const double turned = 5 * kRadPerDeg;
   const SurfaceMotion motion =
-      tracer.surface_motion(camera_in({0, 0, 5}), kWidth, kHeight, {camera_in({0, 0, 5}, turned), 0});
+      tracer.at_rest().surface_motion(camera_in({0, 0, 5}), kWidth, kHeight, {camera_in({0, 0, 5}, turned), 0});
   for (const int x : {3, 20, 30, 45}) {
     // On the horizon's row the angle to the axis grows by the turn; the earlier camera looked to the left.
     const double angle = std::atan((x + 0.5 - kWidth / 2.0) / focal_px()) + turned;
@@ -70,15 +70,17 @@ TEST(SurfaceMotion, ATurningCameraMovesWallAndSkyAlike) {
 TEST(SurfaceMotion, TheSkyOfAShiftedOrthographicCameraStays) {
   Scene scene = wall_scene();
   scene.meshes[0].geometries[0].positions = {{-9, -9, 0}, {0, -9, 0}, {0, 9, 0}, {-9, 9, 0}};  // the left half
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const auto camera = [](const Vec3d& position, double yaw_rad = 0) {
     Camera plain = camera_in(position, yaw_rad);
     plain.projection.kind = ProjectionKind::orthographic;
     plain.projection.ymag_m = 2;
     return plain;
   };
-  const SurfaceMotion shifted = tracer.surface_motion(camera({0.3, 0.1, 5}), kWidth, kHeight, {camera({0, 0, 5}), 0});
-  const SurfaceMotion turned = tracer.surface_motion(camera({0, 0, 5}), kWidth, kHeight, {camera({0, 0, 5}, 0.1), 0});
+  const SurfaceMotion shifted =
+      tracer.at_rest().surface_motion(camera({0.3, 0.1, 5}), kWidth, kHeight, {camera({0, 0, 5}), 0});
+  const SurfaceMotion turned =
+      tracer.at_rest().surface_motion(camera({0, 0, 5}), kWidth, kHeight, {camera({0, 0, 5}, 0.1), 0});
   int misses = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = kWidth - 10; x < kWidth; ++x) {
@@ -92,9 +94,9 @@ TEST(SurfaceMotion, TheSkyOfAShiftedOrthographicCameraStays) {
 
 TEST(SurfaceMotion, WhatStandsStillStaysToTheBit) {
   const Scene scene = wall_scene();
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const Camera camera = camera_in({0.123, 4.56, 7.89}, 0.3);
-  const SurfaceMotion motion = tracer.surface_motion(camera, kWidth, kHeight, {camera, 0});
+  const SurfaceMotion motion = tracer.at_rest().surface_motion(camera, kWidth, kHeight, {camera, 0});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       EXPECT_EQ(motion.earlier_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
@@ -104,8 +106,9 @@ TEST(SurfaceMotion, WhatStandsStillStaysToTheBit) {
 
 TEST(SurfaceMotion, BehindTheEarlierCameraIsNowhere) {
   const Scene scene = wall_scene();
-  const PathTracer tracer(scene, threads(2));
-  const SurfaceMotion motion = tracer.surface_motion(camera_in({0, 0, 5}), kWidth, kHeight, {camera_in({0, 0, -5}), 0});
+  PathTracer tracer(scene, threads(2));
+  const SurfaceMotion motion =
+      tracer.at_rest().surface_motion(camera_in({0, 0, 5}), kWidth, kHeight, {camera_in({0, 0, -5}), 0});
   EXPECT_TRUE(std::isnan(motion.earlier_px(20, 20).x));
 }
 
@@ -120,9 +123,8 @@ TEST(SurfaceMotion, ABodyCarriesItsSurface) {
   }});
   scene.instances[1].motion = 0;
   PathTracer tracer(scene, threads(2));
-  tracer.move_to({kSecond, kSecond});
   const Camera camera = camera_in({0, 0, 5});
-  const SurfaceMotion motion = tracer.surface_motion(camera, kWidth, kHeight, {camera, 0});
+  const SurfaceMotion motion = tracer.at({kSecond, kSecond}).surface_motion(camera, kWidth, kHeight, {camera, 0});
   int on_body = 0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -167,9 +169,10 @@ TEST(SurfaceMotion, AShapeCarriesItsSurface) {
   for (const bool forwards : {true, false}) {
     const double now_s = forwards ? 1 : 0;
     const double then_s = 1 - now_s;
-    tracer.move_to({static_cast<std::int64_t>(now_s) * kSecond, static_cast<std::int64_t>(now_s) * kSecond});
+    const std::int64_t now_ns = static_cast<std::int64_t>(now_s) * kSecond;
     const SurfaceMotion motion =
-        tracer.surface_motion(camera, kWidth, kHeight, {camera, static_cast<std::int64_t>(then_s) * kSecond});
+        tracer.at({now_ns, now_ns})
+            .surface_motion(camera, kWidth, kHeight, {camera, static_cast<std::int64_t>(then_s) * kSecond});
     const auto place = [](double s, double u, double y) {  // u: 0..1 across
       const double x = -1 + u * (2 + s);
       return Vec3d{x * std::cos(0.5 * s), y, -x * std::sin(0.5 * s) + s};

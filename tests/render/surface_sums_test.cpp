@@ -5,8 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "gazetrace/reconstruct.hpp"
 #include "render/tracer_scenes.hpp"
+#include "support/picture_evidence.hpp"
+#include "support/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {
@@ -45,11 +46,11 @@ TraceSettings with_surfaces() {
 
 TEST(SurfaceSums, AskingForThemChangesNoBitOfTheSums) {
   const Scene scene = lit_scene();
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const SamplingMap map = foveated_map();
-  const SparseFrame plain = tracer.trace(kCamera, 0, map, {});
-  const SparseFrame sparse = tracer.trace(kCamera, 0, map, with_surfaces());
-  EXPECT_EQ(plain.sum, sparse.sum);
+  const SparseFrame plain = tracer.at_rest().trace(kCamera, 0, map, {});
+  const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, with_surfaces());
+  EXPECT_TRUE(same_samples(plain, sparse, map));
   EXPECT_EQ(plain.sum_square_luminance, sparse.sum_square_luminance);
   EXPECT_EQ(plain.count, sparse.count);
   EXPECT_TRUE(plain.surfaces.empty() && plain.first_surface.empty());
@@ -59,12 +60,12 @@ TEST(SurfaceSums, AskingForThemChangesNoBitOfTheSums) {
 // tracer of no bounces sees the same samples.
 TEST(SurfaceSums, ShiningAndReflectedLightAreTheWholeSum) {
   const Scene scene = lit_scene();
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const SamplingMap map = foveated_map();
-  const SparseFrame sparse = tracer.trace(kCamera, 0, map, with_surfaces());
+  const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, with_surfaces());
   TraceSettings only_seen;
   only_seen.max_bounces = 0;
-  const SparseFrame seen = tracer.trace(kCamera, 0, map, only_seen);
+  const SparseFrame seen = tracer.at_rest().trace(kCamera, 0, map, only_seen);
   ASSERT_EQ(sparse.first_surface.size(), map.sites.size() + 1);
   ASSERT_EQ(sparse.first_surface.back(), sparse.surfaces.size());
   std::size_t several = 0;
@@ -94,7 +95,7 @@ TEST(SurfaceSums, ShiningAndReflectedLightAreTheWholeSum) {
 // The tracer and the filters must agree on which single pixels are smoothed: by expectations, which are certain.
 TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
   const Scene scene = lit_scene();
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   FoveationSettings foveation;
   foveation.falloff = "linear";
   foveation.uniform_spp = 20;
@@ -103,7 +104,7 @@ TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
   TraceSettings settings = with_surfaces();
   settings.guides = true;
   settings.max_bounces = 1;
-  const SparseFrame sparse = tracer.trace(kCamera, 0, map, settings);
+  const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, settings);
   int rounded_up = 0;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
     const bool has = sparse.first_surface[i] != sparse.first_surface[i + 1];
@@ -118,15 +119,15 @@ TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
 TEST(SurfaceSums, SameBitsForAnyThreadCount) {
   const Scene scene = lit_scene();
   const SamplingMap map = foveated_map();
-  const PathTracer one(scene, threads(1));
-  const PathTracer two(scene, threads(2));
+  PathTracer one(scene, threads(1));
+  PathTracer two(scene, threads(2));
   const GuideSettings settings{.edge_rays = 3};
-  const Guides guides_one = one.guides(kCamera, kWidth, kHeight, settings);
-  const Guides guides_two = two.guides(kCamera, kWidth, kHeight, settings);
+  const Guides guides_one = one.at_rest().guides(kCamera, kWidth, kHeight, settings);
+  const Guides guides_two = two.at_rest().guides(kCamera, kWidth, kHeight, settings);
   EXPECT_GT(guides_one.edge_rays.size(), 300U);
-  const Frame a = reconstruct(one.trace(kCamera, 0, map, with_surfaces()), map, "guided", 1, &guides_one);
-  const Frame b = reconstruct(two.trace(kCamera, 0, map, with_surfaces()), map, "guided", 2, &guides_two);
-  EXPECT_EQ(a.radiance, b.radiance);
+  const Frame a = reconstruct(one.at_rest().trace(kCamera, 0, map, with_surfaces()), map, "guided", 1, &guides_one);
+  const Frame b = reconstruct(two.at_rest().trace(kCamera, 0, map, with_surfaces()), map, "guided", 2, &guides_two);
+  EXPECT_TRUE(same_picture(a.radiance, b.radiance));
   EXPECT_EQ(a.variance, b.variance);
 }
 
@@ -134,14 +135,14 @@ TEST(SurfaceSums, SameBitsForAnyThreadCount) {
 // mean of the frame within a per cent of the truth's.
 TEST(GuidedFilter, IsNearerToManySamplesThanLinear) {
   const Scene scene = lit_scene();
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const SamplingMap map = foveated_map();
   TraceSettings other;
   other.seed = 99;
   const SamplingMap full = uniform_map(kWidth, kHeight, 512);
-  const Frame truth = reconstruct(tracer.trace(kCamera, 0, full, other), full, "none");
-  const SparseFrame sparse = tracer.trace(kCamera, 0, map, with_surfaces());
-  const Guides guides = tracer.guides(kCamera, kWidth, kHeight, {.edge_rays = 4});
+  const Frame truth = reconstruct(tracer.at_rest().trace(kCamera, 0, full, other), full, "none");
+  const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, with_surfaces());
+  const Guides guides = tracer.at_rest().guides(kCamera, kWidth, kHeight, {.edge_rays = 4});
   const Frame linear = reconstruct(sparse, map, "linear");
   const Frame guided = reconstruct(sparse, map, "guided", 0, &guides);
   double linear_error = 0;

@@ -42,7 +42,9 @@ Guides seen(const Material& material, float uv1_scale) {
   const double yfov_deg = 2 * std::atan(std::sqrt(0.5)) * kDegPerRad;
   GuideSettings settings;
   settings.diffuse = DiffuseModel::matte;
-  return PathTracer(scene, threads(1)).guides(camera_at({0, 0, 0}, {0, 0, -1}, yfov_deg), kFrame, kFrame, settings);
+  return PathTracer(scene, threads(1))
+      .at_rest()
+      .guides(camera_at({0, 0, 0}, {0, 0, -1}, yfov_deg), kFrame, kFrame, settings);
 }
 
 int level_of(float value) {

@@ -17,8 +17,8 @@ TEST(TracerLight, AConstantEnvironmentSeenDirectlyIsExact) {
   Scene scene;
   scene.materials.emplace_back();
   scene.environment = constant_environment({0.25F, 0.5F, 2.0F});
-  const PathTracer tracer(scene, threads(1));
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, uniform_map(16, 8, 4), {});
+  PathTracer tracer(scene, threads(1));
+  const SparseFrame frame = tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}), 1, uniform_map(16, 8, 4), {});
   ASSERT_EQ(frame.sum.size(), 128U);
   for (std::size_t i = 0; i < frame.sum.size(); ++i) {
     EXPECT_EQ(frame.count[i], 4U);
@@ -38,18 +38,20 @@ TEST(TracerLight, AWhiteGlowingBoxAddsOneForEveryBounce) {
     Scene scene;
     scene.materials.push_back(diffuse_material({1, 1, 1}, {1, 1, 1}));
     add_mesh(scene, box(1.5F, true, 0));
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const SamplingMap map = uniform_map(16, 16, 256);
     for (const int bounces : {0, 1, 5}) {
       TraceSettings settings;
       settings.diffuse = diffuse;
       settings.max_bounces = bounces;
       settings.light_sampling = LightSampling::bsdf_only;
-      const Vec3d mean = mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
+      const Vec3d mean =
+          mean_radiance(tracer.at_rest().trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
       // The albedo tables' interpolation error (2e-3 an event, bsdf_test) is all that is left.
       EXPECT_NEAR(mean.y, 1 + bounces, 2e-3 * bounces * (bounces + 1) / 2 + 1e-6) << bounces;
       settings.light_sampling = LightSampling::mis;
-      const Vec3d mixed = mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
+      const Vec3d mixed =
+          mean_radiance(tracer.at_rest().trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
       EXPECT_NEAR(mixed.y, 1 + bounces, 0.01 * bounces + 1e-6) << bounces;
     }
   }
@@ -61,7 +63,7 @@ TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
     Scene scene;
     scene.materials.push_back(diffuse_material({albedo, albedo, albedo}, {1, 1, 1}));
     add_mesh(scene, box(1.5F, true, 0));
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
@@ -71,14 +73,14 @@ TEST(TracerLight, AGlowingLambertianBoxIsTheGeometricSeries) {
     // Cosine sampling of a cosine lobe has no variance here: exact up to float sums.
     settings.light_sampling = LightSampling::bsdf_only;
     const SamplingMap one = uniform_map(8, 8, 16);
-    EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, one, settings)).y, expected, 2e-5 * expected) << albedo;
+    EXPECT_NEAR(mean_radiance(tracer.at_rest().trace(camera, 1, one, settings)).y, expected, 2e-5 * expected) << albedo;
 
     settings.light_sampling = LightSampling::mis;
     settings.russian_roulette = true;
     Repeats repeats;
     for (std::uint64_t seed = 0; seed < 32; ++seed) {
       settings.seed = seed;
-      repeats.means.push_back(mean_radiance(tracer.trace(camera, 1, one, settings)).y);
+      repeats.means.push_back(mean_radiance(tracer.at_rest().trace(camera, 1, one, settings)).y);
     }
     EXPECT_LT(std::fabs(repeats.mean() - expected), kCriticalT * std::sqrt(repeats.variance_of_mean())) << albedo;
     EXPECT_LT(std::sqrt(repeats.variance_of_mean()), 0.01 * expected) << albedo;
@@ -96,20 +98,21 @@ TEST(TracerLight, ExtremeEmissionKeepsTheSeries) {
     for (const LightChoice choice : {LightChoice::power, LightChoice::tree}) {
       TracerOptions options = threads(2);
       options.light_choice = choice;
-      const PathTracer tracer(scene, options);
+      PathTracer tracer(scene, options);
       const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});
       TraceSettings settings;
       settings.diffuse = DiffuseModel::matte;
       settings.max_bounces = 40;
       const double expected = static_cast<double>(emission) / (1.0 - 0.5);
       settings.light_sampling = LightSampling::bsdf_only;
-      EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, uniform_map(8, 8, 4), settings)).y / expected, 1, 2e-5);
+      EXPECT_NEAR(mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 4), settings)).y / expected, 1,
+                  2e-5);
       for (const LightSampling sampling : {LightSampling::mis, LightSampling::light_only}) {
         settings.light_sampling = sampling;
         Repeats repeats;
         for (std::uint64_t seed = 0; seed < 32; ++seed) {
           settings.seed = seed;
-          const SparseFrame frame = tracer.trace(camera, 1, uniform_map(8, 8, 64), settings);
+          const SparseFrame frame = tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 64), settings);
           EXPECT_EQ(frame.stats.non_finite_samples, 0U);
           for (std::size_t i = 0; i < frame.sum.size(); ++i) {
             ASSERT_TRUE(std::isfinite(frame.sum[i].y) && frame.sum[i].y > 0);
@@ -130,7 +133,7 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
     Scene scene;
     scene.materials.push_back(diffuse_material({albedo, albedo, albedo}, {1, 1, 1}));
     add_mesh(scene, box(1.5F, true, 0));
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     TraceSettings settings;
     settings.diffuse = DiffuseModel::matte;
     settings.light_sampling = LightSampling::bsdf_only;
@@ -143,8 +146,8 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
         const double found = std::pow(static_cast<double>(albedo), v);
         expected += v < 2 ? found : std::min(found, bound);
       }
-      const Vec3d mean =
-          mean_radiance(tracer.trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, uniform_map(8, 8, 4), settings));
+      const Vec3d mean = mean_radiance(
+          tracer.at_rest().trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, uniform_map(8, 8, 4), settings));
       EXPECT_NEAR(mean.y, expected, 2e-5 * expected) << albedo << " " << limit;
     }
     // Light samples: with one bounce nothing is indirect, with two the second event's is.
@@ -153,10 +156,10 @@ TEST(TracerLight, ClampingBoundsIndirectLightOnly) {
     settings.max_bounces = 1;
     const SamplingMap map = uniform_map(16, 16, 256);
     const Camera camera = camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1});
-    const double direct = mean_radiance(tracer.trace(camera, 1, map, settings)).y;
+    const double direct = mean_radiance(tracer.at_rest().trace(camera, 1, map, settings)).y;
     EXPECT_NEAR(direct, 1 + static_cast<double>(albedo), 0.01);
     settings.max_bounces = 2;
-    EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, map, settings)).y, direct, 1e-6);
+    EXPECT_NEAR(mean_radiance(tracer.at_rest().trace(camera, 1, map, settings)).y, direct, 1e-6);
   }
 }
 

@@ -12,11 +12,11 @@ using namespace test;
 
 constexpr int kRepeats = 32;
 
-Repeats repeat(const PathTracer& tracer, const Camera& camera, const SamplingMap& map, TraceSettings settings) {
+Repeats repeat(PathTracer& tracer, const Camera& camera, const SamplingMap& map, TraceSettings settings) {
   Repeats result;
   for (int i = 0; i < kRepeats; ++i) {
     settings.seed = static_cast<std::uint64_t>(i + 1);
-    result.means.push_back(mean_radiance(tracer.trace(camera, 1, map, settings)).y);
+    result.means.push_back(mean_radiance(tracer.at_rest().trace(camera, 1, map, settings)).y);
   }
   return result;
 }
@@ -68,7 +68,7 @@ TEST(TracerMean, MisLightOnlyAndBsdfOnlyAgree) {
   for (const Case& c : {Case{"area light", true, false}, Case{"sky", false, true}, Case{"both", true, true},
                         Case{"layered materials", true, true, true}}) {
     const Scene scene = c.layered ? with_layers(corner(c.area_light, c.sky)) : corner(c.area_light, c.sky);
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
     const SamplingMap map = uniform_map(24, 16, 16);
     TraceSettings settings;
@@ -130,9 +130,9 @@ TEST(TracerMean, ManyLightsAgreeHoweverTheyAreChosen) {
   const SamplingMap map = uniform_map(24, 16, 64);
   TracerOptions options = threads(2);
   options.light_choice = LightChoice::tree;
-  const PathTracer tree(scene, options);
+  PathTracer tree(scene, options);
   options.light_choice = LightChoice::power;
-  const PathTracer power(scene, options);
+  PathTracer power(scene, options);
   TraceSettings settings;
   const Repeats mis = repeat(tree, camera, map, settings);
   const Repeats by_power = repeat(power, camera, map, settings);
@@ -162,7 +162,7 @@ TEST(TracerMean, CutOutAndBlendedLampsShineWithWhatIsThere) {
     Scene scene = corner(true, false);
     scene.materials[2].alpha_mode = c.mode;
     scene.materials[2].base_color.w = c.alpha;
-    const PathTracer tracer(scene, threads(2));
+    PathTracer tracer(scene, threads(2));
     TraceSettings settings;
     settings.max_bounces = 1;  // direct light only: it is proportional to what is there of the lamp
     Repeats light;
@@ -185,7 +185,7 @@ TEST(TracerMean, CutOutAndBlendedLampsShineWithWhatIsThere) {
 
 TEST(TracerMean, RussianRouletteKeepsTheMean) {
   const Scene scene = corner(true, true);
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
   const SamplingMap map = uniform_map(24, 16, 16);
   TraceSettings settings;
@@ -199,7 +199,7 @@ TEST(TracerMean, RussianRouletteKeepsTheMean) {
 // Sites of n x n pixels, straddling blocks included, against every pixel sampled: the frame's integral is the same.
 TEST(TracerMean, AFoveatedFrameHasTheUniformFramesMean) {
   const Scene scene = corner(true, true);
-  const PathTracer tracer(scene, threads(2));
+  PathTracer tracer(scene, threads(2));
   const Camera camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
   const auto integral = [](const SparseFrame& frame, const SamplingMap& map) {
     double sum = 0;
@@ -220,8 +220,8 @@ TEST(TracerMean, AFoveatedFrameHasTheUniformFramesMean) {
     settings.filter = filter;
     for (int i = 0; i < kRepeats; ++i) {
       settings.seed = static_cast<std::uint64_t>(i + 1);
-      a.means.push_back(integral(tracer.trace(camera, 1, sparse, settings), sparse));
-      b.means.push_back(integral(tracer.trace(camera, 1, dense, settings), dense));
+      a.means.push_back(integral(tracer.at_rest().trace(camera, 1, sparse, settings), sparse));
+      b.means.push_back(integral(tracer.at_rest().trace(camera, 1, dense, settings), dense));
     }
     EXPECT_LT(std::fabs(welch_t(a, b)), kCriticalT) << a.mean() << " " << b.mean();
   }

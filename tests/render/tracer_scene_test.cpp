@@ -29,8 +29,9 @@ TraceSettings no_bounces() {
 }
 
 double center_mean(const Scene& scene, const TraceSettings& settings = no_bounces(), std::uint32_t spp = 64) {
-  const PathTracer tracer(scene, threads(1));
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, spp), settings);
+  PathTracer tracer(scene, threads(1));
+  const SparseFrame frame =
+      tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(8, 8, spp), settings);
   EXPECT_EQ(frame.stats.non_finite_samples, 0U);
   EXPECT_EQ(frame.stats.rejected_rays, 0U);
   return mean_radiance(frame).y;
@@ -138,9 +139,9 @@ TEST(TracerScene, ScaleDoesNotChangeRadiance) {
         }
       }
       scene.environment = constant_environment({1, 1, 1});
-      const PathTracer tracer(scene, threads(2));
+      PathTracer tracer(scene, threads(2));
       const Vec3d eye = Vec3d{2, 1.5, 4} * scale;
-      const SparseFrame frame = tracer.trace(camera_at(eye, {0, 0, 0}), 1, uniform_map(32, 24, 64), {});
+      const SparseFrame frame = tracer.at_rest().trace(camera_at(eye, {0, 0, 0}), 1, uniform_map(32, 24, 64), {});
       EXPECT_EQ(frame.stats.non_finite_samples, 0U);
       EXPECT_EQ(frame.stats.rejected_rays, 0U);
       const double mean = mean_radiance(frame).y;
@@ -156,9 +157,9 @@ TEST(TracerScene, FarFromTheOriginNothingBreaks) {
     scene.materials = {diffuse_material({0.5F, 0.5F, 0.5F})};
     add_mesh(scene, box(1.0F, false, 0), make_affine({far, far, -far}, {}, {1, 1, 1}));
     scene.environment = constant_environment({1, 1, 1});
-    const PathTracer tracer(scene, threads(1));
-    const SparseFrame frame =
-        tracer.trace(camera_at({far + 3, far + 2, -far + 5}, {far, far, -far}), 1, uniform_map(16, 16, 16), {});
+    PathTracer tracer(scene, threads(1));
+    const SparseFrame frame = tracer.at_rest().trace(camera_at({far + 3, far + 2, -far + 5}, {far, far, -far}), 1,
+                                                     uniform_map(16, 16, 16), {});
     EXPECT_EQ(frame.stats.non_finite_samples, 0U);
     EXPECT_EQ(frame.stats.rejected_rays, 0U);
     EXPECT_TRUE(is_finite(to_float(mean_radiance(frame))));
@@ -172,12 +173,12 @@ TEST(TracerScene, AFlatSurfaceDoesNotShadowItself) {
     scene.materials = {diffuse_material({1, 1, 1})};
     add_mesh(scene, {facing_quad(0, 1000)}, make_affine({far, 0, far}, normalize(Quatd{0.1, 0.2, 0.05, 1}), {1, 1, 1}));
     scene.environment = constant_environment({1, 1, 1});
-    const PathTracer tracer(scene, threads(1));
+    PathTracer tracer(scene, threads(1));
     TraceSettings settings;
     settings.max_bounces = 1;
     settings.light_sampling = LightSampling::bsdf_only;
     const SparseFrame frame =
-        tracer.trace(camera_at({far, 0, far + 20}, {far, 0, far}), 1, uniform_map(32, 32, 64), settings);
+        tracer.at_rest().trace(camera_at({far, 0, far + 20}, {far, 0, far}), 1, uniform_map(32, 32, 64), settings);
     EXPECT_NEAR(mean_radiance(frame).y, 1.0, 3e-3) << far;
   }
 }
@@ -187,10 +188,10 @@ TEST(TracerScene, RefusedRaysAreCountedAndNamed) {
   Scene scene;
   scene.materials = {glowing()};
   add_mesh(scene, {facing_quad(0)});
-  const PathTracer tracer(scene, threads(1));
+  PathTracer tracer(scene, threads(1));
   Camera camera;
   camera.pose.position_m = {std::numeric_limits<double>::infinity(), 0, 5};
-  const SparseFrame frame = tracer.trace(camera, 7, uniform_map(4, 4, 2), {});
+  const SparseFrame frame = tracer.at_rest().trace(camera, 7, uniform_map(4, 4, 2), {});
   EXPECT_EQ(frame.stats.rejected_rays, 32U);
   ASSERT_EQ(frame.stats.bad_samples.size(), 16U);
   EXPECT_EQ(frame.stats.bad_samples[0].frame, 7);
@@ -199,7 +200,7 @@ TEST(TracerScene, RefusedRaysAreCountedAndNamed) {
   EXPECT_EQ(frame.stats.bad_samples[0].what, "rejected ray");
   EXPECT_EQ(frame.stats.bad_samples[3].x_px, 1);
   camera.pose.position_m = {2e18, 0, 5};
-  EXPECT_EQ(tracer.trace(camera, 7, uniform_map(4, 4, 2), {}).stats.rejected_rays, 32U);
+  EXPECT_EQ(tracer.at_rest().trace(camera, 7, uniform_map(4, 4, 2), {}).stats.rejected_rays, 32U);
 }
 
 TEST(TracerScene, NonFiniteRadianceIsCountedAndBlack) {
@@ -209,8 +210,9 @@ TEST(TracerScene, NonFiniteRadianceIsCountedAndBlack) {
   scene.materials[0].emission.y = std::numeric_limits<float>::infinity();
   scene.materials[0].unlit = false;
   add_mesh(scene, {facing_quad(0)});
-  const PathTracer tracer(scene, threads(1));
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(4, 4, 2), no_bounces());
+  PathTracer tracer(scene, threads(1));
+  const SparseFrame frame =
+      tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(4, 4, 2), no_bounces());
   EXPECT_EQ(frame.stats.non_finite_samples, 32U);
   EXPECT_EQ(frame.stats.bad_samples.size(), 16U);
   EXPECT_EQ(frame.sum[0], (Vec3f{0, 0, 0}));
@@ -230,22 +232,22 @@ TEST(TracerScene, OrthographicCameraAndClippingPlanes) {
   Scene scene;
   scene.materials = {glowing()};
   add_mesh(scene, {facing_quad(0)});
-  const PathTracer tracer(scene, threads(1));
+  PathTracer tracer(scene, threads(1));
   Camera camera = camera_at({0, 0, 5}, {0, 0, 0});
   camera.projection.kind = ProjectionKind::orthographic;
   camera.projection.ymag_m = 2;  // the quad fills the inner half of each side
-  EXPECT_NEAR(mean_radiance(tracer.trace(camera, 1, uniform_map(16, 16, 4), no_bounces())).y, 0.25, 1e-6);
+  EXPECT_NEAR(mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(16, 16, 4), no_bounces())).y, 0.25, 1e-6);
   for (const ProjectionKind kind : {ProjectionKind::orthographic, ProjectionKind::perspective}) {
     camera.projection.kind = kind;
     camera.projection.ymag_m = 0.5;
     camera.projection.yfov_rad = 0.1;
     camera.projection.near_m = 5.1;
-    EXPECT_EQ(mean_radiance(tracer.trace(camera, 1, uniform_map(8, 8, 4), no_bounces())).y, 0.0);
+    EXPECT_EQ(mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 4), no_bounces())).y, 0.0);
     camera.projection.near_m = 4.9;
     camera.projection.far_m = 4.95;
-    EXPECT_EQ(mean_radiance(tracer.trace(camera, 1, uniform_map(8, 8, 4), no_bounces())).y, 0.0);
+    EXPECT_EQ(mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 4), no_bounces())).y, 0.0);
     camera.projection.far_m = 5.05;
-    EXPECT_EQ(mean_radiance(tracer.trace(camera, 1, uniform_map(8, 8, 4), no_bounces())).y, 1.0);
+    EXPECT_EQ(mean_radiance(tracer.at_rest().trace(camera, 1, uniform_map(8, 8, 4), no_bounces())).y, 1.0);
     camera.projection.near_m = 0;
     camera.projection.far_m = 0;
   }
@@ -255,10 +257,11 @@ TEST(TracerScene, GuidesHoldTheFirstHit) {
   Scene scene;
   scene.materials = {diffuse_material({0.2F, 0.4F, 0.6F})};
   add_mesh(scene, {facing_quad(0)});
-  const PathTracer tracer(scene, threads(1));
+  PathTracer tracer(scene, threads(1));
   TraceSettings settings;
   settings.guides = true;
-  const SparseFrame frame = tracer.trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(4, 4, 8), settings);
+  const SparseFrame frame =
+      tracer.at_rest().trace(camera_at({0, 0, 5}, {0, 0, 0}, 10), 1, uniform_map(4, 4, 8), settings);
   ASSERT_EQ(frame.guides.size(), frame.sum.size());
   for (const GuideSums& g : frame.guides) {
     EXPECT_EQ(g.hits, 8U);

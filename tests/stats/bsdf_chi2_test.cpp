@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions from the BSDF's sampling against its density.
+// Tests that the directions that the BSDF samples follow its density.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -32,9 +32,9 @@ std::vector<Configuration> configurations() {
   return all;
 }
 
-// Probability of a cell of the square below: midpoint rule with `n` points across in azimuth. In the last column the
-// broad lobes squeeze against xi = 1, the narrower the specular lobe the closer, so that it is integrated over
-// log(1 - xi). `whole` turns false if part of the cell is below the horizon.
+// The probability of a cell of the square below, by the midpoint rule with `n` points in azimuth. In the last column
+// the broad lobes crowd at xi = 1, more closely the narrower the specular lobe is, so it is integrated over log(1 -
+// xi). `whole` becomes false where part of the cell is below the horizon.
 template <DiffuseModel kDiffuse>
 double lobe_cell(const Bsdf<kDiffuse>& bsdf, const test::ReferenceGgx& ggx, const Vec3d& o, int x, int y, int n,
                  bool& whole) {
@@ -60,8 +60,8 @@ double lobe_cell(const Bsdf<kDiffuse>& bsdf, const test::ReferenceGgx& ggx, cons
   return sum / (static_cast<double>(n) * steps * kSide);
 }
 
-// Where a direction lies in the coordinates of its half-vector: the distribution of normals is uniform in them, so that
-// a lobe of any width fills the square. The density is divided by the mapping's.
+// The position of a direction in the coordinates of its half-vector. The distribution of normals is uniform in them, so
+// that a lobe of any width fills the square. The density is divided by that of the mapping.
 template <DiffuseModel kDiffuse>
 test::Chi2 run_in_lobe_coordinates(const Configuration& c, std::uint64_t seed) {
   const Surface s{{0.9F, 0.6F, 0.3F}, c.metallic, c.roughness};
@@ -72,7 +72,7 @@ test::Chi2 run_in_lobe_coordinates(const Configuration& c, std::uint64_t seed) {
   const Bsdf<kDiffuse> bsdf(s, wo);
 
   std::vector<double> observed(kSide * kSide + 1);
-  // Plain random numbers: the test's theory is about independent samples.
+  // Plain random numbers, since the test assumes independent samples.
   std::uint64_t state = hash64(seed);
   const auto random = [&state] {
     state += 0x9e3779b97f4a7c15ULL;
@@ -99,7 +99,7 @@ test::Chi2 run_in_lobe_coordinates(const Configuration& c, std::uint64_t seed) {
     for (int x = 0; x < kSide; ++x) {
       bool whole = true;
       double cell = lobe_cell(bsdf, ggx, o, x, y, 12, whole);
-      if (!whole) {  // the horizon goes through it
+      if (!whole) {  // the horizon passes through the cell
         cell = lobe_cell(bsdf, ggx, o, x, y, 48, whole);
       }
       expected[static_cast<std::size_t>(y * kSide + x)] = cell * kSamples;
@@ -130,7 +130,7 @@ TEST(BsdfSampling, LambertFollowsItsDensity) {
   run_all<DiffuseModel::lambert>(2000);
 }
 
-// The same in plain directions, where the lobes are broad enough: guards the coordinates above.
+// The same over plain directions, where the lobes are broad enough; this checks the coordinates above.
 TEST(BsdfSampling, FollowsItsDensityOverTheHemisphere) {
   constexpr int kRows = 16;
   constexpr int kColumns = 32;

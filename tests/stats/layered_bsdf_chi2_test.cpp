@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directions from the sampling of materials with extensions against their density, lobes of any width: directions above
-// are told by the half-vector of reflection, directions below by that of refraction (or of the mirrored reflection, for
-// sheets). Over coordinates in which the narrowest lobe's distribution of normals is uniform, or, where surfaces are
-// far smoother one way than the other, over slopes by their logarithms, which show a narrow lobe and a broad one alike.
+// Tests that the sampled directions of materials with extensions follow their density, for lobes of any width.
+// Directions above the surface are represented by the half-vector of reflection, directions below by that of refraction
+// (or of the mirrored reflection, for sheets). Cells are in coordinates in which the narrowest lobe's distribution of
+// normals is uniform or, where surfaces are far smoother in one direction than in the other, in logarithms of slopes,
+// which resolve narrow and broad lobes alike.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr int kSide = 12;  // cells along each axis, on either side of the surfa
 constexpr std::size_t kCells = std::size_t{kSide} * kSide;
 constexpr std::uint32_t kSamples = 40000;
 
-// Half-vector distribution of the coordinates, stretched along x like the surface.
+// The half-vector distribution of the coordinates, stretched along x as the surface is.
 struct Coordinates {
   double ax, ay;
   bool solid;
@@ -35,7 +36,7 @@ struct Coordinates {
     const double r = std::sqrt(odds);
     return normalize(Vec3d{ax * r * std::cos(2 * kPi * turns), ay * r * std::sin(2 * kPi * turns), 1});
   }
-  // xi / (1 - xi) and turns of a normal.
+  // xi / (1 - xi), and the azimuth in turns, of a normal.
   void place(const Vec3d& h, double& xi, double& turns) const {
     const double x = h.x / (ax * h.z);
     const double y = h.y / (ay * h.z);
@@ -44,14 +45,14 @@ struct Coordinates {
     turns = std::atan2(y, x) / (2 * kPi);
     turns -= std::floor(turns);
   }
-  // Solid angle of h per unit square: 1 / (D(h) h.z) for this GGX distribution.
+  // The solid angle of h per area of the unit square: 1 / (D(h) h.z) for this GGX distribution.
   [[nodiscard]] double solid_angle(const Vec3d& h) const {
     const double x = h.x / ax;
     const double y = h.y / ay;
     const double t = x * x + y * y + h.z * h.z;
     return kPi * ax * ay * t * t / h.z;
   }
-  // The direction that h stands for, and its solid angle per that of h; false: none.
+  // The direction that h represents, and its solid angle relative to that of h; false where there is none.
   [[nodiscard]] bool direction(const Vec3d& o, const Vec3d& h, bool through, Vec3d& wi, double& stretch) const {
     const double oh = dot(o, h);
     if (oh <= 0) {
@@ -73,7 +74,7 @@ struct Coordinates {
     wi.z = through ? -wi.z : wi.z;
     return above;
   }
-  // The normal that stands for a direction; false: none does.
+  // The normal that represents a direction; false where there is none.
   [[nodiscard]] bool normal(const Vec3d& o, const Vec3d& wi, Vec3d& h) const {
     const bool through = wi.z < 0;
     if (through && solid) {
@@ -86,7 +87,7 @@ struct Coordinates {
   }
 };
 
-// Slopes along x and y over alphas, as asinh(slope / alpha), in cells that widen outwards.
+// Slopes along x and y relative to the alphas, as asinh(slope / alpha), in cells that widen outwards.
 struct SlopeGrid {
   static constexpr std::array<double, kSide + 1> kEdges{-20, -6, -3, -1.6, -0.9, -0.4, 0, 0.4, 0.9, 1.6, 3, 6, 20};
   double ax, ay;
@@ -95,7 +96,7 @@ struct SlopeGrid {
     const auto above = std::upper_bound(kEdges.begin() + 1, kEdges.end() - 1, at);
     return static_cast<std::size_t>(above - kEdges.begin()) - 1;
   }
-  // Of a normal; its cells along x and y.
+  // The cells of a normal along x and y.
   void place(const Vec3d& h, std::size_t& x, std::size_t& y) const {
     x = cell(std::asinh(h.x / (ax * h.z)));
     y = cell(std::asinh(h.y / (ay * h.z)));
@@ -128,7 +129,7 @@ struct SlopeGrid {
 
 double cell_probability(const Model& bsdf, const Coordinates& map, const Vec3d& o, bool through, int x, int y, int n,
                         bool& whole) {
-  // Broad lobes squeeze against xi = 1 the closer the narrower the coordinates: the last column is integrated over
+  // Broad lobes crowd at xi = 1, more closely the narrower the coordinates are, so the last column is integrated over
   // log(1 - xi).
   const bool last = x == kSide - 1;
   const int steps = last ? 24 * n : n;
@@ -220,7 +221,7 @@ test::Chi2 run(const LayeredSurface& s, double mu, std::uint64_t seed) {
         } else {
           cell = cell_probability(bsdf, map, o, through, x, y, 8, whole);
         }
-        if (!by_slopes && !whole) {  // the horizon goes through it, or from inside the critical angle, with an edge
+        if (!by_slopes && !whole) {  // the horizon or, from inside, the critical angle passes through the cell
           cell = cell_probability(bsdf, map, o, through, x, y, s.inside ? 96 : 32, whole);
         }
         expected[(through ? kCells : 0) + static_cast<std::size_t>(y * kSide + x)] = cell * kSamples;
@@ -233,7 +234,7 @@ test::Chi2 run(const LayeredSurface& s, double mu, std::uint64_t seed) {
   return test::chi2_test(observed, expected);
 }
 
-// One family-wise level for all of them: 1e-3.
+// All comparisons share a family-wise level of 1e-3.
 TEST(LayeredBsdfSampling, FollowsItsDensity) {
   constexpr std::array kRoughness{0.0F, 1e-4F, 0.01F, 0.3F, 1.0F};
   constexpr std::array kMetalness{0.0F, 0.5F, 1.0F};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light samples against their densities, and light arriving at a point against closed forms.
+// Tests light samples against their densities, and the light that arrives at a point against closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ Environment noisy_sky(int width, int height, double rotation_rad) {
   return environment;
 }
 
-// Cells are the picture's pixels, found again from the sampled directions; the density is constant inside each.
+// Cells are the picture's pixels, computed from the sampled directions; the density is constant inside each.
 TEST(EnvironmentSampling, FollowsItsDensity) {
   const std::vector<Environment> skies{noisy_sky(1, 1, 0), noisy_sky(7, 3, 0.5), noisy_sky(64, 32, 2),
                                        noisy_sky(128, 64, 0), noisy_sky(3001, 5, 1)};
@@ -71,7 +71,7 @@ TEST(EnvironmentSampling, FollowsItsDensity) {
       }
     }
     EXPECT_NEAR(sum, 1, 1e-5) << "the density integrates to 1";
-    // The sun in a corner of the noise leaves less than half the mean to most of the pixels.
+    // With the sun in a corner of the noise, most pixels have less than half the mean.
     const auto never = static_cast<std::size_t>(std::count(expected.begin(), expected.end(), 0.0));
     EXPECT_EQ(density == EnvironmentDensity::compensated && sky.radiance.pixels.size() > 1, never > 0) << never;
     std::vector<double> observed(expected.size());

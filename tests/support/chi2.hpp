@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics for tests: chi-square and Student-t tests whose levels are shared by a family of comparisons.
+// Statistics for tests: chi-square and Student-t tests whose significance level is shared by a family of comparisons.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace gazetrace::test {
 
 inline constexpr double kFamilyLevel = 1e-3;
 
-// Level of each of n comparisons such that all n together err with the family's (Sidak 1967).
+// The significance level of each of n comparisons with which all n together have the family's level (Sidak 1967).
 inline double sidak(std::size_t n, double family = kFamilyLevel) {
   return -std::expm1(std::log1p(-family) / static_cast<double>(n));
 }
@@ -56,8 +56,8 @@ struct Chi2 {
   double p_value = 1;
 };
 
-// Cells in which fewer than five events are expected are pooled, smallest first (Cochran 1954). Events where none can
-// be fall into the first pool.
+// Cells in which fewer than five events are expected are pooled, smallest first (Cochran 1954). Events in cells where
+// none are possible are counted in the first pool.
 inline Chi2 chi2_test(const std::vector<double>& observed, const std::vector<double>& expected) {
   std::vector<std::size_t> order(expected.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -119,10 +119,11 @@ inline double incomplete_beta(double a, double b, double x) {
 struct MeanTest {
   double mean = 0;
   double standard_error = 0;
-  double p_value = 1;  // of |mean - expected| this large or larger
+  double p_value = 1;  // probability of |mean - expected| being this large or larger
 };
 
-// Two-sided one-sample t-test on independent repeats. `allowance`: a known systematic bound that is not noise.
+// Two-sided one-sample t-test on independent repeats. `allowance` is a known bound of a systematic error, besides
+// noise.
 inline MeanTest t_test(const std::vector<double>& repeats, double expected, double allowance = 0) {
   const auto n = static_cast<double>(repeats.size());
   MeanTest result;

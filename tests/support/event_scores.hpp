@@ -7,8 +7,9 @@
 
 #include "gazetrace/gaze_events.hpp"
 
-// Events of one kind in `found` against those in `truth`: a pair agrees where it shares at least half of the longer
-// one's time. At most one can agree with each, so counting one way is enough. F1 is the harmonic mean of both shares.
+// Compares the events of one kind in `found` with those in `truth`. Two events agree where they overlap for at least
+// half of the longer one's time. At most one event can agree with each, so it is enough to count in one direction. F1
+// is the harmonic mean of precision and recall.
 struct EventScore {
   std::size_t truth = 0, found = 0, agreeing = 0;
   [[nodiscard]] double f1() const {

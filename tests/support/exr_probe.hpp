@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an EXR file holds, as OpenEXR itself reads it.
+// The content of an EXR file, as OpenEXR itself reads it.
 #pragma once
 
 #include <OpenEXR/ImfChannelList.h>
@@ -44,7 +44,7 @@ inline float exr_value(const std::string& path, const std::string& channel, int 
   return values[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)];
 }
 
-// Attributes of the types that are text or numbers, as text.
+// The attributes whose types are text or numbers, as text.
 inline std::map<std::string, std::string> exr_attributes(const std::string& path) {
   const Imf::InputFile file(path.c_str(), 0);
   std::map<std::string, std::string> texts;

@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-// Files may grow to `bytes` and no further, as on a full disk; the signal that comes with it is ignored.
+// Limits files to `bytes`, as on a full disk; the signal that comes with it is ignored.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

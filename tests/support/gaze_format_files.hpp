@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaze logs of our own making, written to files and read.
+// Synthetic gaze logs that are written to files and read again.
 #pragma once
 
 #include <gtest/gtest.h>

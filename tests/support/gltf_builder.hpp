@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small glTF files made by hand, to be changed (or broken) as JSON before they are written.
+// Makes small glTF files, which can be changed (or broken) as JSON before they are written.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace gazetrace::test {
 
-// A folder of the running test's own, removed at the end.
+// A folder for the running test, which is removed at the end.
 class TempFolder {
  public:
   TempFolder() {
@@ -78,12 +78,12 @@ constexpr int component_type_of() {
                                             : 5126;
 }
 
-// One buffer, a bufferView for every accessor.
+// A file with one buffer, and a bufferView for every accessor.
 class GltfBuilder {
  public:
   nlohmann::json json = {{"asset", {{"version", "2.0"}}}};
 
-  // Elements of `components` values, padded to multiples of 4 bytes as vertex attributes must be.
+  // Adds elements of `components` values, padded to multiples of 4 bytes as vertex attributes must be.
   template <class T>
   int add(const std::vector<T>& values, int components, bool normalized = false) {
     const std::size_t width = static_cast<std::size_t>(components);
@@ -110,7 +110,7 @@ class GltfBuilder {
     return static_cast<int>(json["accessors"].size()) - 1;
   }
 
-  // Raw bytes in a bufferView of their own.
+  // Adds raw bytes in a bufferView of their own.
   int add_view(const std::vector<std::uint8_t>& bytes) {
     const int view = begin_view();
     bin_.insert(bin_.end(), bytes.begin(), bytes.end());
@@ -118,7 +118,7 @@ class GltfBuilder {
     return view;
   }
 
-  // A mesh of one primitive.
+  // Adds a mesh of one primitive.
   int add_mesh(const nlohmann::json& primitive) {
     json["meshes"].push_back({{"primitives", {primitive}}});
     return static_cast<int>(json["meshes"].size()) - 1;
@@ -132,7 +132,7 @@ class GltfBuilder {
     }
     return index;
   }
-  // A triangle (0,0,0) (1,0,0) (0,1,0) in a node of its own; returns the mesh.
+  // Adds a triangle (0,0,0) (1,0,0) (0,1,0) in a node of its own; returns the mesh.
   int add_triangle(nlohmann::json primitive = nlohmann::json::object()) {
     primitive["attributes"]["POSITION"] = add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
     const int mesh = add_mesh(primitive);
@@ -140,7 +140,7 @@ class GltfBuilder {
     return mesh;
   }
 
-  // With the buffer as a data: uri; call once, last.
+  // The JSON with the buffer as a data: uri; call it once, at the end.
   [[nodiscard]] std::string text() {
     if (!bin_.empty()) {
       json["buffers"][0] = {{"byteLength", bin_.size()},
@@ -182,7 +182,7 @@ class GltfBuilder {
   std::vector<std::uint8_t> bin_;
 };
 
-// What loading says against a file, which must be an error of the input.
+// The message with which loading refuses a file, which must be an ErrorKind::input.
 inline std::string error_of(const std::string& path) {
   try {
     static_cast<void>(load_scene(path));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First hits on the simplest of surfaces, and maps of them, for tests of filters that see them.
+// Guides and maps of a very simple surface, for tests of filters that use guides.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace gazetrace {
 
-inline constexpr int kGuidesWallPx = 64;  // a side
+inline constexpr int kGuidesWallPx = 64;  // width and height
 
-// A grey wall 10 m ahead, seen by parallel rays, one millimetre a pixel.
+// A grey wall 10 m ahead, seen by parallel rays at one millimetre per pixel.
 inline Guides wall() {
   Guides guides;
   guides.camera = {false, {0, 0, -1}, {0.001F, 0, 0}, {0, 0.001F, 0}};
@@ -30,7 +30,7 @@ struct PixelSpan {
   int begin = 0, end = 0;  // half open
 };
 
-// Single pixels within the spans, blocks of 8 samples around.
+// A map with single pixels inside the spans, and blocks of 8 samples around them.
 inline SamplingMap map_with_fovea(const PixelSpan& across, const PixelSpan& down, std::uint32_t foveal_samples,
                                   int block_px) {
   Layout layout;
@@ -42,7 +42,9 @@ inline SamplingMap map_with_fovea(const PixelSpan& across, const PixelSpan& down
       layout.region(x, y) = 0;
     }
   }
-  return map_from_layout(std::move(layout));
+  SamplingMap map = map_from_layout(std::move(layout));
+  map.full_rate_spp = foveal_samples;
+  return map;
 }
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface does to even light from all around.
+// What a surface returns of uniform light from all around.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace gazetrace::test {
 
-// Share of flux that a surface returns or lets through, by `count` samples: radiance behind a denser surface stands for
-// eta^2 as much.
+// The share of flux that a surface reflects or transmits, estimated with `count` samples. Radiance in a denser medium
+// stands for eta^2 times the flux.
 inline Vec3d layered_albedo(const LayeredSurface& s, const Vec3f& wo, std::uint32_t count,
                             SampleKey key = make_sample_key(13, 0, 0)) {
   const LayeredBsdf<DiffuseModel::burley> bsdf(s, wo);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials with extensions for tests: each with one thing, white where it has a colour, and all of them at once.
+// Materials with extensions for tests: each with a single extension, white where it has a colour, and one with all of
+// them.
 #pragma once
 
 #include <string>

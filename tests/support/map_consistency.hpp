@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds of every sampling map.
+// Properties that every sampling map must have.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,8 @@
 
 namespace gazetrace {
 
-// Every pixel belongs to one site of its own region, and regions and tiles add up to their sites.
+// Checks that every pixel belongs to one site of its own region, and that regions and tiles are the sums of their
+// sites.
 inline void expect_consistent(const SamplingMap& map) {
   std::vector<int> owners(map.region.pixels.size(), 0);
   std::vector<MapRegion> totals(map.regions.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For test programs that read damaged pictures, in one source file of each.
+// For test programs that read damaged pictures; to be included in one source file of each.
 #pragma once
 
 #ifdef __SANITIZE_ADDRESS__

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A PNG file as bytes, written from the format's specification so that reading is tested against something else than
+// Makes the bytes of a PNG file from the format's specification, so that reading is tested against something other than
 // the library that reads.
 #pragma once
 

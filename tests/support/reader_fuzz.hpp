@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One entry for every reader of gaze logs and camera paths: any bytes are either read, and then hold what the headers
-// promise, or refused with one line of text. Anything else ends the program. The fuzzers and the mutation test share
-// it.
+// One entry point for all readers of gaze logs and camera paths. Any bytes are either read, and then the result is as
+// the headers promise, or refused with one line of text. Anything else ends the program. The fuzzers and the mutation
+// test use it.
 #pragma once
 
 #include <cmath>
@@ -31,8 +31,8 @@ inline std::vector<std::string> fuzz_readers() {
   return names;
 }
 
-// A folder with the files of one input. Formats of several files have them in one input: `\n%%FILE name\n` begins the
-// next one.
+// A folder with the files of one input. For formats of several files the input contains all of them; `\n%%FILE name\n`
+// begins the next one.
 class FuzzFolder {
  public:
   explicit FuzzFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -149,7 +149,7 @@ inline std::string first_name(const std::string& reader) {
                                         : "log";
 }
 
-// Options follow the length of the input, so that an input alone repeats what it found.
+// Options are derived from the length of the input, so that an input alone reproduces what it found.
 inline void read_gaze(const std::string& format, const std::string& path, std::size_t length) {
   GazeReadOptions options;
   options.format = format;
@@ -174,7 +174,7 @@ inline void read_camera(const std::string& format, const std::string& path, std:
 
 }  // namespace fuzz
 
-// True when the bytes were read, false when they were refused as they should be.
+// True where the bytes were read, false where they were properly refused.
 inline bool fuzz_reader(const std::string& reader, std::string_view input, FuzzFolder& folder) {
   const bool gaze = reader.starts_with("gaze-");
   const std::string name = reader.substr(reader.find('-') + 1);

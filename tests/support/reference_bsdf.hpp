@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface model of src/material written a second time, in double precision and by other ways: Lambda functions
-// instead of Smith lengths, quadrature over the normal distribution instead of visible normals, nothing shared with the
-// library but the table's node positions, which are part of the model.
+// The surface model of src/material written a second time, in double precision and by other methods: Lambda functions
+// instead of Smith lengths, and quadrature over the normal distribution instead of visible normals. It shares nothing
+// with the library except the positions of the table's nodes, which are part of the model.
 #pragma once
 
 #include <algorithm>
@@ -49,8 +49,8 @@ struct ReferenceGgx {
     return distribution(normalize(o + i)) * masking(o.z, i.z) / (4 * o.z * i.z);
   }
 
-  // Half-vector for numbers (xi, turns) in the unit square, over which D h.z times solid angle is uniform; `odds` is
-  // xi / (1 - xi).
+  // The half-vector for a point (xi, turns) of the unit square, over which D h.z times solid angle is uniform; `odds`
+  // is xi / (1 - xi).
   [[nodiscard]] Vec3d normal_at(double odds, double turns) const {
     const double tan2 = alpha * alpha * odds;
     const double z = 1 / std::sqrt(1 + tan2);
@@ -62,7 +62,7 @@ struct ReferenceGgx {
   // at both ends of the distribution.
   [[nodiscard]] std::array<double, 2> albedo(double mu, int rings = 400, int azimuths = 32) const {
     if (mu < 1e-9) {
-      mu = 1e-9;  // the limit; everything is masked but what is reflected forward
+      mu = 1e-9;  // the limit, where everything is masked except forward reflection
     }
     const Vec3d o{std::sqrt(1 - mu * mu), 0, mu};
     double e = 0;
@@ -88,7 +88,7 @@ struct ReferenceGgx {
   }
 };
 
-// One row of the model's tables.
+// One row of the tables of the model.
 struct ReferenceRow {
   std::array<double, kReferenceNodes> e{}, b{}, lambert{}, burley{};
   double e_average = 0;
@@ -103,7 +103,7 @@ struct ReferenceRow {
     const double f = x - static_cast<double>(k);
     return values[k] + (values[k + 1] - values[k]) * f;
   }
-  // 2 * integral of f(mu) mu dmu by Simpson's rule in x = sqrt(mu), nodes of the table included.
+  // 2 * integral of f(mu) mu dmu by Simpson's rule in x = sqrt(mu), with the nodes of the table among its points.
   template <class F>
   static double cosine_mean(const F& f) {
     constexpr int kSteps = 8 * (kReferenceNodes - 1);
@@ -123,9 +123,9 @@ struct ReferenceRow {
   [[nodiscard]] double passed(std::size_t k) const {
     return 1 - (0.04 * (e[k] - b[k]) + b[k] + (1 - e[k]) * repeated(0.04, e_average));
   }
-  // Mean over azimuth of Burley's product, by brute force.
+  // The mean of Burley's product over the azimuth, by brute force.
   static double burley_mean(double roughness, double mu_o, double mu_i) {
-    constexpr int kAzimuths = 16;  // exact for a trigonometric polynomial of degree 2
+    constexpr int kAzimuths = 16;  // which is exact for a trigonometric polynomial of degree 2
     const double sines = std::sqrt((1 - mu_o * mu_o) * (1 - mu_i * mu_i));
     double sum = 0;
     for (int k = 0; k < kAzimuths; ++k) {
@@ -164,7 +164,7 @@ struct ReferenceRow {
   }
 };
 
-// The model at one surface: the two rows around its roughness, blended.
+// The model at one surface, blended from the two rows around its roughness.
 class ReferenceBsdf {
  public:
   explicit ReferenceBsdf(const ReferenceSurface& surface) : surface_(surface), ggx_(surface.roughness) {
@@ -193,7 +193,7 @@ class ReferenceBsdf {
     return single + multiple + surface_.base_color * (d / kPi * scale(o.z) * scale(i.z) * shape);
   }
 
-  // Reflected share of uniform light, by quadrature.
+  // The reflected share of uniform light, by quadrature.
   [[nodiscard]] Vec3d albedo(double mu) const {
     const auto [e1, b1] = ggx_.albedo(mu, 1200, 128);
     const double d = 1 - surface_.metallic;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of a sweep as tests of reports make them up.
+// Invented results of a sweep, for tests of reports.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -52,14 +52,14 @@ inline ordered_json results(const std::vector<ordered_json>& rows) {
           {"rows", rows}};
 }
 
-inline ReportData read(const ordered_json& json) {
+inline Results read(const ordered_json& json) {
   const TemporaryFolder folder;
   const std::string path = folder / "results.json";
   write_text_atomically(path, json.dump());
   return read_results(path);
 }
 
-inline std::string page_of(const ReportData& data) {
+inline std::string page_of(const Results& data) {
   return report_page(data, {}).html;
 }
 

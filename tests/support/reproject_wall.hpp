@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wall that fills the view and glides, for reprojected accumulation by hand.
+// A wall that fills the view and moves sideways, for tests of reprojected accumulation.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace gazetrace::test {
 
 inline constexpr int kWidth = 16, kHeight = 12;
 
-// A wall at 2 m that fills the view, seen where it was `shift` pixels to the right before.
+// A wall at 2 m that fills the view, and that was `shift` pixels farther to the right before.
 inline SurfaceMotion wall(const Vec2d& shift = {0, 0}) {
   SurfaceMotion motion;
   motion.depth_m = ImageGray(kWidth, kHeight, 2.0F);
@@ -46,14 +46,14 @@ inline Frame even_frame(double radiance, float count, float variance = 0) {
   return frame_of([=](int, int) { return radiance; }, count, variance);
 }
 
-// One site a pixel, or a block.
+// A map with one site per pixel, or per block.
 inline SamplingMap map_of(int block_px = 1) {
   FoveationSettings settings;
   settings.falloff = "regions";
   settings.region_blocks_px = {block_px, block_px};
   settings.region_angles_deg = {1e-3, 2e-3};
   const PlanarView view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
-  // A gaze far aside: all is periphery.
+  // The gaze is far aside, so that everything is periphery.
   return block_px == 1 ? make_sampling_map(FoveationSettings{}, view, {})
                        : make_sampling_map(settings, view, view.direction(-1e4, -1e4));
 }

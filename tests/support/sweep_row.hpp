@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A row of a sweep's tables, measured once, for tests of what the tables say.
+// A row of a sweep's tables, which was measured once, for tests of the tables.
 #pragma once
 
 #include <string>
 
-#include "gazetrace/sweep.hpp"
+#include "sweep/runs.hpp"
 
 namespace gazetrace {
 
-inline SweepRow row_of_box(const std::string& id, double time_s) {
-  SweepRow row;
+inline MeasuredRow row_of_box(const std::string& id, double time_s) {
+  MeasuredRow row;
   row.id = id;
   row.scene = "box";
   row.gaze = "left";

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// A fresh folder that goes away with the test.
+// A new folder that is removed with the test.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -28,7 +28,7 @@ class TemporaryFolder {
 
   [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
   [[nodiscard]] std::string path() const { return path_.string(); }
-  // Names of everything in it, hidden files too.
+  // The names of everything in it, including hidden files.
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

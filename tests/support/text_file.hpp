@@ -12,7 +12,7 @@
 
 namespace gazetrace {
 
-// A folder of the running test's own, removed with everything in it.
+// A folder for the running test, which is removed with everything in it.
 class TextFiles {
  public:
   TextFiles() {

@@ -107,7 +107,7 @@ TEST_F(CameraFormats, NukeCountsFramesAndTurnsAboutZThenXThenY) {
 TEST_F(CameraFormats, NukeErrorsAndWarnings) {
   const std::string form = "; a line of a .chan file is `frame tx ty tz rx ry rz [vfov]`, angles in degrees";
   EXPECT_EQ(refusal("a.chan", "1 0 0 0 0 0 0\n2 0 0 0 0 0\n"), "a.chan:2: 6 values where 7 or 8 belong" + form);
-  EXPECT_EQ(refusal("b.chan", "1 0 0 0 0 0 0\n1.5 0 0 0 0 0 0\n"), "b.chan:2: '1.5' is no frame number" + form);
+  EXPECT_EQ(refusal("b.chan", "1 0 0 0 0 0 0\n1.5 0 0 0 0 0 0\n"), "b.chan:2: '1.5' is not a frame number" + form);
   EXPECT_EQ(refusal("c.chan", "2 0 0 0 0 0 0\n2 0 0 0 0 0 0\n"),
             "c.chan:2: frame 2 repeats 2; frames of a .chan file must increase");
   EXPECT_EQ(refusal("d.chan", "2 0 0 0 0 0 0\n1 0 0 0 0 0 0\n"),
@@ -197,7 +197,7 @@ TEST_F(CameraFormats, ColmapIsInvertedAndSortedByName) {
   EXPECT_THAT(refusal("images.txt", "1 1 0 0 0 1 2 3 7 a.jpg\n\n2 0 0 0 0 1 2 3 7 b.jpg\n"),
               HasSubstr("images.txt:3: quaternion (-0, -0, -0, 0) has no direction"));
   EXPECT_THAT(refusal("images.txt", "1 1 0 0 0 1 2 3 7 a.jpg\n\n2 1 0 0 0 1 2 3\n"),
-              HasSubstr("images.txt:3: is no picture's line: less than 10 values"));
+              HasSubstr("images.txt:3: is not the line of a picture: it has less than 10 values"));
 }
 
 // A Unity camera at (1, 2, 3), yawed 90 degrees to the right: looks along Unity's +x, which is +x here too; z changes

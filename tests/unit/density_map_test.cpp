@@ -306,53 +306,6 @@ TEST(DensityMap, BlocksSeeTheBumpOfATable) {
   }
 }
 
-// What a filter that smooths single pixels with few samples must leave alone.
-TEST(SamplingMap, AFoveaAtItsFullRateHasEnoughSamples) {
-  const PlanarView view = small_view();
-  const Vec3d gaze = view.direction(240, 135);
-  const auto enough = [&](const FoveationSettings& settings, const std::optional<Vec3d>& at) {
-    return make_sampling_map(settings, view, at).enough_samples;
-  };
-  FoveationSettings regions;
-  EXPECT_EQ(enough(regions, gaze), 16U);
-  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  EXPECT_EQ(enough(regions, std::nullopt), kNone);
-  regions.region_samples = {15, 8, 4};
-  EXPECT_EQ(enough(regions, gaze), 15U);
-  regions.uniform_spp = 12;
-  EXPECT_EQ(enough(regions, std::nullopt), kNone);  // nowhere more than elsewhere
-  regions.region_samples = {7, 4, 2};
-  EXPECT_EQ(enough(regions, gaze), 16U);
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.name != "regions") {
-      FoveationSettings settings = model(info.name);
-      settings.uniform_spp = 9;
-      EXPECT_EQ(enough(settings, gaze), info.name == "uniform" ? kNone : 9U) << info.name;
-    }
-  }
-  using Counts = std::pair<std::uint32_t, std::uint32_t>;
-  for (const auto& [asked, taken] : {Counts{0, kNone}, Counts{1, 1}, Counts{64, 64}}) {
-    regions.pass_through_samples = asked;
-    EXPECT_EQ(enough(regions, gaze), taken);
-    EXPECT_EQ(enough(regions, std::nullopt), taken);
-  }
-  // On a budget the full rate is what the budget makes of it.
-  for (const std::string name : {"regions", "acuity"}) {
-    FoveationSettings settings = model(name);
-    for (const double spp : {0.3, 0.6, 1.2, 2.4, 4.8}) {
-      settings.budget_spp = spp;
-      const SamplingMap map = make_sampling_map(settings, view, gaze);
-      const float most = samples_per_pixel(map)(240, 135);
-      if (most >= 9 && most < 16) {
-        EXPECT_NEAR(static_cast<float>(map.enough_samples), most, 1) << name;
-        EXPECT_GE(most, static_cast<float>(map.enough_samples)) << name;
-      } else if (most < 7 || most > 16) {
-        EXPECT_EQ(map.enough_samples, 16U) << name;
-      }
-    }
-  }
-}
-
 TEST(DensityMap, ExtremesGiveMaps) {
   const PlanarView plain = view_of_perspective(1.0, 61, 37);
   for (const FalloffInfo& info : falloffs()) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contrast preservation against closed forms of waves and of what blocks take from them.
-#include "gazetrace/enhance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +10,7 @@
 #include "core/luminance.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/math.hpp"
+#include "gazetrace/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {

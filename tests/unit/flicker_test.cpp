@@ -217,12 +217,12 @@ TEST(FlickerRange, IsToldInWords) {
   FlickerRange range{1, 12, 53.4};
   EXPECT_EQ(
       flicker_range_text(range),
-      "from 1 to 12 Hz, of which a frame sees the second before it; up to 53 Hz would be seen, but what is faster "
-      "than 12 Hz cannot be told at this frame rate and shows as something slower, or not");
+      "from 1 to 12 Hz, over the second up to each frame; flicker of up to 53 Hz would be visible, but what is faster "
+      "than 12 Hz cannot be measured at this frame rate: it appears as something slower, or not at all");
   range.highest_hz = 60;
   EXPECT_EQ(
       flicker_range_text(range),
-      "from 1 to 60 Hz, of which a frame sees the second before it; all that is seen can be told at this frame rate");
+      "from 1 to 60 Hz, over the second up to each frame; all visible flicker can be measured at this frame rate");
 }
 
 TEST(SlidingSpectrum, IsThatOfTheLastFramesAfterManyFrames) {

@@ -78,8 +78,8 @@ const BrokenFile kBroken[] = {
     {"MinVersion", [](auto& b) { b.json["asset"]["minVersion"] = "2.1"; }, {"asset", "2.1"}},
     {"NoAsset", [](auto& b) { b.json.erase("asset"); }, {"'asset' is missing"}},
     // types
-    {"MeshesNoArray", [](auto& b) { b.json["meshes"] = 3; }, {"meshes", "is no JSON array"}},
-    {"NodeNoObject", [](auto& b) { b.json["nodes"][0] = "x"; }, {"nodes[0]", "is no JSON object"}},
+    {"MeshesNoArray", [](auto& b) { b.json["meshes"] = 3; }, {"meshes", "is not a JSON array"}},
+    {"NodeNoObject", [](auto& b) { b.json["nodes"][0] = "x"; }, {"nodes[0]", "is not a JSON object"}},
     {"NegativeIndex", [](auto& b) { b.json["nodes"][0]["mesh"] = -1; }, {"nodes[0].mesh", "-1 is not an index"}},
     {"FractionalIndex", [](auto& b) { b.json["nodes"][0]["mesh"] = 0.5; }, {"nodes[0].mesh", "0.5"}},
     {"ShortMatrix",
@@ -447,7 +447,7 @@ TEST(BrokenContainers, MissingFileFolderAndNonsense) {
   EXPECT_THAT(error_of(folder.file(".")), HasSubstr("is a folder"));
   EXPECT_THAT(error_of(folder.write("empty.gltf", "")), HasSubstr("not valid JSON"));
   EXPECT_THAT(error_of(folder.write("cut.gltf", R"({"asset": {"ver)")), HasSubstr("not valid JSON"));
-  EXPECT_THAT(error_of(folder.write("array.gltf", "[]")), HasSubstr("no object"));
+  EXPECT_THAT(error_of(folder.write("array.gltf", "[]")), HasSubstr("not an object"));
   EXPECT_THAT(error_of(folder.write("deep.gltf", std::string(1000000, '['))), HasSubstr("nested"));
   EXPECT_THAT(error_of(folder.write("no-utf8.gltf", "{\"asset\":{\"version\":\"2.0\",\"generator\":\"\xff\"}}")),
               HasSubstr("not valid JSON"));

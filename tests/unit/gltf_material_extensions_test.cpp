@@ -226,13 +226,13 @@ TEST(MaterialExtensions, WrongKindsNameTheirPlace) {
     const char *place, *problem;
   };
   for (const Case& c :
-       {Case{"KHR_materials_clearcoat", {{"clearcoatFactor", "much"}}, "clearcoatFactor", "no number"},
+       {Case{"KHR_materials_clearcoat", {{"clearcoatFactor", "much"}}, "clearcoatFactor", "not a number"},
         Case{"KHR_materials_sheen", {{"sheenColorFactor", {1, 2}}}, "sheenColorFactor", "3 numbers"},
         Case{"KHR_materials_sheen", {{"sheenColorFactor", {1, 2, "x"}}}, "sheenColorFactor", "3 numbers"},
         Case{"KHR_materials_clearcoat",
              {{"clearcoatFactor", 1}, {"clearcoatTexture", 3}},
              "clearcoatTexture",
-             "no texture"},
+             "not a texture"},
         Case{"KHR_materials_clearcoat",
              {{"clearcoatTexture", {{"index", 7}}}},
              "clearcoatTexture.index",

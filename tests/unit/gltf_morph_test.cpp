@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
                                },
                                "has 0 morph targets, the primitives before it have 2"},
                       BadMorph{"WeightsOfTheMesh", [](Quad& q) { q.builder.json["meshes"][0]["weights"] = {1}; },
-                               "meshes[0].weights: is no array of 2 numbers"},
+                               "meshes[0].weights: is not an array of 2 numbers"},
                       BadMorph{"WeightsOfTheNode", [](Quad& q) { q.builder.json["nodes"][0]["weights"] = {1}; },
                                "nodes[0].weights: 1 weights for 2 morph targets"},
                       BadMorph{"TooFewKeys",

@@ -221,7 +221,7 @@ TEST_F(MergeWithHistory, OtherSettingsAreNoChain) {
 }
 
 TEST_F(Merge, NothingToMerge) {
-  expect_error({"holds no parts"});
+  expect_error({"contains no parts"});
   write(part("1-2"), {1, 2});
   std::filesystem::remove(folder_ / "run.1-2.json");
   expect_error({"timing.1-2.csv", "run.1-2.json is missing"});

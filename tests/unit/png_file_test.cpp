@@ -192,7 +192,7 @@ const WrongPng kWrong[] = {
      "order of rows"},
     {"NoPalette", [] { return with_header(header(9, 3, 8, 3)); }, "no palette"},
     {"SecondHeader", [] { return with_second(header(9, 3, 8, 2)); }, "second header"},
-    {"UnknownCritical", [] { return with_second(chunk("QQQQ", {1})); }, "PNG does not know"},
+    {"UnknownCritical", [] { return with_second(chunk("QQQQ", {1})); }, "unknown to PNG"},
     {"Transparency",
      [] {
        return with_second(chunk("tRNS", {0, 1}));
@@ -210,7 +210,7 @@ const WrongPng kWrong[] = {
        png.resize(png.size() - end.size());
        return joined({png, chunk("tEXt", {'a', 0}), chunk("IDAT", {}), end});
      },
-     "follow each other"},
+     "consecutive"},
     // Nothing is asked for that the file cannot fill: 14 GB, and a quarter of one.
     {"HugeHeader", [] { return with_header(header(60000, 60000, 8, 2)); }, "60000 x 60000 pixels is too large"},
     {"LargeHeader", [] { return with_header(header(8192, 8192, 8, 2)); }, "bytes cannot hold 8192 x 8192 pixels"},

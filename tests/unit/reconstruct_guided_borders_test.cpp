@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "foveation/sites.hpp"
-#include "gazetrace/reconstruct.hpp"
 #include "reconstruct/surface_smoothing.hpp"
 #include "support/guides_wall.hpp"
+#include "support/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {
@@ -27,6 +27,7 @@ SamplingMap map_about_the_middle(int begin, int block_px) {
 // surfaces for sites that keep their own mean.
 template <class LightAt>
 SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const LightAt& light_at) {
+  const PassThrough pass_through(map, {});
   SparseFrame sparse;
   sparse.width_px = map.width_px;
   sparse.height_px = map.height_px;
@@ -42,7 +43,7 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
     const auto n = static_cast<float>(site.samples);
     const Vec3f reflected = n * light * Vec3f{0.5F, 0.5F, 0.5F};
     sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
-    if (map.regions[site.region].block_px > 1 || map.expected(i) < map.enough_samples) {
+    if (pass_through.needs_filtering(i)) {
       sparse.surfaces.push_back({reflected, n * Vec3f{0.5F, 0.5F, 0.5F}, n * Vec3f{0, 0, 1},
                                  place * (n / static_cast<float>(site.pixels)), n * light * light, site.samples,
                                  SurfaceKind::diffuse});
@@ -123,7 +124,7 @@ TEST(ReconstructGuidedBorders, PixelsOfOneExpectationAreAllSmoothedOrAllKept) {
   for (const std::uint32_t enough : {16U, 8U}) {
     for (const bool kept : {false, true}) {
       SamplingMap map = map_about_the_middle(20, 4);
-      map.enough_samples = enough;
+      map.full_rate_spp = enough;
       for (std::size_t i = 0; i < map.sites.size(); ++i) {
         Site& site = map.sites[i];
         const std::uint32_t fewest = kept ? enough : enough - 1;

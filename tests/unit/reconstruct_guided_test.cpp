@@ -12,9 +12,9 @@
 
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/reconstruct.hpp"
 #include "reconstruct/surface_smoothing.hpp"
 #include "support/guides_wall.hpp"
+#include "support/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {
@@ -136,8 +136,7 @@ TEST(ReconstructGuided, NothingCrossesAnEdgeOfNormalDepthOrEmission) {
 // A fovea of 32 samples a pixel, and one of 11 that is all its map has.
 TEST(ReconstructGuided, FullRatePixelsPassBitByBit) {
   for (const std::uint32_t samples : {32U, 11U}) {
-    SamplingMap map = block_map(true, samples);
-    map.enough_samples = std::min(samples, 16U);
+    const SamplingMap map = block_map(true, samples);
     const Guides guides = wall();
     std::mt19937 random(5);
     std::exponential_distribution<float> noise(1);

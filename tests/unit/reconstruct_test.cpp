@@ -15,6 +15,7 @@
 
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
+#include "support/reconstruct.hpp"
 
 namespace gazetrace {
 namespace {

@@ -22,7 +22,7 @@ TEST(ReportTables, RegionsAndWeightedScores) {
   test["scores"]["flip"]["fovea"] = score(0.0123, 0.012, 0.0126);
   test["scores"]["flip"]["weighted"] = score(0.0345, 0.034, 0.035);
   test["scores"]["flip"]["2.6-60"] = score(0.0567, 0.056, 0.057);
-  const ReportData data = read(results({test}));
+  const Results data = read(results({test}));
   EXPECT_THAT(scored_parts(data), testing::ElementsAre("2.6-60", "fovea", "weighted"));
   const std::string page = page_of(data);
   for (const char* const value : {"0.0123", "0.0345", "0.0567"}) {
@@ -73,7 +73,7 @@ TEST(ReportTables, EndToEndStandsAfterTheSpeedUp) {
   ordered_json test = row("t", "test", score(0.1, 0.09, 0.11));
   test["end_to_end"] = 2.125;
   test["efficiency"] = 0.75;
-  const ReportData data = read(results({test}));
+  const Results data = read(results({test}));
   EXPECT_EQ(data.rows[0].end_to_end, 2.125);
   const std::string html = tables_html(data);
   EXPECT_THAT(html, HasSubstr("speed-up</th><th scope=\"col\">end-to-end<small>with output</small></th>"
@@ -84,7 +84,7 @@ TEST(ReportTables, EndToEndStandsAfterTheSpeedUp) {
   const std::size_t columns = count(runs, "<th scope=\"col\">");
   EXPECT_EQ(count(runs, "<tr "), 2U);
   EXPECT_EQ(count(runs, "<td>"), 2 * (columns - 1));  // the first is a head of its own
-  const std::string csv = report_csv(data);
+  const std::string csv = results_csv(data);
   EXPECT_EQ(cells(csv, 1).size(), cells(csv, 0).size());
   const std::vector<std::string> names = cells(csv, 0);
   const auto at = std::find(names.begin(), names.end(), "end_to_end");
@@ -93,7 +93,7 @@ TEST(ReportTables, EndToEndStandsAfterTheSpeedUp) {
   EXPECT_EQ(cells(csv, 1).at(static_cast<std::size_t>(at - names.begin())), "2.125");
   // What it is: in the methods, and above the tables where a sweep's own methods may say nothing of it.
   const char* const words = "end-to-end is the same ratio with exposure, view and writing of the pictures";
-  EXPECT_THAT(report_methods(data), HasSubstr(words));
+  EXPECT_THAT(results_methods(data), HasSubstr(words));
   ordered_json told = results({test});
   told["methods"] = "As ever.";
   EXPECT_THAT(page_of(read(told)), HasSubstr(words));
@@ -105,10 +105,10 @@ TEST(ReportTables, EndToEndMayBeMissing) {
     if (is_null) {
       test["end_to_end"] = nullptr;
     }
-    const ReportData data = read(results({test}));
+    const Results data = read(results({test}));
     EXPECT_FALSE(data.rows[0].end_to_end);
     EXPECT_THAT(tables_html(data), HasSubstr("<td>4<small>3.8 to 4.2</small></td><td>–</td><td>–</td>"));
-    EXPECT_THAT(report_csv(data), HasSubstr(",4,3.8,4.2,,,flip,whole,"));
+    EXPECT_THAT(results_csv(data), HasSubstr(",4,3.8,4.2,,,flip,whole,"));
   }
 }
 
@@ -145,8 +145,8 @@ TEST(ReportTables, FloorsAreThoseOfEachRunsReference) {
     return {{"name", "box"}, {"reference", {{"key", key}, {"floor", {{"flip", {{"whole", floor}}}}}}}};
   };
   json["scenes"] = {scene("box-2", 0.151), scene("box-1", 0.121)};
-  const ReportData data = read(json);
-  const std::string csv = report_csv(data);
+  const Results data = read(json);
+  const std::string csv = results_csv(data);
   EXPECT_THAT(csv, HasSubstr("flip,whole,0.1,0.09,0.11,1,0.121\n"));
   EXPECT_THAT(csv, HasSubstr("flip,whole,0.2,0.19,0.21,1,0.151\n"));
   const std::string html = tables_html(data);
@@ -159,7 +159,7 @@ TEST(ReportTables, FloorsAreThoseOfEachRunsReference) {
               testing::AllOf(HasSubstr("reference box-1 from itself"), HasSubstr("reference box-2 from itself")));
   // A key that no reference has is nobody's floor.
   json["rows"][0]["reference"] = "box-3";
-  EXPECT_THAT(report_csv(read(json)), HasSubstr("flip,whole,0.1,0.09,0.11,1,\n"));
+  EXPECT_THAT(results_csv(read(json)), HasSubstr("flip,whole,0.1,0.09,0.11,1,\n"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "report/fill.hpp"
 #include "report/plot.hpp"
@@ -22,19 +23,30 @@ using testing::IsEmpty;
 using testing::Not;
 
 TEST(ReportWords, BandsAndLists) {
-  EXPECT_THAT(read(results({})).bands, testing::ElementsAre("0-2.6", "2.6-60", "60+"));
+  EXPECT_THAT(band_names(read(results({})).bands_deg), testing::ElementsAre("0-2.6", "2.6-60", "60+"));
   EXPECT_EQ(list_text({}), "");
   EXPECT_EQ(list_text({"a"}), "a");
   EXPECT_EQ(list_text({"a", "b", "c"}), "a, b and c");
   EXPECT_EQ(count_text(1234567.0), "1.235 M");
   EXPECT_EQ(count_text(std::nullopt), "–");
-  EXPECT_EQ(with_interval(Estimate{0.5, 0.25, 0.75}), "0.5 (0.25 to 0.75)");
-  EXPECT_EQ(with_interval(Estimate{0.5, std::nullopt, std::nullopt}), "0.5");
+  EXPECT_EQ(with_interval(Interval{0.5, 0.25, 0.75}), "0.5 (0.25 to 0.75)");
+  EXPECT_EQ(with_interval(Interval{0.5, std::nullopt, std::nullopt}), "0.5");
 }
 
-// Regions and weighted scores stand beside the bands, in tables and diagrams, only where some run has them.
-// Cells of a line of the CSV; none of these holds a comma.
-// Results of earlier builds do not have it; of sweeps that wrote no pictures it is null.
+TEST(ReportWords, EveryRoleIsCalledAndDrawnInItsOwnWay) {
+  std::set<std::string> words;
+  std::set<std::string> looks;
+  for (const RowRole role :
+       {RowRole::test, RowRole::uniform_reference_rate, RowRole::equal_samples, RowRole::equal_time,
+        RowRole::low_resolution, RowRole::uniform_rate, RowRole::wrong_gaze}) {
+    const ReportRole& shown = report_role(role);
+    EXPECT_EQ(shown.name, to_string(role));
+    EXPECT_TRUE(words.insert(shown.words).second) << shown.words;
+    EXPECT_TRUE(looks.insert(shown.color).second) << shown.words;
+  }
+  EXPECT_EQ(words.size(), report_roles().size());
+}
+
 TEST(ReportFill, OnlyTheTemplateIsLookedAt) {
   EXPECT_EQ(fill_template("a {{x}} b {{y}}{{x}}", {{"x", "{{y}}"}, {"y", "2"}}), "a {{y}} b 2{{y}}");
   EXPECT_EQ(fill_template("no place", {}), "no place");
@@ -63,7 +75,7 @@ TEST(ReportPage, MarkupInResultsIsShownAsText) {
 }
 
 TEST(ReportPage, NoRows) {
-  const ReportData data = read(results({}));
+  const Results data = read(results({}));
   EXPECT_THAT(report_plots(data), IsEmpty());
   const std::string page = page_of(data);
   EXPECT_THAT(page, HasSubstr("Nothing has been measured yet"));
@@ -71,7 +83,7 @@ TEST(ReportPage, NoRows) {
 }
 
 TEST(ReportPage, TablesAboveTheLimitAreSaid) {
-  const ReportData data = read(results({row("t", "test", score(0.1, 0.09, 0.11))}));
+  const Results data = read(results({row("t", "test", score(0.1, 0.09, 0.11))}));
   EXPECT_THAT(report_page(data, {0.001, 0}).warnings, Contains(HasSubstr("more than the limit of 0.001 MiB")));
   EXPECT_THAT(report_page(data, {1, 0}).warnings, IsEmpty());
 }
@@ -89,11 +101,11 @@ TEST(ReportPage, NullsAreMissingAndNeverNan) {
   ordered_json once = row("u", "equal-time", score(0.1, 0, 0));
   once["scores"]["flip"]["whole"] = {{"mean", 0.1}, {"low", nullptr}, {"high", nullptr}, {"resolved", true}};
   once["time_s"] = {{"mean", 2}, {"low", nullptr}, {"high", nullptr}};
-  const ReportData data = read(results({blank, once}));
+  const Results data = read(results({blank, once}));
   EXPECT_FALSE(data.rows[0].time_s);
   EXPECT_FALSE(data.rows[0].speed_up);
   EXPECT_FALSE(find_score(data.rows[0], "flip", "whole")->value);
-  const std::string text = tables_html(data) + report_csv(data) + report_methods(data);
+  const std::string text = tables_html(data) + results_csv(data) + results_methods(data);
   for (const ReportPlot& plot : report_plots(data)) {
     EXPECT_THAT(plot.svg + plot.csv, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
   }
@@ -215,7 +227,7 @@ TEST(ReportFindings, ControlsMayBeUndecided) {
   json["rows"][0]["scores"]["psnr"]["whole"] = score(30, 29, 31);
   const auto verdict = [&](const char* metric, double right, double wrong) {
     json["controls"] = ordered_json::array({control(metric, right, wrong)});
-    const ReportData data = read(json);
+    const Results data = read(json);
     return control_verdict(data, data.controls[0]);
   };
   EXPECT_EQ(verdict("flip", 0.1, 0.13), ControlVerdict::undecided);
@@ -225,7 +237,7 @@ TEST(ReportFindings, ControlsMayBeUndecided) {
   EXPECT_EQ(verdict("psnr", 30, 31), ControlVerdict::insensitive);
   json["rows"][0]["scores"]["psnr"]["whole"] = {{"mean", 30}, {"low", nullptr}, {"high", nullptr}, {"resolved", true}};
   EXPECT_EQ(verdict("psnr", 30, 31), ControlVerdict::undecided);
-  const ReportData data = read(json);
+  const Results data = read(json);
   EXPECT_THAT(report_findings(data).caveats,
               Contains(testing::AllOf(HasSubstr("psnr is 31 when the gaze is mirrored, against 30 when it is right; "
                                                 "whether it notices is undecided (it was <said>)"),
@@ -295,7 +307,7 @@ TEST(ReportMethods, BracesInNamesAreText) {
   json["rows"][0]["label"] = "run {x} {}";
   json["rows"][0]["settings"] = {{"spp", 4}};
   json["scenes"][0]["name"] = "a {0:d} scene";
-  const std::string methods = report_methods(read(json));
+  const std::string methods = results_methods(read(json));
   EXPECT_THAT(methods, HasSubstr("run {x} {} (box, gaze glide): spp 4."));
   EXPECT_THAT(methods, HasSubstr("Reference of a {0:d} scene: spp 64."));
 }
@@ -304,11 +316,11 @@ TEST(ReportFamilies, BaselinesThatSeveralTestsShare) {
   ordered_json first = row("t", "test", score(0.1, 0.09, 0.11));
   ordered_json second = row("t2", "test", score(0.1, 0.09, 0.11));
   first["baselines"] = second["baselines"] = {{"uniform-reference-rate", "u"}};
-  const ReportData data = read(results({first, second, row("u", "uniform-reference-rate", score(0.1, 0.09, 0.11)),
-                                        row("w", "wrong-gaze", score(0.1, 0.09, 0.11))}));
-  const auto ids = [&](const ReportRow& test) {
+  const Results data = read(results({first, second, row("u", "uniform-reference-rate", score(0.1, 0.09, 0.11)),
+                                     row("w", "wrong-gaze", score(0.1, 0.09, 0.11))}));
+  const auto ids = [&](const ResultRow& test) {
     std::vector<std::string> found;
-    for (const ReportRow* const one : family_of(data, test)) {
+    for (const ResultRow* const one : family_of(data, test)) {
       found.push_back(one->id);
     }
     return found;
@@ -336,11 +348,16 @@ TEST(ReportResults, ComplaintsNameThePlace) {
   ordered_json json = results({row("t", "test", score(0.1, 0.2, 0.1))});
   EXPECT_THAT(complaint(json), HasSubstr("rows[0].scores.flip.whole: has its low above its high"));
   json = results({row("t", "test", score(0.1, 0.1, 0.1))});
+  json["rows"][0]["role"] = "spare";
+  EXPECT_THAT(complaint(json), HasSubstr("rows[0].role: is no role of a row: 'spare'"));
   json["rows"][0].erase("role");
   EXPECT_THAT(complaint(json), HasSubstr("rows[0]: has no 'role'"));
   json["rows"] = "none";
   EXPECT_THAT(complaint(json), HasSubstr("rows: is no list"));
   json["format"] = "gazetrace-sweep-2";
+  EXPECT_THAT(complaint(json), HasSubstr("is of the format 'gazetrace-sweep-2', and this version reads "
+                                         "gazetrace-sweep-1 only"));
+  json.erase("format");
   EXPECT_THAT(complaint(json), HasSubstr("is no gazetrace-sweep-1 file"));
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "gazetrace/temporal.hpp"
+#include "support/reconstruct.hpp"
 #include "support/reproject_wall.hpp"
 
 namespace gazetrace {

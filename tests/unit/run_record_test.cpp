@@ -56,7 +56,7 @@ TEST(RunRecord, BrokenRecords) {
       FAIL() << text;
     } catch (const Error& e) {
       EXPECT_EQ(e.kind(), ErrorKind::input);
-      EXPECT_THAT(e.what(), testing::HasSubstr("run.json: is no run record"));
+      EXPECT_THAT(e.what(), testing::HasSubstr("run.json: is not a run record"));
     }
   }
 }

@@ -51,8 +51,8 @@ TEST(SequenceName, WhatIsRefused) {
   expect_usage("a.##.##.png", 1, false, "more than one place");
   expect_usage("a.%d.<frame>.png", 1, false, "more than one place");
   expect_usage("a.png", 1, true, "same file");
-  expect_usage("a.%s.png", 1, false, "stands in front of");
-  expect_usage("a.%", 1, false, "stands in front of");
+  expect_usage("a.%s.png", 1, false, "is not a frame number");
+  expect_usage("a.%", 1, false, "is not a frame number");
   expect_usage("a.##.png", -1, false, "negative");
 }
 

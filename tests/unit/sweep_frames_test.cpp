@@ -45,9 +45,9 @@ TEST(SweepFrames, InFlightLastsTillAHundredMillisecondsAfterTheSaccade) {
   plan.frames[5].gaze_true.since_saccade_ns = 3 * kFrameNs;
   plan.frames[6].gaze_true.movement = EyeMovement::blink;
   plan.frames[7].gaze_direction_true.reset();
-  const std::vector<SweepFrame> frames = sweep_frames(plan, {}, 0.04);
+  const std::vector<ResultFrame> frames = sweep_frames(plan, {}, 0.04);
   std::vector<std::string> events;
-  for (const SweepFrame& frame : frames) {
+  for (const ResultFrame& frame : frames) {
     events.push_back(frame.event);
   }
   // Frames are 40 ms apart: 80 ms after the saccade the eye is still in flight, 120 ms after it is not.
@@ -77,7 +77,7 @@ TEST(SweepFrames, RingsAreWhereTheAnglesAreInTheMiddle) {
   FoveationSettings foveation;
   foveation.region_angles_deg = {10, 30};
   // A pixel is a centimetre at 50 cm: tan(5 deg) * 50 and tan(15 deg) * 50 pixels.
-  const std::vector<SweepFrame> frames = sweep_frames(plan_of(1), foveation, 0);
+  const std::vector<ResultFrame> frames = sweep_frames(plan_of(1), foveation, 0);
   ASSERT_EQ(frames[0].rings_px.size(), 2U);
   EXPECT_NEAR(frames[0].rings_px[0], 50 * std::tan(5 * kPi / 180), 1e-9);
   EXPECT_NEAR(frames[0].rings_px[1], 50 * std::tan(15 * kPi / 180), 1e-9);

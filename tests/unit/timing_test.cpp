@@ -108,7 +108,7 @@ TEST(Timing, BrokenTables) {
   expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 58");
   std::string letters = timing_csv_text({example(1)});
   letters.replace(letters.find("1234.5000"), 9, "fast");
-  expect_error(path, letters, "timing.csv:2: 'fast' is no number for column trace_ms");
+  expect_error(path, letters, "timing.csv:2: 'fast' is not a number for column trace_ms");
   EXPECT_THROW(read_timing_csv(folder / "none.csv"), Error);
 }
 

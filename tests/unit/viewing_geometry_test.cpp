@@ -63,8 +63,8 @@ TEST(GazeTransfer, MustBeChosenWhereTheScreensDiffer) {
   // 2 atan(20 / 50) = 43.6 deg and 2 atan(40 / 50) = 77.3 deg.
   EXPECT_EQ(
       refusal(log, settings_for(kLarge)),
-      "gaze.csv: recorded on a display 43.6 deg wide and shown on one 77.3 deg wide; choose with --gaze-transfer: "
-      "fraction keeps places on the display (angles near its center change by a factor of 2.00), angle keeps "
+      "gaze.csv: recorded on a display 43.6 deg wide and shown on one 77.3 deg wide; choose with `gaze-transfer`: "
+      "fraction keeps positions on the display (angles near its center change by a factor of 2.00), angle keeps "
       "angles");
   // The same angles at another size are no difference, nor are 1.9 %.
   EXPECT_THAT(
@@ -75,11 +75,11 @@ TEST(GazeTransfer, MustBeChosenWhereTheScreensDiffer) {
   near.distance_cm = 50 / 1.019;
   EXPECT_THAT(plan(log, settings_for(near)).warnings, IsEmpty());
   near.distance_cm = 50 / 1.021;
-  EXPECT_THAT(refusal(log, settings_for(near)), HasSubstr("--gaze-transfer"));
+  EXPECT_THAT(refusal(log, settings_for(near)), HasSubstr("`gaze-transfer`"));
   // Nor may the eye stand elsewhere: 2 cm of 40.
   DisplayGeometry aside = kSmall;
   aside.eye_x_cm = 2;
-  EXPECT_THAT(refusal(log, settings_for(aside)), HasSubstr("--gaze-transfer"));
+  EXPECT_THAT(refusal(log, settings_for(aside)), HasSubstr("`gaze-transfer`"));
 }
 
 TEST(GazeTransfer, KeepsPlacesOrAngles) {
@@ -191,8 +191,8 @@ TEST(DisplayFile, HasTheNamesOfTheFields) {
     }
     return std::string("accepted");
   };
-  EXPECT_THAT(refusal_of("[1]"), HasSubstr("bad.json: is not the JSON of a display"));
-  EXPECT_THAT(refusal_of("{"), HasSubstr("bad.json: is not the JSON of a display"));
+  EXPECT_THAT(refusal_of("[1]"), HasSubstr("bad.json: is not a JSON object that describes a display"));
+  EXPECT_THAT(refusal_of("{"), HasSubstr("bad.json: is not a JSON object that describes a display"));
   EXPECT_THAT(refusal_of(R"({"width_pix": 3})"), HasSubstr("unknown key 'width_pix'; did you mean 'width_px'?"));
   EXPECT_THAT(refusal_of(R"({"width_px": 3.5})"), HasSubstr("'width_px' is not a whole number of pixels"));
   EXPECT_THAT(refusal_of(R"({"width_px": 30, "height_px": 20, "width_cm": "a"})"),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nuke channel files: `frame tx ty tz rx ry rz [vertical field of view]`, blanks or tabs between, angles in degrees,
-// the camera looks along -z with y up. The order of the rotations is not in the file; Nuke's default is z, x, y.
+// Nuke channel files: `frame tx ty tz rx ry rz [vertical field of view]`, separated by blanks or tabs, with angles in
+// degrees; the camera looks along -z with y up. The file does not state the order of the rotations; Nuke's default is
+// z, x, y.
 #include <fmt/format.h>
 
 #include <array>
@@ -58,10 +59,10 @@ CameraKeys read_camera_chan(const CameraFile& file, const CameraReadOptions& opt
     if (cells.size() < 7 || cells.size() > 8) {
       throw Error(ErrorKind::input, place, fmt::format("{} values where 7 or 8 belong", cells.size()), kForm);
     }
-    // Whole numbers only, but 12.0 is one.
+    // Only whole numbers are frames, but they may be written as 12.0.
     const auto number = number_from(cells[0]);
     if (!number || *number != std::trunc(*number) || std::abs(*number) > 2e9) {
-      throw Error(ErrorKind::input, place, fmt::format("'{}' is no frame number", cells[0].substr(0, 40)), kForm);
+      throw Error(ErrorKind::input, place, fmt::format("'{}' is not a frame number", cells[0].substr(0, 40)), kForm);
     }
     const auto frame = static_cast<std::int64_t>(*number);
     if (!result.keys.empty() && frame <= last) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// COLMAP sparse models as text: images.txt with two lines a picture, `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME` and
-// its points, which may be none. Poses are world *to camera*, x_camera = R x_world + t, so the camera stands at -R' t;
-// axes are those of computer vision. cameras.txt beside it has the lenses. Pictures become frames in the order of their
-// names; there is no time.
+// COLMAP sparse models as text: images.txt has two lines per picture, `IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME`
+// and its points, of which there may be none. Poses are world *to camera*, x_camera = R x_world + t, so the camera
+// stands at -R' t; the axes are those of computer vision. cameras.txt in the same folder has the lenses. There are no
+// times: pictures become frames in the order of their names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Picture {
   CameraKey key;
 };
 
-// The first nine cells, and the name: what is left of the line.
+// The first nine cells, and the name, which is the rest of the line.
 bool split_picture(std::string_view line, std::array<std::string_view, 9>& cells, std::string_view& name) {
   for (std::string_view& cell : cells) {
     line = trim(line);
@@ -54,7 +54,7 @@ std::vector<Picture> read_pictures(const CameraFile& file) {
     std::array<std::string_view, 9> cells{};
     std::string_view name;
     if (!split_picture(line, cells, name)) {
-      throw Error(ErrorKind::input, place, "is no picture's line: less than 10 values", kForm);
+      throw Error(ErrorKind::input, place, "is not the line of a picture: it has less than 10 values", kForm);
     }
     std::array<double, 7> v{};
     for (std::size_t i = 0; i < v.size(); ++i) {
@@ -78,7 +78,8 @@ struct Lens {
   bool is_simple = true;  // centred and without distortion
 };
 
-// Where the parameters of a model have the focal length for rows, the centre, and the first coefficient of distortion.
+// The positions, in a model's parameters, of the vertical focal length, the centre and the first distortion
+// coefficient.
 struct LensModel {
   std::string_view name;
   std::size_t focal_y, center, distortion, count;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// gazetrace camera CSV: a header that names columns and units, `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, `#` comments before
-// it. The columns may come in any order and among others.
+// gazetrace camera CSV: a header that names columns and units, `t[s],x[m],y[m],z[m],qx,qy,qz,qw`, after any number of
+// `#` comments. The columns may come in any order, and there may be others.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// EuRoC MAV ground truth (state_groundtruth_estimate0/data.csv) and trajectories in its manner: commas, integer
-// nanoseconds, metres, and the quaternion with w *first*; more columns (velocity, biases) may follow. The pose is that
-// of the body: the camera's place on it (T_BS of its sensor.yaml) is not in the file.
+// EuRoC MAV ground truth (state_groundtruth_estimate0/data.csv) and trajectories in the same form: separated by commas,
+// integer nanoseconds, metres, and the quaternion with w *first*; more columns (velocity, biases) may follow. The pose
+// is that of the body; where the camera sits on it (T_BS of its sensor.yaml) is not in the file.
 #include <fmt/format.h>
 
 #include <array>
@@ -41,7 +41,7 @@ double sniff_camera_euroc(const CameraFile& file) {
         return 0.0;
       }
     }
-    return 0.7;  // no header, but stamps of nanoseconds
+    return 0.7;  // no header, but time stamps in nanoseconds
   }
   return 0.0;
 }

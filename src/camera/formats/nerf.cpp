@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// NeRF's transforms.json (instant-ngp, nerfstudio, the synthetic sets): camera to world matrices, the camera looks
-// along -z with y up. Pictures become frames in the order of their names; there is no time. The vertical field of view
-// is that of fl_y and h, else camera_angle_y, else camera_angle_x (or fl_x) with w and h.
+// NeRF's transforms.json (instant-ngp, nerfstudio, the synthetic sets): camera-to-world matrices; the camera looks
+// along -z with y up. There are no times: pictures become frames in the order of their names. The vertical field of
+// view comes from fl_y and h, else from camera_angle_y, else from fl_x or camera_angle_x with w and h.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ Affine matrix_of(const Json& frame, const std::string& place) {
   return {column(0), column(1), column(2), column(3)};
 }
 
-// Text files round to a few digits; anything beyond is a scale, a shear or a mirror image.
+// Text files round to a few digits; a larger deviation is a scale, a shear or a mirror image.
 void check_rotation(const Affine& a, const std::string& place) {
   constexpr double kOff = 1e-2;
   const bool unit =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TUM RGB-D trajectories: `timestamp tx ty tz qx qy qz qw`, blanks between, seconds and metres, `#` comments.
+// TUM RGB-D trajectories: `timestamp tx ty tz qx qy qz qw`, separated by blanks, in seconds and metres, `#` comments.
 #include <fmt/format.h>
 
 #include <array>
@@ -30,7 +30,7 @@ double sniff_camera_tum(const CameraFile& file) {
       }
       square += i < 4 ? 0 : *value * *value;
     }
-    // Nuke's lines can have eight numbers too, but no quaternion in them.
+    // Nuke's lines may have eight numbers, too, but no quaternion among them.
     return std::abs(square - 1) < 0.1 ? 0.9 : 0.5;
   }
   return 0.0;

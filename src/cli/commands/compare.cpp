@@ -19,7 +19,7 @@ namespace {
 
 struct CompareArguments {
   CompareJob job;
-  OptionTable table;
+  CommandOptions<CompareJob> options{compare_schema()};
 };
 
 struct Limit {
@@ -347,14 +347,12 @@ int run_compare(const CompareJob& job) {
 Command add_compare_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<CompareArguments>();
   CompareJob& job = arguments->job;
-  OptionTable& table = arguments->table;
-  add_compare_options(table, job);
-  bind_options(app, table);
+  arguments->options.bind(app, job);
   app.add_option("reference", job.reference, "Picture, or sequence as name.####.exr")->required()->type_name("PATTERN");
   app.add_option("test", job.test, "What is measured against it")->required()->type_name("PATTERN");
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   return {[arguments] { return run_compare(arguments->job); },
-          std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+          [arguments](const std::string& path) { arguments->options.read_config(arguments->job, "compare", path); }};
 }
 
 }  // namespace gazetrace

@@ -21,7 +21,7 @@ Command add_gaze_command(CLI::App& app, const Invocation& invocation) {
 #include "cli/gaze_commands.def"
 #undef GAZETRACE_GAZE_COMMAND
   app.require_subcommand(1);
-  return {[commands, &app] { return commands->at(app.get_subcommands().front()->get_name()).run(); }, nullptr};
+  return {[commands, &app] { return commands->at(app.get_subcommands().front()->get_name()).run(); }, {}};
 }
 
 }  // namespace gazetrace

@@ -9,10 +9,10 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/presets.hpp"
-#include "cli/settings_options.hpp"
+#include "cli/option_reference.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/job.hpp"
 
 namespace gazetrace {
 namespace {
@@ -20,8 +20,8 @@ namespace {
 struct ListArguments {
   std::string family;
   ColorSettings color;
-  OptionTable table;
   bool json = false;
+  bool markdown = false;
 };
 
 struct Member {
@@ -125,8 +125,21 @@ std::string family_text(const Family& family, const std::vector<Member>& members
   return text;
 }
 
+// Longer than all families together, and so only where it is asked for.
+constexpr const char* kOptions = "options";
+
 int run_list(const ListArguments& arguments) {
-  std::vector<std::string> known;
+  if (arguments.family == kOptions) {
+    print_result(arguments.markdown ? options_as_markdown(job_schema())
+                 : arguments.json   ? options_as_json(job_schema())
+                                    : options_as_text(job_schema()));
+    return exit_done;
+  }
+  if (arguments.markdown) {
+    throw Error(ErrorKind::usage, "`markdown`", "only the options are written as a page",
+                "gazetrace list options --markdown");
+  }
+  std::vector<std::string> known{kOptions};
   std::string text;
   nlohmann::ordered_json json;
   for (const Family& family : families()) {
@@ -156,12 +169,14 @@ Command add_list_command(CLI::App& app, const Invocation& /*invocation*/) {
   for (const Family& family : families()) {
     names += (names.empty() ? "" : "|") + family.name;
   }
-  app.add_option("family", arguments->family, "What to list; default: everything")->type_name(names);
-  arguments->table.group("Options");
-  add_ocio_config_options(arguments->table, arguments->color);
-  bind_options(app, arguments->table);
+  app.add_option("family", arguments->family, "What to list; default: everything but options")
+      ->type_name(names + "|" + kOptions);
+  const auto options = std::make_shared<CommandOptions<ColorSettings>>(
+      color_config_schema().with_headings([](const Option&) { return "Options"; }));
+  options->bind(app, arguments->color);
   app.add_flag("--json", arguments->json, "As JSON");
-  return {[arguments] { return run_list(*arguments); }, nullptr};
+  app.add_flag("--markdown", arguments->markdown, "Of options: a page of the manual");
+  return {[arguments, options] { return run_list(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

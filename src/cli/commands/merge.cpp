@@ -9,10 +9,8 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/inputs.hpp"
-#include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/output.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
@@ -35,26 +33,22 @@ std::vector<std::int32_t> frames_of(const std::vector<RunPart>& parts) {
 // The settings of the parts, as their records keep them, over the same files.
 MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
   const RunPart& first = parts.front();
-  JobSettings job;
-  OptionTable table;
-  add_job_options(table, job);
-  assign_toml(table, first.record.config_toml, first.timing_path);
-  job.frames = FrameList{frames_of(parts)};
-  job.trace.samples.reset();
-  job.part = job.resume = false;
-  job.overwrite = arguments.overwrite;
-  check_settings(job);
-  const ColorPipeline color(job.color);
-  const Inputs inputs = load_inputs(job, InputScope::plan_only);
-  PipelineSettings settings = pipeline_settings(job, inputs.frames);
-  const std::map<std::string, std::string> digests = digest_job_files(job);
-  digest_job(table, job, inputs.frames, digests, settings);
-  if (settings.settings_digest != first.record.settings_digest) {
+  Job job = job_of_record(first.record, first.timing_path);
+  job.settings.frames = FrameList{frames_of(parts)};
+  job.settings.trace.samples.reset();
+  job.settings.part = job.settings.resume = false;
+  job.settings.overwrite = arguments.overwrite;
+  check_job(job);
+  const ColorPipeline color(job.settings.color);
+  ResolveOptions resolving;
+  resolving.scope = ResolveScope::digests;
+  const ResolvedJob resolved = resolve(job, resolving);
+  if (resolved.pipeline.settings_digest != first.record.settings_digest) {
     throw Error(ErrorKind::input, first.timing_path, "was rendered from other files, or by another version",
                 "start the merge where the parts were started, with the same files in place");
   }
-  prepare_outputs(settings, inputs.frames, digests);
-  return merge_samples(parts, inputs.plan, color, settings);
+  prepare_outputs(resolved);
+  return merge_samples(parts, resolved.plan, color, resolved.pipeline);
 }
 
 int run_merge(const MergeArguments& arguments) {
@@ -74,7 +68,7 @@ Command add_merge_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("folder", arguments->directory, "Where the parts were rendered into")->required()->type_name("DIR");
   app.add_flag("--allow-missing", arguments->allow_missing, "Joins what is there though frames are missing");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and, of parts of samples, pictures");
-  return {[arguments] { return run_merge(*arguments); }, nullptr};
+  return {[arguments] { return run_merge(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

@@ -7,17 +7,15 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/idle_options.hpp"
-#include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
 
 struct PlanArguments {
-  JobSettings job;
-  OptionTable table;
+  Job job;
   std::string save_camera;
   bool counts = false;
   bool json = false;
@@ -95,32 +93,33 @@ std::string counts_as_json(const std::vector<FrameCounts>& frames, std::uint32_t
 }
 
 int run_plan(const PlanArguments& arguments) {
-  const JobSettings& job = arguments.job;
-  check_settings(job);
+  const JobSettings& job = arguments.job.settings;
+  check_job(arguments.job);
   if (job.scene.empty() && job.camera_path.empty() && !job.camera_from_gaze && !job.eye && !arguments.counts) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
   }
-  const Inputs inputs = load_inputs(job, InputScope::plan_only);
-  print_warnings(idle_option_warnings(arguments.table, job));
-  print_warnings(inputs.warnings);
+  ResolveOptions resolving;
+  resolving.scope = ResolveScope::plan;
+  const ResolvedJob resolved = resolve(arguments.job, resolving);
+  print_warnings(resolved.warnings);
   if (!arguments.save_camera.empty()) {
     std::vector<FramePose> frames;
-    for (const FrameRequest& request : inputs.plan.frames) {
+    for (const FrameRequest& request : resolved.plan.frames) {
       frames.push_back({request.frame, request.t_video_ns, request.camera});
     }
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
   if (arguments.counts && job.foveation.contrast_strength > 0) {
-    throw Error(ErrorKind::usage, "--contrast-strength", "counts that follow the picture are known once it is rendered",
+    throw Error(ErrorKind::usage, "`contrast-strength`", "counts that follow the picture are known once it is rendered",
                 "leave it out, or render and read timing.csv");
   }
   if (!arguments.counts) {
-    print_result(with_flags(arguments.json ? plan_as_json(inputs.plan) : plan_as_table(inputs.plan)));
+    print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));
     return exit_done;
   }
   std::vector<FrameCounts> counts;
-  for (const FrameRequest& request : inputs.plan.frames) {
+  for (const FrameRequest& request : resolved.plan.frames) {
     counts.push_back(count_samples(request, job));
   }
   const std::uint32_t spp = job.foveation.uniform_spp;
@@ -132,8 +131,7 @@ int run_plan(const PlanArguments& arguments) {
 
 Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<PlanArguments>();
-  add_job_options(arguments->table, arguments->job);
-  bind_options(app, arguments->table);
+  bind_job_options(app, arguments->job);
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--counts", arguments->counts,
                "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");
@@ -144,7 +142,7 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->type_name("FILE");
   app.add_flag("--json", arguments->json, "As JSON");
   return {[arguments] { return run_plan(*arguments); },
-          std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+          [arguments](const std::string& path) { read_job_config(arguments->job, "plan", path); }};
 }
 
 }  // namespace gazetrace

@@ -10,22 +10,17 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/idle_options.hpp"
-#include "cli/inputs.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "cli/summary.hpp"
-#include "cli/toml_config.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/plan_join.hpp"
-#include "gazetrace/version.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
 
 struct RenderArguments {
-  JobSettings job;
-  OptionTable table;
+  Job job;
   bool print_config = false;
   bool json = false;
 };
@@ -39,31 +34,11 @@ void check_asked_for_something(const JobSettings& job) {
   }
 }
 
-RunRecord start_record(const RenderArguments& arguments, const Invocation& invocation, const Inputs& inputs,
-                       const PipelineSettings& settings, const TemporalHistory& history, const PathTracer& tracer,
-                       const ColorPipeline& color) {
-  RunRecord record;
-  record.version = kVersion;
-  record.build = build_description();
-  record.instruction_set = instruction_set();
-  record.ray_library = tracer.ray_library();
-  record.command_line = invocation.arguments;
-  record.config_toml = settings_as_toml(arguments.table, "gazetrace render");
-  record.settings_digest = settings.settings_digest;
-  record.history = recorded_history(inputs.plan, settings, history);
-  record.frames = format_frame_list(inputs.frames);
-  record.is_part = settings.is_part || settings.trace.samples.has_value();
-  record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
-  record.warnings = with_flags(inputs.warnings);
-  for (const auto& [name, text] : inputs.decisions) {
-    record.facts[name] = text;
+RunRecord record_with_flags(RunRecord record) {
+  record.warnings = with_flags(std::move(record.warnings));
+  for (auto& [name, text] : record.facts) {
+    text = with_flags(text);
   }
-  record.facts["working_space"] = "linear Rec.709, D65";
-  record.facts["view"] = color.description();
-  record.facts["load_s"] = fmt::format("{:.3f}", inputs.load_s);
-  record.facts["bvh_build_s"] = fmt::format("{:.3f}", tracer.memory().build_s);
-  record.facts["bvh_mib"] = fmt::format("{:.1f}", static_cast<double>(tracer.memory().bvh_bytes) / 1048576.0);
-  record.facts["state"] = "running";
   return record;
 }
 
@@ -90,10 +65,10 @@ std::string pixel_report(const FrameRequest& request, const Frame& frame, const 
                      frame.variance(pixel.x, pixel.y));
 }
 
-void say_decisions(const Inputs& inputs, const ColorPipeline& color, const PathTracer& tracer) {
-  std::fprintf(stderr, "scene: %s, loaded in %.2f s\n", inputs.scene->source.c_str(), inputs.load_s);
-  for (const auto& [name, text] : inputs.decisions) {
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), text.c_str());
+void say_decisions(const ResolvedJob& resolved, const ColorPipeline& color, const PathTracer& tracer) {
+  std::fprintf(stderr, "scene: %s, loaded in %.2f s\n", resolved.scene->source.c_str(), resolved.load_s);
+  for (const auto& [name, text] : resolved.decisions) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
   }
   std::fprintf(stderr, "view: %s\n", color.description().c_str());
   std::fprintf(stderr, "rays: %s, tree of %.0f MiB built in %.2f s\n", tracer.ray_library().c_str(),
@@ -101,49 +76,36 @@ void say_decisions(const Inputs& inputs, const ColorPipeline& color, const PathT
 }
 
 int run_render(const RenderArguments& arguments, const Invocation& invocation) {
-  const JobSettings& job = arguments.job;
+  const JobSettings& job = arguments.job.settings;
   check_asked_for_something(job);
-  check_settings(job);
+  check_job(arguments.job);
   const ColorPipeline color(job.color);
   auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, job.quiet));
-  Inputs inputs = load_inputs(job, InputScope::render,
-                              [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); });
-  const Warnings idle = idle_option_warnings(arguments.table, job);
-  inputs.warnings.insert(inputs.warnings.begin(), idle.begin(), idle.end());
-  PipelineSettings settings = pipeline_settings(job, inputs.frames);
-  const std::map<std::string, std::string> digests = digest_job_files(job);
-  settings.preroll = static_cast<std::int32_t>(inputs.plan.frames.size() - inputs.frames.size());
-  digest_job(arguments.table, job, inputs.frames, digests, settings);
-  TemporalHistory history = starting_history(inputs.plan, settings, inputs.warnings);
-  if (inputs.gaze && !history.passed.empty()) {
-    join_plan(inputs.plan, history.passed.back(), *inputs.gaze, inputs.plan_settings);
-  }
-  prepare_outputs(settings, inputs.frames, digests);
+  ResolveOptions resolving;
+  resolving.progress = [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); };
+  ResolvedJob resolved = resolve(arguments.job, resolving);
+  prepare_outputs(resolved);
 
-  TracerOptions options;
-  options.threads = job.threads;
-  options.bvh_quality = job.bvh;
   loading->building_tree();
-  PathTracer tracer(*inputs.scene, options);
+  PathTracer tracer(*resolved.scene, tracer_options(job));
   loading.reset();
-  RunRecord record = start_record(arguments, invocation, inputs, settings, history, tracer, color);
-  record.input_digests = digests;
-  const std::vector<std::string> files = output_files(settings, inputs.frames);
+  RunRecord record = start_run_record(resolved, tracer, color, invocation.arguments);
+  const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
   if (!files.empty()) {
     if (job.resume) {
-      warn_of_other_machine(files.front(), record, inputs.warnings);
-      record.warnings = with_flags(inputs.warnings);
+      warn_of_other_machine(files.front(), record, resolved.warnings);
+      record.warnings = resolved.warnings;
     }
     // Written now and at the end: a killed run has a record, too.
-    write_text_atomically(files.front(), run_record_json(record));
+    write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
   }
-  print_warnings(inputs.warnings);
+  print_warnings(resolved.warnings);
   if (!job.quiet) {
-    say_decisions(inputs, color, tracer);
+    say_decisions(resolved, color, tracer);
   }
 
   const auto begin = std::chrono::steady_clock::now();
-  Progress progress(progress_style(job.progress, job.quiet), inputs.plan.frames.size());
+  Progress progress(progress_style(job.progress, job.quiet), resolved.plan.frames.size());
   PipelineObserver observer;
   observer.frame_done = [&](const TimingRow& row, bool skipped) {
     progress.frame_done(row.frame, row.total_ms, skipped);
@@ -155,25 +117,21 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
     };
   }
   keep_freed_memory();
-  const SequenceResult result = render_sequence(tracer, inputs.plan, color, settings, observer, std::move(history));
+  const SequenceResult result =
+      render_sequence(tracer, resolved.plan, color, resolved.pipeline, observer, std::move(resolved.history));
   progress.finish();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
-  const Warnings late = with_flags(result_warnings(result, inputs.plan));
   if (!files.empty()) {
-    record.facts["state"] = "done";
-    record.facts["wall_s"] = fmt::format("{:.3f}", wall_s);
-    record.facts["peak_memory_mib"] = fmt::format("{:.1f}", peak_memory_mib());
-    record.warnings.insert(record.warnings.end(), late.begin(), late.end());
-    record.bad_samples = result.bad_samples;
-    write_text_atomically(files.front(), run_record_json(record));
+    finish_run_record(record, result, resolved.plan, wall_s);
+    write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
   }
-  print_warnings(late);
+  print_warnings(result_warnings(result, resolved.plan));
   if (!job.quiet) {
     std::fputs(summary_text(result, wall_s).c_str(), stderr);
   }
   if (arguments.json) {
-    print_result(summary_json(result, inputs, settings, wall_s));
+    print_result(summary_json(result, resolved, wall_s));
   } else {
     print_result(pixels);
   }
@@ -184,21 +142,18 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
 
 Command add_render_command(CLI::App& app, const Invocation& invocation) {
   auto arguments = std::make_shared<RenderArguments>();
-  add_job_options(arguments->table, arguments->job);
-  bind_options(app, arguments->table);
+  bind_job_options(app, arguments->job);
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--json", arguments->json, "Prints the closing summary as JSON on stdout");
   app.add_flag("--print-config", arguments->print_config, "Prints every option with its value as TOML, and stops");
   const auto run = [arguments, &invocation] {
     if (arguments->print_config) {
-      print_result(settings_as_toml(arguments->table, "gazetrace render"));
+      print_result(job_as_toml(arguments->job));
       return static_cast<int>(exit_done);
     }
-    // The record says what was done.
-    arguments->job.filter = filter_of(arguments->job);
     return run_render(*arguments, invocation);
   };
-  return {run, std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+  return {run, [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
 }
 
 }  // namespace gazetrace

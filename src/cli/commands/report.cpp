@@ -33,7 +33,7 @@ int run_report(const ReportArguments& arguments) {
   if (!(arguments.settings.max_mib > 0)) {
     throw Error(ErrorKind::usage, "--max-mib", "must be above 0");
   }
-  const ReportData data = read_results(arguments.results);
+  const Results data = read_results(arguments.results);
   const std::string output =
       arguments.output.empty() ? (fs::path(data.directory) / "report.html").string() : arguments.output;
   check_output_file(output, arguments.overwrite);
@@ -51,7 +51,7 @@ int run_report(const ReportArguments& arguments) {
     print_result(fmt::format("{} diagrams in {}\n", plots.size(), arguments.plots));
   }
   if (!arguments.csv.empty()) {
-    write_text_atomically(arguments.csv, report_csv(data));
+    write_text_atomically(arguments.csv, results_csv(data));
   }
   const ReportPage page = report_page(data, arguments.settings);
   print_warnings(page.warnings);
@@ -80,7 +80,7 @@ Command add_report_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--threads", arguments->settings.threads, "0: as many as the machine has")->type_name("N");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces outputs that are there");
   app.footer(kExitCodesHelp);
-  return {[arguments] { return run_report(*arguments); }, nullptr};
+  return {[arguments] { return run_report(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

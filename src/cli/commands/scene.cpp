@@ -202,7 +202,7 @@ Command add_scene_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
   app.add_flag("--json", arguments->json, "As JSON");
-  return {[arguments] { return run_scene(*arguments); }, nullptr};
+  return {[arguments] { return run_scene(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

@@ -13,8 +13,8 @@
 #include "cli/exit_codes.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
-#include "cli/sweep_jobs.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/sweep_plan.hpp"
 
 namespace gazetrace {
 namespace {
@@ -24,7 +24,6 @@ struct SweepArguments {
   std::optional<FrameList> frames;
   std::optional<int> threads;
   bool dry_run = false, restart = false, quiet = false;
-  OptionTable table;
 };
 
 // A guess to tell minutes from days: a core traces about this many camera samples a second in a scene like Sponza.
@@ -47,7 +46,7 @@ int run_sweep_command(const SweepArguments& arguments) {
   if (arguments.plan.empty()) {
     throw Error(ErrorKind::usage, "", "no plan was given", "gazetrace sweep PLAN.toml -o FOLDER");
   }
-  SweepJobs jobs = make_sweep_jobs(read_sweep_file(arguments.plan), arguments.frames, arguments.threads);
+  LoadedSweepPlan jobs = load_sweep_plan(arguments.plan, arguments.frames, arguments.threads);
   SweepPlan& plan = jobs.plan;
   plan.directory =
       arguments.output.empty() ? std::filesystem::path(arguments.plan).stem().string() + ".sweep" : arguments.output;
@@ -67,11 +66,11 @@ int run_sweep_command(const SweepArguments& arguments) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
   keep_freed_memory();
-  const SweepResults results = run_sweep(plan, observer);
-  write_text_atomically(plan.directory + "/results.csv", sweep_csv(plan, results));
-  write_text_atomically(plan.directory + "/methods.txt", sweep_methods(plan, results));
-  write_text_atomically(plan.directory + "/results.json", sweep_json(plan, results));
-  print_result(sweep_table(plan, results));
+  const Results results = run_sweep(plan, observer);
+  write_text_atomically(plan.directory + "/results.csv", results_csv(results));
+  write_text_atomically(plan.directory + "/methods.txt", results_methods(results));
+  write_text_atomically(plan.directory + "/results.json", results_json(results));
+  print_result(results_table(results));
   return exit_done;
 }
 
@@ -79,19 +78,20 @@ int run_sweep_command(const SweepArguments& arguments) {
 
 Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<SweepArguments>();
-  OptionTable& table = arguments->table;
-  table.value("plan", arguments->plan, "PLAN.toml", "Scenes, gazes, settings, reference and what to measure");
-  table.value(
-      "-o,--output", arguments->output, "FOLDER",
+  OptionSchema<SweepArguments> schema;
+  schema.value("plan", &SweepArguments::plan, "PLAN.toml", "Scenes, gazes, settings, reference and what to measure");
+  schema.value(
+      "-o,--output", &SweepArguments::output, "FOLDER",
       "Results, pictures and what is needed to go on after an interruption; default: the plan's name with .sweep");
-  table.value("--frames", arguments->frames, "LIST", "In place of the plan's");
-  table.value("--threads", arguments->threads, "N", "In place of the plan's; 0: as many as the machine has");
-  table.flag("--dry-run", arguments->dry_run, "Checks the plan, prints its rows and how much there is to do");
-  table.flag("--restart", arguments->restart, "Throws away what the folder holds of an earlier sweep");
-  table.flag("--quiet", arguments->quiet, "Tells nothing but the table");
-  bind_options(app, table);
+  schema.value("--frames", &SweepArguments::frames, "LIST", "In place of the plan's");
+  schema.value("--threads", &SweepArguments::threads, "N", "In place of the plan's; 0: as many as the machine has");
+  schema.flag("--dry-run", &SweepArguments::dry_run, "Checks the plan, prints its rows and how much there is to do");
+  schema.flag("--restart", &SweepArguments::restart, "Throws away what the folder holds of an earlier sweep");
+  schema.flag("--quiet", &SweepArguments::quiet, "Tells nothing but the table");
+  const auto options = std::make_shared<CommandOptions<SweepArguments>>(std::move(schema));
+  options->bind(app, *arguments);
   app.footer(kExitCodesHelp);
-  return {[arguments] { return run_sweep_command(*arguments); }, nullptr};
+  return {[arguments, options] { return run_sweep_command(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

@@ -34,7 +34,6 @@ struct VideoArguments {
   std::string output, color;
   VideoSettings video;
   bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
-  OptionTable table;
 };
 
 std::string path_of(const std::string& pattern, std::int32_t frame) {
@@ -222,55 +221,67 @@ int run_video(VideoArguments& arguments) {
   return exit_done;
 }
 
-void add_video_options(VideoArguments& arguments) {
-  OptionTable& table = arguments.table;
-  CompareJob& job = arguments.job;
-  table.group("Video");
-  table.value("-o,--output", arguments.output, "FILE", "A .mp4, .mov or .mkv; appears when it is complete");
-  table.value("--codec", arguments.video.codec, "h264|hevc|ffv1",
-              "h264 and hevc: 8 bits, 4:2:0; ffv1: RGB without loss, .mkv only");
-  table.value("--crf", arguments.video.crf, "0..51", "Quality of h264 and hevc, less is better");
-  table.value("--color", arguments.color, "srgb|rec709|display-p3|linear",
-              "What the file says of its colors; default: what the run's view is for");
-  table.value("--ffmpeg", arguments.video.program, "PROGRAM", "The ffmpeg program");
-  table.flag("--overwrite", arguments.overwrite, "Replaces the file when it is there");
-  table.group("Marks");
-  table.flag("--show-gaze", arguments.show_gaze, "Draws a dot at the true gaze");
-  table.flag("--show-rings", arguments.show_rings, "Draws where the regions end");
-  table.flag("--fixation-mark", arguments.fixation_mark,
-             "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
-  table.group("Frames and gaze");
-  table.value("--frames", job.frames, "LIST", "Which frames; default: those that are there");
-  table.value("--fps", job.fps, "RATE", "Frames a second; default: what the run record or the pictures say");
-  table.flag("--anyway", job.anyway, "Shows sequences beside each other whose frames, views or exposures differ");
-  table.value("--gaze", job.shared.gaze.path, "FILE", "Where the viewer looked; default: what the pictures say",
-              Influence::file);
-  table.value("--gaze-at", job.shared.gaze_at, "U,V", "A fixed gaze in fractions of the screen from its top left");
-  table.value("--gaze-offset", job.shared.gaze_offset, "DURATION", "t_video = scale (t_log - start) + offset");
-  table.value("--frame-rect", job.shared.frame_rect, "X,Y,W,H",
-              "Where the frame lies on the screen, in screen pixels; default: as rendered, else it fills the screen");
-  add_gaze_file_options(table, job.shared.gaze);
-  add_screen_options(table, job.shared.screen);
-  table.group("Color of .exr pictures");
-  add_ocio_config_options(table, job.shared.color);
-  table.value("--display", job.shared.color.display, "NAME", "OpenColorIO display; default: the run's");
-  table.value("--view", job.shared.color.view, "NAME", "OpenColorIO view; default: the run's");
-  table.value("--threads", job.shared.threads, "N", "0: as many as the machine has");
+constexpr const char* kColor = "Color of .exr pictures";
+
+OptionSchema<VideoArguments> video_schema() {
+  const auto job = [](auto... members) { return at(&VideoArguments::job, members...); };
+  const auto shared = [](auto... members) { return at(&VideoArguments::job, &CompareJob::shared, members...); };
+  OptionSchema<VideoArguments> schema;
+  schema.group("Video");
+  schema.value("-o,--output", &VideoArguments::output, "FILE", "A .mp4, .mov or .mkv; appears when it is complete");
+  schema.value("--codec", at(&VideoArguments::video, &VideoSettings::codec), "h264|hevc|ffv1",
+               "h264 and hevc: 8 bits, 4:2:0; ffv1: RGB without loss, .mkv only");
+  schema.value("--crf", at(&VideoArguments::video, &VideoSettings::crf), "0..51",
+               "Quality of h264 and hevc, less is better");
+  schema.value("--color", &VideoArguments::color, "srgb|rec709|display-p3|linear",
+               "What the file says of its colors; default: what the run's view is for");
+  schema.value("--ffmpeg", at(&VideoArguments::video, &VideoSettings::program), "PROGRAM", "The ffmpeg program");
+  schema.flag("--overwrite", &VideoArguments::overwrite, "Replaces the file when it is there");
+  schema.group("Marks");
+  schema.flag("--show-gaze", &VideoArguments::show_gaze, "Draws a dot at the true gaze");
+  schema.flag("--show-rings", &VideoArguments::show_rings, "Draws where the regions end");
+  schema.flag("--fixation-mark", &VideoArguments::fixation_mark,
+              "Draws a mark to look at where the viewer looked (0.6 degrees; Thaler et al. 2013)");
+  schema.group("Frames and gaze");
+  schema.value("--frames", job(&CompareJob::frames), "LIST", "Which frames; default: those that are there");
+  schema.value("--fps", job(&CompareJob::fps), "RATE",
+               "Frames a second; default: what the run record or the pictures say");
+  schema.flag("--anyway", job(&CompareJob::anyway),
+              "Shows sequences beside each other whose frames, views or exposures differ");
+  schema.value("--gaze", shared(&JobSettings::gaze, &GazeFileSettings::path), "FILE",
+               "Where the viewer looked; default: what the pictures say");
+  schema.value("--gaze-at", shared(&JobSettings::gaze_at), "U,V",
+               "A fixed gaze in fractions of the screen from its top left");
+  schema.value("--gaze-offset", shared(&JobSettings::gaze_offset), "DURATION",
+               "t_video = scale (t_log - start) + offset");
+  schema.value("--frame-rect", shared(&JobSettings::frame_rect), "X,Y,W,H",
+               "Where the frame lies on the screen, in screen pixels; default: as rendered, else it fills the screen");
+  schema.include(gaze_file_schema(), shared(&JobSettings::gaze));
+  schema.include(screen_schema(), shared(&JobSettings::screen));
+  schema.group(kColor);
+  schema.include(color_config_schema().with_headings([](const Option&) { return kColor; }),
+                 shared(&JobSettings::color));
+  schema.value("--display", shared(&JobSettings::color, &ColorSettings::display), "NAME",
+               "OpenColorIO display; default: the run's");
+  schema.value("--view", shared(&JobSettings::color, &ColorSettings::view), "NAME",
+               "OpenColorIO view; default: the run's");
+  schema.value("--threads", shared(&JobSettings::threads), "N", "0: as many as the machine has");
+  return schema;
 }
 
 }  // namespace
 
 Command add_video_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<VideoArguments>();
-  add_video_options(*arguments);
-  bind_options(app, arguments->table);
+  const auto options = std::make_shared<CommandOptions<VideoArguments>>(video_schema());
+  options->bind(app, *arguments);
   app.add_option("sequence", arguments->job.reference, "Pictures as name.####.png or name.####.exr")
       ->required()
       ->type_name("PATTERN");
   app.add_option("beside", arguments->job.test, "A second sequence, shown to the right of it")->type_name("PATTERN");
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   return {[arguments] { return run_video(*arguments); },
-          std::shared_ptr<const OptionTable>(arguments, &arguments->table)};
+          [arguments, options](const std::string& path) { options->read_config(*arguments, "video", path); }};
 }
 
 }  // namespace gazetrace

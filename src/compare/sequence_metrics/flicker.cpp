@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Flicker in excess of the reference's; metrics/flicker.cpp has the metric.
+// Flicker in excess of the reference's. The metric itself is in metrics/flicker.cpp.
 #include "gazetrace/flicker.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ std::unique_ptr<SequenceMetric> make_flicker(const ComparisonSettings& settings,
       FlickerSettings{*settings.view, settings.frames_per_second, settings.metric.threads});
 }
 
-// Means are of squares.
+// Means are means of squares.
 double sequence_value_flicker(double mean) {
   return std::sqrt(mean);
 }

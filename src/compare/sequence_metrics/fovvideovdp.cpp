@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FovVideoVDP of luminance; metrics/fovvideovdp.cpp has the metric.
+// FovVideoVDP of luminance. The metric itself is in metrics/fovvideovdp.cpp.
 #include <cmath>
 
 #include "compare/sequence_metric.hpp"
@@ -13,7 +13,7 @@ class FovVideoVdpOfFrames : public SequenceMetric {
   FovVideoVdpOfFrames(const FovVideoVdpSettings& settings, int width_px, int height_px)
       : metric_(settings, width_px, height_px) {}
 
-  // Frames without gaze keep the window in time going.
+  // Frames without gaze are not scored, but enter the metric's window in time.
   std::optional<MetricMap> add(const LuminanceFrame& frame) override {
     if (!frame.gaze_px) {
       metric_.prime(frame.reference, frame.test);
@@ -27,8 +27,8 @@ class FovVideoVdpOfFrames : public SequenceMetric {
   FovVideoVdp metric_;
 };
 
-// How far the middle lies beside the eye's perpendicular, from one border and half the size. What rounding leaves of
-// nothing is nothing, so that pictures in the middle score to the bit as the metric's authors have it.
+// How far the middle lies off the perpendicular from the eye, from one border and half the size. A rounding error
+// becomes exactly 0, so that a centered picture scores bit for bit as in the geometry of the metric's authors.
 double middle_m(double border_m, double half_m) {
   constexpr double kRounding = 1e-9;
   const double middle = border_m + half_m;
@@ -38,8 +38,8 @@ double middle_m(double border_m, double half_m) {
 }  // namespace
 
 std::unique_ptr<SequenceMetric> make_fovvideovdp(const ComparisonSettings& settings, int width_px, int height_px) {
-  // The metric takes a picture to fill its display: a display of the picture's own pixels, size and place. Distance 1
-  // m.
+  // The metric assumes that a picture fills its display, so it gets a display of the picture's own pixels, size and
+  // position, at a distance of 1 m.
   const PlanarView& view = *settings.view;
   const double width_m = view.step_x * width_px;
   const double height_m = view.step_y * height_px;
@@ -52,7 +52,7 @@ std::unique_ptr<SequenceMetric> make_fovvideovdp(const ComparisonSettings& setti
   return std::make_unique<FovVideoVdpOfFrames>(metric, width_px, height_px);
 }
 
-// Averaged over frames is Q, over pixels the local difference in JOD.
+// The mean over frames is that of Q, the mean over pixels that of the local difference in JOD.
 double sequence_value_fovvideovdp(double mean) {
   return fovvideovdp_jod(mean);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What flicker cannot see: |mean of the test - mean of the reference| / mean of the reference, of the luminance of
-// cells of 4 x 4 pixels over the last second. Frozen or smeared history and lost light show here. So does noise that a
-// second does not average out.
+// The error that the flicker metric cannot see: |mean of the test - mean of the reference| / mean of the reference, of
+// the luminance of cells of 4 x 4 pixels over the last second. Frozen or smeared history and lost light show here, and
+// so does noise that does not average out within a second.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -15,9 +15,9 @@ namespace gazetrace {
 namespace {
 
 constexpr int kCellPx = 4;
-constexpr double kLeastLuminance = 0.1;  // of a background, cd/m2
+constexpr double kLeastLuminance = 0.1;  // least divisor, cd/m2
 
-// Sums over the last frames.
+// The sum of each cell over the last frames.
 class RunningSum {
  public:
   void add(ImageGray cells, std::size_t frames) {

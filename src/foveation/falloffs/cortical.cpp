@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cortical magnification, A/(e + e2) mm of visual cortex per degree, with e2 = 3.67 degrees (Dougherty et al., Journal
-// of Vision 3(10), 2003): details are as fine as the cortex has room for. f(e) = 60 e2/(e + e2), 60 cycles per degree
-// being the acuity at the fovea.
+// Cortical magnification: A/(e + e2) mm of visual cortex per degree, with e2 = 3.67 degrees (Dougherty et al., Journal
+// of Vision 3(10), 2003). Visible detail is taken to be in proportion to it: f(e) = 60 e2/(e + e2), where 60 cycles per
+// degree is the acuity at the fovea.
 #include "foveation/falloff.hpp"
 
 namespace gazetrace {

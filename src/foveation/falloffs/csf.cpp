@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contrast sensitivity that knows the luminance the eye is adapted to. In the fovea, Barten, "Formula for the contrast
-// sensitivity of the human eye", SPIE 5294, 2004, eq. 11:
+// Contrast sensitivity at the luminance that the eye is adapted to. In the fovea it is that of Barten, "Formula for the
+// contrast sensitivity of the human eye", SPIE 5294, 2004, eq. 11:
 //   S(u, L) = 5200 exp(-0.0016 u^2 (1 + 100/L)^0.08) /
 //             sqrt((1 + 144/X0^2 + 0.64 u^2) (63/L^0.83 + 1/(1 - exp(-0.02 u^2)))),
-// X0 = 10 degrees the size of what is seen. Its decline with eccentricity is that of stelaCSF (Mantiuk et al., ACM TOG
-// 41(4), 2022; constants from the authors' code, MIT licence):
+// where X0 = 10 degrees is the size of the detail. Its decline with eccentricity is that of stelaCSF (Mantiuk et al.,
+// ACM TOG 41(4), 2022; constants from the authors' code, MIT licence):
 //   S(u, L, e) = S(u, L) 10^(-(k1 + k2 u) e),
 // k1 = 0.0277526, k2 = 0.0175072, and towards the nasal visual field k1 = 0.0275591, k2 = 0.00987064, mixed by
 // min(1, |v - 180 deg| / 90 deg) with v the direction in the visual field, 0 temporal and 180 nasal. The cut-off is the
 // highest u of 1/16 to 64 cycles per degree with S C >= 1 for a detail of contrast C, and 0 where there is none.
-// Beyond 120 degrees, where the fit ends, it stays what it is there. Left out: temporal frequency and size.
+// Beyond 120 degrees, where the fit ends, the value at 120 degrees is held. Temporal frequency and the influence of
+// size are left out.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,7 +41,7 @@ double log10_foveal_sensitivity(double u_cpd, double luminance_cd_m2) {
          0.5 * std::log10((1 + 144 / (kSizeDeg * kSizeDeg) + 0.64 * u2) * noise);
 }
 
-// Cut-offs over direction and eccentricity: solved once, read by interpolation.
+// Cut-offs over direction and eccentricity, solved once and read by interpolation.
 class CutoffTable {
  public:
   CutoffTable(double contrast, double luminance_cd_m2) {

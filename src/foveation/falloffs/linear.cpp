@@ -4,7 +4,7 @@
 //   p(e) = 1                               e <= e_f
 //          1 + (p_p - 1)(e - e_f)/(e_p - e_f)  e <= e_p
 //          p_p                             beyond
-// Weier et al. 2016 use the same shape. The angles (5 and 25 degrees) and p_p = 0.1 are choices within what is common.
+// Weier et al. 2016 use the same shape. The default angles (5 and 25 degrees) and p_p = 0.1 are within the usual range.
 #include "foveation/falloff.hpp"
 
 namespace gazetrace {

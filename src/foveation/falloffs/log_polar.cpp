@@ -5,8 +5,8 @@
 // r in pixels from the gaze and L the logarithm of its distance from the frame's farthest corner. The buffer's samples
 // fall on the frame with the density of the mapping's Jacobian,
 //   |du/dr dv/dtheta| / r = w h / (2 pi alpha L r^2) (ln r / L)^(1/alpha - 1),
-// no more than the full rate, and r no less than a pixel, where the mapping ends. Published: sigma = 1.8, alpha = 4.
-// The buffer's 1/sigma^2 of the pixels is an upper bound here: what of it lies beside the frame is not traced.
+// limited to the full rate, with r no less than a pixel, where the mapping ends. Published: sigma = 1.8, alpha = 4. The
+// buffer's 1/sigma^2 of the frame's pixels is an upper bound here, since samples beside the frame are not traced.
 #include <algorithm>
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guenter et al., "Foveated 3D Graphics", ACM TOG 31(6), 2012: the smallest cycle that is resolved grows in proportion
 // to eccentricity, w(e) = m e + w0 degrees, f = 1/w. m = 0.022 (conservative) to 0.0275 (aggressive) from their user
-// study, w0 = 1/48 degree. The paper drew its layers with antialiasing, jitter and temporal filtering: without them so
-// few samples show.
+// study, w0 = 1/48 degree. The paper rendered its layers with antialiasing, jitter and temporal filtering; without
+// them, such low sampling rates are visible.
 #include "foveation/falloff.hpp"
 
 namespace gazetrace {

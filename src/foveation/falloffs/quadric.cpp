@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The "quadric" fall-off that the source paper announces without a formula, as its natural reading: in place of
+// The source paper announces a "quadric" fall-off without giving a formula. This is its natural reading: in place of
 // steps, a parabola that meets the outer rate without a kink,
 //   p(e) = p_p + (1 - p_p) ((e_p - e)/(e_p - e_f))^2   for e_f < e < e_p, 1 before and p_p beyond.
 #include "foveation/falloff.hpp"

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three regions about the gaze, after "Foveated Path Tracing with Configurable Sampling and Block-Based Rendering".
 //
-//   fovea         e <= e_f        tau1 samples a pixel
-//   intermediate  e_f < e <= e_i  tau2 samples a block of n x n pixels
-//   periphery     e_i < e         tau3 samples a block of m x m pixels
+//   fovea         e <= e_f        tau1 samples per pixel
+//   intermediate  e_f < e <= e_i  tau2 samples per block of n x n pixels
+//   periphery     e_i < e         tau3 samples per block of m x m pixels
 //
 // cone: e is the angle at the eye between gaze and pixel centre, by atan2, and ends at a/2 (full_angle) or a
 // (eccentricity). disc: pixels whose centre is within r of the gaze point, with eq. (1) of the paper,
 // 2 d R tan(a/2) / S, taken as the diameter (full_angle) or the radius (eccentricity). Borders are inclusive.
-// The paper names a blending between regions without saying how it is done. Here, if asked for: over a rim of W degrees
-// about each border the logarithm of the density (tau / n^2) goes from one region's to the other's by
-// smoothstep(t) = t^2 (3 - 2 t); such regions are a density model, whose blocks follow from the density. With discs the
+// The paper mentions a blending between regions without saying how it is done. Here (border_blend_deg), over a rim of W
+// degrees about each border, the logarithm of the density (tau / n^2) passes from one region's to the other's by
+// smoothstep(t) = t^2 (3 - 2 t). Such regions are a density model, whose blocks follow from the density. With discs the
 // rim is measured in the angle of eq. (1).
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@
 namespace gazetrace {
 namespace {
 
-// Fills row[first..last], whose two ends are classified already. Correct where the class is monotone in between.
+// Fills row[first..last], whose two ends are already classified. Right only where the class is monotone in between.
 template <class Classify>
 void fill_between(std::uint8_t* row, int first, std::uint8_t first_class, int last, std::uint8_t last_class,
                   const Classify& classify) {
@@ -41,8 +41,8 @@ void fill_between(std::uint8_t* row, int first, std::uint8_t first_class, int la
   fill_between(row, middle, middle_class, last, last_class, classify);
 }
 
-// A row whose distance from the gaze has one extremum, at `turn_px` (continuous; NaN or infinite: none): monotone on
-// either side of it, so that every border is found by bisection with the exact test and nothing else is evaluated.
+// Fills a row in which the distance from the gaze has one extremum, at `turn_px` (continuous; NaN or infinite: none).
+// On either side of it the class is monotone, so every border is found by bisection with the exact test.
 template <class Classify>
 void fill_row(std::uint8_t* row, int width, double turn_px, const Classify& classify) {
   const double before_turn = std::floor(turn_px - 0.5);  // the last pixel whose centre does not lie beyond the turn
@@ -93,7 +93,7 @@ double smoothstep(double t) {
   return u * u * (3 - 2 * u);
 }
 
-// Samples a pixel of each region.
+// The samples per pixel of each region.
 std::array<double, 3> rates_of(const FoveationSettings& settings) {
   const bool per_block = settings.unit == SampleUnit::per_block;
   std::array<double, 3> rates{};
@@ -107,7 +107,7 @@ std::array<double, 3> rates_of(const FoveationSettings& settings) {
 DensityModel blended_regions(const FoveationSettings& settings, const PlanarView& view) {
   const std::array<double, 3> rates = rates_of(settings);
   const double full = *std::max_element(rates.begin(), rates.end());
-  const double part = settings.reading == AngleReading::full_angle ? 0.5 : 1.0;
+  const double part = eccentricity_share(settings.reading);
   const bool disc = settings.shape == RegionShape::disc;
   DensityModel model;
   model.quantity = DensityModel::Quantity::density;
@@ -122,7 +122,7 @@ DensityModel blended_regions(const FoveationSettings& settings, const PlanarView
   }
   model.value = [=, angles = settings.region_angles_deg, width = settings.border_blend_deg,
                  step = view.step_x](const FalloffPlace& place) {
-    // Eq. (1) solved for the angle, as an eccentricity.
+    // For discs, eq. (1) solved for the angle, as an eccentricity.
     const double e =
         disc ? part * 2 * std::atan(0.5 * place.radius_px * step / part) * kDegPerRad : place.eccentricity_deg;
     double log_rate = std::log(rates[0] / full);
@@ -147,7 +147,7 @@ Falloff falloff_regions(const FoveationSettings& settings, const PlanarView& vie
                     {"periphery", settings.region_blocks_px[1], settings.region_samples[2], settings.unit}};
   layout.region = Image<std::uint8_t>(view.width_px, view.height_px, 2);
 
-  const double part = settings.reading == AngleReading::full_angle ? 0.5 : 1.0;
+  const double part = eccentricity_share(settings.reading);
   std::array<double, 2> limits{};
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const double angle_deg = settings.region_angles_deg[i];

@@ -41,7 +41,8 @@ Falloff falloff_retina(const FoveationSettings& settings, const PlanarView& /*vi
   model.uses_meridian = true;
   model.value = [eye = settings.parameters.eye](const FalloffPlace& place) {
     const double cosine = place.meridian.x;
-    // The temporal meridian is the better one at every eccentricity: of two eyes, the one on whose temporal side it is.
+    // The temporal meridian is the better one at every eccentricity, so of two eyes the one counts on whose temporal
+    // side the place is.
     const double x = eye == FalloffEye::right ? cosine : eye == FalloffEye::left ? -cosine : std::abs(cosine);
     return right_eye_cpd(place.eccentricity_deg, x, place.meridian.y);
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A density over eccentricity from a table, which makes any other model reproducible: monotone cubic interpolation
-// (falloff_table.hpp), the first and last value held beyond the ends.
+// A density over eccentricity from a table, by which any other model can be reproduced: monotone cubic interpolation
+// (falloff_table.hpp), with the first and last value held beyond the ends.
 #include <memory>
 
 #include "foveation/falloff.hpp"

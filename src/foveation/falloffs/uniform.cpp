@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every pixel is a block of its own with `uniform_spp` samples: the baseline that foveation is measured against.
+// Every pixel is a block of its own with `uniform_spp` samples. This is the baseline that foveation is measured
+// against.
 #include "foveation/falloff.hpp"
 
 namespace gazetrace {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visual-polar space, Koskela et al., "Foveated Real-Time Path Tracing in Visual-Polar Space", EGSR 2019, in outline: a
-// polar buffer about the gaze whose radial axis is warped by visual acuity, and which is cut to a triangle towards the
-// gaze, where equal steps of the angle would crowd thousands of samples into a pixel. With u(e) = integral of M(e) and
-// as many steps around at every eccentricity beyond the acuity's plateau e_a, fewer in proportion to sin e within it,
-// samples per solid angle go as the Jacobian
+// The sample density of visual-polar space, in outline (Koskela et al., "Foveated Real-Time Path Tracing in
+// Visual-Polar Space", EGSR 2019): a polar buffer about the gaze whose radial axis is warped by visual acuity, and
+// which narrows to a triangle towards the gaze, where equal steps of the angle would put thousands of samples into a
+// pixel. The radial coordinate is u(e) = integral of M(e). Beyond the plateau e_a of the acuity, every eccentricity has
+// the same number of steps around; within it, the number falls in proportion to sin e. Samples per solid angle then go
+// as the Jacobian
 //   M(e) / sin e  beyond e_a,  M(e) / sin e_a  within,
-// relative to the fovea M(e) min(1, sin e_a / sin e). A grid of f x f cells a square degree carries f cycles: the
-// cut-off is 60 times the root of it. From 90 degrees on, sin e is held: a full turn behind the eye shrinks again.
+// or, relative to the fovea, M(e) min(1, sin e_a / sin e). A grid of f x f cells per square degree carries f cycles, so
+// the cut-off is 60 times the root of it. Beyond 90 degrees, where the circle about the gaze shrinks again, sin e is
+// held at 1.
 #include <cmath>
 
 #include "foveation/acuity_curve.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Local contrast: a picture of multipliers, made from a cheap first look at the frame.
+// Local contrast: a picture of multipliers that was made from a cheap first rendering of the frame.
 #include <algorithm>
 #include <cmath>
 

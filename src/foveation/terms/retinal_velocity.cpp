@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Acuity of an image that moves over the retina, after Reddy, "Perceptually Optimized 3D Graphics", IEEE CG&A 21(5),
-// 2001. The highest frequency seen at a speed v of the retinal image is
+// Acuity for an image that moves over the retina, after Reddy, "Perceptually Optimized 3D Graphics", IEEE CG&A 21(5),
+// 2001. The highest visible frequency at a speed v of the retinal image is
 //   G(v) = 60                       v <= 0.825 deg/s
 //          57.69 - 27.78 log10 v    v <= 118.3 deg/s
 //          0.1                      beyond                     cycles/deg,
-// and multiplies what is left of acuity at an eccentricity. Samples are areal: the density goes with its square.
-// On a still screen the speed is that of the gaze; what the eye follows and what moves in the picture is not known
-// here.
+// and G(v) / 60 multiplies the acuity at an eccentricity. The density goes with its square, since samples cover an
+// area. On a still screen the speed is that of the gaze; motion in the picture, and that the eye may follow it, are
+// not known here.
 #include <cmath>
 
 #include "foveation/terms/terms.hpp"

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Directional albedos of GGX facets whose slopes differ along x and y: e and b of albedo_tables.hpp for a view from any
-// side, and their cosine averages over the whole hemisphere, which keep e in Kulla and Conty's lobe,
+// side, and their cosine averages over the whole hemisphere. With these, Kulla and Conty's lobe,
 //   (1 - e(o)) (1 - e(i)) / (pi (1 - e_average)),
-// reciprocal and energy-conserving when e depends on the azimuth, too. Made for scenes that have such facets.
-//   Over (alpha.x, alpha.y, direction). The direction is taken in the space where the facets have unit roughness,
-// s = (alpha.x v.x, alpha.y v.y, v.z) / L(v), with Smith's L: there e changes slowly, and hardly at all with the alphas
-// once these are small. It is stored as (lost - lost at the normal) / sqrt(1 - s.z), lost = 1 - e: smooth facets lose
-// next to nothing, as a multiple of 1 - s.z. So does the mean of v.h / L(v), which tells b: it is stored as the cosine
-// under which Schlick's weight is that of all facets together, over L(v). Where the alphas differ much, L leaps with
-// the azimuth of s; b has nodes uniform in its logarithm.
+// is reciprocal and conserves energy also where e depends on the azimuth. They are made for scenes that have such
+// facets.
+//   The table is over (alpha.x, alpha.y, direction). The direction is taken in the space where the facets have unit
+// roughness, s = (alpha.x v.x, alpha.y v.y, v.z) / L(v), with Smith's L: there e changes slowly, and hardly at all with
+// the alphas once these are small. It is stored as (lost - lost at the normal) / sqrt(1 - s.z), with lost = 1 - e,
+// since smooth facets lose next to nothing, in proportion to 1 - s.z. The mean of v.h / L(v), from which b follows,
+// behaves in the same way; it is stored as the cosine at which Schlick's weight is that of all facets together, divided
+// by L(v). Where the alphas differ much, L changes abruptly with the azimuth of s, so the nodes of b are uniform in the
+// logarithm of L.
 //   Within 0.005 (e), 0.01 (b) and 0.003 (averages) of the integrals: anisotropic_albedo_test.
-//   Nodes: sqrt(alpha), from kAlphaMin to 1; elevation sqrt(m) / (sqrt(m) + sqrt(1 - m)) of m = s.z;
-// azimuth w = s.y^2 / (s.x^2 + s.y^2) for e, log L along it for b; averages in sqrt(alpha). Uniform all.
+//   The nodes are uniform in sqrt(alpha), from kAlphaMin to 1; in the elevation sqrt(m) / (sqrt(m) + sqrt(1 - m)) with
+// m = s.z; and in the azimuth w = s.y^2 / (s.x^2 + s.y^2) for e, in log L along it for b. Averages are over
+// sqrt(alpha).
 #pragma once
 
 #include <algorithm>
@@ -39,7 +42,7 @@ struct AnisotropicAlbedo {
   std::array<std::array<Average, kAverages>, kAverages> averages;
 };
 
-// How much 1 / L(v)^2 grows from w = 0 to w = 1, relative to the former, for directions whose s.z is m:
+// How much 1 / L(v)^2 grows from w = 0 to w = 1, relative to its value at w = 0, for directions whose s.z is m:
 // 1 / L^2 = (1 - m^2) ((1 - w) / alpha.x^2 + w / alpha.y^2) + m^2.
 template <class T>
 T length_growth(const GgxAlpha<T>& alpha, T m) noexcept {
@@ -48,10 +51,10 @@ T length_growth(const GgxAlpha<T>& alpha, T m) noexcept {
   return across * (ratio - T(1)) * (ratio + T(1)) / (across + m * m * alpha.x * alpha.x);
 }
 
-// By quadrature in double precision, about 0.1 s.
+// Computed by quadrature in double precision, in about 0.1 s.
 AnisotropicAlbedo make_anisotropic_albedo();
 
-// The table's part for one pair of alphas.
+// The part of the table for one pair of alphas.
 class AnisotropicTerms {
  public:
   AnisotropicTerms(const AnisotropicAlbedo& table, const GgxAlpha<float>& alpha) noexcept
@@ -124,12 +127,12 @@ class AnisotropicTerms {
       return values[at] + (values[at + 1] - values[at]) * fraction;
     }
   };
-  // sqrt(alpha), from 0 at kAlphaMin.
+  // The position of an alpha among the nodes, 0 at kAlphaMin; linear in sqrt(alpha).
   [[nodiscard]] static float alpha_place(float alpha) noexcept {
     constexpr float kLeast = 0.0223607F;
     return (std::sqrt(alpha) - kLeast) / (1.0F - kLeast);
   }
-  // Where 0..1 lies among `count` uniform nodes.
+  // The position of x in 0..1 among `count` uniform nodes.
   [[nodiscard]] static Node node(float x, std::size_t count) noexcept {
     const float y = std::clamp(x, 0.0F, 1.0F) * static_cast<float>(count - 1);
     const auto at = std::min(static_cast<std::size_t>(y), count - 2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_materials_clearcoat: a dielectric film of index 1.5 (f0 = 0.04), with roughness and normal of its own. Its lobe
-// is isotropic GGX with Schlick's Fresnel and repeated scattering; layering.hpp says what the base still gets.
+// KHR_materials_clearcoat: a dielectric coat of index 1.5 (f0 = 0.04) with its own roughness and normal. Its lobe is
+// isotropic GGX with Schlick's Fresnel and repeated scattering; layering.hpp says how much light it leaves for the
+// base.
 #pragma once
 
 #include <algorithm>
@@ -11,15 +12,15 @@
 
 namespace gazetrace {
 
-// The share of a base's own emission that gets out: KHR_materials_clearcoat, "Emission", at the surface's own normal,
-// so that a light sample and a ray that finds the emitter agree.
+// The share of the base's emission that passes the coat (KHR_materials_clearcoat, "Emission"). `cosine` is that to the
+// geometric normal, so that a light sample and a ray that hits the emitter agree.
 inline float passes_coat(float coat, float cosine) noexcept {
   return 1.0F - coat * (kDielectricF0 + (1.0F - kDielectricF0) * schlick_weight(std::min(std::fabs(cosine), 1.0F)));
 }
 
 class ClearcoatLobe {
  public:
-  // cos_o: between view and the coat's normal; > 0.
+  // `cos_o` > 0 is the cosine between the view and the coat's normal.
   ClearcoatLobe(float factor, float roughness, float cos_o) noexcept
       : factor_(factor),
         alpha_(alpha_of_roughness(roughness)),
@@ -35,7 +36,8 @@ class ClearcoatLobe {
     return factor_ * terms_.albedo_average_of(kDielectricF0, 1.0F);
   }
 
-  // In the coat's own frame, both directions above it; f without cosine, and the density of `sample`.
+  // f without the cosine, and in `pdf` the density of `sample`. Both directions are in the coat's own frame and above
+  // it.
   [[nodiscard]] float value(const Vec3f& wo, const Vec3f& wi, float& pdf) const noexcept {
     const Vec3f h = normalize(wo + wi);
     const float distribution = ggx_distribution(h, alpha_);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rough surface between two media loses when light meets its facets more than once: the share that single
-// scattering keeps, reflected and transmitted together, over (side, roughness, cosine), for one index of refraction.
-//   kept_s(mu) = integral of f_flux cos over both sides, light coming from side s
-// The rest goes into a lobe like Kulla and Conty's (2017), over both sides: with lost = 1 - kept and its cosine
-// average,
+// How much light single scattering loses at a rough surface between two media, where light meets facets more than once.
+// The table holds the share that it keeps, reflected and transmitted together, over (side, roughness, cosine), for one
+// index of refraction:
+//   kept_s(mu) = integral of f_flux cos over both sides, for light from side s
+// The rest goes into a lobe like Kulla and Conty's (2017) over both sides. With lost = 1 - kept and its cosine average
+// it is
 //   same side   r_s lost_s(o) lost_s(i) / (pi lost_s_avg)
 //   other side  (1 - r_s) lost_s(o) lost_t(i) / (pi lost_t_avg)
-// which is reciprocal where (1 - r_s) lost_s_avg n_s^2 is the same for both sides. `exchange` is that number: the
-// smaller of what smooth interfaces pass on average, (1 - F_avg) lost_avg n^2.
+// which is reciprocal where (1 - r_s) lost_s_avg n_s^2 is the same for both sides. LayeredBsdf takes for it
+// passed_average times the smaller of the two lost_s_avg.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +24,10 @@ struct DielectricAlbedo {
   std::array<std::array<Row, kNodes>, 2> kept;  // [0: light comes from outside, 1: from inside][roughness][mu]
   std::array<Row, 2> kept_average;
   float ior = 1.5F;
-  float passed_average = 0;  // 1 - F averaged over cosines, from outside, smooth
+  float passed_average = 0;  // cosine average of 1 - F from outside, for a smooth surface
 };
 
-// By quadrature in double precision, some ten milliseconds. ior >= kLeastIor.
+// Computed by quadrature in double precision, in some ten milliseconds. ior >= kLeastIor.
 DielectricAlbedo make_dielectric_albedo(double ior);
 
 struct DielectricRow {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_materials_dispersion: the index at the C, d and F lines for red, green and blue, from the Abbe number V = 20 /
-// dispersion = (n_d - 1) / (n_F - n_C):  half the spread is (n_d - 1) dispersion / 40, as the extension states it.
-// A path that meets such a body goes on with one colour (see kernel/layers.hpp): the estimate stays unbiased.
+// KHR_materials_dispersion: the indices at the C, d and F lines are used for red, green and blue. The Abbe number is
+// V = 20 / dispersion = (n_d - 1) / (n_F - n_C), so half the spread is (n_d - 1) dispersion / 40, as the extension
+// states it. A path that meets such a body continues with one colour (see kernel/layers.hpp); the estimate stays
+// unbiased.
 #pragma once
 
 #include <algorithm>

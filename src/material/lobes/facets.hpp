@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The facets of the base: what they reflect and what they let through, by the angle to the facet. One visible normal is
-// sampled, then one of the two ways, in proportion to what each carries.
+// The facets of the base: what they reflect and transmit, depending on the angle to the facet. A visible normal is
+// sampled first, then reflection or transmission is chosen in proportion to the light of each.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +32,9 @@ class Facets {
   [[nodiscard]] float metal() const noexcept { return metal_; }
   [[nodiscard]] float opaque() const noexcept { return opaque_; }
   [[nodiscard]] float clear() const noexcept { return clear_; }
-  [[nodiscard]] float eta() const noexcept { return eta_; }  // index beyond the surface over that on the viewer's side
-  // Of the isotropic surface whose slopes have the same mean square.
+  // The index beyond the surface divided by that on the viewer's side.
+  [[nodiscard]] float eta() const noexcept { return eta_; }
+  // The roughness of the isotropic surface whose slopes have the same mean square.
   [[nodiscard]] float mean_roughness() const noexcept {
     return anisotropic() ? std::sqrt(std::sqrt(0.5F * (alpha_.x * alpha_.x + alpha_.y * alpha_.y))) : s_.base.roughness;
   }
@@ -49,7 +50,7 @@ class Facets {
     return anisotropic() ? AnisotropicTerms(*s_.anisotropic, alpha_).at(v) : terms.at(v.z);
   }
 
-  // Reflectances of the three parts under the angle `cosine` >= 0 to the facet.
+  // Reflectances of the three parts, where `cosine` >= 0 is that of the angle to the facet.
   [[nodiscard]] Vec3f metal_fresnel(float cosine) const noexcept {
     return with_film(schlick(s_.base.base_color, 1.0F, cosine), s_.base.base_color, cosine);
   }
@@ -67,14 +68,14 @@ class Facets {
     const float normal = f0_of_ior(s_.ior);
     const float rise = (exact - normal) / (1.0F - normal);
     const Vec3f f = s_.f0 + (Vec3f{s_.f90, s_.f90, s_.f90} - s_.f0) * rise;
-    // The film sees the angle in air, whichever side light comes from.
+    // The film's formula needs the angle in air, whichever side light comes from.
     const float sin2 = (1.0F - cosine * cosine) / (eta_ * eta_);
     const Vec3f shown = with_film(f, s_.f0, s_.inside ? std::sqrt(std::max(1.0F - sin2, 0.0F)) : cosine);
     return {std::max(shown.x, 0.0F), std::max(shown.y, 0.0F), std::max(shown.z, 0.0F)};
   }
 
   struct Split {
-    Vec3f reflected, through;  // all parts, weighted
+    Vec3f reflected, through;  // weighted sums over all parts
     float reflect_probability = 1;
   };
   [[nodiscard]] Split split(float cosine) const noexcept {
@@ -96,7 +97,7 @@ class Facets {
     return result;
   }
 
-  // f without cosine, and the density over both ways. wi.z < 0: through.
+  // f without the cosine, and in `pdf` the density of sampling wi. wi.z < 0 means transmission.
   [[nodiscard]] Vec3f value(const Vec3f& wo, const Vec3f& wi, float& pdf) const noexcept {
     pdf = 0;
     const bool through = wi.z < 0;
@@ -126,7 +127,7 @@ class Facets {
     return parts.through * (-2.0F * i_dot_h * o_dot_h * distribution * masking / (s * s));
   }
 
-  // False: no direction (the facet sends light into the surface's other facets).
+  // False where there is no direction, because light leaves the facet towards other facets.
   [[nodiscard]] bool sample(const Vec3f& wo, const Vec2f& u, float choice, Vec3f& wi) const noexcept {
     const Vec3f h = sample_visible_normal(wo, alpha_, u);
     const float o_dot_h = dot(wo, h);

@@ -3,9 +3,9 @@
 //   D(h) = 1 / (pi ax ay ((h.x / ax)^2 + (h.y / ay)^2 + h.z^2)^2)
 //   G2   = 1 / (1 + Lambda(o) + Lambda(i)) = 2 |o.z| |i.z| / (|o.z| L(i) + |i.z| L(o)),
 //   L(v) = sqrt((ax v.x)^2 + (ay v.y)^2 + v.z^2)
-// (Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014, eqs. 85-87 and 99; the same G2 serves light
-// that goes through, with |v.z|.) Visible normals: Dupuy and Benyoub 2023, as in microfacet.hpp.
-// KHR_materials_anisotropy: along the tangent mix(alpha, 1, strength^2), across it alpha.
+// (Heitz, "Understanding the Masking-Shadowing Function", JCGT 3(2), 2014, eqs. 85-87 and 99; the same G2 with |v.z| is
+// used for transmitted light.) Visible normals are sampled as in microfacet.hpp (Dupuy and Benyoub 2023).
+// KHR_materials_anisotropy: alpha becomes mix(alpha, 1, strength^2) along the tangent, and stays alpha across it.
 #pragma once
 
 #include "material/microfacet.hpp"
@@ -48,7 +48,7 @@ Vec3<T> sample_visible_normal(const Vec3<T>& wo, const GgxAlpha<T>& a, const Vec
   return normalize(Vec3<T>{(radius * circle.x + stretched.x) * a.x, (radius * circle.y + stretched.y) * a.y, rise});
 }
 
-// Density of the visible normal itself: G1(o) (o.h) D(h) / o.z.
+// The density of the visible normal itself: G1(o) (o.h) D(h) / o.z.
 template <class T>
 T visible_normal_pdf(T o_dot_h, T wo_z, T smith_o, T distribution) noexcept {
   return T(2) * o_dot_h * distribution / (wo_z + smith_o);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cloth (KHR_materials_sheen): fibres that stand up, seen at the edges.
+// Cloth (KHR_materials_sheen): fibres that stand upright and are seen at the edges.
 //   f = colour D(h) / (4 o.z i.z (1 + Lambda(o) + Lambda(i))),  D(h) = (2 + 1/a) sin(theta_h)^(1/a) / (2 pi)
 // (Estevez and Kulla, "Production Friendly Microfacet Sheen BRDF", 2017, eqs. 2 and 3; a = roughness^2.) Lambda is
-// their fit, table 1; their softened terminator is left out because it is not reciprocal. Below kLeastSheenRoughness
-// the lobe is that one's: it would shrink to a line of light at the very horizon. As stated the lobe returns up to 2.7
-// times the light it gets near the horizon below a roughness of about 0.3; sheen_gain scales it there, symmetrically,
-// so that no direction returns more than all. What the layer below still gets: table-driven, see layered_bsdf.hpp.
-// Sampled uniformly over the hemisphere.
+// their fit, table 1; their softened terminator is left out because it is not reciprocal. A roughness below
+// kLeastSheenRoughness is raised to it, since the lobe would shrink to a line of light at the horizon. As stated by its
+// authors, the lobe returns up to 2.7 times the light it receives near the horizon at a roughness below about 0.3;
+// sheen_gain scales it there, symmetrically, so that no direction returns more than it receives. How much light is left
+// for the layer below comes from a table, see layered_bsdf.hpp. The lobe is sampled uniformly over the hemisphere.
 #pragma once
 
 #include <algorithm>
@@ -47,7 +47,7 @@ T sheen_value(const Vec3<T>& wo, const Vec3<T>& wi, T alpha) noexcept {
   return distribution / (T(4) * std::max(wo.z * wi.z, T(1e-7)) * masking);
 }
 
-// raw_o, raw_i: directional albedos of the lobe as stated, from the table.
+// `raw_o`, `raw_i`: directional albedos of the lobe as its authors state it, from the table.
 template <class T>
 T sheen_gain(T raw_o, T raw_i) noexcept {
   return T(1) / std::max(T(1), std::max(raw_o, raw_i));

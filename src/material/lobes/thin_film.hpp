@@ -5,9 +5,10 @@
 //   R(phase) = C0 + 2 sum_m Cm cos(m phase),   C0 = R12 + Rs,  Cm = sqrt(R12 R23)^m (Rs - T121),
 //   Rs = T121^2 R23 / (1 - R12 R23)
 // R12, R23: reflectances of the film's top (Fresnel) and bottom (Schlick), T121 = 1 - R12, phase = 2 pi (2 n d cos) /
-// lambda + phi. The sum over wavelengths of the colour matching functions is closed because those are Gaussians (the
-// paper's eq. 9 and its fit); m runs to 2. Below 30 nm the film's index fades to air's; a film of air shows the bare
-// base under every angle, which Schlick's formula for the top would not: it reflects at grazing whatever the index.
+// lambda + phi. The sum over wavelengths has a closed form because the colour matching functions are fitted by
+// Gaussians (the paper's eq. 9 and its fit); m runs to 2. Below 30 nm the index of the film fades to that of air. A
+// film of air shows the bare base at every angle; with Schlick's formula for the top it would not, since that reflects
+// at grazing angles whatever the index.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +25,8 @@ namespace thin_film_detail {
 
 inline constexpr float kPiF = static_cast<float>(kPi);
 
-// Fourier transforms of the XYZ matching functions at an optical path difference in nm, with a phase shift per channel
-// of the base; as Rec.709.
+// The Fourier transforms of the XYZ matching functions at an optical path difference in nm, with a phase shift for each
+// channel of the base, converted to Rec.709.
 inline Vec3f sensitivity(float path_nm, const Vec3f& shift) {
   const float phase = 2.0F * kPiF * path_nm * 1e-9F;
   struct Gaussian {
@@ -48,7 +49,7 @@ inline Vec3f sensitivity(float path_nm, const Vec3f& shift) {
 
 }  // namespace thin_film_detail
 
-// Reflectance under `cosine` (in air). base_f0: of the surface below, as seen from air.
+// The reflectance at an angle of `cosine` (in air). `base_f0` is that of the surface below at normal incidence in air.
 inline Vec3f thin_film_fresnel(float cosine, float film_ior, float thickness_nm, const Vec3f& base_f0) {
   const float fade = std::clamp(thickness_nm / 30.0F, 0.0F, 1.0F);
   const float smooth = fade * fade * (3.0F - 2.0F * fade);
@@ -67,7 +68,7 @@ inline Vec3f thin_film_fresnel(float cosine, float film_ior, float thickness_nm,
   };
   const auto bottom = [&](float f0) -> Bottom {
     const float root = std::sqrt(std::clamp(f0, 0.0F, 0.9999F));
-    const float base = (1.0F + root) / (1.0F - root);  // the index that shows f0 against air
+    const float base = (1.0F + root) / (1.0F - root);  // the index that gives f0 in air
     const float r = (base - eta) / (base + eta);
     return {r * r + (1.0F - r * r) * schlick_weight(inside), base < eta ? thin_film_detail::kPiF : 0.0F};
   };

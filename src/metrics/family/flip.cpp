@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LDR-FLIP of display code values; ../flip.cpp has the metric.
+// LDR-FLIP of display code values. The metric itself is in ../flip.cpp.
 #include "metrics/code_values.hpp"
 #include "metrics/metric.hpp"
 

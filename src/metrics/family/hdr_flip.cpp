@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// HDR-FLIP of linear light; exposures that the settings leave open are found from the reference.
+// HDR-FLIP of linear light. Exposures that the settings leave empty are computed from the reference.
 #include "metrics/metric.hpp"
 
 namespace gazetrace {

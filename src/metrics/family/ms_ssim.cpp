@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Multi-scale structural similarity (Wang, Simoncelli, Bovik, "Multi-scale structural similarity for image quality
 // assessment", 2003, eq. 7) of BT.601 luma: five scales, each the mean of 2 x 2 pixels of the one before. Negative
-// means of a scale count as 0. It has no map: its factors live at different scales.
+// means of a scale count as 0. There is no map, since the factors belong to different scales.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "metrics/code_values.hpp"
 #include "metrics/metric.hpp"
@@ -35,10 +35,6 @@ ImageDouble halved(const ImageDouble& image) {
     }
   }
   return half;
-}
-
-double mean_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Root of the mean squared error: means are of squares, the root is taken of the mean.
+// Root of the mean squared error: squares are averaged, and the root is taken of the mean.
 #include <cmath>
 
 #include "metrics/metric.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Symmetric mean absolute percentage error in the form without percent, |t - r| / ((|t| + |r|) / 2), 0..2; 0 where both
-// are 0 (Makridakis, "Accuracy measures", International Journal of Forecasting 9, 1993). Mean over pixels and channels.
+// Symmetric mean absolute percentage error as a fraction, |t - r| / ((|t| + |r|) / 2), 0..2; 0 where both are 0
+// (Makridakis, "Accuracy measures", International Journal of Forecasting 9, 1993). Mean over pixels and channels.
 #include <cmath>
 
 #include "metrics/metric.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structural similarity (Wang et al. 2004) of R, G and B code values, mean of the three. Pixels whose window reaches
-// over the border are not scored.
+// Structural similarity (Wang et al. 2004), the mean over R, G and B code values. Pixels whose window reaches over the
+// border are not scored.
 #include <array>
 #include <cmath>
 #include <numeric>

@@ -238,9 +238,7 @@ class LinearFilter {
   Frame& frame_;
 };
 
-}  // namespace
-
-Frame filter_linear(const FilterInput& input) {
+Frame interpolate(const FilterInput& input) {
   const SiteValues& values = input.values;
   const SamplingMap& map = input.map;
   const int threads = input.threads;
@@ -255,5 +253,9 @@ Frame filter_linear(const FilterInput& input) {
   });
   return frame;
 }
+
+}  // namespace
+
+const FilterDefinition filter_linear{.frame = interpolate};
 
 }  // namespace gazetrace

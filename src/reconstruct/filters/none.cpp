@@ -5,7 +5,9 @@
 
 namespace gazetrace {
 
-Frame filter_none(const FilterInput& input) {
+namespace {
+
+Frame paint_sites(const FilterInput& input) {
   const SiteValues& values = input.values;
   const SamplingMap& map = input.map;
   Frame frame = make_frame(map, values.has_guides());
@@ -17,5 +19,9 @@ Frame filter_none(const FilterInput& input) {
   });
   return frame;
 }
+
+}  // namespace
+
+const FilterDefinition filter_none{.blurs_blocks = false, .frame = paint_sites};
 
 }  // namespace gazetrace

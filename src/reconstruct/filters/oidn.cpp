@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Intel Open Image Denoise in the place of guided's smoothing. The network expects noise that is independent from pixel
-// to pixel, so it sees the light on surfaces without their texture (surface_cells.hpp), a pixel a block: a picture for
-// each size of blocks. Blocks across an edge, with light of several surfaces, are smoothed as in guided. Built where
-// the library is found.
+// Intel Open Image Denoise instead of the smoothing of "guided". The network expects noise that is independent from
+// pixel to pixel. So it is shown the light on surfaces without their texture (surface_cells.hpp), one pixel per block,
+// in one picture for each size of blocks. Blocks across an edge, with light of several surfaces, are smoothed as in
+// "guided". The filter is built only where the library is found.
 #include "reconstruct/filter.hpp"
 
 #ifdef GAZETRACE_WITH_OIDN
@@ -20,7 +20,7 @@
 namespace gazetrace {
 namespace {
 
-// More than this share of a block's samples on one surface: the block shows its light.
+// A block with more than this share of its samples on one surface shows the light of that surface.
 constexpr float kOneSurface = 0.9F;
 
 const SurfaceCell* main_surface(const SurfaceCells& cells, std::size_t site) {
@@ -36,7 +36,7 @@ const SurfaceCell* main_surface(const SurfaceCells& cells, std::size_t site) {
   return most != nullptr && most->samples > kOneSurface * samples ? most : nullptr;
 }
 
-// All that a site's samples saw.
+// The light on everything that a site's samples hit.
 struct SiteLight {
   Vec3f light, normal;
   bool is_surface = false;
@@ -65,8 +65,9 @@ SiteLight light_of(const SurfaceCells& cells, std::size_t site) {
           true};
 }
 
-// A pixel a block of a region's size, over the whole frame: where other regions are, the site in the block's middle,
-// and of it what is smooth already, since one block's noise over many pixels would pass for what is there.
+// One pixel per block of a region's size, over the whole frame. Where other regions are, it shows the site in the
+// block's middle, and of it what is smoothed already: the noise of one coarse block over many pixels would look like a
+// detail.
 struct BlockPicture {
   BlockPicture(const SurfaceCells& traced, const SurfaceCells& smooth, const SamplingMap& map, std::size_t region,
                int block_px)
@@ -124,9 +125,10 @@ void denoise_surfaces(SurfaceCells& cells, const SamplingMap& map, const Smoothi
 
 }  // namespace
 
-Frame filter_oidn(const FilterInput& input) {
-  return frame_from_surfaces(input, denoise_surfaces);
-}
+const FilterDefinition filter_oidn{
+    .needs = kSurfaceNeeds, .blurs_blocks = false, .frame = [](const FilterInput& input) {
+      return frame_from_surfaces(input, denoise_surfaces);
+    }};
 
 }  // namespace gazetrace
 

@@ -2,9 +2,8 @@
 // A pyramid (Gortler et al., "The Lumigraph", SIGGRAPH 1996, section 3.4; Grossman and Dally 1998). A site enters at
 // the level of its block's size, or the next finer one, with weight min(1, samples / kFullSamples); one whose block is
 // no power of two enters every cell that it covers, in proportion to the covered area.
-//   push: a coarser cell is the weighted mean of its four children and of the sites that enter there, its weight the
-//   sum
-//         of theirs, at most 1
+//   push: a coarser cell is the weighted mean of its four children and of the sites that enter there; its weight is the
+//         sum of theirs, at most 1
 //   pull: from the coarsest level down, value = w value + (1 - w) (coarser level, bilinear)
 // Pixels of 1x1 sites with samples are left alone.
 #include <algorithm>
@@ -114,12 +113,10 @@ class CellShares {
   std::vector<Share> shares_;
 };
 
-}  // namespace
-
-Frame filter_push_pull(const FilterInput& input) {
+Frame fill_from_pyramid(const FilterInput& input) {
   const SamplingMap& map = input.map;
   // AOVs, variances and counts are those of the linear filter; the light is put in its place.
-  Frame frame = filter_linear(input);
+  Frame frame = filter_linear.frame(input);
   std::vector<PyramidLevel> levels = empty_pyramid(map.width_px, map.height_px);
   CellShares shares;
   for (std::size_t i = 0; i < map.sites.size(); ++i) {
@@ -139,7 +136,7 @@ Frame filter_push_pull(const FilterInput& input) {
       enter(site.block_x * side >> level, site.block_y * side >> level, weight);
       continue;
     }
-    // What a block has at a border stands for all of it, as it does for a power of two.
+    // At a border the part of a block that is there stands for the whole block, as with powers of two.
     const auto side = static_cast<float>(block);
     const float cells = side * side / static_cast<float>(std::size_t{1} << (2 * level));
     for (const CellShares::Share& share : shares.of(map, site, level)) {
@@ -170,5 +167,9 @@ Frame filter_push_pull(const FilterInput& input) {
   });
   return frame;
 }
+
+}  // namespace
+
+const FilterDefinition filter_push_pull{.frame = fill_from_pyramid};
 
 }  // namespace gazetrace

@@ -108,9 +108,7 @@ class TentFilter {
   Image<std::uint32_t> site_of_pixel_;
 };
 
-}  // namespace
-
-Frame filter_tent(const FilterInput& input) {
+Frame convolve(const FilterInput& input) {
   Frame frame = make_frame(input.map, input.values.has_guides());
   const TentFilter filter(input, frame);
   parallel_for(input.map.tiles.size(), input.threads, [&](std::size_t t) {
@@ -121,5 +119,9 @@ Frame filter_tent(const FilterInput& input) {
   });
   return frame;
 }
+
+}  // namespace
+
+const FilterDefinition filter_tent{.frame = convolve};
 
 }  // namespace gazetrace

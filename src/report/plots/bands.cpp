@@ -2,19 +2,19 @@
 // Error in each band of eccentricity and each retinal region: a test row and its baselines side by side.
 #include <fmt/format.h>
 
-#include "report/csv.hpp"
 #include "report/plot.hpp"
+#include "results/csv.hpp"
 
 namespace gazetrace {
 
-std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric) {
+std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test, const ResultMetric& metric) {
   const std::vector<std::string> parts = scored_parts(data);
-  std::vector<const ReportRow*> rows;
-  std::vector<Estimate> estimates;
-  for (const ReportRow* const row : plotted_family(data, test)) {
+  std::vector<const ResultRow*> rows;
+  std::vector<Interval> estimates;
+  for (const ResultRow* const row : plotted_family(data, test)) {
     bool any = false;
     for (const std::string& part : parts) {
-      const ReportScore* const score = find_score(*row, metric.name, part);
+      const ResultScore* const score = find_score(*row, metric.name, part);
       if (score != nullptr && score->value) {
         any = true;
         estimates.push_back(*score->value);
@@ -33,8 +33,8 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   plot.title = fmt::format("{} by eccentricity and region, {}: {}", metric.name,
                            scene_gaze_text({test.scene, test.gaze}), test.label);
 
-  // Bars begin at 0, which a logarithmic scale has not: a range of better-is-higher values close to each other is shown
-  // as points without bars instead.
+  // Bars begin at 0, which a logarithmic scale does not have. Values of metrics where higher is better lie close to
+  // each other and far from 0: they are shown as points without bars.
   const bool bars = metric.is_lower_better && !wants_log(values);
   constexpr double kLeft = 84, kTop = 34, kBottom = 320;
   const double right = kPlotWidth - 26;
@@ -42,7 +42,7 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   const PlotScale y(values, kBottom, kTop, wants_log(values), bars);
   std::vector<std::pair<ReportRole, std::string>> entries;
   entries.reserve(rows.size());
-  for (const ReportRow* const row : rows) {
+  for (const ResultRow* const row : rows) {
     entries.emplace_back(report_role(row->role), row->label);
   }
   PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
@@ -54,13 +54,13 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   bool any_unresolved = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const double begin = kLeft + part_width * static_cast<double>(p);
-    if (p == data.bands.size()) {  // regions contain bands
+    if (p == data.bands_deg.size()) {  // a line sets the regions apart, which contain several bands
       svg.add(fmt::format("<path class=\"line\" stroke=\"#8a8a8a\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", begin,
                           kTop, kBottom));
     }
     svg.text(begin + part_width / 2, kBottom + 17, parts[p], "middle", " font-size=\"12\"");
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const ReportScore* const score = find_score(*rows[r], metric.name, parts[p]);
+      const ResultScore* const score = find_score(*rows[r], metric.name, parts[p]);
       if (score == nullptr || !score->value) {
         continue;
       }
@@ -94,11 +94,11 @@ std::optional<ReportPlot> bands_plot(const ReportData& data, const ReportRow& te
   plot.svg = svg.str();
 
   plot.csv = "id,role,label,part," + csv_cell(metric.name) + ",low,high,resolved\n";
-  for (const ReportRow* const row : rows) {
+  for (const ResultRow* const row : rows) {
     for (const std::string& part : parts) {
-      if (const ReportScore* const score = find_score(*row, metric.name, part); score != nullptr) {
-        plot.csv += fmt::format("{},{},{},{},{},{}\n", csv_cell(row->id), csv_cell(row->role), csv_cell(row->label),
-                                part, csv_estimate(score->value), score->is_resolved ? 1 : 0);
+      if (const ResultScore* const score = find_score(*row, metric.name, part); score != nullptr) {
+        plot.csv += fmt::format("{},{},{},{},{},{}\n", csv_cell(row->id), to_string(row->role), csv_cell(row->label),
+                                part, csv_interval(score->value), score->is_resolved ? 1 : 0);
       }
     }
   }

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time and error of every frame over video time, one above the other, with what the eye did below.
+// Time and error of every frame over video time in two diagrams, one above the other, and what the eye did below them.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "report/csv.hpp"
 #include "report/plot.hpp"
+#include "results/csv.hpp"
 
 namespace gazetrace {
 namespace {
 
 struct Series {
-  const ReportRow* row = nullptr;
+  const ResultRow* row = nullptr;
   std::vector<double> t_s;
   std::vector<std::optional<double>> values;
 };
 
-std::optional<double> frame_score(const ReportFrame& frame, const std::string& metric) {
+std::optional<double> frame_score(const ResultFrame& frame, const std::string& metric) {
   const auto found = frame.scores.find(metric);
   return found == frame.scores.end() ? std::nullopt : found->second;
 }
 
-// Lines break where a value is missing.
+// The line of a series; it breaks where a value is missing.
 void draw(PlotSvg& svg, const Series& series, const PlotScale& x, const PlotScale& y) {
   const ReportRole role = report_role(series.row->role);
   std::string path;
@@ -65,14 +65,14 @@ const char* event_color(const std::string& event) {
 
 }  // namespace
 
-std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& test, const ReportMetric& metric) {
+std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, const ResultMetric& metric) {
   std::vector<Series> times;
   std::vector<Series> scores;
   std::vector<double> t_s;
-  for (const ReportRow* const row : plotted_family(data, test)) {
+  for (const ResultRow* const row : plotted_family(data, test)) {
     Series time{row, {}, {}};
     Series score{row, {}, {}};
-    for (const ReportFrame& frame : row->frames) {
+    for (const ResultFrame& frame : row->frames) {
       time.t_s.push_back(frame.t_s);
       time.values.push_back(frame.time_s);
       score.t_s.push_back(frame.t_s);
@@ -112,11 +112,11 @@ std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& tes
   for (const Series& series : scores) {
     draw(svg, series, x, y_score);
   }
-  // What the eye did: from a frame's time to the next one's.
+  // What the eye did, from the time of a frame to that of the next.
   std::vector<std::string> events;
   const double strip = kBottom + 26;
   for (std::size_t i = 0; i < test.frames.size(); ++i) {
-    const ReportFrame& frame = test.frames[i];
+    const ResultFrame& frame = test.frames[i];
     const double from = x.at(frame.t_s);
     const double to = i + 1 < test.frames.size() ? x.at(test.frames[i + 1].t_s) : std::max(from + 4, right);
     svg.add(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:g}\" fill=\"{}\"/>", from, strip,
@@ -141,8 +141,8 @@ std::optional<ReportPlot> time_plot(const ReportData& data, const ReportRow& tes
 
   plot.csv = "id,role,label,frame,t_s,event,time_s," + csv_cell(metric.name) + "\n";
   for (const Series& series : times) {
-    for (const ReportFrame& frame : series.row->frames) {
-      plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(series.row->id), csv_cell(series.row->role),
+    for (const ResultFrame& frame : series.row->frames) {
+      plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(series.row->id), to_string(series.row->role),
                               csv_cell(series.row->label), frame.index, csv_number(frame.t_s), csv_cell(frame.event),
                               csv_number(frame.time_s), csv_number(frame_score(frame, metric.name)));
     }

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against time: every run of a scene and gaze, with intervals, Pareto fronts and the reference's own noise.
+// Error over time: every run of a scene and gaze with its intervals, the Pareto fronts, and the reference's own noise.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "report/csv.hpp"
 #include "report/plot.hpp"
+#include "results/csv.hpp"
 
 namespace gazetrace {
 namespace {
 
 struct Point {
-  const ReportRow* row = nullptr;
-  Estimate time_s, score;
+  const ResultRow* row = nullptr;
+  Interval time_s, score;
   bool is_resolved = true;
 };
 
-std::vector<Point> points_of(const ReportData& data, const SceneGaze& both, const std::string& metric) {
+std::vector<Point> points_of(const Results& data, const SceneGaze& both, const std::string& metric) {
   std::vector<Point> points;
-  for (const ReportRow& row : data.rows) {
-    const ReportScore* const score = find_score(row, metric, "whole");
-    if (row.role != "wrong-gaze" && row.scene == both.scene && row.gaze == both.gaze && row.time_s &&
+  for (const ResultRow& row : data.rows) {
+    const ResultScore* const score = find_score(row, metric, "whole");
+    if (row.role != RowRole::wrong_gaze && row.scene == both.scene && row.gaze == both.gaze && row.time_s &&
         score != nullptr && score->value) {
       points.push_back({&row, *row.time_s, *score->value, score->is_resolved});
     }
@@ -28,14 +28,15 @@ std::vector<Point> points_of(const ReportData& data, const SceneGaze& both, cons
   return points;
 }
 
-// The points of a front that the sweep found, in the order of time.
+// The points of a front that the sweep has found, in the order of time.
 struct Front {
   std::vector<const Point*> points;
-  std::string name;  // of its reference, where the place has several
+  std::string name;  // of its reference, where the scene and gaze have several
 };
 
-// Scores against different references do not compare: each has a front of its own, under the place and its key.
-std::vector<Front> fronts_of(const ReportData& data, const SceneGaze& both, const std::string& metric,
+// Scores against different references are not comparable, so each reference has a front of its own; its name is that of
+// the scene and gaze followed by the key of the reference.
+std::vector<Front> fronts_of(const Results& data, const SceneGaze& both, const std::string& metric,
                              const std::vector<Point>& points) {
   std::vector<Front> fronts;
   const auto of_metric = data.pareto.find(metric);
@@ -94,7 +95,7 @@ std::string front_words(const std::vector<Front>& fronts) {
 
 }  // namespace
 
-std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& both, const ReportMetric& metric) {
+std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both, const ResultMetric& metric) {
   const std::vector<Point> points = points_of(data, both, metric.name);
   if (points.empty()) {
     return std::nullopt;
@@ -103,8 +104,8 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
   plot.name = plot_file_name({"pareto", both.scene, both.gaze, metric.name});
   plot.title = fmt::format("{} against time, {}", metric.name, scene_gaze_text(both));
 
-  std::vector<Estimate> all_times;
-  std::vector<Estimate> all_scores;
+  std::vector<Interval> all_times;
+  std::vector<Interval> all_scores;
   for (const Point& point : points) {
     all_times.push_back(point.time_s);
     all_scores.push_back(point.score);
@@ -123,8 +124,8 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
   svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
   svg.axes(x, y, kLeft, kTop, right, kBottom, "time of a frame [s]",
            metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
-  const std::vector<const ReportScene*> scenes = find_scenes(data, both);
-  for (const ReportScene* const scene : scenes) {
+  const std::vector<const ResultReference*> scenes = find_references(data, both);
+  for (const ResultReference* const scene : scenes) {
     const std::optional<double> floor = find_floor(scene, both.gaze, metric.name, "whole");
     if (floor && y.at(*floor) > kTop && y.at(*floor) < kBottom) {
       svg.add(
@@ -169,8 +170,8 @@ std::optional<ReportPlot> pareto_plot(const ReportData& data, const SceneGaze& b
     const bool on_front = std::any_of(fronts.begin(), fronts.end(), [&](const Front& front) {
       return std::find(front.points.begin(), front.points.end(), &point) != front.points.end();
     });
-    plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, csv_cell(point.row->id), csv_cell(point.row->role),
-                            csv_cell(point.row->label), csv_estimate(point.time_s), csv_estimate(point.score),
+    plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, csv_cell(point.row->id), to_string(point.row->role),
+                            csv_cell(point.row->label), csv_interval(point.time_s), csv_interval(point.score),
                             point.is_resolved ? 1 : 0, on_front ? 1 : 0);
   }
   return plot;

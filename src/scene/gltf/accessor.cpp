@@ -16,7 +16,7 @@ constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort 
 template <class T>
 T load(const std::uint8_t* from) {
   T value;
-  std::memcpy(&value, from, sizeof value);  // strides need not keep T aligned
+  std::memcpy(&value, from, sizeof value);  // copied, since T need not be aligned
   return value;
 }
 
@@ -84,7 +84,7 @@ Source source_of(const GltfDocument& document, const GltfAccessor& accessor, con
           view.stride != 0 ? view.stride : packed};
 }
 
-// Overwrites the elements that a sparse accessor lists; `copy` reads `count` elements into a place of the result.
+// Overwrites the elements that a sparse accessor lists; `copy` reads `count` elements into the result.
 template <class T, class Copy>
 void apply_sparse(const GltfDocument& document, const GltfAccessor& accessor, const std::string& place,
                   std::vector<T>& values, Copy copy) {
@@ -163,7 +163,7 @@ std::vector<std::uint32_t> read_indices(const GltfDocument& document, int access
   const GltfAccessor& accessor = document.accessors[static_cast<std::size_t>(accessor_index)];
   if (accessor.components != 1 || !is_unsigned_integer(accessor.component_type)) {
     throw Error(ErrorKind::input, place,
-                "accessors[" + std::to_string(accessor_index) + "] holds no unsigned scalars, as indices must be",
+                "accessors[" + std::to_string(accessor_index) + "] does not hold unsigned scalars, as indices must be",
                 "export the file again");
   }
   std::vector<std::uint32_t> values(accessor.count);

@@ -12,7 +12,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kMaxTimeS = 9e9;  // int64 nanoseconds end at 9.2e9 s
+constexpr double kMaxTimeS = 9e9;  // int64 nanoseconds reach 9.2e9 s
 
 std::string animation_place(const GltfDocument& document, std::size_t animation, int sampler) {
   return document.path + ": animations[" + std::to_string(animation) + "].samplers[" + std::to_string(sampler) + "]";
@@ -48,7 +48,8 @@ KeyInterpolation read_interpolation(const GltfAnimation::Sampler& sampler, const
   return KeyInterpolation::linear;
 }
 
-// Times, and the numbers of every key: `width` values of `components` each, three times as many for splines.
+// The times and numbers of all keyframes. Each has `width` values of `components` numbers, or three times as many for
+// splines.
 struct RawTrack {
   KeyInterpolation interpolation = KeyInterpolation::linear;
   std::vector<std::int64_t> times_ns;
@@ -103,7 +104,7 @@ bool moves_any(const GltfAnimation::Channel& channel, const std::vector<int>& ch
   return moves_nodes(channel.path) && std::find(chain.begin(), chain.end(), channel.node) != chain.end();
 }
 
-// The first animation with such a channel; a second one is another take, not more of the same.
+// The first animation with such a channel. A second animation is an alternative, so the two are not combined.
 template <class Wanted>
 std::optional<std::size_t> first_animation(const GltfDocument& document, const Wanted& wanted, const std::string& what,
                                            Warnings& warnings) {
@@ -149,7 +150,6 @@ std::string animation_name(const GltfDocument& document, std::size_t index) {
   return name.empty() ? "#" + std::to_string(index) : name;
 }
 
-// Nodes from the root to `node`.
 std::vector<int> chain_to(int node, const std::vector<int>& parents) {
   std::vector<int> chain;
   for (int at = node; at >= 0; at = parents[static_cast<std::size_t>(at)]) {

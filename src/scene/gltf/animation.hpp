@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF animations of nodes: whatever hangs on them, cameras and meshes alike, follows.
+// glTF animations of nodes, which move cameras and meshes alike.
 #pragma once
 
 #include <optional>
@@ -15,31 +15,31 @@ namespace gazetrace {
 
 std::string animation_name(const GltfDocument& document, std::size_t index);
 
-// Nodes from the root to `node`.
+// The nodes from the root to `node`.
 std::vector<int> chain_to(int node, const std::vector<int>& parents);
 
-// A chain of nodes with the tracks that move them: those of the first animation with a channel on the chain; a second
-// one is another take, not more of the same. `what` names the end of the chain in warnings.
+// A chain of nodes with the tracks that move them. They are those of the first animation with a channel on the chain: a
+// second animation is an alternative, so the two are not combined. `what` names the end of the chain in warnings.
 std::vector<AnimatedNode> animated_chain(const GltfDocument& document, const std::vector<int>& chain,
                                          const std::string& what, Warnings& warnings);
 
-// The weights of the node's morph targets over time: those of the first animation that has a channel of them. Nothing
-// where none does.
+// The weights of the node's morph targets over time, from the first animation that has a channel for them; empty where
+// none has.
 std::optional<WeightTrack> animated_weights(const GltfDocument& document, int node, std::size_t targets,
                                             const std::string& what, Warnings& warnings);
 
-// Leaves only one animation its channels: by name, or by number where no animation has that name. Error(usage) lists
-// what there is.
+// Removes the channels of all animations but one, which is chosen by name, or by number where no animation has that
+// name. Error(usage) lists the animations.
 void keep_animation(GltfDocument& document, const std::string& name);
 
-// Of all tracks; 0 where there is none.
+// The time of the last keyframe of all tracks; 0 where there is none.
 std::int64_t last_key_ns(const std::vector<AnimatedNode>& nodes);
 
-// By node: 1 where it or a parent has a channel of translation, rotation or scale.
+// For each node, 1 where it or a parent of it has a channel for translation, rotation or scale.
 std::vector<char> moved_nodes(const GltfDocument& document, const std::vector<WorldNode>& nodes,
                               const std::vector<int>& parents);
 
-// What animations change and this program shows at rest: punctual lights.
+// Reports what animations move and gazetrace shows at rest, namely punctual lights.
 void list_unshown_motion(const GltfDocument& document, const std::vector<WorldNode>& nodes,
                          const std::vector<int>& parents, std::vector<std::string>& ignored, Warnings& warnings);
 

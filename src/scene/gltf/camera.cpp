@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras, still or moved by animations.
+// Makes cameras, static or moved by animations.
 #include <algorithm>
 #include <cmath>
 #include <memory>

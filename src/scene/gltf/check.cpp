@@ -28,7 +28,7 @@ std::string remedy_for_extension(const std::string& name) {
 void check_asset(Walker& walker, const Json& root, const std::string& path) {
   const Json* asset = walker.object(root, "asset");
   if (asset == nullptr) {
-    throw Error(ErrorKind::input, path, "'asset' is missing, so this is no glTF 2.0 file");
+    throw Error(ErrorKind::input, path, "'asset' is missing, so this is not a glTF 2.0 file");
   }
   const Step step(walker, "asset");
   walker.text(*asset, "version", true);
@@ -46,7 +46,7 @@ void check_asset(Walker& walker, const Json& root, const std::string& path) {
     }
     if (!list->is_array() ||
         !std::all_of(list->begin(), list->end(), [](const Json& value) { return value.is_string(); })) {
-      throw Error(ErrorKind::input, path + ": " + key, "is no array of names");
+      throw Error(ErrorKind::input, path + ": " + key, "is not an array of names");
     }
     for (const Json& item : *list) {
       const auto name = item.get<std::string>();
@@ -200,7 +200,7 @@ std::size_t light_count(Walker& walker, const Json& root) {
     walker.text(light, "type", true);
     const auto type = light["type"].get<std::string>();
     if (type != "directional" && type != "point" && type != "spot") {
-      walker.fail("'" + type + "' is no kind of light", "use directional, point or spot");
+      walker.fail("'" + type + "' is not a kind of light", "use directional, point or spot");
     }
     walker.numbers(light, "color", 3);
     walker.number(light, "intensity");
@@ -269,7 +269,7 @@ void check_cameras_and_animations(Walker& walker, const Json& root) {
     walker.text(camera, "type", true);
     const auto type = camera["type"].get<std::string>();
     if (type != "perspective" && type != "orthographic") {
-      walker.fail("'" + type + "' is no kind of camera", "use perspective or orthographic");
+      walker.fail("'" + type + "' is not a kind of camera", "use perspective or orthographic");
     }
     const Json* lens = walker.object(camera, type.c_str());
     if (lens == nullptr) {
@@ -304,8 +304,8 @@ void check_cameras_and_animations(Walker& walker, const Json& root) {
   });
 }
 
-// What EXT_meshopt_compression and KHR_draco_mesh_compression pack. The parser gets plain bufferViews and primitives;
-// the values themselves are judged where they are decoded.
+// Takes out what EXT_meshopt_compression and KHR_draco_mesh_compression pack, so that the parser gets plain bufferViews
+// and primitives. The values themselves are checked where they are decoded.
 void take_compression(Walker& walker, Json& root, CheckedGltf& checked) {
   int view_index = 0;
   walker.each_object(root, "bufferViews", [&](const Json& view) {
@@ -367,8 +367,8 @@ void take_compression(Walker& walker, Json& root, CheckedGltf& checked) {
   }
 }
 
-// What the parser must not load itself: it wants buffers of the exact size, decodes pictures one by one and refuses
-// empty ones. It gets a byte in place of each.
+// Takes out buffers and pictures, since the parser wants buffers of the exact size, decodes pictures one by one and
+// refuses empty ones. It gets one byte in place of each.
 void take_binary_sources(Walker& walker, Json& root, CheckedGltf& checked) {
   walker.each_object(root, "buffers", [&](const Json& buffer) {
     walker.text(buffer, "uri");
@@ -437,7 +437,7 @@ CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text)
                 "is it a .gltf or .glb file, complete?");
   }
   if (!root.is_object()) {
-    throw Error(ErrorKind::input, path, "is not a glTF file: the JSON is no object");
+    throw Error(ErrorKind::input, path, "is not a glTF file: its JSON is not an object");
   }
   tidy_numbers(root);
   Walker walker(path, root);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the JSON before the parser does and refuses what it would stumble over or not notice: unknown required
-// extensions, references and ranges that lead nowhere, node cycles.
+// Reads the JSON before the parser does, and refuses what the parser would fail on or not notice: unknown required
+// extensions, invalid references and ranges, cycles of nodes.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace gazetrace {
 
 struct GltfBufferSource {
-  std::string uri;  // empty: the .glb chunk, or no data at all
+  std::string uri;  // empty: the chunk of the .glb, or no data at all
   std::uint64_t byte_length = 0;
-  bool fallback = false;  // EXT_meshopt_compression: for programs without it; mostly without data
+  bool fallback = false;  // EXT_meshopt_compression: for programs that do not know it, and mostly without data
 };
 
 struct GltfImageSource {
@@ -24,14 +24,14 @@ struct GltfImageSource {
 };
 
 struct CheckedGltf {
-  std::string json;  // buffers and images replaced by one-byte placeholders
+  std::string json;  // with buffers and images replaced by one-byte placeholders
   std::vector<GltfBufferSource> buffers;
   std::vector<GltfImageSource> images;
   std::vector<MeshoptView> meshopt_views;
   std::vector<DracoPrimitive> draco_primitives;
 };
 
-// Extensions that are understood; extensionsRequired may name no others.
+// The extensions that are supported; extensionsRequired may name no others.
 const std::vector<std::string>& known_gltf_extensions();
 
 // Error(input) names the file, the JSON place and what is wrong.

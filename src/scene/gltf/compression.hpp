@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry that a glTF file holds in packed form. Unpacking appends plain buffers, bufferViews and accessors to the
-// document and turns the packed ones towards them, so that whoever reads geometry knows nothing of compression.
-// Every error is Error(input) with the JSON place; damaged streams never do worse.
+// Unpacks compressed geometry of a glTF file. Unpacking appends plain buffers, bufferViews and accessors to the
+// document and makes the packed ones refer to them, so that the code that reads geometry need not know about
+// compression. Every error, also for damaged streams, is an Error(input) with the place in the JSON.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,13 @@ struct MeshoptView {
 // KHR_draco_mesh_compression of one primitive.
 struct DracoPrimitive {
   int mesh = 0, primitive = 0, buffer_view = 0;
-  std::map<std::string, std::uint64_t> attributes;  // name to Draco's unique id
+  std::map<std::string, std::uint64_t> attributes;  // from names to Draco's unique ids
 };
 
 // `storage` owns the unpacked bytes and must outlive the document.
 void unpack_meshopt(GltfDocument& document, const std::vector<MeshoptView>& views,
                     std::vector<std::vector<std::uint8_t>>& storage, int threads);
-// An accessor whose count differs from the stream's is an error; component types are converted where they differ.
+// Component types are converted where accessor and stream differ; a different count is an error.
 void unpack_draco(GltfDocument& document, const std::vector<DracoPrimitive>& primitives,
                   std::vector<std::vector<std::uint8_t>>& storage, int threads);
 

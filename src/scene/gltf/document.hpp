@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF 2.0 document as plain values, with the defaults of the specification filled in. Made by document.cpp, the only
-// file that knows the parser; everything else in this folder works on these.
+// A glTF 2.0 document as plain values, with the defaults of the specification filled in. It is made by document.cpp,
+// the only file that uses the parser; all other files in this folder work on these values.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ struct GltfAccessor {
 struct GltfPrimitive {
   std::map<std::string, int> attributes;
   int indices = -1, material = -1, mode = 4;
-  std::vector<std::map<std::string, int>> targets;  // of morphing: attribute to accessor
+  std::vector<std::map<std::string, int>> targets;  // morph targets: from attribute to accessor
 };
 
 struct GltfMesh {
@@ -56,11 +56,11 @@ struct GltfTextureInfo {
   double scale_factor = 1;  // of a normal map's x and y
 };
 
-// Any extension of a material by its JSON keys; material_extension.hpp gives them meaning.
+// Any extension of a material by its JSON keys; material_extension.hpp interprets them.
 struct GltfExtension {
-  std::map<std::string, std::vector<double>> numbers;  // one, or an array of them
+  std::map<std::string, std::vector<double>> numbers;  // a number, or an array of numbers
   std::map<std::string, GltfTextureInfo> textures;
-  std::set<std::string> others;  // keys of anything else
+  std::set<std::string> others;  // keys of everything else
 };
 
 struct GltfMaterial {
@@ -78,11 +78,11 @@ struct GltfNode {
   int mesh = -1, camera = -1, skin = -1, light = -1;
   std::vector<int> children;
   bool has_matrix = false;
-  Affine matrix;  // where has_matrix; else the three below
+  Affine matrix;  // used where has_matrix, otherwise the three below
   Vec3d translation{0, 0, 0}, scale{1, 1, 1};
   Quatd rotation;
-  std::vector<double> weights;            // of its mesh's morph targets; empty: the mesh's own
-  std::map<std::string, int> instancing;  // EXT_mesh_gpu_instancing: attribute to accessor
+  std::vector<double> weights;            // of its mesh's morph targets; empty: those of the mesh
+  std::map<std::string, int> instancing;  // EXT_mesh_gpu_instancing: from attribute to accessor
 };
 
 struct GltfSampler {
@@ -127,7 +127,7 @@ struct GltfSkin {
 
 struct GltfDocument {
   std::string path;
-  std::vector<std::span<const std::uint8_t>> buffers;  // empty where the file has no data for one
+  std::vector<std::span<const std::uint8_t>> buffers;  // an entry is empty where the file has no data for it
   std::vector<GltfImageSource> images;
   std::vector<std::string> extensions_used;
 
@@ -142,11 +142,11 @@ struct GltfDocument {
   std::vector<GltfLight> lights;
   std::vector<GltfAnimation> animations;
   std::vector<GltfSkin> skins;
-  std::vector<int> roots;  // of the default scene, or of everything when there is no scene
+  std::vector<int> roots;  // of the default scene, or all root nodes where there is no scene
   std::size_t scene_count = 0;
 };
 
-// Runs the parser on checked JSON. Buffers are left empty: the caller knows where the bytes are.
+// Runs the parser on checked JSON. The buffers are left empty for the caller to fill.
 GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_draco_mesh_compression through Draco, which is met here and nowhere else.
+// KHR_draco_mesh_compression with the Draco library, which only this file uses.
 #include <draco/compression/decode.h>
 
 #include <cstring>
@@ -24,7 +24,7 @@ constexpr int kTriangles = 4;
   throw Error(ErrorKind::input, place, problem, "compress the file again");
 }
 
-// One new accessor with its bytes.
+// A new accessor with its bytes.
 struct Plain {
   GltfAccessor accessor;
   std::vector<std::uint8_t> bytes;
@@ -52,7 +52,7 @@ std::unique_ptr<draco::Mesh> decode(std::span<const std::uint8_t> bytes, const s
     reason = mesh.status().error_msg_string();
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // sizes out of a damaged header: no memory for them
+  } catch (const std::exception& error) {  // such as no memory for the sizes in a damaged header
     reason = error.what();
   }
   fail(place, "the compressed bytes are damaged" + (reason.empty() ? reason : " (" + reason + ")"));
@@ -110,7 +110,7 @@ Plain unpack_attribute(const GltfDocument& document, const draco::Mesh& mesh, in
   }
   if (!convert_to(accessor.component_type, *attribute, mesh.num_points(), static_cast<std::size_t>(accessor.components),
                   plain.bytes)) {
-    fail(place, "the compressed attribute cannot be read as accessors[" + std::to_string(declared) + "] wants it");
+    fail(place, "the compressed attribute cannot be read as accessors[" + std::to_string(declared) + "] requires");
   }
   return plain;
 }
@@ -174,7 +174,7 @@ void unpack_draco(GltfDocument& document, const std::vector<DracoPrimitive>& pri
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     GltfPrimitive& primitive = document.meshes[static_cast<std::size_t>(primitives[i].mesh)]
                                    .primitives[static_cast<std::size_t>(primitives[i].primitive)];
-    primitive.mode = kTriangles;  // strips, too, are packed as separate triangles
+    primitive.mode = kTriangles;  // strips are also packed as separate triangles
     primitive.indices = append(plain[i].indices);
     for (auto& [name, attribute] : plain[i].attributes) {
       primitive.attributes[name] = append(attribute);

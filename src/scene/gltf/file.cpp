@@ -79,7 +79,7 @@ constexpr std::array<std::int8_t, 256> make_base64_table() {
   return table;
 }
 
-// RFC 4648 section 4; padding may be missing. Empty when a character does not belong.
+// RFC 4648 section 4; padding may be missing. Empty where a character is invalid.
 std::optional<std::vector<std::uint8_t>> decode_base64(std::string_view text) {
   static constexpr auto kTable = make_base64_table();
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) {
@@ -136,7 +136,7 @@ std::vector<std::uint8_t> read_whole_file(const std::string& path, const std::st
   if (std::filesystem::is_directory(file, error)) {
     throw Error(ErrorKind::input, place, "'" + path + "' is a folder, not a file");
   }
-  // Opening a pipe would wait for its other end for ever.
+  // Checked first, since opening a pipe would wait for its other end forever.
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error)) {
     throw Error(ErrorKind::input, place, "'" + path + "' is a pipe or a device, not a file",
                 "write its content to a file");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes of a glTF asset: the JSON text, the .glb binary chunk, and what uris point to.
+// Reads the bytes of a glTF asset: the JSON text, the binary chunk of a .glb, and what uris refer to.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@ struct GltfFile {
   bool is_binary = false;
 };
 
-// Tells .glb from .gltf by its first bytes, not by its name. Error(input) for a missing file and for broken chunks.
+// A .glb is recognised by its first bytes, not by its name. Error(input) for a missing file and for broken chunks.
 GltfFile read_gltf_file(const std::string& path);
 
 std::vector<std::uint8_t> read_whole_file(const std::string& path, const std::string& place);
 
 bool is_data_uri(std::string_view uri);
-// "data:<mime>;base64,<text>"; Error(input) at `place` for anything but well-formed base64.
+// Decodes "data:<mime>;base64,<text>". Error(input) that names `place` for anything but well-formed base64.
 std::vector<std::uint8_t> decode_data_uri(std::string_view uri, const std::string& place);
 
-// A uri beside the glTF file as a file system path: percent escapes decoded, relative to the file's folder.
+// The file system path for a uri: percent escapes are decoded, and it is relative to the folder of the glTF file.
 // Error(input) for schemes such as https:.
 std::string resolve_uri(const std::string& gltf_path, std::string_view uri, const std::string& place);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done to a glTF file's JSON before anything reads it.
+// Checks and tidies the JSON of a glTF file before anything else reads it.
 #pragma once
 
 #include <string_view>
@@ -10,11 +10,12 @@ namespace gazetrace {
 
 inline constexpr int kMaxJsonDepth = 200;
 
-// Deeper JSON than any exporter writes would overflow the stack of parsers that recurse.
+// Whether the JSON is nested deeper than any exporter writes it; it would overflow the stack of recursive parsers.
 bool is_nested_too_deep(std::string_view text);
 
-// "Integers may be stored as decimals with a zero fractional part" (glTF 2.0 section 3.2), which the parser refuses. In
-// extensions it cuts integers to 32 bits, but not decimals: larger numbers are integers only where sizes stand.
+// Adapts numbers to what the parser expects. "Integers may be stored as decimals with a zero fractional part" (glTF 2.0
+// section 3.2), which it refuses. In extensions it truncates integers to 32 bits, but not decimals, so larger numbers
+// remain integers only where sizes are stored.
 void tidy_numbers(Json& root);
 
 }  // namespace gazetrace

@@ -10,7 +10,7 @@ namespace gazetrace {
 namespace {
 
 struct Span {
-  std::size_t first = 0, second = 0;  // the same outside the keys
+  std::size_t first = 0, second = 0;  // equal where the time is outside the keyframes
   double fraction = 0;                // 0..1 from first to second
   double length_s = 0;
 };
@@ -32,12 +32,12 @@ Vec4d combine(double a, const Vec4d& p, double b, const Vec4d& q) {
   return {a * p.x + b * q.x, a * p.y + b * q.y, a * p.z + b * q.z, a * p.w + b * q.w};
 }
 
-// The value of a key itself.
+// The value at a keyframe, without its tangents.
 const Vec4d& key_value(const KeyTrack& track, std::size_t key) {
   return track.interpolation == KeyInterpolation::cubic_spline ? track.values[3 * key + 1] : track.values[key];
 }
 
-// Hermite basis; tangents are scaled by the length of the span (glTF 2.0 appendix C.4).
+// The Hermite basis; tangents are scaled by the length of the interval (glTF 2.0 appendix C.4).
 struct Hermite {
   double p0, out0, in1, p1;
 };
@@ -89,7 +89,7 @@ Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns) {
 std::vector<double> weights_at(const WeightTrack& track, std::int64_t t_ns) {
   const Span span = span_at(track.times_ns, t_ns);
   const bool is_cubic = track.interpolation == KeyInterpolation::cubic_spline;
-  // Part 0, 1, 2 of a key: in-tangents, values, out-tangents.
+  // Parts 0, 1 and 2 of a keyframe are its in-tangents, values and out-tangents.
   const auto value = [&](std::size_t key, std::size_t part, std::size_t i) {
     return track.values[(is_cubic ? 3 * key + part : key) * track.width + i];
   };

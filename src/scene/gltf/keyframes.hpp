@@ -12,20 +12,20 @@ namespace gazetrace {
 
 enum class KeyInterpolation : std::uint8_t { step, linear, cubic_spline };
 
-// Vectors (w unused) or quaternions over time. Times rise strictly. With cubic_spline there are
-// three values a key: in-tangent, value, out-tangent (tangents per second).
+// Vectors (w unused) or quaternions over time. Times increase strictly. With cubic_spline there are three values per
+// keyframe: in-tangent, value, out-tangent (tangents per second).
 struct KeyTrack {
   KeyInterpolation interpolation = KeyInterpolation::linear;
   std::vector<std::int64_t> times_ns;
   std::vector<Vec4d> values;
 };
 
-// Before the first and after the last key the value holds.
+// Before the first and after the last keyframe its value is held.
 Vec3d vector_at(const KeyTrack& track, std::int64_t t_ns);
 Quatd rotation_at(const KeyTrack& track, std::int64_t t_ns);  // linear: slerp; always of unit length
 
-// Several numbers a key, as morph targets have: `width` of them, with cubic_spline three times as many (all
-// in-tangents, then all values, then all out-tangents).
+// Several numbers per keyframe, as the weights of morph targets: `width` of them, or with cubic_spline three times as
+// many (all in-tangents, then all values, then all out-tangents).
 struct WeightTrack {
   KeyInterpolation interpolation = KeyInterpolation::linear;
   std::size_t width = 0;
@@ -34,7 +34,7 @@ struct WeightTrack {
 };
 std::vector<double> weights_at(const WeightTrack& track, std::int64_t t_ns);
 
-// A node on the way from the root to something that moves.
+// A node on the chain from the root to something that moves.
 struct AnimatedNode {
   bool has_matrix = false;
   Affine matrix;
@@ -45,7 +45,7 @@ struct AnimatedNode {
 
 Affine transform_of_node(const AnimatedNode& node, std::int64_t t_ns);  // into its parent's space
 Affine transform_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);
-// The last node of the chain, looking along its -z.
+// The pose of the last node of the chain, which looks along its -z.
 CameraPose pose_of_chain(const std::vector<AnimatedNode>& chain, std::int64_t t_ns);
 
 }  // namespace gazetrace

@@ -9,9 +9,9 @@
 namespace gazetrace {
 namespace {
 
-// KHR_texture_transform: translation * rotation * scale. The angle turns counter-clockwise as the picture is seen, with
-// v pointing down: u' = cos u + sin v, v' = -sin u + cos v. The extension's own example (offset 0 1, rotation pi/2,
-// scale 0.5 shows the lower left quadrant) settles the sign.
+// KHR_texture_transform: translation * rotation * scale. The angle turns counter-clockwise as one looks at the picture,
+// with v pointing down: u' = cos u + sin v, v' = -sin u + cos v. The sign follows from the extension's own example
+// (offset 0 1, rotation pi/2, scale 0.5 shows the lower left quadrant).
 std::array<float, 6> texture_matrix(const GltfTextureInfo& info) {
   const double c = std::cos(info.rotation_rad);
   const double s = std::sin(info.rotation_rad);
@@ -39,7 +39,7 @@ class MaterialBuilder {
     to.double_sided = from.double_sided;
     to.unlit = from.unlit;
     to.base_color_texture = texture(from.base_color_texture, TextureUse::color);
-    if (!from.unlit) {  // nothing else of an unlit material shows
+    if (!from.unlit) {  // nothing else of an unlit material is visible
       to.metallic_roughness_texture = texture(from.metallic_roughness_texture, TextureUse::data);
       to.normal_texture = texture(from.normal_texture, TextureUse::normal);
       to.emission = {emission(from.emissive[0]), emission(from.emissive[1]), emission(from.emissive[2])};
@@ -48,7 +48,7 @@ class MaterialBuilder {
       if (!(to.emission == Vec3f{})) {
         to.emissive_texture = texture(from.emissive_texture, TextureUse::color);
         if (from.emissive_texture.texture >= 0 && !to.emissive_texture.present()) {
-          to.emission = {};  // where it shines is lost with the picture; all of it would be a lamp
+          to.emission = {};  // without the picture it is not known where it emits, and all of it would be a lamp
         }
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials, and the textures they turn out to need.
+// Makes materials, and the textures that they need.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +16,18 @@
 
 namespace gazetrace {
 
-// Hands out indices of Scene::textures; one entry per picture, sampler and use. Pictures are decoded once each, however
-// many entries and glTF images share them.
+// Assigns indices into Scene::textures, one entry for each picture, sampler and use. Each picture is decoded once,
+// however many entries and glTF images share it.
 class TextureTable {
  public:
   explicit TextureTable(const GltfDocument& document) : document_(document) {}
 
-  // -1 (with a warning, once per glTF texture) where the file names no picture that could be read.
+  // -1, with one warning per glTF texture, where the file names no picture that can be read.
   std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
 
   [[nodiscard]] std::size_t picture_count() const { return pictures_.size(); }
-  // Decodes everything requested so far; `picture_done` is called for each picture, from several threads. Error(input)
-  // names the glTF file, the image and the picture file.
+  // Decodes everything that was requested so far; `picture_done` is called for each picture, from several threads.
+  // Error(input) names the glTF file, the image and the picture file.
   std::vector<Texture> load(int threads, const std::function<void()>& picture_done) const;
 
  private:
@@ -37,7 +37,7 @@ class TextureTable {
     TextureUse use = TextureUse::color;
   };
   struct Picture {
-    int image = 0;     // the first glTF image that shows it
+    int image = 0;     // the first glTF image with this picture
     std::string path;  // empty: in the file itself
     std::vector<std::size_t> entries;
   };
@@ -55,12 +55,12 @@ class TextureTable {
 
 std::vector<Material> make_materials(const GltfDocument& document, TextureTable& textures, Warnings& warnings);
 
-// MASK and BLEND cost a test at every hit. Materials whose alpha can never let anything through (no transparent texel,
-// vertex or factor) become opaque, which looks the same.
+// MASK and BLEND cost a test at every hit. Materials without any transparent texel, vertex or factor become opaque,
+// which looks the same.
 void drop_needless_alpha(const std::vector<Texture>& textures, const std::vector<Mesh>& meshes,
                          std::vector<Material>& materials);
 
-// What a material reads from a vertex.
+// The vertex attributes that a material reads.
 struct VertexNeeds {
   bool uv0 = false, uv1 = false, tangents = false;
 };

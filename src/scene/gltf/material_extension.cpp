@@ -11,9 +11,10 @@ const std::vector<double>* ExtensionReader::numbers(const char* key, std::size_t
   const auto it = from_.numbers.find(key);
   const bool is_something_else = from_.others.contains(key) || from_.textures.contains(key);
   if (is_something_else || (it != from_.numbers.end() && it->second.size() != count)) {
-    throw Error(ErrorKind::input, place_ + "." + key,
-                count == 1 ? std::string("is no number") : "is no array of " + std::to_string(count) + " numbers",
-                "export the file again");
+    throw Error(
+        ErrorKind::input, place_ + "." + key,
+        count == 1 ? std::string("is not a number") : "is not an array of " + std::to_string(count) + " numbers",
+        "export the file again");
   }
   return it == from_.numbers.end() ? nullptr : &it->second;
 }
@@ -51,7 +52,7 @@ Vec4f ExtensionReader::color_alpha(const char* key, const Vec4f& fallback) {
 
 TextureRef ExtensionReader::texture(const char* key, TextureUse use) {
   if (from_.others.contains(key) || from_.numbers.contains(key)) {
-    throw Error(ErrorKind::input, place_ + "." + key, "is no texture", "export the file again");
+    throw Error(ErrorKind::input, place_ + "." + key, "is not a texture", "export the file again");
   }
   const auto it = from_.textures.find(key);
   return it == from_.textures.end() ? TextureRef{} : request_(it->second, use);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a member of material_extensions.def reads its fields with. A field of the wrong kind ends in Error(input) that
-// names the JSON place; a number outside its range is clamped with a warning.
+// The members of material_extensions.def read their fields with this. Error(input) with the place in the JSON for a
+// field of the wrong type; a number outside its range is clamped with a warning.
 #pragma once
 
 #include <functional>
@@ -40,7 +40,7 @@ class ExtensionReader {
   Warnings& warnings_;
 };
 
-// One function `read_<name>` per line of material_extensions.def; `to` holds the metallic-roughness values already.
+// One function `read_<name>` per line of material_extensions.def; `to` already has the metallic-roughness values.
 #define MATERIAL_EXTENSION(name, extension, description) void read_##name(ExtensionReader& from, Material& to);
 #include "scene/gltf/material_extensions.def"
 #undef MATERIAL_EXTENSION

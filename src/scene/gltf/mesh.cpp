@@ -18,8 +18,8 @@ namespace gazetrace {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-constexpr double kWeightTolerance = 0.02;  // four weights in 8 bits are off by as much
-constexpr int kTriangles = 4, kStrip = 5;  // else 6, a fan
+constexpr double kWeightTolerance = 0.02;  // the rounding error of four weights in 8 bits
+constexpr int kTriangles = 4, kStrip = 5;  // the third mode of triangles is 6, a fan
 
 std::string primitive_place(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
   return document.path + ": meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
@@ -95,7 +95,7 @@ class PrimitiveReader {
     return it == primitive_.attributes.end() ? std::nullopt : std::optional<int>(it->second);
   }
 
-  // Empty when there is no such attribute. `owner` is the place of the attributes in the file.
+  // Empty where there is no such attribute. `owner` is the place of the attributes in the JSON.
   std::vector<float> floats(const Attributes& attributes, const std::string& owner, const std::string& attribute,
                             int components) const {
     const auto it = attributes.find(attribute);
@@ -140,8 +140,8 @@ class PrimitiveReader {
     }
   }
 
-  // JOINTS_n and WEIGHTS_n as far as they go. Sums are brought to 1: what storing and quantising costs silently, more
-  // with a warning.
+  // Reads JOINTS_n and WEIGHTS_n for all n that exist. Weights are scaled to a sum of 1; where their sum is off by more
+  // than rounding, there is a warning.
   void read_influences(Geometry& geometry, Warnings& warnings) const {
     std::vector<std::vector<float>> joints;
     std::vector<std::vector<float>> weights;
@@ -174,7 +174,7 @@ class PrimitiveReader {
         }
         sum += static_cast<double>(weight);
         influences.weights.push_back(weight);
-        // A joint without weight may be any number.
+        // The joint of a weight of 0 may be any number.
         influences.joints.push_back(weight > 0 ? static_cast<std::uint32_t>(joints[k / 4][4 * vertex + k % 4]) : 0);
       }
       if (!(sum > 0)) {
@@ -190,11 +190,11 @@ class PrimitiveReader {
     }
     if (far_off > 0) {
       warnings.push_back(place_ + ": the joint weights of " + std::to_string(far_off) +
-                         " vertices do not sum to 1; they were brought there");
+                         " vertices do not sum to 1; they were scaled to do so");
     }
   }
 
-  // glTF 2.0, 3.7.2.1: colours are clamped to 0..1. More would be reflected than arrives.
+  // Colours are clamped to 0..1 (glTF 2.0, 3.7.2.1), since larger ones would reflect more light than arrives.
   void read_colors(Geometry& geometry, Warnings& warnings) const {
     const auto index = accessor("COLOR_0");
     if (!index) {
@@ -241,7 +241,7 @@ class PrimitiveReader {
     }
     if (primitive_.mode == kTriangles && corners.size() % 3 != 0) {
       warnings.push_back(place_ + ": " + std::to_string(corners.size()) +
-                         " corners are no multiple of 3; the last ones are left out");
+                         " corners are not a multiple of 3; the last ones are left out");
     }
     return assemble(primitive_.mode, corners);
   }

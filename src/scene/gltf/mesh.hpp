@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF primitives as indexed triangles.
+// Makes indexed triangles from glTF primitives.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace gazetrace {
 
 struct MeshResult {
   std::vector<Mesh> meshes;          // one per glTF mesh; without geometries where it holds no triangles
-  std::vector<std::string> ignored;  // points, lines
+  std::vector<std::string> ignored;  // primitives of points and lines
   Warnings warnings;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_meshopt_compression through meshoptimizer, which is met here and nowhere else. Its decoders are safe on any
+// EXT_meshopt_compression with the meshoptimizer library, which only this file uses. Its decoders are safe for any
 // bytes; sizes that they only assert are checked before.
 #include <meshoptimizer.h>
 
@@ -47,7 +47,7 @@ void check(const GltfDocument& document, const MeshoptView& packed, const std::s
                     " with filter " + packed.filter);
   }
   if (packed.mode == "TRIANGLES" && packed.count % 3 != 0) {
-    fail(place, "a count of " + std::to_string(packed.count) + " is no multiple of 3");
+    fail(place, "a count of " + std::to_string(packed.count) + " is not a multiple of 3");
   }
   const GltfBufferView& view = document.buffer_views[static_cast<std::size_t>(packed.view)];
   if (packed.count * packed.stride != view.length) {  // count < 2^32, stride <= 256
@@ -60,8 +60,8 @@ void check(const GltfDocument& document, const MeshoptView& packed, const std::s
                     " lie outside buffers[" + std::to_string(packed.buffer) + "] of " + std::to_string(size) +
                     " bytes");
   }
-  // The codecs spend a byte on a triangle or an index, and two bits on 16 equal bytes of attributes: no stream can hold
-  // more, and no file makes us ask for memory that it cannot fill.
+  // The codecs need at least a byte for a triangle or an index, and two bits for 16 equal bytes of attributes. No
+  // stream can hold more, so this check keeps a file from asking for memory that it cannot fill.
   const std::uint64_t most = attributes ? packed.length * 64 : packed.length * (packed.mode == "TRIANGLES" ? 3 : 1);
   if ((attributes ? view.length : packed.count) > most) {
     fail(place, std::to_string(packed.length) + " bytes cannot hold " + std::to_string(packed.count) + " elements");

@@ -15,22 +15,22 @@
 namespace gazetrace {
 namespace {
 
-// A ray in an instance's own space must stay within what Embree accepts (1e18): world coordinates up to 1e6 do when no
-// entry of the inverse is larger than this.
+// A ray in an instance's own space must stay within what Embree accepts (1e18). World coordinates up to 1e6 do so where
+// no entry of the inverse is larger than this.
 constexpr double kMaxInverseEntry = 1e12;
 
 double largest(const Vec3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// In single precision too, since that is what rays are traced in.
+// Whether there is an inverse in single precision, too, since rays are traced in it.
 bool has_usable_inverse(const Affine& map) {
   const double det = determinant(map);
   if (!is_finite(map.x) || !is_finite(map.y) || !is_finite(map.z) || !is_finite(map.t) || !(std::abs(det) >= FLT_MIN) ||
       !(std::abs(det) <= FLT_MAX) || largest(map.t) > kMaxInverseEntry) {
     return false;
   }
-  // Rows of the inverse are cross products of the columns over the determinant.
+  // The rows of the inverse are cross products of the columns, divided by the determinant.
   const double entry =
       std::max({largest(cross(map.y, map.z)), largest(cross(map.z, map.x)), largest(cross(map.x, map.y))}) /
       std::abs(det);
@@ -42,7 +42,7 @@ std::string node_label(const GltfDocument& document, int node) {
   return "nodes[" + std::to_string(node) + "] '" + document.nodes[static_cast<std::size_t>(node)].name + "'";
 }
 
-// EXT_mesh_gpu_instancing: one transform for every element of its attributes.
+// EXT_mesh_gpu_instancing: one transform for each element of its attributes.
 std::vector<Affine> instancing_transforms(const GltfDocument& document, int node_index) {
   const GltfNode& node = document.nodes[static_cast<std::size_t>(node_index)];
   const std::string place =
@@ -76,7 +76,7 @@ std::vector<Affine> instancing_transforms(const GltfDocument& document, int node
   return transforms;
 }
 
-// The mesh in a pose it will keep, without what could change it.
+// The mesh in a pose that never changes, without its morph targets and influences.
 Mesh in_pose(const Mesh& mesh, const MeshPose& pose, const std::vector<Material>& materials) {
   Mesh posed = mesh;
   for (Geometry& geometry : posed.geometries) {
@@ -94,7 +94,7 @@ Mesh in_pose(const Mesh& mesh, const MeshPose& pose, const std::vector<Material>
   return posed;
 }
 
-// Of glTF nodes, whether they are in the scene or not: joints need not be.
+// The parents of all glTF nodes, also of those outside the scene, since joints need not be in it.
 std::vector<int> all_parents(const GltfDocument& document) {
   std::vector<int> parents(document.nodes.size(), -1);
   for (std::size_t i = 0; i < document.nodes.size(); ++i) {
@@ -105,7 +105,7 @@ std::vector<int> all_parents(const GltfDocument& document) {
   return parents;
 }
 
-// Meshes that nothing deforms keep nothing for it; of those that are only shown in another pose nothing stays.
+// Frees the morph targets and influences of meshes that nothing deforms, and meshes that are used only in another pose.
 void drop_unused_shapes(const PlacedMeshes& placed, const std::vector<char>& was_posed, std::vector<Mesh>& meshes) {
   std::vector<char> deforms(meshes.size(), 0);
   std::vector<char> used(meshes.size(), 0);
@@ -205,7 +205,7 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
     for (const Affine& place : places) {
       const Affine to_world = has_skin ? Affine{} : world.to_world * place;
       if (chain) {
-        // Whatever it is at rest: the tracer looks at where it is when.
+        // Kept whatever its transform is at rest, since the tracer checks the transform at each time.
         placed.instances.push_back({mesh, to_world, static_cast<std::int32_t>(placed.motions.size()), deformation});
         placed.motions.push_back(
             {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; },

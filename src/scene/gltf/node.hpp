@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node hierarchy flattened to world space: instances, lights, cameras.
+// Flattens the hierarchy of nodes to world space: instances, lights and cameras.
 #pragma once
 
 #include <optional>
@@ -12,19 +12,20 @@ namespace gazetrace {
 struct WorldNode {
   int node = 0;
   Affine to_world;
-  Quatd rotation;  // of all rotations on the way, scales left out: a direction where to_world has none
+  Quatd rotation;  // product of all rotations on the chain, without scales; gives a direction where to_world has none
 };
 
-// The nodes of the scene at rest, parents before children. No recursion: depth is only bounded by memory.
+// The nodes of the scene at rest, parents before children. It does not recurse, so only memory limits the depth.
 std::vector<WorldNode> world_nodes(const GltfDocument& document, std::vector<int>& parents);
 
 Affine local_transform(const GltfNode& node);
-// The rotation of an affine map where it has one, else `fallback`.
+// The rotation of an affine map, or `fallback` where it has none.
 Quatd rotation_or(const Affine& map, const Quatd& fallback);
 
-// Instances of meshes that hold triangles; those that cannot be inverted are left out with one warning. Animated ones
-// get a motion each, those that change their shape a deformation. Meshes with a skin follow its joints, not their node
-// (glTF 2.0 section 3.7.3.3). A skin or morph weights that never change are applied to `meshes` here and now.
+// Makes instances of the meshes that hold triangles; those whose transform has no inverse are left out with one
+// warning. Each animated instance gets a motion, and each one that changes its shape a deformation. Meshes with a skin
+// follow its joints, not their node (glTF 2.0 section 3.7.3.3). A skin or morph weights that never change are applied
+// to `meshes` at once.
 struct PlacedMeshes {
   std::vector<Instance> instances;
   std::vector<Motion> motions;

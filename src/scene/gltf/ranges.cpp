@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where bytes lie and how nodes hang together: the parser checks neither.
+// Checks the ranges of bytes and the hierarchy of nodes, which the parser does not check.
 #include <optional>
 
 #include "gazetrace/error.hpp"
@@ -8,7 +8,7 @@
 namespace gazetrace {
 namespace {
 
-// Without a bufferView an accessor is all zeros, of any size a file cares to write.
+// An accessor without a bufferView consists of zeros, and a file may state any size for it.
 constexpr std::uint64_t kMaxZeroElements = std::uint64_t{1} << 26U;
 
 class RangeCheck {
@@ -32,7 +32,7 @@ class RangeCheck {
     }
   }
 
-  // `count` elements of `size` bytes, `stride` apart, from `offset` of a view.
+  // Checks `count` elements of `size` bytes that lie `stride` apart, from `offset` of a view on.
   void elements(const char* array, std::size_t index, int view_index, std::uint64_t offset, std::uint64_t count,
                 std::uint64_t size, std::uint64_t stride, std::uint64_t alignment) const {
     const GltfBufferView& view = document_.buffer_views[static_cast<std::size_t>(view_index)];
@@ -72,7 +72,7 @@ class RangeCheck {
         const GltfAccessor::Sparse& sparse = *accessor.sparse;
         const int type = sparse.indices_component_type;
         if (type != 5121 && type != 5123 && type != 5125) {
-          fail("accessors", i, "sparse.indices.componentType " + std::to_string(type) + " is no unsigned integer");
+          fail("accessors", i, "sparse.indices.componentType " + std::to_string(type) + " is not an unsigned integer");
         }
         if (sparse.count > accessor.count) {
           fail("accessors", i, "sparse.count exceeds its count");
@@ -100,7 +100,7 @@ class RangeCheck {
         parent[child] = i;
       }
     }
-    // With one parent each, whoever walks up from a cycle comes back to where this walk has been.
+    // Since every node has one parent, walking up from a node in a cycle leads back to a node of the same walk.
     std::vector<std::size_t> seen_by(count, kNone);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t at = i; at != kNone && seen_by[at] != i; at = parent[at]) {

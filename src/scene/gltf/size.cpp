@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much a file may ask for that it does not hold: a few bytes of JSON can name any number of zeros, any number of
-// times.
+// Limits how much data a file may ask for that it does not contain, since a few bytes of JSON can name any number of
+// zeros any number of times.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -11,11 +11,12 @@
 namespace gazetrace {
 namespace {
 
-// Zeros that stand in for what is there otherwise are of no use in such numbers: 22 million vertices of them.
+// Zeros in place of positions and other attributes are of no use in such numbers: 22 million vertices.
 constexpr std::uint64_t kMaxZeros = std::uint64_t{1} << 26U;
-// Of morph targets most is zero, and exporters leave it out: 89 million displacements, 1 GiB.
+// Morph targets are mostly zero, and exporters leave the zeros out, so more are allowed: 89 million displacements, 1
+// GiB.
 constexpr std::uint64_t kMaxMorphZeros = std::uint64_t{1} << 28U;
-// Instances that lie upon each other.
+// Instances whose attributes are all zeros, so that they lie upon each other.
 constexpr std::uint64_t kMaxZeroInstances = std::uint64_t{1} << 16U;
 constexpr std::uint64_t kMaxInstances = std::uint64_t{1} << 24U;
 constexpr int kTriangles = 4;
@@ -25,7 +26,7 @@ class SizeCheck {
   explicit SizeCheck(const GltfDocument& document) : document_(document) {}
 
   void meshes() {
-    std::vector<std::uint64_t> posed(document_.meshes.size(), 0);  // by how many nodes, each with vertices of its own
+    std::vector<std::uint64_t> posed(document_.meshes.size(), 0);  // number of nodes that need vertices of their own
     for (const GltfNode& node : document_.nodes) {
       if (node.mesh >= 0 && (node.skin >= 0 || has_targets(node.mesh))) {
         ++posed[static_cast<std::size_t>(node.mesh)];
@@ -37,7 +38,7 @@ class SizeCheck {
         const GltfPrimitive& primitive = primitives[p];
         const std::string place = "meshes[" + std::to_string(m) + "].primitives[" + std::to_string(p) + "]";
         if (primitive.mode < kTriangles) {
-          continue;  // not rendered, nothing is read
+          continue;  // not rendered, so nothing is read
         }
         for (const auto& [name, accessor] : primitive.attributes) {
           add(zeros_, std::max<std::uint64_t>(posed[m], 1) * zeros_of(accessor), kMaxZeros, place + ".attributes");
@@ -101,7 +102,7 @@ class SizeCheck {
     return std::any_of(primitives.begin(), primitives.end(),
                        [](const GltfPrimitive& primitive) { return !primitive.targets.empty(); });
   }
-  // Numbers, not elements; count < 2^32, so a product with any number of nodes stays below 2^64.
+  // The number of zeros, counting components. count < 2^32, so a product with any number of nodes stays below 2^64.
   [[nodiscard]] std::uint64_t zeros_of(int index) const {
     const GltfAccessor& from = accessor(index);
     return from.buffer_view >= 0 ? 0 : from.count * static_cast<std::uint64_t>(from.components);
@@ -111,8 +112,8 @@ class SizeCheck {
     sum += more;
     if (sum > most) {
       throw Error(ErrorKind::input, document_.path + ": " + place,
-                  "brings the file to " + std::to_string(sum) + " " + what + "; " + std::to_string(most) +
-                      " are the most that can be loaded",
+                  "brings the file to " + std::to_string(sum) + " " + what + "; at most " + std::to_string(most) +
+                      " can be loaded",
                   "export the file again");
     }
   }

@@ -12,12 +12,12 @@
 namespace gazetrace {
 namespace {
 
-// The joints of a skin with all their parents, each after its own parent.
+// The joints of a skin and all their parents, each after its own parent.
 struct Skeleton {
   std::vector<AnimatedNode> nodes;
   std::vector<std::ptrdiff_t> parent;  // index into nodes; -1: a root
   std::vector<std::size_t> joint;      // index into nodes
-  std::vector<Affine> inverse_bind;    // one a joint
+  std::vector<Affine> inverse_bind;    // one per joint
 };
 
 std::vector<Affine> joints_at(const Skeleton& skeleton, std::int64_t t_ns) {
@@ -45,7 +45,7 @@ std::vector<Affine> read_inverse_bind(const GltfDocument& document, const GltfSk
                 "export the file again");
   }
   for (std::size_t j = 0; j < matrices.size(); ++j) {
-    const float* c = &m[16 * j];  // column by column; the last row is 0 0 0 1
+    const float* c = &m[16 * j];  // columns first; the last row is 0 0 0 1
     matrices[j] = {{c[0], c[1], c[2]}, {c[4], c[5], c[6]}, {c[8], c[9], c[10]}, {c[12], c[13], c[14]}};
   }
   return matrices;
@@ -75,7 +75,7 @@ Skeleton make_skeleton(const GltfDocument& document, int skin_index, const std::
   return skeleton;
 }
 
-// JOINTS_n of every vertex lie within the skin's joints.
+// Checks that the joints of every vertex are among those of the skin.
 void check_influences(const GltfDocument& document, int node, const Mesh& mesh, std::size_t joints) {
   const int mesh_index = document.nodes[static_cast<std::size_t>(node)].mesh;
   for (const Geometry& geometry : mesh.geometries) {
@@ -147,7 +147,7 @@ NodeDeformation deformation_of_node(const GltfDocument& document, int node, cons
   }
   const bool moves = skeleton && any_moves(*skeleton);
   if (skeleton) {
-    // What is at rest has no animation: the nodes' own places.
+    // At rest there is no animation, only the nodes' own transforms.
     Skeleton still = *skeleton;
     for (AnimatedNode& of_skeleton : still.nodes) {
       of_skeleton.translation_track.reset();

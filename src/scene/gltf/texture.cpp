@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pictures are read, and how often.
+// Chooses the pictures to read, and decodes each of them once.
 #include <utility>
 
 #include "scene/gltf/accessor.hpp"
@@ -85,7 +85,8 @@ std::vector<Texture> TextureTable::load(int threads, const std::function<void()>
     const Picture& picture = pictures_[i];
     ImageRgba image = decode(picture, image_place(document_, picture.image));
     const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
-    std::vector<ImageRgba> images(picture.entries.size() - 1, image);  // most have one entry: nothing is copied
+    std::vector<ImageRgba> images(picture.entries.size() - 1,
+                                  image);  // with one entry, the usual case, nothing is copied
     images.push_back(std::move(image));
     for (std::size_t k = 0; k < picture.entries.size(); ++k) {
       const Entry& entry = entries_[picture.entries[k]];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Typed access to the JSON of a glTF file, with errors that name the place.
+// Typed access to the JSON of a glTF file, with errors that name the place in it.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace gazetrace {
 
 using Json = nlohmann::json;
 
-// Walks the document and knows the place it is at, as "meshes[3].primitives[0].attributes".
+// Walks the document and keeps track of the place, such as "meshes[3].primitives[0].attributes".
 class Walker {
  public:
   Walker(std::string path, const Json& root) : path_(std::move(path)), root_(root) {}
@@ -54,12 +54,12 @@ class Walker {
     return it == object.end() ? nullptr : &*it;
   }
 
-  // The member, an object, or nothing when it is not there.
+  // The member, which must be an object; nullptr where it is missing.
   const Json* object(const Json& parent, const char* key) {
     const Json* value = find(parent, key);
     if (value != nullptr && !value->is_object()) {
       const Step step(*this, key);
-      fail("is no JSON object");
+      fail("is not a JSON object");
     }
     return value;
   }
@@ -72,19 +72,19 @@ class Walker {
     }
     if (!array->is_array()) {
       const Step step(*this, key);
-      fail("is no JSON array");
+      fail("is not a JSON array");
     }
     for (std::size_t i = 0; i < array->size(); ++i) {
       const Step step(*this, key, static_cast<std::int64_t>(i));
       const Json& item = (*array)[i];
       if (!item.is_object()) {
-        fail("is no JSON object");
+        fail("is not a JSON object");
       }
       body(item);
     }
   }
 
-  // A whole number from 0 to `maximum`, if it is there.
+  // A whole number from 0 to `maximum`; empty where it is missing and not required.
   std::optional<std::uint64_t> whole(const Json& object, const char* key, bool required = false,
                                      std::uint64_t maximum = std::numeric_limits<std::int64_t>::max()) {
     const Json* value = find(object, key);
@@ -123,7 +123,7 @@ class Walker {
     }
     if (!array->is_array()) {
       const Step step(*this, key);
-      fail("is no JSON array");
+      fail("is not a JSON array");
     }
     for (std::size_t i = 0; i < array->size(); ++i) {
       const Step step(*this, key, static_cast<std::int64_t>(i));
@@ -149,7 +149,7 @@ class Walker {
     const Json* value = find(object, key);
     if ((value == nullptr && required) || (value != nullptr && !value->is_number())) {
       const Step step(*this, key);
-      fail(value == nullptr ? "is missing" : "is no number");
+      fail(value == nullptr ? "is missing" : "is not a number");
     }
   }
   void numbers(const Json& object, const char* key, std::size_t count) {
@@ -160,14 +160,14 @@ class Walker {
     if (!array->is_array() || array->size() != count ||
         !std::all_of(array->begin(), array->end(), [](const Json& value) { return value.is_number(); })) {
       const Step step(*this, key);
-      fail("is no array of " + std::to_string(count) + " numbers");
+      fail("is not an array of " + std::to_string(count) + " numbers");
     }
   }
   void text(const Json& object, const char* key, bool required = false) {
     const Json* value = find(object, key);
     if ((value == nullptr && required) || (value != nullptr && !value->is_string())) {
       const Step step(*this, key);
-      fail(value == nullptr ? "is missing" : "is no text");
+      fail(value == nullptr ? "is missing" : "is not a text");
     }
   }
 

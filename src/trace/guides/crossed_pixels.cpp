@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kEdgeDepth = 0.02F;
 
-// Between pixels `a` and `b` and so many pairs to the right of them: whether the two see different things.
+// For the pixels `a` and `b` and the pairs to the right of them, `count` in all: whether the two see different things.
 GAZETRACE_CLONES void find_parted(const Guides& guides, const RoughNormal* smooth, std::size_t a, std::size_t b,
                                   std::size_t count, std::uint8_t* parted) {
   const std::uint32_t* const object = guides.object.pixels.data();
@@ -27,14 +27,14 @@ GAZETRACE_CLONES void find_parted(const Guides& guides, const RoughNormal* smoot
   }
 }
 
-// What is linear over a plane: depth (orthographic) or its inverse (perspective).
+// The quantity that is linear over a plane: depth (orthographic) or its inverse (perspective).
 GAZETRACE_CLONES void find_linear(const float* depth_m, bool perspective, std::size_t count, float* linear) {
   for (std::size_t k = 0; k < count; ++k) {
     linear[k] = perspective ? 1.0F / depth_m[k] : depth_m[k];
   }
 }
 
-// Marks in `crossed` where the middle one of three leaves the line through the others.
+// Marks in `crossed` the pixels whose value is off the line through its two neighbours.
 GAZETRACE_CLONES void find_bent(const float* before, const float* at, const float* after, std::size_t count,
                                 std::uint8_t* crossed) {
   for (std::size_t k = 0; k < count; ++k) {
@@ -89,7 +89,7 @@ const std::vector<std::uint8_t>& CrossedPixels::next_row() {
   return crossed_;
 }
 
-// Where row `y` and the next one see different things.
+// Marks in `parted` where row `y` and the next one see different things.
 void CrossedPixels::compare_with_next(std::size_t y, std::vector<std::uint8_t>& parted) const {
   find_parted(guides_, smooth_, y * width_, (y + 1) * width_, width_, parted.data());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pixels that an edge may cross, as guides of one ray a pixel tell: those that differ from one of their four
-// neighbours, or leave the plane of two of them (Guides::edge_rays).
+// Finds the pixels that an edge may cross, from guides with one ray per pixel: those that differ from one of their four
+// neighbours, or are off the plane of two opposite ones (Guides::edge_rays).
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@ namespace gazetrace {
 
 inline constexpr float kEdgeNormal = 0.906F;  // cosine of 25 degrees
 
-// Row after row from `first_row` on, to the last one at most. Guides and normals, of the same size, must outlive it.
+// Goes through the rows from `first_row` on. Guides and normals have the same size and must outlive it.
 class CrossedPixels {
  public:
   CrossedPixels(const Guides& guides, const Image<RoughNormal>& smooth, int first_row);
 
-  // Of each pixel of the row: not 0 where an edge may cross it. Valid until the next call.
+  // For each pixel of the next row, not 0 where an edge may cross it. Valid until the next call.
   const std::vector<std::uint8_t>& next_row();
 
  private:
@@ -30,11 +30,11 @@ class CrossedPixels {
   const Guides& guides_;
   const RoughNormal* smooth_;
   std::size_t width_, height_;
-  std::size_t row_;                          // the next one
-  std::vector<std::uint8_t> above_, below_;  // where it sees other things than the row above, the row below
-  std::vector<std::uint8_t> beside_;         // and than the pixel to the right; the last one stays 0
+  std::size_t row_;                          // the next row
+  std::vector<std::uint8_t> above_, below_;  // where the row sees something else than the rows above and below it
+  std::vector<std::uint8_t> beside_;         // where a pixel sees something else than the next one; the last stays 0
   std::vector<std::uint8_t> crossed_;
-  std::array<std::vector<float>, 3> linear_;  // of the rows about it, each at its number modulo 3: find_linear
+  std::array<std::vector<float>, 3> linear_;  // results of find_linear for three rows, each at its number modulo 3
 };
 
 }  // namespace gazetrace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a hit says about itself before any light is gathered: what it shines, what it would reflect, who it is. Shared
-// by the path tracer and the pass that traces nothing but first hits.
+// What is known of a hit before any light is gathered: its emission, its albedo, its kind and its instance. Used by the
+// path tracer and by the pass that traces first hits only.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace gazetrace {
 inline constexpr float kGlossyRoughness = 0.35F;
 inline constexpr float kGlossyMetalness = 0.5F;
 
-// Radiance of an emissive material towards the ray, the side that shines taken for granted.
+// The radiance of an emissive material towards the ray, which must be on a side that emits.
 template <KernelFeatures kFeatures, bool kLayers>
 Vec3f emitted_radiance(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
                        const ShadingMaterial& material) {
@@ -37,7 +37,7 @@ Vec3f emitted_radiance(const RenderScene& scene, const ChunkHits& chunk, std::si
   return emission;
 }
 
-// Guides::albedo. After finish_normals.
+// Guides::albedo. Call it after finish_normals.
 inline Vec3f albedo_to_divide_by(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, DiffuseModel model) {
   const Vec3f base = chunk.base_color.get(i);
   if (scene.materials[chunk.material[i]].unlit) {
@@ -65,7 +65,7 @@ inline SurfaceKind kind_of_hit(const RenderScene& scene, const ChunkHits& chunk,
   return glossy ? SurfaceKind::glossy : SurfaceKind::diffuse;
 }
 
-// Index into Scene::instances of hit k of the packed batch, which is lane i.
+// The index into Scene::instances of hit k of the packed batch, which is in lane i.
 template <KernelFeatures kFeatures>
 std::uint32_t scene_instance_of(const RenderScene& scene, const HitBatch& hits, std::size_t k, const ChunkHits& chunk,
                                 std::size_t i) {

@@ -16,21 +16,21 @@ namespace gazetrace {
 namespace {
 
 constexpr int kRowsPerTask = 32;
-constexpr float kSamePlanePixels = 0.5F;  // off a surface's plane, in what a pixel covers there
+constexpr float kSamePlanePixels = 0.5F;  // how far off a surface's plane, relative to the size of a pixel there
 
 struct EdgeFrame {
   const GuideFrame& guide;
   const Image<RoughNormal>& smooth;
   const Guides& guides;
-  float pixel_m;              // what a pixel covers at 1 m (perspective), or anywhere
-  std::vector<Vec2f> inside;  // where in a pixel each of its rays goes
+  float pixel_m;              // the size of a pixel at 1 m (perspective), or at any depth
+  std::vector<Vec2f> inside;  // the position of each ray in its pixel
 };
 
-// What a ray meets, as far as it is known before its material is read.
+// What is known of a ray's hit before its material is read.
 struct EdgeHit {
   std::uint32_t object = 0, material = 0;  // as in Guides: 0 for a miss
   RoughNormal smooth;
-  Vec3f plane_normal, place_m;  // place relative to the eye
+  Vec3f plane_normal, place_m;  // the position is relative to the camera
   float tolerance_m = 0;
 };
 
@@ -57,7 +57,8 @@ struct PixelStep {
 
 constexpr std::uint32_t kNobody = 0xffffffffU;
 
-// The pixel, the ray's own or one beside it, whose centre sees the surface that is hit; the nearest to the ray first.
+// The pixel, the ray's own or one next to it, whose centre sees the surface that the ray hits; pixels nearer to the ray
+// are tried first.
 std::uint32_t seen_by(const EdgeFrame& frame, std::uint32_t pixel, const Vec2f& inside, const EdgeHit& hit) {
   const int w = frame.guides.kind.width_px;
   const int h = frame.guides.kind.height_px;
@@ -86,13 +87,13 @@ std::uint32_t seen_by(const EdgeFrame& frame, std::uint32_t pixel, const Vec2f& 
   return kNobody;
 }
 
-// Of some rows of the frame.
+// What was found in some rows of the frame.
 struct EdgeRows {
   std::vector<EdgeRay> rays;
   std::vector<EdgeSurface> surfaces;
 };
 
-// A batch of rays: rays[first] and those after it are the ones that were added to the workspace.
+// A batch of rays: rays[first] and all after it were added to the workspace.
 struct EdgeBatch {
   std::size_t first;
   EdgeRows& rows;
@@ -125,7 +126,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
       const std::size_t k = chunk.path[i];
       const ShadingMaterial& material = guide.scene.materials[chunk.material[i]];
       if (material.emissive || material.unlit) {
-        rays[k].seen_by = kNobody;  // what shines may differ by far from pixel to pixel
+        rays[k].seen_by = kNobody;  // emission may differ strongly from pixel to pixel
         continue;
       }
       EdgeHit hit;
@@ -138,7 +139,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
       rays[k].seen_by = seen_by(frame, rays[k].pixel, frame.inside[k % per_pixel], hit);
     }
   }
-  // What no pixel near by sees is shaded.
+  // Hits that no pixel nearby sees are shaded.
   std::size_t hit_count = 0;
   const auto shade = [&] {
     if (hit_count > 0) {
@@ -164,7 +165,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
 
 using TraceBatch = void (*)(const EdgeFrame&, const EdgeBatch&, GuideWorkspace&);
 
-// Keeps what a finished batch found: of pixels whose rays do not all see what the centre sees.
+// Keeps the rays of a finished batch, except those of pixels all of whose rays see what the centre sees.
 void keep(const EdgeFrame& frame, const EdgeBatch& batch, const GuideWorkspace& work) {
   EdgeRows& rows = batch.rows;
   const auto per_pixel = static_cast<std::size_t>(frame.guide.settings.edge_rays);
@@ -222,7 +223,8 @@ EdgeRows trace_rows(const EdgeFrame& frame, TraceBatch trace, int y0, int y1, Gu
   return out;
 }
 
-// The same in every pixel: a net without a scramble, so that edges are stepped evenly.
+// The positions of the rays, the same in every pixel: a (0, m, 2)-net of one fixed scramble, so that coverage along an
+// edge changes in even steps.
 std::vector<Vec2f> points_in_pixel(int rays) {
   std::vector<Vec2f> points;
   for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(rays); ++r) {

@@ -7,7 +7,8 @@
 
 namespace gazetrace {
 
-// Fills edge_rays and edge_surfaces of guides whose images are complete. `smooth`: FirstHit::smooth of each pixel.
+// Fills in edge_rays and edge_surfaces of guides whose images are complete. `smooth` has FirstHit::smooth of each
+// pixel.
 void trace_edges(const GuideFrame& frame, const Image<RoughNormal>& smooth, Guides& guides, int threads);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of guides' rays: what is between adding rays and knowing what each of them sees.
+// Batches of rays for guides: adding rays, tracing them, and shading their first hits.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace gazetrace {
 inline constexpr std::uint64_t kGuideKey =
     0x67756964657321ULL;  // keeps alpha hashes apart from those of traced samples
 
-// A unit vector to half a degree, or zero.
+// A unit vector with an error of up to half a degree, or zero.
 struct RoughNormal {
   std::int8_t x = 0, y = 0, z = 0;
 };
@@ -28,7 +28,7 @@ inline RoughNormal rough_normal(const Vec3f& n) {
   const auto code = [](float c) { return static_cast<std::int8_t>(static_cast<int>(c * 127.0F + 127.5F) - 127); };
   return {code(n.x), code(n.y), code(n.z)};
 }
-// The cosine between two.
+// The cosine of the angle between two of them.
 inline float facing(const RoughNormal& a, const RoughNormal& b) {
   return static_cast<float>(a.x * b.x + a.y * b.y + a.z * b.z) * (1.0F / (127.0F * 127.0F));
 }
@@ -47,8 +47,8 @@ struct GuideWorkspace {
   RayBatch rays;
   HitBatch hits;
   ChunkHits chunk;
-  std::size_t count = 0;            // of rays that are ready
-  BatchArray<std::uint32_t> place;  // of each of them in `found`
+  std::size_t count = 0;            // number of rays that were added
+  BatchArray<std::uint32_t> place;  // index of each of them into `found`
   BatchArray<float> cone_spread;
   std::vector<FirstHit> found;
 };
@@ -66,7 +66,7 @@ inline Vec2f from_center(const GuideFrame& frame, int x, int y, const Vec2f& ins
           (static_cast<float>(y) - 0.5F * static_cast<float>(frame.height_px)) + inside.y};
 }
 
-// A ray through continuous pixel coordinates from the frame's centre, for pixel (x, y).
+// Adds a ray for pixel (x, y) through continuous pixel coordinates from the frame's centre.
 inline void add_ray(const GuideFrame& frame, const Vec2f& through, int x, int y, std::uint32_t sample,
                     std::size_t place, GuideWorkspace& work) {
   const CameraRays::Ray ray = frame.camera.ray(through.x, through.y);
@@ -93,7 +93,7 @@ inline FirstHit first_miss(const GuideFrame& frame, const GuideWorkspace& work, 
   return miss;
 }
 
-// Triangles, places and unbumped normals of the `count` hits that were located in work.chunk.
+// Finds the triangles, positions and unbumped normals of the `count` hits that were located in work.chunk.
 template <KernelFeatures kFeatures>
 void place_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace& work) {
   ChunkHits& chunk = work.chunk;
@@ -111,7 +111,7 @@ void place_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace
   place_hits<kFeatures>(chunk, count);
 }
 
-// After place_first_hits, before normals are finished.
+// Call it after place_first_hits and before normals are finished.
 inline RoughNormal smooth_normal(const ChunkHits& chunk, std::size_t i) {
   return rough_normal(chunk.shading.get(i) * chunk.side[i]);
 }
@@ -135,7 +135,7 @@ FirstHit first_hit(const GuideFrame& frame, const HitBatch& hits, const ChunkHit
   return hit;
 }
 
-// What the hits of work.chunk say, into work.found at their rays' places. After place_first_hits.
+// Shades the hits of work.chunk and stores them in work.found at their rays' places. Call it after place_first_hits.
 template <KernelFeatures kFeatures, bool kLayers>
 void shade_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace& work) {
   ChunkHits& chunk = work.chunk;
@@ -155,7 +155,7 @@ void shade_first_hits(const GuideFrame& frame, std::size_t count, GuideWorkspace
   }
 }
 
-// choose.operator()<features, layers>() for the smallest features that cover the scene.
+// Calls choose.operator()<features, layers>() with the smallest set of features that covers the scene.
 template <class Function, class Choose>
 Function guide_variant(const RenderScene& scene, DiffuseModel diffuse, const Choose& choose) {
   constexpr KernelFeatures kTextured{.textures = true};

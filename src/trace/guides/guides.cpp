@@ -21,7 +21,7 @@ constexpr int kTilePx = 32;
 static_assert(kTilePx * kTilePx == kBatchSize);
 constexpr int kMostRays = 64;
 
-// Traces the rays that were added, into work.found at their places.
+// Traces the rays that were added, and stores what they see in work.found at their places.
 template <KernelFeatures kFeatures, bool kLayers>
 void trace_rays(const GuideFrame& frame, GuideWorkspace& work) {
   const std::size_t count = std::exchange(work.count, 0);
@@ -44,7 +44,7 @@ void trace_rays(const GuideFrame& frame, GuideWorkspace& work) {
 
 using TraceRays = void (*)(const GuideFrame&, GuideWorkspace&);
 
-// Ray `sample` of every pixel of the tile whose corner is (x0, y0).
+// Traces ray `sample` of every pixel of the tile whose corner is (x0, y0).
 void trace_tile(const GuideFrame& frame, TraceRays trace, int x0, int y0, std::uint32_t sample, GuideWorkspace& work) {
   const auto spp = static_cast<std::size_t>(frame.settings.spp);
   for (std::uint32_t i = 0; i < kBatchSize; ++i) {
@@ -88,7 +88,7 @@ Identity most_frequent(const FirstHit* hits, std::size_t spp) {
   return best;
 }
 
-// Of the one ray that goes through the pixel's centre.
+// Stores the only ray of a pixel, which goes through the centre.
 void store_only(const FirstHit& hit, std::size_t pixel, Guides& out, RoughNormal& smooth) {
   out.albedo.pixels[pixel] = hit.albedo;
   out.normal.pixels[pixel] = hit.normal;
@@ -129,7 +129,7 @@ void store_mean(const FirstHit* hits, std::size_t spp, std::size_t pixel, Guides
   smooth = hits[0].smooth;
 }
 
-// The smallest variant that covers the scene.
+// The smallest variant that covers the features of the scene.
 TraceRays choose_variant(const RenderScene& scene, DiffuseModel diffuse) {
   return guide_variant<TraceRays>(
       scene, diffuse, []<KernelFeatures kFeatures, bool kLayers>() { return trace_rays<kFeatures, kLayers>; });
@@ -169,7 +169,7 @@ Guides trace_guides(const RenderScene& scene, const LightSampler& lights, const 
   const auto spp = static_cast<std::size_t>(settings.spp);
   const int tiles_x = (width_px + kTilePx - 1) / kTilePx;
   const int tiles_y = (height_px + kTilePx - 1) / kTilePx;
-  // A row of tiles is one task: its workspace is made once.
+  // A row of tiles is one task, so that its workspace is made once.
   parallel_for(static_cast<std::size_t>(tiles_y), threads, [&](std::size_t tile_y) {
     const FlushDenormals flush;
     const auto work = std::make_unique<GuideWorkspace>();

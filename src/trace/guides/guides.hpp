@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First hits of a whole frame, tile by tile: the path tracer's first stage without what follows.
+// Traces the first hits of a whole frame, tile by tile: the first stage of the path tracer alone.
 #pragma once
 
 #include "gazetrace/guides.hpp"

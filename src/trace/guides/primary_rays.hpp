@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera rays in batches, for passes that look at first hits alone.
+// Batches of camera rays for passes that need first hits only.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace gazetrace {
 
-// Place of ray `i` in a square tile whose side is a power of two, along a Z-curve: a packet of sixteen is a square.
+// The position of ray `i` in a square tile whose side is a power of two. Rays follow a Z-curve, so that a packet of
+// sixteen rays is a square of pixels.
 inline PixelIndex place_on_curve(std::uint32_t i) {
   const auto even_bits = [](std::uint32_t v) {
     v &= 0x55555555U;
@@ -22,7 +23,7 @@ inline PixelIndex place_on_curve(std::uint32_t i) {
   return {even_bits(i), even_bits(i >> 1U)};
 }
 
-// As the k-th of the batch, in the middle of the shutter's time.
+// Stores the ray as the k-th of the batch, at the middle of the shutter's time.
 inline void put_camera_ray(const CameraRays::Ray& ray, std::uint32_t alpha_key, std::size_t k, RayBatch& rays) {
   rays.ox[k] = ray.origin.x;
   rays.oy[k] = ray.origin.y;

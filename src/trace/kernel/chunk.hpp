@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits of a few dozen rays as a structure of arrays, so that the compiler computes sixteen at a time. Loops over lanes
-// are written for one lane and without branches; lanes past the count hold stale but initialised values.
+// The hits of a few dozen rays as a structure of arrays, so that the compiler vectorises over sixteen lanes. Loops over
+// lanes are written for one lane and without branches; lanes past the count hold old, but initialised values.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ struct ChunkVec2 {
   }
 };
 
-// body(i) for i in [0, count) and on to the next multiple of the lanes.
+// Calls body(i) for i from 0 to count, rounded up to the next multiple of the lanes.
 template <class Body>
 [[gnu::always_inline]] inline void for_lanes(std::size_t count, const Body& body) {
   for (std::size_t first = 0; first < count; first += kLanes) {
@@ -51,26 +51,26 @@ template <class Body>
 }
 
 struct ChunkHits {
-  // The ray, and where its hit's data are.
+  // The ray, and the indices of its hit's data.
   ChunkVec3 direction;
   ChunkArray<float> u, v, t, cone_width, cone_spread;
   ChunkArray<std::uint32_t> path;      // index into the packed batch
   ChunkArray<std::uint32_t> triangle;  // into RenderScene::triangles
   ChunkArray<std::uint32_t> instance;  // into RenderScene::instances, kNoId: none
 
-  // The triangle: world space once gather_triangles is through.
+  // The triangle, in world space after gather_triangles.
   std::array<ChunkVec3, 3> corner;
-  std::array<ChunkVec3, 3> corner_normal;   // unit in their own space, any length in the world
+  std::array<ChunkVec3, 3> corner_normal;   // of unit length in the mesh's own space, of any length in the world
   std::array<ChunkVec3, 3> corner_tangent;  // any length
   std::array<ChunkVec2, 3> corner_uv;
   ChunkArray<float> lod, bitangent_sign, winding, instance_reach;
   ChunkArray<std::uint32_t> material, extra;
 
   // The point.
-  ChunkVec3 position, geometric, shading;  // unit, on the ray's side
-  ChunkVec3 origin;                        // of rays that leave: position moved off the surface
+  ChunkVec3 position, geometric, shading;  // the normals are of unit length, on the ray's side
+  ChunkVec3 origin;                        // of rays that leave: the position, moved off the surface
   ChunkVec3 tangent;
-  ChunkVec3 smooth;  // interpolated normal, neither bumped nor turned to the ray; with layers only
+  ChunkVec3 smooth;  // interpolated normal, neither bumped nor turned to the ray; only with layers
   ChunkVec2 uv;
   ChunkArray<float> offset, side, good;
   ChunkVec3 base_color;
@@ -78,16 +78,16 @@ struct ChunkHits {
   ChunkVec3 texel_normal;  // -1..1, scaled
   ChunkArray<float> has_normal;
 
-  // The scattering event; directions in the local frame about `shading` until they leave it.
+  // The scattering event; directions are in the local frame about `shading` until it is finished.
   ChunkVec3 view;
-  ChunkVec3 light;                  // direction of the light sample, world, then local
-  ChunkVec3 lit_point, lit_normal;  // what LightSampler was told; only where it depends_on_place
+  ChunkVec3 light;                  // direction of the light sample, first in the world, then in the local frame
+  ChunkVec3 lit_point, lit_normal;  // arguments of LightSampler; only where it depends_on_place
   ChunkArray<float> table_fraction, e_average;
   ChunkArray<std::int32_t> table_row;
   std::array<ChunkArray<float>, 4> view_terms, light_terms, next_terms;  // AlbedoTerms e, b, lambert, burley
   ChunkVec3 half;
   ChunkVec3 light_f_cos;
-  ChunkArray<float> light_pdf;  // of the BSDF, towards the light
+  ChunkArray<float> light_pdf;  // density of the BSDF towards the light
   ChunkVec2 random;
   ChunkArray<float> random_lobe;
   ChunkVec3 next, next_weight;  // the BSDF sample

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light from surfaces: found by a ray, and the texture of a light sample.
+// Light from surfaces: emission that a ray finds, and the textures of light samples.
 #pragma once
 
 #include <vector>
@@ -23,7 +23,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
     float pdf_light = 0;
     const std::uint32_t emitter = emitter_of(i);
     if (emitter != kNoEmitter) {
-      // The geometric normal is turned towards the ray; the sampler wants the sign of the front face.
+      // The geometric normal is turned towards the ray; the sampler needs the sign relative to the front face.
       const float cosine = -dot(chunk.geometric.get(i), chunk.direction.get(i)) * chunk.side[i];
       const auto batch = static_cast<std::size_t>(vertex & 1);
       const PathBatch& paths = work_.paths[batch];
@@ -54,8 +54,8 @@ inline std::uint32_t PathKernel<kFeatures, kDiffuse>::emitter_of(std::size_t i) 
   return frame_.lights->emitter_of(scene_instance, geometry.scene_geometry, work_.hits.primitive[k]);
 }
 
-// A light sample on a textured emitter brings its place instead of the texture's value. Emitters that are cut out or
-// blended shine with what is there of them: a ray that looks for them passes the rest.
+// A light sample on a textured emitter has its position instead of the texture's value, which is read here. Emission of
+// alpha-masked or blended emitters is weighted by their coverage, since rays that look for them pass the rest.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline Vec3f PathKernel<kFeatures, kDiffuse>::light_radiance(const LightSample& light) const {
   if constexpr (kFeatures.emission) {
@@ -95,7 +95,7 @@ inline const Geometry& PathKernel<kFeatures, kDiffuse>::geometry_of(const Emissi
       .geometries[static_cast<std::size_t>(emitter.geometry)];
 }
 
-// Where a point of an emitter lies in a texture; the origin of the picture where the triangle has no coordinates.
+// The texture coordinates of a point on an emitter; (0, 0) where the triangle has none.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline Vec2f PathKernel<kFeatures, kDiffuse>::place_on_emitter(const EmissiveTriangle& emitter,
                                                                const ShadingTexture& texture, const Vec2f& at) const {
@@ -112,7 +112,7 @@ inline Vec2f PathKernel<kFeatures, kDiffuse>::place_on_emitter(const EmissiveTri
   return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
 }
 
-// The share of rays that RenderScene::transparent stops here.
+// The share of rays that RenderScene::transparent stops at this point.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline float PathKernel<kFeatures, kDiffuse>::coverage_of_emitter(const EmissiveTriangle& emitter,
                                                                   const ShadingMaterial& material,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first stage: a camera ray for every sample of the batch.
+// The first stage, which makes a camera ray for every sample of the batch.
 #pragma once
 
 #include "trace/kernel/path_kernel.hpp"

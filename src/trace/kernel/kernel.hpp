@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel's interface: one batch of paths, from camera rays to radiance per sample.
+// The kernel's interface: traces one batch of paths, from camera rays to the radiance of each sample.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace gazetrace {
 
-// What a kernel can handle beyond plain triangles with constant materials under any light.
+// What a kernel variant can handle beyond plain triangles with constant materials under any light.
 struct KernelFeatures {
-  bool textures = false;   // colours, roughness, normals, from textures
+  bool textures = false;   // textures of colour, roughness and normals
   bool instances = false;  // hits inside shared meshes
-  bool emission = false;   // surfaces that shine: emissive triangles and unlit materials
+  bool emission = false;   // surfaces that emit: emissive triangles and unlit materials
   bool extras = false;     // vertex colours, textures with coordinates of their own
-  bool layers = false;     // materials with extensions: lobes beyond metallic-roughness, bodies that light passes
+  bool layers = false;     // materials with extensions: lobes beyond metallic-roughness, transmitting bodies
 };
 
 struct FrameContext {
@@ -28,9 +28,9 @@ struct FrameContext {
   const LightSampler* lights = nullptr;
   const CameraRays* camera = nullptr;
   TraceSettings settings;
-  bool last_ray_finds_light = false;    // the ray after the last scattering event can still add something
-  bool last_ray_needs_surface = false;  // ... on a surface, so that visibility of the sky is not enough
-  RayRecorder* recorder = nullptr;      // measurements only
+  bool last_ray_finds_light = false;    // the ray after the last scattering event can still find light
+  bool last_ray_needs_surface = false;  // it can find light on a surface, so visibility of the sky is not enough
+  RayRecorder* recorder = nullptr;      // for measurements only
 };
 
 FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,
@@ -50,9 +50,9 @@ struct NamedKernel {
 };
 
 KernelFeatures kernel_features(const SceneFeatures& features, const RenderScene& scene);
-// The smallest variant that covers the features; `all`: the last one, which covers everything.
+// The smallest variant that covers the features, or with `all` the last one, which covers everything.
 const NamedKernel& choose_kernel(const KernelFeatures& features, bool all);
-// Every variant, smallest first.
+// All variants, smallest first.
 struct KernelList {
   const NamedKernel* begin_;
   const NamedKernel* end_;

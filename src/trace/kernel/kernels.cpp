@@ -25,7 +25,7 @@ constexpr KernelFeatures kInstanced{.textures = true, .instances = true};
 constexpr KernelFeatures kUnlayered{.textures = true, .instances = true, .emission = true, .extras = true};
 constexpr KernelFeatures kAll{.textures = true, .instances = true, .emission = true, .extras = true, .layers = true};
 
-// "unlayered": everything but materials with extensions.
+// "unlayered" covers everything but materials with extensions.
 constexpr std::array kKernels{named<kPlain>("plain"), named<kTextured>("textured"),
                               named<kInstanced>("textured, instanced"), named<kUnlayered>("unlayered"),
                               named<kAll>("all")};
@@ -47,7 +47,7 @@ FrameContext make_frame_context(const Scene& scene, const RenderScene& render_sc
   context.settings = settings;
   const SceneFeatures& features = render_scene.features;
   const bool light_found_by_chance = settings.light_sampling != LightSampling::light_only;
-  // Lamps that move or deform are found by chance alone.
+  // Emitters that move or deform are found by rays only, not by light samples.
   const bool lamps_found_by_chance = light_found_by_chance || !scene.motions.empty() || !scene.deformations.empty();
   context.last_ray_needs_surface = features.unlit || (lamps_found_by_chance && features.emissive_triangles);
   context.last_ray_finds_light =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a hit on a material with extensions to the values and the frame its BSDF is asked with.
+// For hits on materials with extensions: computes the material's values and the frame that its BSDF needs.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ Vec4f read_layer(const RenderScene& scene, const ChunkHits& chunk, std::size_t i
   return read_texture(*texture.texture, at.x, at.y, level_at<kFeatures>(scene, chunk, i, texture));
 }
 
-// The coat's normal on the viewer's side: the interpolated one, bumped by the coat's own map if it has one.
+// The coat's normal on the viewer's side: the interpolated normal, bumped by the coat's own normal map if it has one.
 template <KernelFeatures kFeatures>
 Vec3f coat_normal(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const LayeredMaterial& material) {
   Vec3f normal = chunk.smooth.get(i);
@@ -43,7 +43,7 @@ Vec3f coat_normal(const RenderScene& scene, const ChunkHits& chunk, std::size_t 
   return bend_normal(normal * chunk.side[i], chunk.geometric.get(i), -chunk.direction.get(i));
 }
 
-// channel: whose index of refraction counts.
+// `channel` is the one whose index of refraction is used.
 template <KernelFeatures kFeatures>
 LayeredHit read_layered_hit(const RenderScene& scene, const ChunkHits& chunk, std::size_t i,
                             const LayeredMaterial& material, std::size_t channel) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits on materials with extensions: one by one, beside the lanes of all others. Bodies that light passes through:
-//   - the path knows the body it is in from the last surface it crossed, and loses light on the way (lobes/volume.hpp);
-//     a path that begins inside one learns it at the surface it leaves through. A body inside another one ends it.
-//   - an index of refraction that depends on colour: the path goes on with one channel, chosen once, at three times the
-//     weight. A path that has one channel left already keeps it.
+// Hits on materials with extensions are computed one by one, apart from the lanes of all others. For bodies that
+// transmit light:
+//   - A path knows the body that it is in from the last surface that it crossed, and loses light on the way
+//     (lobes/volume.hpp). A path that begins inside a body finds it at the surface through which it leaves. A body
+//     inside another one ends the outer one.
+//   - Where the index of refraction depends on colour, the path continues with one channel, chosen once, at three times
+//     the weight. A path that already has only one channel keeps it.
 #pragma once
 
 #include <array>
@@ -16,7 +18,7 @@
 
 namespace gazetrace {
 
-// Throughput over the way to each hit of the chunk.
+// Applies absorption on the way to each hit of the chunk to the throughput.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::absorb(int vertex, std::size_t count) {
   const ChunkHits& chunk = work_.chunk;
@@ -38,7 +40,7 @@ inline void PathKernel<kFeatures, kDiffuse>::absorb(int vertex, std::size_t coun
   }
 }
 
-// The channel whose index of refraction a path uses; leaves the throughput of that one alone.
+// The channel whose index of refraction a path uses; the throughput of the other channels is set to 0.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline std::size_t PathKernel<kFeatures, kDiffuse>::choose_channel(int vertex, std::size_t k) {
   PathBatch& paths = work_.paths[static_cast<std::size_t>(vertex & 1)];
@@ -62,7 +64,7 @@ inline std::size_t PathKernel<kFeatures, kDiffuse>::choose_channel(int vertex, s
   return chosen;
 }
 
-// The body a ray is in that leaves hit i in a direction on the surface's other side, or not.
+// The body that a ray is in after it leaves hit i, on the other side of the surface or not.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline std::uint32_t PathKernel<kFeatures, kDiffuse>::body_after(std::size_t i, const PathBatch& paths,
                                                                  bool through) const {
@@ -76,7 +78,7 @@ inline std::uint32_t PathKernel<kFeatures, kDiffuse>::body_after(std::size_t i, 
   return inside ? own : (through ? kNoId : before);
 }
 
-// What evaluate_lanes does, for the lanes of `active` whose material has layers.
+// Does what evaluate_lanes does, for those lanes of `active` whose material has layers.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::scatter_layers(int vertex, const std::uint16_t* active,
                                                             std::size_t active_count, const LightSample* lights,
@@ -93,7 +95,7 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_layers(int vertex, const st
     const LayeredHit hit = read_layered_hit<kFeatures>(scene, chunk, i, *material, channel);
     const Vec3f geometric = chunk.geometric.get(i);
     const LayeredBsdf<kDiffuse> bsdf(hit.surface, hit.frame.to_local(-chunk.direction.get(i)));
-    // The shading normal and the surface itself must agree on which side a direction is.
+    // The shading normal and the geometric normal must agree on the side of a direction.
     const auto agree = [&](const Vec3f& local, const Vec3f& world) { return local.z * dot(world, geometric) > 0; };
     if (lights != nullptr) {
       const Vec3f local = hit.frame.to_local(lights[i].direction);

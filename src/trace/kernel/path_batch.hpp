@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// State of the paths of a batch. Samples keep their slot; rays and paths are packed anew at every bounce.
+// The state of the paths of a batch. Samples keep their slots; rays and paths are compacted at every bounce.
 #pragma once
 
 #include <array>
@@ -15,27 +15,27 @@ namespace gazetrace {
 
 struct SampleBatch {
   BatchArray<std::uint32_t> site;    // index into SamplingMap::sites
-  BatchArray<std::uint32_t> sample;  // within the site
+  BatchArray<std::uint32_t> sample;  // number within the site
   BatchArray<SampleKey> key;
-  BatchArray<float> x, y;  // continuous pixel coordinates from the frame's centre, filter included
+  BatchArray<float> x, y;  // continuous pixel coordinates from the frame's centre, with the filter's offset
   BatchArray<std::uint16_t> pixel_x, pixel_y;
 };
 
 struct RadianceBatch {
   BatchArray<float> r, g, b;
-  BatchArray<std::uint8_t> rejected;  // a ray of this sample was refused
+  BatchArray<std::uint8_t> rejected;  // a ray of this sample was rejected
 };
 
-// First hits, for the guides.
+// Data of first hits, for guides.
 struct GuideBatch {
   BatchArray<float> albedo_r, albedo_g, albedo_b, normal_x, normal_y, normal_z, depth;
   BatchArray<std::uint8_t> hit;
 };
 
-// First hits, for sums per surface.
+// Data of first hits, for the sums per surface.
 struct SurfaceBatch {
   BatchArray<float> albedo_r, albedo_g, albedo_b, normal_x, normal_y, normal_z, place_x, place_y, place_z;
-  BatchArray<float> shone_r, shone_g, shone_b;  // what the sample sees directly
+  BatchArray<float> shone_r, shone_g, shone_b;  // radiance that the sample sees directly
   BatchArray<SurfaceKind> kind;
 };
 
@@ -49,23 +49,23 @@ struct BatchVec3 {
   }
 };
 
-// Packed like the rays that belong to it.
+// Packed like the rays that belong to the paths.
 struct PathBatch {
   BatchArray<std::uint32_t> slot;
   BatchArray<float> r, g, b;  // throughput
-  BatchArray<float> pdf;      // of the ray's direction, over solid angle
+  BatchArray<float> pdf;      // density of the ray's direction, over solid angle
   BatchArray<float> cone_width, cone_spread;
-  BatchVec3 lit_point, lit_normal;  // that lights were chosen with before it left; LightSampler::depends_on_place only
-  BatchArray<std::uint32_t> body;   // that the ray is in: index into LayeredMaterials::materials, kNoId: none
+  BatchVec3 lit_point, lit_normal;  // arguments of the last light choice; only where LightSampler::depends_on_place
+  BatchArray<std::uint32_t> body;   // the body that the ray is in: index into LayeredMaterials::materials, or kNoId
 };
 
 struct ShadowBatch {
   RayBatch rays;
   BatchArray<std::uint32_t> slot;
-  BatchArray<float> r, g, b;  // what arrives if nothing is in the way
+  BatchArray<float> r, g, b;  // the contribution if nothing is in the way
 };
 
-// One a thread, about 0.5 MiB.
+// One per thread, of about 0.5 MiB.
 struct Workspace {
   SampleBatch samples;
   RadianceBatch radiance;

@@ -19,7 +19,7 @@
 
 namespace gazetrace {
 
-// From the ratio of the densities: never squares a density, so nothing overflows before the result is 0 or 1.
+// Computed from the ratio of the densities. No density is squared, so nothing overflows before the result is 0 or 1.
 inline float power_heuristic(float chosen, float other) {
   const float ratio = other / chosen;
   return 1.0F / (1.0F + ratio * ratio);
@@ -33,7 +33,7 @@ class PathKernel {
   }
 
  private:
-  // The ideal Lambertian model knows no layers.
+  // The ideal Lambertian model has no layers.
   static constexpr bool kLayers = kFeatures.layers && kDiffuse != DiffuseModel::matte;
 
   PathKernel(const FrameContext& frame, Workspace& work, KernelCounts& counts)
@@ -51,7 +51,7 @@ class PathKernel {
         see_sky(vertex, alive);
         return;
       }
-      // Which of two surfaces a ray on their common edge hits may depend on the rays beside it in a packet.
+      // Which of two surfaces a ray hits on their common edge may depend on the other rays in its packet.
       const bool alone = frame_.settings.samples.has_value();
       const RayShape shape = vertex == 0 && !alone ? RayShape::coherent_packet : RayShape::single;
       record(rays, alive, shape, false);
@@ -83,19 +83,19 @@ class PathKernel {
     rays.tfar[i] = tfar;
   }
 
-  // `segment`: twice the vertex, plus one for shadow rays.
+  // `segment` is twice the number of the vertex, plus one for shadow rays.
   [[nodiscard]] std::uint32_t alpha_key(std::size_t slot, std::uint32_t segment) const {
     const std::uint64_t key = work_.samples.key[slot].value;
     return hash32(static_cast<std::uint32_t>(key >> 32U) ^
                   hash32(work_.samples.sample[slot] ^ hash32(segment + 0x9e3779b9U)));
   }
 
-  // When the sample looks: 0 when the shutter opens, below 1.
+  // The time of the sample in [0, 1), where 0 is the opening of the shutter.
   [[nodiscard]] float time_of(std::size_t slot) const {
     return sample_1d(work_.samples.key[slot], work_.samples.sample[slot], dimension_of(PathDimension::time));
   }
 
-  // Rays carry their sample's time only where something moves while the shutter is open.
+  // Rays get the time of their sample only where something moves while the shutter is open.
   void stamp(RayBatch& rays, const BatchArray<std::uint32_t>& slots, std::size_t count) const {
     if (!frame_.scene->blurs) {
       return;
@@ -111,7 +111,8 @@ class PathKernel {
     work_.radiance.b[slot] += radiance.z;
   }
 
-  // TraceSettings::clamp_indirect; `events`: scattering events between the light and the camera.
+  // Applies TraceSettings::clamp_indirect; `events` is the number of scattering events between the light and the
+  // camera.
   [[nodiscard]] Vec3f clamped(int events, const Vec3f& radiance) const {
     const auto limit = static_cast<float>(frame_.settings.clamp_indirect);
     if (!(limit > 0) || events < 2) {
@@ -120,7 +121,7 @@ class PathKernel {
     const float most = std::max(std::max(radiance.x, radiance.y), radiance.z);
     return most > limit ? radiance * (limit / most) : radiance;
   }
-  // Where a ray leaves hit i from: off the surface on the direction's side.
+  // The origin of a ray that leaves hit i, off the surface on the side of the direction.
   [[nodiscard]] Vec3f leaving_point(std::size_t i, const Vec3f& direction) const {
     const ChunkHits& chunk = work_.chunk;
     if constexpr (kLayers) {
@@ -133,7 +134,7 @@ class PathKernel {
   [[nodiscard]] bool leaves_through(std::size_t i, const Vec3f& direction) const {
     return dot(direction, work_.chunk.geometric.get(i)) < 0;
   }
-  // The side that light must come from; zero: both.
+  // The normal of the side that light must come from; zero where it may come from both.
   [[nodiscard]] Vec3f lit_side(std::size_t i) const {
     if constexpr (kLayers) {
       const LayeredMaterial* material = frame_.scene->layered.of(work_.chunk.material[i]);
@@ -143,8 +144,9 @@ class PathKernel {
     }
     return work_.chunk.geometric.get(i);
   }
-  // Where the lights of hit i are chosen from. Where their densities depend on it: where the next ray leaves from, so
-  // that both ways of finding a light see the same, or midway between the two sides that it may leave on.
+  // The point for which the lights of hit i are chosen. Where their densities depend on it, it is the origin of the
+  // next ray, so that both ways of finding a light use the same density; where that ray may leave on either side, it is
+  // midway between the two origins.
   [[nodiscard]] Vec3f lit_point(std::size_t i, const Vec3f& side) const {
     const bool one_side = side.x != 0 || side.y != 0 || side.z != 0;
     return frame_.lights->depends_on_place() && one_side ? work_.chunk.origin.get(i) : work_.chunk.position.get(i);

@@ -83,7 +83,7 @@ template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::fill_2d(const std::array<SampleKey, kChunk>& key,
                                                      const std::array<std::uint32_t, kChunk>& index, std::size_t count,
                                                      std::uint32_t dimension, std::array<Vec2f, kChunk>& out) {
-  // Separate arrays: the compiler computes 16 at a time.
+  // Separate arrays, so that the compiler vectorises.
   alignas(64) std::array<float, kChunk> x;
   alignas(64) std::array<float, kChunk> y;
   for_lanes(
@@ -103,7 +103,7 @@ inline AlbedoTerms PathKernel<kFeatures, kDiffuse>::terms_of(const std::array<Ch
   return {terms[0][i], terms[1][i], terms[2][i], terms[3][i]};
 }
 
-// Table reads do not run in vectors; everything around them does.
+// Table reads do not vectorise; everything around them does.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::read_terms(const ChunkHits& chunk, std::size_t count,
                                                         const ChunkArray<float>& cosine,
@@ -129,7 +129,7 @@ inline Bsdf<kDiffuse> PathKernel<kFeatures, kDiffuse>::bsdf_of(const ChunkHits& 
           terms_of(chunk.view_terms, i), chunk.e_average[i]};
 }
 
-// The BSDF of every lane: towards its light sample, and a sample of its own.
+// Evaluates the BSDF of every lane towards its light sample, and samples it.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit, bool bounces) {
   for_lanes(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits become surfaces: gathered, placed, textured and turned to the ray; then they shine or scatter.
+// Shades hits: gathers their triangles, computes their positions, reads textures and turns normals to the ray; then
+// adds emission and scatters.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +24,7 @@ inline int PathKernel<kFeatures, kDiffuse>::shade(int vertex, int count) {
   return static_cast<int>(next_count_);
 }
 
-// In steps over a few dozen rays, so that each step's reads from memory overlap and its arithmetic runs in vectors.
+// Each step is done for a few dozen rays, so that its reads from memory overlap and its arithmetic vectorises.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBatch& rays, const PathBatch& paths,
                                                          std::size_t begin, std::size_t end) {
@@ -75,7 +76,7 @@ inline void PathKernel<kFeatures, kDiffuse>::shade_chunk(int vertex, const RayBa
   }
 }
 
-// Takes what the surface itself shines; true where the path scatters.
+// Adds the emission of the surface; true where the path scatters.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline bool PathKernel<kFeatures, kDiffuse>::goes_on(int vertex, std::size_t i, const PathBatch& paths) {
   const ChunkHits& chunk = work_.chunk;
@@ -135,7 +136,7 @@ inline void PathKernel<kFeatures, kDiffuse>::record_surface(std::size_t slot, st
   out.kind[slot] = kind_of_hit(*frame_.scene, chunk, i, kDiffuse);
 }
 
-// Before the first shadow rays come back, a sample's radiance is what its camera ray itself has found.
+// Keeps the radiance that the camera rays themselves found. Call it before the first shadow rays are traced.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::keep_shone(std::size_t count) {
   std::copy_n(work_.radiance.r.data, count, work_.surfaces.shone_r.data);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadow rays: collected over the whole batch, then traced at once.
+// Shadow rays are collected over the whole batch and then traced together.
 #pragma once
 
 #include "trace/kernel/path_kernel.hpp"
@@ -12,7 +12,7 @@ inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_
   const ChunkHits& chunk = work_.chunk;
   ShadowBatch& shadows = work_.shadows;
   const std::size_t n = shadow_count_++;
-  // Stops short of the light by what rounding may move either end, so that an emitter does not shadow itself.
+  // Ends before the light by as much as rounding may move either end, so that an emitter does not shadow itself.
   const float tfar = light.distance - light.slack - 2 * chunk.offset[i];
   set_ray(shadows.rays, n, leaving_point(i, light.direction), light.direction, 0.0F, tfar);
   shadows.rays.alpha_key[n] = alpha_key(slot, 2U * static_cast<std::uint32_t>(vertex) + 1U);

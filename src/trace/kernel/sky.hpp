@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that leave the scene: what the environment adds.
+// Rays that leave the scene, to which the environment contributes.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace gazetrace {
 
-// What a BSDF-sampled ray may count of light it found that light sampling could have found too.
+// The weight of light that a BSDF-sampled ray found, and that light sampling could have found, too.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline float PathKernel<kFeatures, kDiffuse>::weight_of_found_light(int vertex, float pdf_bsdf, float pdf_light) const {
   if (vertex == 0) {
@@ -19,7 +19,7 @@ inline float PathKernel<kFeatures, kDiffuse>::weight_of_found_light(int vertex, 
   }
   switch (frame_.settings.light_sampling) {
     case LightSampling::light_only:
-      return pdf_light > 0 ? 0.0F : 1.0F;  // what light samples cannot find is left to rays
+      return pdf_light > 0 ? 0.0F : 1.0F;  // rays count only what light samples cannot find
     case LightSampling::bsdf_only:
       return 1.0F;
     case LightSampling::mis:
@@ -28,7 +28,7 @@ inline float PathKernel<kFeatures, kDiffuse>::weight_of_found_light(int vertex, 
   return power_heuristic(pdf_bsdf, pdf_light);
 }
 
-// Rays `list` of a packed batch left the scene.
+// Adds the environment's radiance for the rays in `list`, which left the scene.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch& rays, const PathBatch& paths,
                                                      const std::uint16_t* list, std::size_t count) {
@@ -43,7 +43,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
     const std::size_t k = list[i];
     Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
     if constexpr (kLayers) {
-      if (paths.body[k] != kNoId) {  // of a body with a hole
+      if (paths.body[k] != kNoId) {  // left a body through a hole in it
         throughput *= transmittance(frame_.scene->layered.materials[paths.body[k]].absorption_per_m,
                                     std::numeric_limits<float>::infinity());
       }
@@ -53,7 +53,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
   }
 }
 
-// The ray after the last scattering event where only the sky can be found: visibility is enough.
+// For the rays after the last scattering event, where they can find the sky only: visibility is enough.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
 inline void PathKernel<kFeatures, kDiffuse>::see_sky(int vertex, int count) {
   const RayBatch& rays = work_.rays[static_cast<std::size_t>(vertex & 1)];

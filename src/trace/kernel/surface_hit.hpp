@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a hit's barycentric coordinates to the values that shading needs.
+// Computes the values that shading needs from the barycentric coordinates of a hit.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace gazetrace {
 
-// log2 to 0.01, for mip levels.
+// log2 with an error of up to 0.01, for mip levels.
 inline float rough_log2(float x) {
   const auto bits = std::bit_cast<std::uint32_t>(x);
   const float mantissa = std::bit_cast<float>((bits & 0x007fffffU) | 0x3f800000U);
@@ -31,7 +31,7 @@ inline Vec3f apply_columns(const std::array<Vec3f, 3>& columns, const Vec3f& p) 
   return columns[0] * p.x + columns[1] * p.y + columns[2] * p.z;
 }
 
-// Where a lane's hit lies in a texture.
+// The texture coordinates of a lane's hit.
 template <KernelFeatures kFeatures>
 Vec2f coordinates_at(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const ShadingTexture& texture) {
   if constexpr (kFeatures.extras) {
@@ -50,8 +50,8 @@ Vec2f coordinates_at(const RenderScene& scene, const ChunkHits& chunk, std::size
   return chunk.uv.get(i);
 }
 
-// Level of detail at a lane's hit, after place_hits. ChunkHits::lod is that of the triangle's stored coordinates;
-// others are as much coarser or finer as their triangle in the picture is larger or smaller.
+// The level of detail at a lane's hit; call it after place_hits. ChunkHits::lod is the level for the coordinates that
+// are stored in the triangle; for others it differs by the ratio of the triangle's areas in the two textures.
 template <KernelFeatures kFeatures>
 float level_at(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, const ShadingTexture& texture) {
   const float level = chunk.lod[i] + texture.half_log2_texels;
@@ -73,7 +73,7 @@ float level_at(const RenderScene& scene, const ChunkHits& chunk, std::size_t i, 
   return level;
 }
 
-// Finds the data of hit k of the packed batch and asks the memory for them.
+// Finds the data of hit k of the packed batch and prefetches them.
 template <KernelFeatures kFeatures>
 void locate_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, ChunkHits& chunk, std::size_t i) {
   std::uint32_t record = hits.geometry[k];
@@ -92,8 +92,8 @@ void locate_hit(const RenderScene& scene, const HitBatch& hits, std::size_t k, C
   __builtin_prefetch(data + 64);
 }
 
-// From records to lanes. Instanced triangles are brought to world space here.
-// `times`: of the packed rays, read where something moves while the shutter is open.
+// Copies triangles into lanes, and transforms instanced ones to world space. `times` are those of the packed rays, read
+// only where something moves while the shutter is open.
 template <KernelFeatures kFeatures>
 GAZETRACE_CLONES void gather_triangles(const RenderScene& scene, const BatchArray<float>& times, ChunkHits& chunk,
                                        std::size_t count) {
@@ -143,7 +143,7 @@ GAZETRACE_CLONES void gather_triangles(const RenderScene& scene, const BatchArra
       }
       const Vec3f far = absolute(instance.axes[0]) * reach.x + absolute(instance.axes[1]) * reach.y +
                         absolute(instance.axes[2]) * reach.z + absolute(instance.translation);
-      // The ray goes into the mesh's space and back: twice the roundings.
+      // Twice the rounding errors, since the ray is transformed to the mesh's space and back.
       chunk.instance_reach[i] = 2 * largest(far);
       chunk.winding[i] = instance.flip;
       chunk.bitangent_sign[i] *= instance.flip;
@@ -172,7 +172,7 @@ GAZETRACE_CLONES void gather_triangles(const RenderScene& scene, const BatchArra
   }
 }
 
-// Position, normals, coordinates and texture level of every lane.
+// Computes position, normals, texture coordinates and texture level of every lane.
 template <KernelFeatures kFeatures>
 GAZETRACE_CLONES void place_hits(ChunkHits& chunk, std::size_t count) {
   for_lanes(
@@ -184,7 +184,7 @@ GAZETRACE_CLONES void place_hits(ChunkHits& chunk, std::size_t count) {
         const Vec3f p1 = chunk.corner[1].get(i);
         const Vec3f p2 = chunk.corner[2].get(i);
         const Vec3f position = p0 * w + p1 * u + p2 * v;
-        // Scaled to the longer edge, so that the normal's length neither under- nor overflows at any scene scale.
+        // Scaled by the longer edge, so that the normal's length neither underflows nor overflows at any scene scale.
         const Vec3f e1 = p1 - p0;
         const Vec3f e2 = p2 - p0;
         const float edge = chunk.winding[i] / std::max(std::max(largest(e1), largest(e2)), 1e-30F);
@@ -226,7 +226,7 @@ GAZETRACE_CLONES void place_hits(ChunkHits& chunk, std::size_t count) {
       });
 }
 
-// Material values, textures included.
+// Reads the material's values, including textures.
 template <KernelFeatures kFeatures>
 void read_materials(const RenderScene& scene, ChunkHits& chunk, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -268,7 +268,7 @@ void read_materials(const RenderScene& scene, ChunkHits& chunk, std::size_t coun
   }
 }
 
-// Bumps the normal, turns it to the ray's side and keeps its mirror direction above the surface.
+// Applies the normal map, turns the normal to the ray's side and keeps its mirror direction above the surface.
 template <KernelFeatures kFeatures>
 GAZETRACE_CLONES void finish_normals(ChunkHits& chunk, std::size_t count) {
   for_lanes(

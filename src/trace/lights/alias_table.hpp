@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choice of one of n with given weights in constant time (Walker 1977; construction by Vose 1991).
+// Chooses one of n entries in proportion to given weights, in constant time (Walker 1977; construction by Vose 1991).
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace gazetrace {
 class AliasTable {
  public:
   AliasTable() = default;
-  // Weights are finite and not negative. All zero: the table is empty.
+  // Weights must be finite and not negative. Where all are zero, the table is empty.
   explicit AliasTable(const std::vector<double>& weights) {
     double sum = 0;
     for (const double w : weights) {
@@ -41,7 +41,7 @@ class AliasTable {
         small.push_back(l);
       }
     }
-    // What is left differs from 1 by rounding only.
+    // The remaining entries differ from 1 by rounding errors only.
     for (const auto* rest : {&small, &large}) {
       for (const std::uint32_t i : *rest) {
         entries_[i] = {1.0F, i};
@@ -52,8 +52,8 @@ class AliasTable {
   [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
 
-  // u in [0, 1), in double: a float times a table's size has no digits left for the second decision. The table must not
-  // be empty.
+  // `u` is in [0, 1), and a double since a float times the table's size has no digits left for the second decision. The
+  // table must not be empty.
   [[nodiscard]] std::uint32_t choose(double u) const noexcept {
     const double at = u * static_cast<double>(entries_.size());
     const std::size_t i = std::min(static_cast<std::size_t>(at), entries_.size() - 1);
@@ -61,7 +61,7 @@ class AliasTable {
     return at - static_cast<double>(i) < static_cast<double>(entry.keep) ? static_cast<std::uint32_t>(i) : entry.alias;
   }
 
-  // The probability with which choose() returns i, for tests: recovered from the entries.
+  // For tests: the probabilities with which choose() returns each entry, recovered from the table.
   [[nodiscard]] std::vector<double> probabilities() const {
     std::vector<double> p(entries_.size());
     const double share = 1.0 / static_cast<double>(entries_.size());

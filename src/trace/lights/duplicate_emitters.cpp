@@ -19,8 +19,8 @@ struct Key {
   auto operator<=>(const Key&) const = default;
 };
 
-// The smallest corner first, so that it does not matter where a triangle begins; both ways round for a double-sided
-// one.
+// Begins with the smallest corner, so that it does not matter with which corner a triangle begins; for double-sided
+// ones the winding does not matter, either.
 Key key_of(const EmitterPlace& place) {
   Key key{{}, place.material};
   std::transform(place.corners.begin(), place.corners.end(), key.corners.begin(), [](const Vec3d& corner) {

@@ -71,7 +71,7 @@ Vec3d average_emission(const Scene& scene, const Material& material, const Geome
     ++level;
   }
   const Texture::Level& texels = texture.levels[level];
-  // Bounded even where the coarsest level repeats more often than that.
+  // Limited also where the coarsest level repeats more often than that.
   const auto span = [](double low, double high, int size) {
     const auto first = static_cast<long long>(std::floor(low * size - 0.5));
     const auto last = static_cast<long long>(std::floor(high * size + 0.5));

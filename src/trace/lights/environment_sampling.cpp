@@ -15,14 +15,14 @@ namespace {
 
 constexpr int kCellsAcross = 2048;
 
-// Of the mean radiance, taken off by compensation. With as many light as BSDF samples the balance heuristic's mixture
-// follows the sky where p_light = 2 p_sky - p_bsdf; a BSDF is as good as even over the sky, 1 / (4 pi), which leaves
-// what exceeds half the mean. Measured by tests/benchmarks/trade_offs.cpp.
+// The share of the mean radiance that compensation subtracts. With equal numbers of light and BSDF samples, the mixture
+// of the balance heuristic follows the sky where p_light = 2 p_sky - p_bsdf. A BSDF is treated as uniform over the sky,
+// 1 / (4 pi), which leaves what exceeds half the mean. Measured by tests/benchmarks/trade_offs.cpp.
 constexpr double kCompensation = 0.5;
-// A sky of which less than this share stands out is sampled as it is.
+// A sky of which less than this share exceeds the subtracted radiance is sampled without compensation.
 constexpr double kLeastExcess = 0.02;
 
-// Mean over each pixel of the bilinear interpolation: the weights 1, 6, 1 (eighths) along each axis.
+// The mean of the bilinear interpolation over each pixel, which has the weights 1, 6, 1 (eighths) along each axis.
 std::vector<double> interpolated_luminance(const ImageRgb& picture) {
   const int w = picture.width_px;
   const int h = picture.height_px;
@@ -44,7 +44,7 @@ std::vector<double> interpolated_luminance(const ImageRgb& picture) {
   return result;
 }
 
-// Fills the upper ends of the intervals that `weights` stand for and the guide. Sum must be positive.
+// Computes the guide and the upper ends of the intervals for `weights`, whose sum must be positive.
 void accumulate(const double* weights, std::size_t count, float* cumulative, std::uint16_t* guide) {
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -96,7 +96,7 @@ EnvironmentSampler::EnvironmentSampler(const Environment& environment, Environme
     row_edges_[r] = std::cos(kPi * std::min(1.0, static_cast<double>(r) * k / h));
   }
 
-  // Weight of a cell: its pixels' luminance times solid angle.
+  // The weight of a cell is the luminance of its pixels times their solid angles.
   const std::vector<double> mean = interpolated_luminance(*picture_);
   std::vector<double> cells(static_cast<std::size_t>(columns_) * rows_);
   std::vector<double> row_weights(rows_);
@@ -140,7 +140,7 @@ EnvironmentSampler::EnvironmentSampler(const Environment& environment, Environme
     const std::size_t first = r * columns_;
     float* cumulative = cell_cumulative_.data() + first;
     accumulate(cells.data() + first, columns_, cumulative, cell_guide_.data() + first);
-    // The density is made from the rounded sums: it is what the inversion really does.
+    // The density is computed from the rounded sums, which are what the inversion uses.
     const double row_probability = probability(row_cumulative_.data(), r);
     const double height = row_edges_[r] - row_edges_[r + 1];
     for (std::size_t c = 0; c < columns_; ++c) {
@@ -155,7 +155,7 @@ EnvironmentSampler::Choice EnvironmentSampler::invert(const float* cumulative, c
                                                       std::uint32_t count, float u) noexcept {
   const auto at = std::min(static_cast<std::uint32_t>(u * static_cast<float>(count)), count - 1);
   std::uint32_t i = guide[at];
-  while (i > 0 && cumulative[i - 1] > u) {  // the product above was rounded up
+  while (i > 0 && cumulative[i - 1] > u) {  // where the product above was rounded up
     --i;
   }
   while (cumulative[i] <= u) {
@@ -190,7 +190,7 @@ Vec3f EnvironmentSampler::lookup(const Place& at) const noexcept {
 
 EnvironmentSampler::CellPoint EnvironmentSampler::point_in_cell(const Choice& row,
                                                                 const Choice& column) const noexcept {
-  // In double: near the poles a float cosine cannot tell directions apart.
+  // In double, since near the poles a float cosine cannot distinguish directions.
   const double upper = row_edges_[row.index];
   const double cosine = upper + (row_edges_[row.index + 1] - upper) * static_cast<double>(row.fraction);
   const float left = column_edges_[column.index];
@@ -201,7 +201,7 @@ EnvironmentSampler::CellPoint EnvironmentSampler::point_in_cell(const Choice& ro
 inline EnvironmentSampler::Direction EnvironmentSampler::direction_of(const CellPoint& point,
                                                                       float rotation_turns) noexcept {
   const float sine = std::sqrt(std::max(point.sine_squared, 0.0F));
-  float azimuth = point.u + 0.5F + rotation_turns;  // 0.5 + 1 turns less
+  float azimuth = point.u + 0.5F + rotation_turns;  // u - 0.5 turns, and a whole one
   azimuth -= std::floor(azimuth);
   const Vec2f circle = cos_sin_2pi(azimuth);
   return {{sine * circle.y, point.cosine, -sine * circle.x},

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Importance sampling of a lat-long environment. Radiance is the bilinear interpolation of the picture (u wraps, v
-// stops at the poles). The density is constant over cells of whole pixels (one each up to 2048 columns), proportional
-// to the interpolated luminance averaged over the cell, and samples are uniform in solid angle inside a cell. Rows and
-// columns are found by inverting cumulative sums through guide tables: constant expected time, and unlike an alias
-// table it keeps the samples' stratification.
+// Importance sampling of a latitude-longitude environment. Radiance is the bilinear interpolation of the picture (u
+// wraps, v is clamped at the poles). The density is constant over cells of whole pixels (of one pixel up to 2048
+// columns), proportional to the interpolated luminance averaged over the cell; samples are uniform in solid angle
+// inside a cell. Rows and columns are found by inverting cumulative sums with guide tables. This takes constant
+// expected time and, unlike an alias table, keeps the stratification of the samples.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@
 
 namespace gazetrace {
 
-// compensated: proportional to what exceeds half the mean radiance, for multiple importance sampling alone: what is
-// even over the sky is found by BSDF samples as well, so light samples are better spent on what stands out (Karlik et
-// al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). Zero where nothing
-// does, so that light samples on their own would lose light; and blind to what hides the sky, so that indoors it costs
-// more than it gains.
+// compensated: proportional to what exceeds half the mean radiance, for use with multiple importance sampling only.
+// BSDF samples find a uniform sky as well as light samples do, so light samples are better spent on what is brighter
+// (Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). The
+// density is zero where nothing exceeds it, so that light samples alone would lose light. It does not know what hides
+// the sky, so indoors it costs more than it gains.
 enum class EnvironmentDensity : std::uint8_t { plain, compensated };
 
 class EnvironmentSampler {
@@ -36,18 +36,18 @@ class EnvironmentSampler {
     Vec3f radiance;
     float pdf = 0;
   };
-  // Only where total() > 0.
+  // May be called only where total() > 0.
   [[nodiscard]] Sample sample(const Vec2f& u) const noexcept;
   [[nodiscard]] Value value(const Vec3f& direction) const noexcept;
   [[nodiscard]] Vec3f radiance(const Vec3f& direction) const noexcept;
   [[nodiscard]] float pdf(const Vec3f& direction) const noexcept;
 
-  // The same for many at once, with the same results: tables are asked for ahead of use, so that waiting for memory
-  // (most of the cost of one alone) overlaps.
+  // The same for many samples at once, with the same results. Tables are prefetched, so that the waits for memory (most
+  // of the cost of a single sample) overlap.
   void sample_many(const Vec2f* u, std::size_t count, Sample* out) const noexcept;
   void value_many(const Vec3f* directions, std::size_t count, Value* out) const noexcept;
 
-  // Integral of luminance over all directions, W/m^2.
+  // The integral of luminance over all directions, W/m^2.
   [[nodiscard]] double total() const noexcept { return total_; }
 
  private:
@@ -56,7 +56,7 @@ class EnvironmentSampler {
   };
   struct Choice {
     std::uint32_t index;
-    float fraction;  // of the way through the chosen interval
+    float fraction;  // position inside the chosen interval, 0..1
   };
   [[nodiscard]] static Place place_of(const Vec3f& direction, float rotation_turns) noexcept;
   [[nodiscard]] Vec3f lookup(const Place& at) const noexcept;
@@ -68,7 +68,7 @@ class EnvironmentSampler {
     Place place;
   };
   struct CellPoint {
-    float cosine, sine_squared, u;  // of the polar angle; place in the picture
+    float cosine, sine_squared, u;  // of the polar angle; horizontal position in the picture
   };
   [[nodiscard]] CellPoint point_in_cell(const Choice& row, const Choice& column) const noexcept;
   [[nodiscard]] static Direction direction_of(const CellPoint& point, float rotation_turns) noexcept;
@@ -78,10 +78,10 @@ class EnvironmentSampler {
   float rotation_turns_ = 0;
   float columns_per_u_ = 0, rows_per_v_ = 0;
   std::uint32_t columns_ = 0, rows_ = 0;
-  std::vector<float> column_edges_;       // in u, columns + 1
-  std::vector<double> row_edges_;         // cosine of the polar angle, from 1 to -1, rows + 1
-  std::vector<float> row_cumulative_;     // upper ends, rows
-  std::vector<std::uint16_t> row_guide_;  // rows
+  std::vector<float> column_edges_;       // in u; columns + 1 values
+  std::vector<double> row_edges_;         // cosine of the polar angle, from 1 to -1; rows + 1 values
+  std::vector<float> row_cumulative_;     // upper ends of the rows' intervals
+  std::vector<std::uint16_t> row_guide_;  // one entry per row
   std::vector<float> cell_cumulative_;    // [row][column]
   std::vector<std::uint16_t> cell_guide_;
   std::vector<float> cell_pdf_;

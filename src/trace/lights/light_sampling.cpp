@@ -18,20 +18,20 @@
 namespace gazetrace {
 namespace {
 
-// Every class that is present gets at least this share of the samples, split evenly: power says nothing about who is
-// near. The same among punctual lights.
+// This share of the samples is divided equally among the classes that are present, since power says nothing about which
+// light is near. The same is done among punctual lights.
 constexpr double kClassFloor = 0.3;
 constexpr double kPunctualFloor = 0.1;
 
-// From this many triangles and point or spot lights on, what the tree saves in noise is worth what it costs to walk;
-// measured by tests/benchmarks/many_lights.cpp.
+// From this many triangles and point or spot lights on, the tree saves more noise than its traversal costs; measured by
+// tests/benchmarks/many_lights.cpp.
 constexpr std::size_t kTreeFromLights = 4;
 
-// A triangle smaller than this cannot be told from a line in float.
+// In float, a triangle with a smaller area cannot be distinguished from a line.
 constexpr double kSmallestArea = 1e-30;
 constexpr float kGrazing = 1e-6F;
-// Where a shadow ray may meet the lamp itself: roundings of the direction, over the slant that they are seen at. Lamps
-// seen at a lower one lose what is rounded away.
+// How near its end a shadow ray may hit the light itself: rounding errors of the direction, divided by the cosine at
+// the light, which is limited for lights at very grazing angles.
 constexpr float kDirectionUlps = 0x1p-20F;
 constexpr float kLeastSlant = 0.01F;
 
@@ -39,7 +39,7 @@ bool usable(double weight) {
   return weight > 0 && std::isfinite(weight);
 }
 
-// Of the sphere about the world box, in metres; 1 for an empty scene.
+// The radius of the sphere about the scene's bounding box, in metres; 1 for an empty scene.
 double scene_radius_m(const Scene& scene) {
   constexpr double kHuge = std::numeric_limits<double>::max();
   Vec3d low{kHuge, kHuge, kHuge};
@@ -76,7 +76,7 @@ double scene_radius_m(const Scene& scene) {
   return usable(radius) ? radius : 1.0;
 }
 
-// Watts that a light sends into the scene's sphere.
+// The power, in watts, that a light sends into the scene's sphere.
 double power(const PunctualLight& light, double radius_m) {
   const double intensity = luminance(to_double(light.intensity));
   switch (light.kind) {
@@ -106,19 +106,20 @@ float cone_falloff(const PunctualLight& light, float cosine) {
   return t * t;
 }
 
-// 32 more digits below u's 24, a function of the other two numbers: choosing among a million lights needs them.
+// Adds 32 bits below the 24 bits of u, as a function of the other two numbers; choosing among a million lights needs
+// them.
 double refine(float u, const Vec2f& other) {
   const std::uint32_t digits =
       hash32(std::bit_cast<std::uint32_t>(other.x) + 0x9e3779b9U * std::bit_cast<std::uint32_t>(other.y));
   return static_cast<double>(u) + static_cast<double>(digits) * 0x1p-56;
 }
 
-// At some place, so that the tree can bound its effect.
+// Whether a light has a position, so that the tree can bound its effect.
 bool is_local(const PunctualLight& light) {
   return light.kind != LightKind::directional;
 }
 
-// A zero normal: light may come from anywhere.
+// With a zero normal light may come from anywhere.
 bool faces(const Vec3f& normal, const Vec3f& direction) {
   const float cosine = dot(normal, direction);
   return cosine > 0 || (cosine == 0 && dot(normal, normal) == 0);
@@ -228,18 +229,18 @@ void LightSampler::build_tree(const std::vector<double>& triangle_powers) {
   tree_ = LightTree(all);
 }
 
-// Fills triangles_ and the maps into it.
+// Fills in triangles_ and the indices into it.
 LightSampler::Collected LightSampler::collect_triangles(const Scene& scene) {
   Collected found;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
     first_geometry_.push_back(static_cast<std::uint32_t>(first_emitter_.size()));
-    const double side = determinant(instance.to_world) < 0 ? -1.0 : 1.0;  // mirrored: the winding turns
+    const double side = determinant(instance.to_world) < 0 ? -1.0 : 1.0;  // a mirrored one has the opposite winding
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
       const Geometry& geometry = mesh.geometries[g];
       const Material& material = scene.materials[static_cast<std::size_t>(geometry.material)];
-      // What moves or deforms has no place that could be aimed at.
+      // What moves or deforms has no fixed position to sample.
       if (material.unlit || instance.motion >= 0 || instance.deformation >= 0 ||
           !usable(luminance(to_double(material.emission)))) {
         first_emitter_.push_back(kNoEmitter);
@@ -267,7 +268,7 @@ LightSampler::Collected LightSampler::collect_triangles(const Scene& scene) {
         const double p = emitted * area * kPi * (material.double_sided ? 2 : 1);
         triangles_.push_back(triangle);
         found.powers.push_back(area >= kSmallestArea && usable(p) ? p : 0.0);
-        // Corners in the order that turns about the front.
+        // Corners in the winding of the front side.
         found.places.push_back({side < 0 ? std::array{corners[0], corners[2], corners[1]} : corners, geometry.material,
                                 material.double_sided});
       }
@@ -282,7 +283,7 @@ LightSample LightSampler::sample(const Vec3f& position, const Vec3f& normal, con
   const auto pe = static_cast<double>(environment_probability_);
   const auto pt = static_cast<double>(triangle_probability_);
   const auto pp = static_cast<double>(punctual_probability_);
-  // The floats sum to 1 but for rounding; the last class present takes the rest.
+  // The floats sum to 1 except for rounding errors, so the last class that is present takes the rest.
   if (pe > 0 && (choice < pe || !(pt + pp > 0))) {
     return sample_environment(normal, u);
   }
@@ -416,7 +417,7 @@ LightSample LightSampler::sample_punctual(std::uint32_t index, float probability
     }
     result.radiance = light.intensity * (falloff / distance_squared);
   }
-  // What is too close to a light to be told in float goes on as infinity, and is counted as a non-finite sample.
+  // A point too close to a light for float's range gets an infinite value, which is counted as a non-finite sample.
   const float sum = result.radiance.x + result.radiance.y + result.radiance.z;
   result.valid = sum > 0 && faces(normal, result.direction);
   return result;

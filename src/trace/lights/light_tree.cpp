@@ -12,10 +12,10 @@ namespace gazetrace {
 namespace {
 
 constexpr int kBins = 12;
-// Relative to all lights together; keeps products of it normal floats.
+// The least intensity of a light relative to all lights together; products of such numbers are still normal floats.
 constexpr double kLeastShare = 1e-18;
 
-// cos(max(a - b, 0)) and its sine, from sines and cosines of angles in [0, pi].
+// cos(max(a - b, 0)), and its sine, from the sines and cosines of angles a and b in [0, pi].
 inline float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
   return cos_a > cos_b ? 1.0F : cos_a * cos_b + sin_a * sin_b;
 }
@@ -31,13 +31,13 @@ Vec3d middle(const LightBounds& b) {
   return (b.low + b.high) * 0.5;
 }
 
-// Rodrigues' rotation.
+// Rotates by Rodrigues' formula.
 Vec3d turned(const Vec3d& v, const Vec3d& unit_axis, double angle_rad) {
   const double c = std::cos(angle_rad);
   return v * c + cross(unit_axis, v) * std::sin(angle_rad) + unit_axis * (dot(unit_axis, v) * (1 - c));
 }
 
-// Conty Estevez and Kulla 2018, section 4.2: the solid angle into which a cone of normals shines, weighted by cosines.
+// Conty Estevez and Kulla 2018, section 4.2: the solid angle into which a cone of normals emits, weighted by cosines.
 double orientation_measure(const LightBounds& b) {
   const double o = b.normals_rad;
   const double w = std::min(o + b.emission_rad, kPi);
@@ -47,7 +47,7 @@ double orientation_measure(const LightBounds& b) {
 
 double split_cost(const LightBounds& b) {
   const Vec3d d = b.high - b.low;
-  // Half the surface; with the largest side's square, so that lines and points still differ.
+  // Half the surface, plus a term with the square of the longest side, so that lines and points still differ.
   const double longest = std::max({d.x, d.y, d.z});
   const double area = d.x * d.y + d.y * d.z + d.z * d.x + 1e-3 * longest * longest;
   return b.intensity * orientation_measure(b) * area;
@@ -75,7 +75,7 @@ LightBounds join(const LightBounds& a, const LightBounds& b) {
   Vec3d other = narrow.axis;
   double cosine = dot(wide.axis, other);
   if (cosine < 0 && narrow.two_sided && (wide.two_sided || narrow.normals_rad < kPi)) {
-    // Two-sided lights have no front: take the side that keeps the cone narrow.
+    // Two-sided lights have no front, so the side that keeps the cone narrow is taken.
     other = other * -1.0;
     cosine = -cosine;
   }
@@ -116,7 +116,7 @@ struct LightTree::Builder {
     return all;
   }
 
-  // In two, at the border between bins that costs least; in the middle where all lie in one place.
+  // Splits a group in two at the border between bins with the least cost; in the middle where all are in one place.
   std::array<Group, 2> split(const Group& group) const {
     Vec3d low = middle(lights[group.members[0]]);
     Vec3d high = low;
@@ -179,7 +179,8 @@ struct LightTree::Builder {
     return {Group{first, bounds_of(first)}, Group{second, bounds_of(second)}};
   }
 
-  // Lights close by and alike sink together; the group whose bounds say least is divided first.
+  // Divides a group into up to eight. The group with the largest cost is split first, so that lights that are close and
+  // similar stay together.
   std::vector<Group> divide(const Group& whole) const {
     std::vector<Group> groups{whole};
     while (groups.size() < kWidth) {
@@ -208,7 +209,8 @@ struct LightTree::Builder {
     node.x[lane] = static_cast<float>(at.x);
     node.y[lane] = static_cast<float>(at.y);
     node.z[lane] = static_cast<float>(at.z);
-    // A little more than exact, for the roundings; never zero, so that a point light next to a point stays finite.
+    // Slightly enlarged because of rounding, and never zero, so that the bound of a light at the point itself is
+    // finite.
     node.radius_squared[lane] = std::max(static_cast<float>(radius * radius * 1.0001), 1e-16F);
     node.axis_x[lane] = static_cast<float>(b.axis.x);
     node.axis_y[lane] = static_cast<float>(b.axis.y);
@@ -238,7 +240,7 @@ struct LightTree::Builder {
         tree.place_[light] = place;
         tree.nodes_[index].child[lane] = light | kLeaf;
       } else {
-        const std::uint32_t child = build(groups[lane], place);  // may move the nodes
+        const std::uint32_t child = build(groups[lane], place);  // may reallocate the nodes
         tree.nodes_[index].child[lane] = child;
       }
     }
@@ -272,10 +274,11 @@ LightTree::Point LightTree::point_of(const Vec3f& position, const Vec3f& normal)
   return {p.x, p.y, p.z, normal, dot(normal, normal) > 0 ? 0.0F : 1.0F};
 }
 
-// Their figure 5: intensity * cos(theta') / distance^2 with theta' = max(0, theta - theta_o - theta_u), where theta_u
-// is the angle that the bounds subtend, times the cosine at the point, bounded alike. Inside the bounds any cosine may
-// be, and the distance is held at radius / sqrt(3): 3 / r^2 is the mean of 1 / distance^2 over a ball seen from its
-// centre. (Holding it at the radius was a quarter to a third noisier from 10^3 lights on.)
+// The bound of their figure 5: intensity * cos(theta') / distance^2 with theta' = max(0, theta - theta_o - theta_u),
+// where theta_u is the angle that the bounds subtend, times the cosine at the point, which is bounded likewise. Inside
+// the bounds any cosine is possible, and the distance is at least radius / sqrt(3): 3 / r^2 is the mean of 1 /
+// distance^2 over a ball seen from its centre. (With the radius itself as the least distance, noise was a quarter to a
+// third larger from 10^3 lights on.)
 inline LightTree::Lanes LightTree::importance(const Node& node, const Point& point) noexcept {
   Lanes result;
   for (std::size_t i = 0; i < kWidth; ++i) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choice of one light among many by what each may do to a point: a tree of bounds on position, direction and power,
-// walked from the root by one random number. Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive
-// Tree Splitting" (2018): the bound of section 4.1 (their figure 5), the split by section 4.2 (surface area orientation
-// heuristic). One light is taken per point, so their splitting at run time has no place here. Nodes have eight children
-// instead of two: the bounds of eight are computed together, and fewer levels stand between a point and a light.
+// Chooses one light among many by a bound on what each can contribute to a point: a tree of bounds on position,
+// direction and power, traversed from the root with one random number. After Conty Estevez and Kulla, "Importance
+// Sampling of Many Lights with Adaptive Tree Splitting" (2018): the bound is that of section 4.1 (their figure 5),
+// nodes are split as in section 4.2 (surface area orientation heuristic). Their splitting at run time is not used,
+// since one light is taken per point. Nodes have eight children instead of two, so that eight bounds are computed at
+// once and there are fewer levels.
 #pragma once
 
 #include <array>
@@ -15,18 +16,18 @@
 
 namespace gazetrace {
 
-// One light, or several.
+// Bounds of one light or of several.
 struct LightBounds {
-  Vec3d low, high;                                           // box of its points, m
-  Vec3d axis{0, 0, 1};                                       // unit; of a cone that holds all normals
-  double normals_rad = 0;                                    // that cone's half angle
-  double emission_rad = kPi / 2;                             // how far from its normal a light still shines
+  Vec3d low, high;                                           // bounding box, m
+  Vec3d axis{0, 0, 1};                                       // unit axis of a cone that contains all normals
+  double normals_rad = 0;                                    // half angle of that cone
+  double emission_rad = kPi / 2;                             // largest angle from its normal at which a light emits
   double intensity = 0;                                      // W/sr at the brightest; 0: never chosen
-  double reach_m = std::numeric_limits<double>::infinity();  // black from there on
-  bool two_sided = false;                                    // shines along -axis, too
+  double reach_m = std::numeric_limits<double>::infinity();  // no light arrives beyond this distance
+  bool two_sided = false;                                    // emits along -axis, too
 };
 
-// The smallest bounds known to hold both.
+// The smallest bounds that are known to contain both.
 LightBounds join(const LightBounds& a, const LightBounds& b);
 
 class LightTree {
@@ -38,11 +39,11 @@ class LightTree {
 
   struct Choice {
     std::uint32_t light = 0;
-    float probability = 0;  // 0: no light was found that may reach the point
+    float probability = 0;  // 0: no light was found that can reach the point
   };
-  // `normal`: only what lies above its horizon counts; zero: everything counts. u in [0, 1).
+  // With a `normal` only lights above its horizon count; with a zero normal all do. u is in [0, 1).
   [[nodiscard]] Choice choose(const Vec3f& position, const Vec3f& normal, double u) const noexcept;
-  // That choose() returns this light.
+  // The probability with which choose() returns this light.
   [[nodiscard]] float probability(std::uint32_t light, const Vec3f& position, const Vec3f& normal) const noexcept;
 
  private:
@@ -55,15 +56,16 @@ class LightTree {
     const float& operator[](std::size_t i) const { return data[i]; }
   };
 
-  // Children side by side. Lengths are in units of the root's radius, from its centre, and intensities in shares of the
-  // whole: nothing over- or underflows at any scale of scene or light.
+  // The values of all children are stored as arrays. Positions are relative to the root's centre in units of its
+  // radius, and intensities relative to the total, so that nothing overflows or underflows at any scale of scene or
+  // light.
   struct alignas(64) Node {
     Lanes x, y, z, radius_squared;
     Lanes axis_x, axis_y, axis_z, two_sided;
     Lanes cos_normals, sin_normals, cos_emission;
     Lanes intensity, reach;
-    std::array<std::uint32_t, kWidth> child;  // node, or light | kLeaf
-    std::uint32_t parent = kNone;             // parent node * kWidth + lane
+    std::array<std::uint32_t, kWidth> child;  // index of a node, or light | kLeaf
+    std::uint32_t parent = kNone;             // parent node * kWidth + lane in it
   };
   struct Point {
     float x, y, z;
@@ -76,7 +78,7 @@ class LightTree {
   static Lanes importance(const Node& node, const Point& point) noexcept;
 
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> place_;  // of each light: node * kWidth + lane; kNone
+  std::vector<std::uint32_t> place_;  // node * kWidth + lane of each light, or kNone
   Vec3f center_;
   float scale_ = 1;
 };

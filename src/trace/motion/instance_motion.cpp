@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances that move: from frame to frame, and while the shutter is open.
+// Instances that move from frame to frame, and while the shutter is open.
 #include <algorithm>
 
 #include "trace/scene/instance_transform.hpp"
@@ -8,12 +8,18 @@
 namespace gazetrace {
 namespace {
 
-// A motion need not be even while the shutter is open: it is taken at this many steps, and as a straight line between.
-// A body that turns by half a turn meanwhile shrinks by 0.5 % in the middle of a step.
+// A motion need not be even while the shutter is open, so it is sampled at this many steps, and linear in between. A
+// body that makes half a turn meanwhile shrinks by 0.5 % in the middle of a step.
 constexpr int kSteps = 16;
 
-// One place where the instance stands still; none where it cannot be told from a point or a plane.
-std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
+// The transforms at all steps; a single one where the instance stands still, and none where the ray library cannot take
+// one of them.
+std::vector<Affine> way_of(const Scene& scene, const Instance& instance, const std::optional<ShutterTimes>& at) {
+  if (!at) {
+    return can_be_instanced(instance.to_world) ? std::vector<Affine>{instance.to_world} : std::vector<Affine>{};
+  }
+  const Motion& motion = scene.motions[static_cast<std::size_t>(instance.motion)];
+  const ShutterTimes& times = *at;
   std::vector<Affine> way;
   const int steps = times.close_ns > times.open_ns ? kSteps : 0;
   for (int i = 0; i <= steps; ++i) {
@@ -22,7 +28,7 @@ std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
       return {};
     }
   }
-  if (std::all_of(way.begin(), way.end(), [&](const Affine& at) { return at == way.front(); })) {
+  if (std::all_of(way.begin(), way.end(), [&](const Affine& place) { return place == way.front(); })) {
     way.resize(1);
   }
   return way;
@@ -30,7 +36,7 @@ std::vector<Affine> way_of(const Motion& motion, const ShutterTimes& times) {
 
 }  // namespace
 
-void RenderScene::move_to(const Scene& scene, const ShutterTimes& times) {
+void RenderScene::move_to(const Scene& scene, const std::optional<ShutterTimes>& times) {
   if (moving_.empty() && deforming_.empty()) {
     return;
   }
@@ -38,7 +44,7 @@ void RenderScene::move_to(const Scene& scene, const ShutterTimes& times) {
   ways.clear();
   for (const MovingInstance& moving : moving_) {
     const Instance& source = scene.instances[moving.scene_instance];
-    const std::vector<Affine> places = way_of(scene.motions[static_cast<std::size_t>(source.motion)], times);
+    const std::vector<Affine> places = way_of(scene, source, times);
     InstanceWay way;
     std::transform(places.begin(), places.end(), std::back_inserter(way), ray_transform);
     rays->place_instance(first_instance_id + moving.instance, way);
@@ -85,7 +91,7 @@ ShadingInstance RenderScene::instance_at(std::uint32_t index, float time) const 
   for (const Vec3d& n : normals) {
     largest = std::max({largest, std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
   }
-  // Their length does not matter, only their signs: see corner_normal.
+  // Only the signs of these axes matter, not their length: see corner_normal.
   const double scale = (determinant(now) < 0 ? -1.0 : 1.0) / largest;
   for (std::size_t k = 0; k < 3; ++k) {
     instance.normal_axes[k] = to_float(normals[k] * scale);

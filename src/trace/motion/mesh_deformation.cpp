@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that change their shape: from frame to frame, and while the shutter is open.
+// Meshes that change their shape from frame to frame, and while the shutter is open.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,13 +12,13 @@
 namespace gazetrace {
 namespace {
 
-// While the shutter is open, a vertex goes on straight lines between this many steps at most; on fewer where they keep
-// within this part of the mesh's size of its true way.
+// While the shutter is open, a vertex moves on straight lines between at most this many steps; fewer are taken where
+// that keeps vertices within this fraction of the mesh's size from their true positions.
 constexpr int kSteps = 16;
 constexpr double kStraightness = 1e-3;
-constexpr std::size_t kBlock = 2048;  // triangles a thread takes at once
+constexpr std::size_t kBlock = 2048;  // triangles that a thread takes at once
 
-// One shape a geometry.
+// One entry per geometry of a mesh.
 using MeshShape = std::vector<DeformedVertices>;
 
 MeshShape shape_of(const Scene& scene, const Mesh& mesh, const MeshPose& pose, int threads) {
@@ -33,8 +33,12 @@ MeshShape shape_of(const Scene& scene, const Mesh& mesh, const MeshPose& pose, i
   return shape;
 }
 
-// The pose at every step of the open shutter; an instant has one.
-std::vector<MeshPose> poses_of(const Deformation& deformation, const ShutterTimes& times) {
+// The pose at every step of the open shutter; a single one for an instantaneous exposure, and for the mesh at rest.
+std::vector<MeshPose> poses_of(const Deformation& deformation, const std::optional<ShutterTimes>& at) {
+  if (!at) {
+    return {deformation.rest};
+  }
+  const ShutterTimes& times = *at;
   std::vector<MeshPose> poses;
   const int steps = times.close_ns > times.open_ns ? kSteps : 0;
   for (int i = 0; i <= steps; ++i) {
@@ -55,7 +59,7 @@ double size_of(const MeshShape& shape) {
   return low.x <= high.x ? length(high - low) : 0;
 }
 
-// How far `at` is from the point at `s` on the line from `from` to `to`, over all vertices.
+// The largest distance, over all vertices, of `at` from the point at `s` (0..1) on the line from `from` to `to`.
 double distance_to_line(const MeshShape& from, const MeshShape& at, const MeshShape& to, double s) {
   double farthest = 0;
   for (std::size_t g = 0; g < at.size(); ++g) {
@@ -67,7 +71,7 @@ double distance_to_line(const MeshShape& from, const MeshShape& at, const MeshSh
   return farthest;
 }
 
-// The mesh at as few equal steps of the open shutter as keep it on its way.
+// The mesh at as few equal steps of the open shutter as kStraightness allows.
 std::vector<MeshShape> shapes_of(const Scene& scene, const Mesh& mesh, const std::vector<MeshPose>& poses,
                                  int threads) {
   const auto at = [&](std::size_t step) { return shape_of(scene, mesh, poses[step], threads); };
@@ -87,7 +91,7 @@ std::vector<MeshShape> shapes_of(const Scene& scene, const Mesh& mesh, const std
   }
   const double half = std::max(distance_to_line(quarters[0], quarters[1], quarters[2], 0.5),
                                distance_to_line(quarters[2], quarters[3], quarters[4], 0.5));
-  if (half / 4 <= allowed) {  // a smooth way: half the step, a quarter of the distance
+  if (half / 4 <= allowed) {  // in a smooth motion, half the step has a quarter of the distance
     return quarters;
   }
   std::vector<MeshShape> all;
@@ -153,7 +157,7 @@ bool RenderScene::is_in_pose(std::uint32_t scene_instance, const MeshPose& pose)
   });
 }
 
-void RenderScene::deform_meshes(const Scene& scene, const ShutterTimes& times) {
+void RenderScene::deform_meshes(const Scene& scene, const std::optional<ShutterTimes>& times) {
   for (std::size_t d = 0; d < deforming_.size(); ++d) {
     DeformingInstance& deforming = deforming_[d];
     const Instance& source = scene.instances[deforming.scene_instance];
@@ -174,7 +178,7 @@ void RenderScene::deform_meshes(const Scene& scene, const ShutterTimes& times) {
       const GeometryRecord& record = geometries[deforming.first_geometry + g];
       const Geometry& geometry = scene.meshes[mesh_index].geometries[record.scene_geometry];
       for (std::size_t k = 0; k < shapes.size(); ++k) {
-        // The middle one comes last and stays in `triangles`.
+        // The middle shape comes last and stays in `triangles`.
         const std::size_t key = (k + shapes.size() / 2 + 1) % shapes.size();
         const DeformedVertices& now = shapes[key][g];
         check_positions(now.positions, scene, mesh_index, record.scene_geometry);

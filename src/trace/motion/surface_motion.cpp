@@ -21,11 +21,11 @@ constexpr int kTilePx = 32;
 static_assert(kTilePx * kTilePx == kBatchSize);
 constexpr std::uint64_t kPlaceKey = 0x6d6f74696f6e21ULL;  // keeps alpha hashes apart from those of traced samples
 
-// An instance as it was at the earlier time, and as it is.
+// The state of an instance at the earlier time and now.
 struct InstancePast {
   Affine now, before;
   bool moved = false;
-  std::vector<DeformedVertices> shape;  // by the mesh's geometries; empty: it keeps its shape
+  std::vector<DeformedVertices> shape;  // at the earlier time, one per geometry of the mesh; empty: it was the same
 };
 
 InstancePast past_of(const Scene& scene, const RenderScene& render_scene, const ShadingInstance& instance,
@@ -40,7 +40,7 @@ InstancePast past_of(const Scene& scene, const RenderScene& render_scene, const 
   past.before = past.now;
   if (source.motion >= 0) {
     const Affine then = scene.motions[static_cast<std::size_t>(source.motion)].to_world_at(t_ns);
-    // Compared as rays see it: what stands still then stands still to the bit.
+    // Compared in the precision of rays, so that what stands still does so exactly.
     past.moved = ray_transform(then) != ray_transform(past.now);
     past.before = past.moved ? then : past.now;
   }
@@ -60,8 +60,8 @@ struct Corners {
   std::array<Vec3d, 3> now, before;
 };
 
-// Without perspective all rays have one direction. What they meet infinitely far away is the same at every pixel, and
-// was so while both cameras look the same way: each pixel has its own history.
+// In an orthographic view all rays have one direction, so that rays that miss see the same at every pixel. While both
+// cameras look in the same direction, such a pixel keeps its own history.
 bool one_sky(const Camera& a, const Camera& b) {
   const auto forward = [](const Camera& camera) { return rotate(camera.pose.orientation, {0, 0, -1}); };
   return a.projection.kind == ProjectionKind::orthographic && b.projection.kind == ProjectionKind::orthographic &&
@@ -103,7 +103,7 @@ class MotionTracer {
       }
       const CameraRays::Ray ray = rays_.ray(static_cast<float>(x) + 0.5F - 0.5F * static_cast<float>(width_px_),
                                             static_cast<float>(y) + 0.5F - 0.5F * static_cast<float>(height_px_));
-      // The same in every frame: a blended surface does not come and go.
+      // The same in every frame, so that a blended surface does not flicker.
       const auto alpha_key = static_cast<std::uint32_t>(
           hash64(kPlaceKey ^ (static_cast<std::uint64_t>(y) << 32U | static_cast<std::uint64_t>(x))));
       put_camera_ray(ray, alpha_key, count, work.rays);
@@ -167,7 +167,7 @@ class MotionTracer {
     out.earlier_normal.pixels[pixel] = facing(corners.before, earlier_view_.toward(before));
   }
 
-  // In the world, in double.
+  // The corners in world space, in double.
   [[nodiscard]] Corners corners_of(const GeometryRecord& record, std::uint32_t primitive,
                                    const InstancePast* past) const {
     const ShadingTriangle& triangle = render_scene_.triangles[record.first_triangle + primitive];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First hits of a whole frame, and where they were before.
+// Traces the first hits of a whole frame, and finds where they were at an earlier time.
 #pragma once
 
 #include "gazetrace/motion.hpp"

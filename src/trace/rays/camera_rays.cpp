@@ -24,7 +24,7 @@ CameraRays::CameraRays(const Camera& camera, int height_px)
       focus_distance_(static_cast<float>(camera.lens.focus_distance_m)),
       keys_(camera.shutter_poses) {
   const double half_height = perspective_ ? std::tan(camera.projection.yfov_rad / 2) : camera.projection.ymag_m;
-  // Square pixels: the width follows from the frame's shape.
+  // Pixels are square, so the width follows from the frame's shape.
   step_ = 2 * half_height / height_px;
   placement_ = place(camera.pose);
   near_ = static_cast<float>(camera.projection.near_m);
@@ -59,7 +59,7 @@ CameraRays::Ray CameraRays::ray(float x, float y, const Vec2f& lens, float time)
   if (!has_lens()) {
     return result;
   }
-  // All rays of a pixel meet on the plane in focus.
+  // All rays through the same point of the pixel meet on the plane in focus.
   const float cosine = dot(result.direction, at.forward);
   const float radius = lens_radius_ / static_cast<float>(step_);
   const Vec3f shift = at.right_step * (radius * lens.x) + at.up_step * (radius * lens.y);
@@ -67,7 +67,7 @@ CameraRays::Ray CameraRays::ray(float x, float y, const Vec2f& lens, float time)
   const float inverse = 1.0F / std::sqrt(dot(way, way));
   result.origin += shift;
   result.direction = way * inverse;
-  // The clipping planes are at depths, which this ray reaches at another length.
+  // The clipping planes are at given depths, which this ray reaches at other distances.
   const float depth_step = dot(result.direction, at.forward);
   result.tnear = near_ / depth_step;
   result.tfar = far_ / depth_step;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays of a camera from continuous pixel coordinates, with glTF's near and far planes, through a pinhole or a lens, at
-// an instant or while the shutter is open.
+// Makes the rays of a camera from continuous pixel coordinates, with glTF's near and far planes, through a pinhole or a
+// lens, at one time or while the shutter is open.
 #pragma once
 
 #include <cmath>
@@ -12,11 +12,11 @@
 
 namespace gazetrace {
 
-// The point of the unit disc for a point of the unit square, areas in proportion and neighbours kept: Shirley and Chiu,
-// "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997.
+// Maps a point of the unit square to the unit disc; areas keep their proportions and neighbours stay neighbours
+// (Shirley and Chiu, "A Low Distortion Map Between Disk and Square", JGT 2(3), 1997).
 Vec2f concentric_disk(const Vec2f& u);
 
-// Pixel coordinates are taken from the frame's centre, so that 16K frames keep their sub-pixel digits in float.
+// Pixel coordinates count from the frame's centre, so that sub-pixel digits of 16K frames are kept in float.
 class CameraRays {
  public:
   CameraRays(const Camera& camera, int height_px);
@@ -26,14 +26,14 @@ class CameraRays {
     float tnear, tfar;
     float cone_spread;  // angle of one pixel, rad (perspective)
   };
-  // Where the camera is and how it is turned.
+  // The camera's position and orientation.
   struct Placement {
     Vec3f origin, forward, right_step, up_step;
   };
 
   // x right, y down, in pixels from the frame's centre.
   [[nodiscard]] Ray ray(float x, float y) const { return ray(placement_, x, y); }
-  // `lens`: of the unit disc. `time`: 0 when the shutter opens, 1 when it closes.
+  // `lens` is a point of the unit disc. `time` is 0 when the shutter opens and 1 when it closes.
   [[nodiscard]] Ray ray(float x, float y, const Vec2f& lens, float time) const;
 
   [[nodiscard]] bool has_lens() const { return lens_radius_ > 0; }
@@ -51,7 +51,7 @@ class CameraRays {
   [[nodiscard]] Ray ray(const Placement& at, float x, float y) const {
     if (perspective_) {
       const Vec3f d = at.forward + at.right_step * x - at.up_step * y;
-      const float inverse = 1.0F / std::sqrt(dot(d, d));  // cosine to the view axis
+      const float inverse = 1.0F / std::sqrt(dot(d, d));  // the cosine of the angle to the view axis
       return {at.origin, d * inverse, near_ / inverse, far_ / inverse, spread_ * inverse};
     }
     return {at.origin + at.right_step * x - at.up_step * y, at.forward, near_, far_, 0.0F};
@@ -59,7 +59,7 @@ class CameraRays {
 
   bool perspective_ = true;
   Placement placement_;
-  double step_ = 0;  // of one pixel: tangent (perspective) or metres
+  double step_ = 0;  // size of a pixel: as a tangent (perspective) or in metres
   float near_ = 0, far_ = std::numeric_limits<float>::infinity();
   float spread_ = 0, width_ = 0;
   float lens_radius_ = 0, focus_distance_ = 1;  // m

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Building: device, geometry, instances.
+// Builds the scene of the ray library: device, geometry and instances.
 #include "trace/rays/embree.hpp"
 
 #if defined(__SSE__)
@@ -30,7 +30,7 @@ void alpha_filter(const RTCFilterFunctionNArguments* arguments) {
     const std::uint32_t key = query->keys[RTCRayN_id(arguments->ray, n, i)];
     const std::uint32_t geometry = RTCHitN_geomID(arguments->hit, n, i);
     const std::uint32_t instance = RTCHitN_instID(arguments->hit, n, i, 0);
-    // A function of the ray and the triangle only: the library may ask twice about one triangle.
+    // Depends on the ray and the triangle only, since the library may ask twice about one triangle.
     const std::uint32_t hashed = hash32(key ^ hash32(primitive ^ hash32(geometry ^ hash32(instance))));
     if (query->alpha->transparent(tag, primitive, RTCHitN_u(arguments->hit, n, i), RTCHitN_v(arguments->hit, n, i),
                                   hashed)) {
@@ -64,7 +64,7 @@ RTCScene RayScene::Impl::new_scene() const {
 void RayScene::Impl::attach(RTCScene scene, const RayGeometry& source, std::uint32_t id,
                             RTCBuildQuality quality) const {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Embree reads 16 bytes from the last vertex on; its own buffers are padded for that.
+  // Embree reads 16 bytes from the last vertex on, and pads its own buffers for that.
   void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f),
                                            source.positions.size());
   void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -100,7 +100,7 @@ RayScene::Impl::~Impl() {
 }
 
 RayScene::RayScene(int threads, bool high_quality, const AlphaSource* alpha) : impl_(std::make_unique<Impl>()) {
-  // 0 leaves the task library's own limit alone: a number here would hold for the whole process.
+  // 0 keeps the task library's own limit; any other number would apply to the whole process.
   const std::string config = "threads=" + std::to_string(threads < resolve_threads(0) ? std::max(threads, 0) : 0);
   impl_->device = rtcNewDevice(config.c_str());
   if (impl_->device == nullptr) {
@@ -132,7 +132,7 @@ std::uint32_t RayScene::add_deforming_mesh(const std::vector<RayGeometry>& geome
   impl_->meshes.push_back(scene);
   impl_->steps.push_back(1);
   const bool refit = update == MeshUpdate::refit;
-  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_DYNAMIC);  // a tree a geometry, and one above them
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_DYNAMIC);  // one BVH for each geometry, and one above them
   rtcSetSceneBuildQuality(scene, update == MeshUpdate::rebuild_high  ? RTC_BUILD_QUALITY_HIGH
                                  : update == MeshUpdate::rebuild_low ? RTC_BUILD_QUALITY_LOW
                                                                      : RTC_BUILD_QUALITY_MEDIUM);
@@ -228,8 +228,8 @@ std::string RayScene::library() const {
 }
 
 bool can_be_instanced(const Affine& to_world) {
-  // In float, as the library computes it: the inverse must exist and undo the matrix to three digits, and no axis may
-  // come near the 1e-17 at which the library gives up.
+  // Tested in float, as the library computes: the inverse must exist and invert the matrix to three digits, and no axis
+  // may come near the 1e-17 at which the library fails.
   const auto shortest = std::min({length(to_world.x), length(to_world.y), length(to_world.z)});
   const auto longest = std::max({length(to_world.x), length(to_world.y), length(to_world.z)});
   if (!(shortest > 1e-12) || !(longest < 1e12) || !is_finite(to_world.t)) {

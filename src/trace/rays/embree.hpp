@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only door to the ray library (Embree 3 or 4). No type of it appears here.
+// The only interface to the ray library (Embree 3 or 4), without any of its types.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@
 
 namespace gazetrace {
 
-// Opacity at a point of a triangle; `geometry` is the tag the geometry was added with.
+// Decides whether a ray passes a point of a triangle. `tag` is that of the RayGeometry.
 struct AlphaSource {
   virtual ~AlphaSource() = default;
-  // True when the surface lets the ray pass. `key` differs for every (ray, instance, primitive).
+  // True where the surface lets the ray pass. `key` is different for every (ray, instance, primitive).
   [[nodiscard]] virtual bool transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v,
                                          std::uint32_t key) const = 0;
 };
@@ -28,20 +28,20 @@ struct AlphaSource {
 struct RayGeometry {
   std::vector<Vec3f> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  bool alpha = false;  // ask the AlphaSource at every candidate hit
+  bool alpha = false;  // call the AlphaSource at every candidate hit
   std::uint32_t tag = 0;
 };
 
 // Column-major 3x4: x axis, y axis, z axis, translation.
 using RayTransform = std::array<float, 12>;
 
-// Embree 3 ends the process for rays with coordinates beyond 1.844e18 (its FLT_LARGE), and leaves out triangles there;
-// this is the bound with room to spare.
+// Embree 3 ends the process for rays with coordinates beyond 1.844e18 (its FLT_LARGE), and leaves out triangles there.
+// This limit has a margin.
 inline constexpr float kLargestCoordinate = 1e18F;
 
 enum class RayShape : std::uint8_t { single, packet, coherent_packet };
 
-// One ray that was refused because the ray library would end the process over it.
+// The geometry id of a ray that was rejected because the ray library would end the process.
 inline constexpr std::uint32_t kRejected = 0xfffffffeU;
 
 class RayScene {
@@ -51,26 +51,28 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // Geometry ids of the top scene count up from 0 in the order of add_geometry, then add_instance; geometries come
-  // first. Geometry ids inside a mesh are the index into `geometries`.
+  // Ids in the top scene count from 0 in the order of the calls of add_geometry and then add_instance; all geometries
+  // must be added first. Geometry ids inside a mesh are indices into `geometries`.
   std::uint32_t add_mesh(const std::vector<RayGeometry>& geometries);
   // A mesh whose vertices will change.
   std::uint32_t add_deforming_mesh(const std::vector<RayGeometry>& geometries, MeshUpdate update);
   std::uint32_t add_geometry(const RayGeometry& geometry);
   std::uint32_t add_instance(std::uint32_t mesh, const RayTransform& to_world);
-  // Moves an instance, for the next commit. Several transforms are at equal steps of the rays' time from 0 to 1, linear
-  // between; none: the instance is not there.
+  // Moves an instance, from the next commit on. Several transforms are those at equal steps of the rays' time from 0 to
+  // 1, interpolated linearly; without any, the instance is hidden.
   void place_instance(std::uint32_t id, std::span<const RayTransform> to_world);
-  // New vertices of a deforming mesh, as many as before: keys[k][g] are those of geometry g at step k of the rays' time
-  // from 0 to 1, linear between. Its instances must be placed again, or `refresh_instance` be called.
+  // Sets new vertices of a deforming mesh, as many as before: keys[k][g] are those of geometry g at step k of the rays'
+  // time from 0 to 1, interpolated linearly. Afterwards its instances must be placed again, or refreshed with
+  // `refresh_instance`.
   void deform_mesh(std::uint32_t mesh, std::span<const std::vector<std::vector<Vec3f>>> keys);
   void refresh_instance(std::uint32_t id);
-  // timed: rays carry a time.
+  // `timed`: the rays have a time.
   void commit(bool timed = false);
 
-  // Rays [0, count). A refused ray gets geometry == kRejected (a miss otherwise); the number refused is returned.
+  // Intersects rays [0, count). A rejected ray gets geometry == kRejected and is otherwise a miss. Returns the number
+  // of rejected rays.
   int intersect(const RayBatch& rays, int count, RayShape shape, HitBatch& hits) const;
-  // occluded[i]: 0 or 1, or 2 for a refused ray.
+  // Sets occluded[i] to 0 or 1, or to 2 for a rejected ray. Returns the number of rejected rays.
   int occluded(const RayBatch& rays, int count, RayShape shape, std::uint8_t* occluded) const;
 
   [[nodiscard]] std::uint64_t bytes() const;  // as the device's memory monitor counts them
@@ -82,8 +84,8 @@ class RayScene {
   std::unique_ptr<Impl> impl_;
 };
 
-// Keeps rays in the library's own layout and shoots them again with nothing but the library's calls: the time that a
-// tracer of these rays cannot go below. For measurements.
+// For measurements: keeps rays in the library's own layout and traces them again with nothing but the library's calls,
+// which takes the least time in which these rays can be traced.
 class RayRecorder {
  public:
   RayRecorder();
@@ -92,7 +94,7 @@ class RayRecorder {
   RayRecorder& operator=(const RayRecorder&) = delete;
 
   void record(const RayBatch& rays, int count, RayShape shape, bool occlusion);
-  // Every recorded ray once, in the order and packets of the recording; returns how many hit something.
+  // Traces every recorded ray once, in the order and packets of the recording; returns how many hit something.
   [[nodiscard]] std::uint64_t replay(const RayScene& scene) const;
   [[nodiscard]] std::uint64_t size() const;
 
@@ -101,10 +103,11 @@ class RayRecorder {
   std::unique_ptr<Impl> impl_;
 };
 
-// False for an instance matrix the ray library cannot take: no finite inverse, or axes beyond what float keeps apart.
+// False for an instance matrix that the ray library cannot handle: it has no finite inverse, or its axes differ by more
+// than float can represent.
 bool can_be_instanced(const Affine& to_world);
 
-// Flushes denormals to zero for the current thread while it lives; the former state comes back afterwards.
+// Flushes denormals to zero for the current thread during its lifetime; the former state is restored afterwards.
 class FlushDenormals {
  public:
   FlushDenormals();

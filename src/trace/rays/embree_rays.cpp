@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shooting: batches of rays, one by one or in packets.
+// Traces batches of rays, one by one or in packets.
 #include <algorithm>
 #include <limits>
 
@@ -8,7 +8,8 @@
 namespace gazetrace {
 namespace {
 
-// What the library sets. A ray to a light closer than rounding has a negative end of its own, and nothing in its way.
+// The value of tfar that the library sets for occluded rays. A ray to a light that is closer than rounding errors also
+// has a negative tfar, but is not occluded.
 constexpr float kOccluded = -std::numeric_limits<float>::infinity();
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays kept in the library's own layout, to be shot again.
+// Keeps rays in the library's own layout, to trace them again.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -13,7 +13,7 @@ struct RayRecorder::Impl {
     RayShape shape;
     bool occlusion;
     int count;
-    std::size_t first;  // into singles or packets
+    std::size_t first;  // index into singles or packets
     std::vector<std::uint32_t> keys;
   };
   std::vector<Call> calls;

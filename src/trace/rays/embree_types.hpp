@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the library's files share: its types behind ours, and rays in its layout.
+// What the files that use the ray library share: its types behind ours, and rays in its layout.
 #pragma once
 
 #if GAZETRACE_EMBREE_MAJOR >= 4
@@ -30,11 +30,11 @@ inline constexpr ContextFlags kIncoherent = RTC_INTERSECT_CONTEXT_FLAG_INCOHEREN
 inline constexpr ContextFlags kCoherent = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 #endif
 
-// The library hands its context back to the filter, which finds ours around it.
+// The library passes its context to the filter, which finds this struct around it.
 struct Query {
   LibraryContext context;
   const AlphaSource* alpha = nullptr;
-  const std::uint32_t* keys = nullptr;  // by ray id
+  const std::uint32_t* keys = nullptr;  // indexed by ray id
 #if GAZETRACE_EMBREE_MAJOR >= 4
   RTCIntersectArguments intersect_arguments;
   RTCOccludedArguments occluded_arguments;
@@ -86,7 +86,7 @@ struct Query {
 };
 static_assert(std::is_standard_layout_v<Query>, "the filter casts a pointer to the first member back");
 
-// NaN fails every comparison, so each test is written as what must hold.
+// NaN fails every comparison, so each test states what must hold.
 inline bool acceptable(const RayBatch& rays, std::size_t i) {
   const auto within = [](float x) { return std::fabs(x) <= kLargestCoordinate; };
   const bool direction = rays.dx[i] != 0 || rays.dy[i] != 0 || rays.dz[i] != 0;
@@ -99,8 +99,8 @@ inline bool acceptable(const RayBatch& rays, std::size_t i) {
 
 inline constexpr int kPacket = 16;
 
-// Copies 16 rays into the library's layout; lanes beyond `count` and refused rays are masked. Returns the number
-// refused.
+// Copies 16 rays into the library's layout; lanes beyond `count` and rejected rays are masked. Returns the number of
+// rejected rays.
 template <bool kTimed, class Rays>
 int fill_packet(const RayBatch& rays, std::size_t first, int count, Rays& packet, int* valid) {
   int refused = 0;
@@ -145,11 +145,11 @@ void fill_single(const RayBatch& rays, std::size_t i, RTCRay& ray) {
 }
 
 struct RayScene::Impl {
-  std::atomic<std::int64_t> bytes{0};  // outlives the device, whose last releases are still counted
+  std::atomic<std::int64_t> bytes{0};  // must outlive the device, whose last releases are still counted
   RTCDevice device = nullptr;
   RTCScene top = nullptr;
   std::vector<RTCScene> meshes;
-  std::vector<std::size_t> steps;  // of time that a mesh's vertices have
+  std::vector<std::size_t> steps;  // number of time steps of each mesh's vertices
   const AlphaSource* alpha = nullptr;
   bool high_quality = true;
   bool timed = false;
@@ -160,7 +160,7 @@ struct RayScene::Impl {
   template <bool kTimed>
   int occluded(const RayBatch& rays, int count, RayShape shape, std::uint8_t* occluded) const;
 
-  void check(const char* what) const;  // throws what the library reports
+  void check(const char* what) const;  // throws the error that the library reports, if any
   [[nodiscard]] RTCScene new_scene() const;
   void attach(RTCScene scene, const RayGeometry& source, std::uint32_t id,
               RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays and hits as structures of arrays: what the tracer and the ray library hand each other.
+// Rays and hits as structures of arrays, which the tracer and the ray library exchange.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,12 @@
 
 namespace gazetrace {
 
-// Paths that travel together. All arrays of a batch (about 160 bytes a path with its shadow ray) stay in a 1 MiB L2.
+// The number of paths that are traced together. All arrays of a batch (about 160 bytes per path with its shadow ray)
+// stay in a 1 MiB L2 cache.
 inline constexpr int kBatchSize = 1024;
 inline constexpr std::uint32_t kNoId = 0xffffffffU;
 
-// Sixteen entries longer than needed: arrays whose distance is a power of two would compete for the same cache sets.
+// Sixteen entries longer than needed, since arrays whose distance is a power of two compete for the same cache sets.
 template <class T>
 struct alignas(64) BatchArray {
   T data[kBatchSize + 16];
@@ -23,7 +24,7 @@ struct RayBatch {
   BatchArray<float> ox, oy, oz, dx, dy, dz;
   BatchArray<float> tnear, tfar;
   BatchArray<std::uint32_t> alpha_key;  // hash of (seed, frame, pixel, sample, vertex): the stochastic alpha test
-  BatchArray<float> time;               // 0..1 while the shutter is open; only where something moves meanwhile
+  BatchArray<float> time;               // 0..1 while the shutter is open; set only where something moves meanwhile
 };
 
 // `instance` is kNoId for triangles of the top scene; `geometry` is then the top scene's id, else the mesh's.

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kHalfWidth = 1.5;
 
-// Integral of the four-term Blackman-Harris window (Harris 1978) from its left end to x in [0, 1], over the whole.
+// The integral of the four-term Blackman-Harris window (Harris 1978) from its left end to x in [0, 1], divided by that
+// over the whole window.
 double blackman_harris_distribution(double x) {
   constexpr double a0 = 0.35875;
   constexpr double a1 = 0.48829;

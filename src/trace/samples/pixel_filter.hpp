@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in and around a pixel a sample falls. The filter is sampled, not weighted (filter importance sampling, Ernst et
-// al. 2006): every sample counts 1, whatever the filter.
+// Chooses where in or around a pixel a sample falls. The pixel filter is importance-sampled (Ernst et al. 2006), so
+// every sample has the weight 1 whatever the filter is.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace gazetrace {
 class PixelFilterSampler {
  public:
   explicit PixelFilterSampler(PixelFilter filter);
-  // From [0,1)^2 to an offset from the pixel's centre, in pixels.
+  // Maps [0,1)^2 to an offset from the pixel's centre, in pixels.
   [[nodiscard]] Vec2f offset(float u, float v) const {
     return box_ ? Vec2f{u - 0.5F, v - 0.5F} : Vec2f{lookup(u), lookup(v)};
   }
@@ -28,7 +28,7 @@ class PixelFilterSampler {
     return inverse_[i] + f * (inverse_[i + 1] - inverse_[i]);
   }
   bool box_ = true;
-  std::array<float, kSteps + 2> inverse_{};  // of the filter's distribution function, at equal steps
+  std::array<float, kSteps + 2> inverse_{};  // the inverse of the filter's distribution function, at equal steps
 };
 
 }  // namespace gazetrace

@@ -28,7 +28,7 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
       first_x = pixels_[0].x;
       first_y = pixels_[0].y;
     }
-    // Every pixel belongs to one site, so a site's first pixel names it.
+    // Every pixel belongs to one site only, so a site's first pixel identifies it.
     const SampleKey key = make_sample_key(
         seed_, frame_, (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x));
     const auto left = static_cast<int>(std::min<std::uint32_t>(last - sample_, kBatchSize));
@@ -43,7 +43,7 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
       int py = first_y;
       Vec2f inside = u;
       if (!whole) {
-        // One number chooses the pixel, and what is left of it the place inside.
+        // One number chooses the pixel, and its fraction the position inside.
         const float at = u.x * pixel_count;
         const auto chosen = std::min(static_cast<std::size_t>(at), pixels_.size() - 1);
         inside.x = std::min(at - static_cast<float>(chosen), 0x1.fffffep-1F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The explicit list of a tile's samples, made from the map a batch at a time: no ray is generated to be thrown away.
+// Makes the list of a tile's samples from the map, a batch at a time, so that no ray is generated only to be discarded.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ namespace gazetrace {
 
 inline constexpr SampleRange kAllSamples{0, std::numeric_limits<std::uint32_t>::max()};
 
-// Walks the sites [first, first + count) of a map in order, each with those of its samples 0, 1, 2, ... that are in
-// `range`: neighbouring entries are neighbours in the picture, so that packets of 16 are coherent.
+// Goes through the sites [first, first + count) of a map in order, and through those of each site's samples 0, 1, 2,
+// ... that are in `range`. Neighbouring entries are neighbours in the picture, so that packets of 16 rays are coherent.
 class SampleList {
  public:
   SampleList(const SamplingMap& map, std::uint32_t first_site, std::uint32_t site_count, std::uint64_t seed,
@@ -30,7 +30,7 @@ class SampleList {
         seed_(seed),
         frame_(frame) {}
 
-  // Fills up to kBatchSize samples and returns how many; 0 at the end.
+  // Fills in up to kBatchSize samples and returns their number, which is 0 at the end.
   int next(const PixelFilterSampler& filter, SampleBatch& out);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace gazetrace {
 
-// Rounds a site's sums into the arrays of `out`, which are long enough. `guides`: nullptr for none.
+// Rounds the sums of a site and stores them in the arrays of `out`, which must be long enough. `guides` may be nullptr.
 void store_rounded(const SiteSums& sums, const SiteGuideSums* guides, std::size_t site, SparseFrame& out);
 
 }  // namespace gazetrace

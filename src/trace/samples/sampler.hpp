@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers of a path as a pure function of (seed, frame, place, sample, dimension): Owen-scrambled Sobol points
-// by hashing (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020). Every dimension pair is the
+// The random numbers of a path are a pure function of (seed, frame, place, sample, dimension): Owen-scrambled Sobol
+// points by hashing (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020). Every pair of dimensions is the
 // two-dimensional Sobol sequence with its own shuffle of the sample order and its own scramble per axis, so that pairs
-// are independent of each other while each alone is stratified.
+// are independent of each other while each is stratified by itself.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,9 @@
 
 namespace gazetrace {
 
-// Fixed numbers: a switched-off feature never shifts another's random numbers.
+// The numbers of dimensions are fixed, so that switching a feature off does not change the random numbers of others.
 enum class PathDimension : std::uint32_t { pixel = 0, lens = 1, time = 2, first_bounce = 8 };
-// Per scattering event. `select` holds two unrelated one-dimensional decisions: x picks the light, y the lobe.
+// Dimensions of each scattering event. `select` is used for two unrelated decisions: x chooses the light, y the lobe.
 enum class BounceDimension : std::uint32_t {
   select = 0,
   light_uv = 1,
@@ -33,12 +33,12 @@ constexpr std::uint32_t dimension_of(int bounce, BounceDimension d) noexcept {
          static_cast<std::uint32_t>(d);
 }
 
-// One per place (pixel or site) of a frame; make it once and keep it in the path's state.
+// Identifies a place (pixel or site) in a frame; make it once and keep it in the path's state.
 struct SampleKey {
   std::uint64_t value = 0;
 };
 
-// `place` tells apart what shall be independent: a pixel index, or a site's origin with its region.
+// `place` must differ between what shall be independent, such as the first pixels of sites.
 constexpr SampleKey make_sample_key(std::uint64_t seed, std::int32_t frame, std::uint64_t place) noexcept {
   return {hash_combine(hash_combine(seed, static_cast<std::uint32_t>(frame)), place)};
 }
@@ -63,8 +63,8 @@ namespace sampler_detail {
   return x;
 }
 
-// The second Sobol dimension's generator is Pascal's triangle modulo 2, a Kronecker power of [1 1; 0 1]: five butterfly
-// steps. The result is bit-reversed, as scramble_reversed wants it.
+// The generator matrix of the second Sobol dimension is Pascal's triangle modulo 2, a Kronecker power of [1 1; 0 1], so
+// five butterfly steps compute it. The result is bit-reversed, as scramble_reversed needs it.
 [[gnu::always_inline]] inline constexpr std::uint32_t sobol_second_reversed(std::uint32_t index) noexcept {
   index ^= (index & 0xaaaaaaaaU) >> 1U;
   index ^= (index & 0xccccccccU) >> 2U;
@@ -74,7 +74,7 @@ namespace sampler_detail {
   return index;
 }
 
-// 24 bits, so that the result is exact and strictly below 1.
+// Uses 24 bits, so that the result is exact and strictly below 1.
 [[gnu::always_inline]] inline constexpr float to_unit_float(std::uint32_t x) noexcept {
   return static_cast<float>(x >> 8U) * 0x1p-24F;
 }
@@ -92,8 +92,8 @@ struct DimensionSeeds {
 
 }  // namespace sampler_detail
 
-// Two stratified numbers in [0, 1). Any power-of-two block of consecutive sample indices that starts at a multiple of
-// its length is a (0, m, 2)-net.
+// Two stratified numbers in [0, 1). Any block of 2^m consecutive sample indices that starts at a multiple of its length
+// is a (0, m, 2)-net.
 [[gnu::always_inline]] inline constexpr Vec2f sample_2d(SampleKey key, std::uint32_t sample_index,
                                                         std::uint32_t dimension) noexcept {
   using namespace sampler_detail;
@@ -103,7 +103,7 @@ struct DimensionSeeds {
           to_unit_float(reverse_bits(scramble_reversed(sobol_second_reversed(index), seeds.y)))};
 }
 
-// The first coordinate of sample_2d, for less.
+// The first coordinate of sample_2d, at less cost.
 constexpr float sample_1d(SampleKey key, std::uint32_t sample_index, std::uint32_t dimension) noexcept {
   using namespace sampler_detail;
   const DimensionSeeds seeds = seeds_of(key, dimension);
@@ -111,7 +111,8 @@ constexpr float sample_1d(SampleKey key, std::uint32_t sample_index, std::uint32
   return to_unit_float(reverse_bits(scramble_reversed(index, seeds.x)));
 }
 
-// For stochastic alpha: a plain hash, because a ray may meet the same triangle twice and must decide alike.
+// For stochastic alpha. A plain hash, because a ray may be tested against the same triangle twice and must get the same
+// result.
 constexpr float alpha_sample(SampleKey key, std::uint32_t sample_index, std::uint32_t vertex, std::uint32_t instance,
                              std::uint32_t geometry, std::uint32_t primitive) noexcept {
   const std::uint64_t who = (std::uint64_t{instance} << 32U) ^ (std::uint64_t{geometry} << 56U) ^ primitive;

@@ -67,8 +67,4 @@ void SurfaceSorter::finish_site(std::vector<SurfaceSums>& out) {
   used_ = 0;
 }
 
-bool needs_filtering(const SamplingMap& map, std::size_t site) {
-  return map.regions[map.sites[site].region].block_px > 1 || map.expected(site) < map.enough_samples;
-}
-
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A site's samples, sorted by the surface that they fall on.
+// Sorts the samples of a site by the surface that they hit.
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace gazetrace {
 
-// A sample joins the first surface of its kind whose normal is within acos(kSameNormal) and whose plane it lies in, up
-// to `kPlanePixels` times what a pixel covers there.
+// A sample joins the first surface of its kind whose normal is within acos(kSameNormal) of its own, and whose plane is
+// no farther away than `kPlanePixels` times the size of a pixel there.
 inline constexpr float kSameNormal = 0.8F;
 inline constexpr float kPlanePixels = 2.0F;
 
 class SurfaceSorter {
  public:
-  // pixel_m: what a pixel covers at 1 m (perspective), or anywhere.
+  // `pixel_m`: the size of a pixel at 1 m (perspective), or at any depth.
   SurfaceSorter(float pixel_m, bool perspective) : pixel_m_(pixel_m), perspective_(perspective) {}
 
-  // `radiance` is finite. Samples that miss, and those on surfaces that reflect nothing, are left out.
+  // `radiance` must be finite. Samples that miss, and those on unlit surfaces, are left out.
   void add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance);
   // Appends the site's surfaces and starts a new site.
   void finish_site(std::vector<SurfaceSums>& out);
@@ -34,7 +34,7 @@ class SurfaceSorter {
     std::uint32_t count = 0;
     SurfaceKind kind = SurfaceKind::diffuse;
     Vec3f first_normal, first_place;
-    float reach = 0;  // how far from the plane of its first sample others may lie, m
+    float reach = 0;  // how far others may be from the plane of its first sample, m
   };
   Surface& surface_of(SurfaceKind kind, const Vec3f& normal, const Vec3f& place);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An instance's place as rays and as shading need it.
+// Converts an instance's transform to what rays and shading need.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 
 namespace gazetrace {
 
-// Cofactor matrix: transforms normals of any invertible map, and of mirroring ones with the determinant's sign.
+// The cofactor matrix, which transforms normals for any invertible map; for mirroring ones with the sign of the
+// determinant.
 inline std::array<Vec3d, 3> cofactors(const Affine& a) {
   return {cross(a.y, a.z), cross(a.z, a.x), cross(a.x, a.y)};
 }
@@ -22,7 +23,7 @@ inline ShadingInstance shading_instance(const Affine& to_world) {
   const auto normal_map = cofactors(to_world);
   const double det = determinant(to_world);
   for (std::size_t k = 0; k < 3; ++k) {
-    // Divided by the cube root's square so that tiny and huge scales stay within float.
+    // Divided by |determinant|^(2/3), so that tiny and huge scales stay within float's range.
     instance.normal_axes[k] = to_float(normal_map[k] / (std::copysign(std::pow(std::fabs(det), 2.0 / 3.0), det)));
   }
   instance.flip = det < 0 ? -1.0F : 1.0F;

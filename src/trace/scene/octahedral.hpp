@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Unit vectors in 32 bits (Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
-// 3(2), 2014): the octahedron's net, 16 bits a coordinate, largest error 6e-5 rad.
+// 3(2), 2014): positions on the unfolded octahedron with 16 bits per coordinate; the largest error is 6e-5 rad.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ inline std::uint32_t encode_octahedral(const Vec3f& n) {
   return quantize(x) | (quantize(y) << 16U);
 }
 
-// Not normalised: on the octahedron, length 0.58 to 1.
+// The result is not normalised: it lies on the octahedron and has a length of 0.58 to 1.
 inline Vec3f decode_octahedral(std::uint32_t code) {
   const float x = static_cast<float>(static_cast<std::int32_t>(code << 16U) >> 16) * (1.0F / 32767.0F);
   const float y = static_cast<float>(static_cast<std::int32_t>(code) >> 16) * (1.0F / 32767.0F);

@@ -97,7 +97,7 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
   for (const Instance& instance : scene.instances) {
     ++uses[static_cast<std::size_t>(instance.mesh)];
   }
-  // A mesh used once has no use for an instance's indirection.
+  // A mesh that is used once is baked to world space, which saves the indirection of an instance.
   std::vector<char> baked(scene.instances.size(), 0);
   std::vector<char> shared(scene.meshes.size(), 0);
   std::size_t total = 0;
@@ -117,7 +117,8 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
   }
   triangles.reserve(total);
 
-  // Where something moves, all that stands still is one mesh: a new frame builds the small tree above anew, not this.
+  // Where something moves, everything that stands still is one mesh, so that a new frame rebuilds only the small BVH
+  // above.
   std::vector<RayGeometry> still;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (baked[i] == 0) {
@@ -173,7 +174,7 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
       continue;
     }
     const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
-    // A motion may begin anywhere; what cannot be instanced is hidden until it can.
+    // A motion may begin with any transform; an instance that the ray library cannot handle is hidden until it can.
     const bool usable = can_be_instanced(scene.instances[i].to_world);
     const Affine to_world = usable ? scene.instances[i].to_world : Affine{};
     ShadingInstance instance = shading_instance(to_world);
@@ -208,7 +209,7 @@ bool RenderScene::transparent(std::uint32_t tag, std::uint32_t primitive, float 
   if (material.base.texture != nullptr) {
     const float s = w * triangle.uv[0].x + u * triangle.uv[1].x + v * triangle.uv[2].x;
     const float t = w * triangle.uv[0].y + u * triangle.uv[1].y + v * triangle.uv[2].y;
-    // Level 0 always: averaged coverage under a threshold would thin out or thicken foliage with distance.
+    // Always level 0, since averaged coverage under a threshold would make foliage thinner or thicker with distance.
     alpha *= read_alpha(*material.base.texture, s, t);
   }
   if (triangle.extra != kNoId) {

@@ -15,7 +15,7 @@ Vec3d transform_normal(const std::array<Vec3d, 3>& columns, const Vec3d& v) {
   return columns[0] * v.x + columns[1] * v.y + columns[2] * v.z;
 }
 
-// Any tangent will do where texture coordinates have none.
+// Any tangent, for triangles whose texture coordinates give none.
 Vec3d some_tangent(const Vec3d& n) {
   const Vec3d axis = std::fabs(n.x) < 0.5 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   return normalize(cross(axis, n));
@@ -73,7 +73,7 @@ void shape_triangle(const SurfaceVertices& vertices, const std::array<std::uint3
 }
 
 void check_positions(const std::vector<Vec3f>& positions, const Scene& scene, std::size_t mesh, std::size_t primitive) {
-  const auto usable = [](float x) { return std::fabs(x) <= kLargestCoordinate; };  // NaN is not
+  const auto usable = [](float x) { return std::fabs(x) <= kLargestCoordinate; };  // false for NaN, too
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3f& p = positions[i];
     if (!usable(p.x) || !usable(p.y) || !usable(p.z)) {

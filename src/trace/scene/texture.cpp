@@ -38,11 +38,11 @@ const std::array<float, 256> kUnorm = [] {
 }();
 
 struct Axis {
-  int low, high;   // neighbouring texels
+  int low, high;   // two neighbouring texels
   float fraction;  // weight of `high`
 };
 
-// Coordinates are first brought into one period: any finite one is as good as another.
+// Coordinates are first reduced to one period, so any finite one is possible.
 inline Axis locate(float c, int size, TextureWrap wrap, bool nearest) {
   c = std::fabs(c) < 1e9F ? c : 0.0F;
   if (wrap == TextureWrap::repeat) {
@@ -71,11 +71,11 @@ inline Axis locate(float c, int size, TextureWrap wrap, bool nearest) {
 
 namespace {
 
-// Formats with two bytes a channel are rare: read one texture at a time.
+// Formats with two bytes per channel are rare, so their textures are read one at a time.
 [[gnu::noinline]] void read_deep_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
   const Vec4f c = read_texture(*group.coordinates.texture, u, v, level);
   if (group.base) {
-    out.base = {std::min(c.x, 1.0F), std::min(c.y, 1.0F), std::min(c.z, 1.0F)};  // floats may hold more than white
+    out.base = {std::min(c.x, 1.0F), std::min(c.y, 1.0F), std::min(c.z, 1.0F)};  // since floats may exceed white
   } else if (group.metal_rough) {
     out.roughness = std::clamp(c.y, 0.0F, 1.0F);
     out.metallic = std::clamp(c.z, 0.0F, 1.0F);

@@ -17,7 +17,6 @@ namespace {
 
 // As the program's own frames have it: an arm is what `gazetrace render` makes with its seed.
 constexpr std::int32_t kFirstFrame = 1;
-constexpr int kEdgeRays = 4;
 constexpr double kNoDifferenceJod = 10;
 
 ColorSettings plain_view() {
@@ -72,7 +71,7 @@ double Traced::spp() const {
   return samples / pixels;
 }
 
-Renderer::Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames)
+Renderer::Renderer(PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames)
     : tracer_(tracer),
       camera_(camera),
       view_(view_of_display(display_by_name("paper"), {}, size.width_px, size.height_px)),
@@ -97,7 +96,7 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
     shot.map = make_sampling_map(settings, view_, direction, context);
     traced.plan_ms += plan.elapsed_ms() / clip_frames_;
     const Stopwatch rays;
-    shot.sparse = tracer_.trace(camera_, frame, shot.map, trace);
+    shot.sparse = tracer_.at_rest().trace(camera_, frame, shot.map, trace);
     traced.trace_ms += rays.elapsed_ms() / clip_frames_;
     traced.frames.push_back(std::move(shot));
   }
@@ -105,26 +104,27 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
 }
 
 Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
-  const bool needs_guides = filter_needs_guides(filter);
-  if (needs_guides && !guides_) {
+  const Reconstruction reconstruction({filter, {}});
+  const std::optional<GuideSettings> wanted = reconstruction.guide_settings({});
+  if (wanted && !guides_) {
     const Stopwatch watch;
-    guides_ = tracer_.guides(camera_, view_.width_px, view_.height_px, {.edge_rays = kEdgeRays});
+    guides_ = tracer_.at_rest().guides(camera_, view_.width_px, view_.height_px, *wanted);
     guides_ms_ = watch.elapsed_ms();
   }
   const bool accumulates = traced.frames.size() > 1;
   if (accumulates && !motion_) {
     const Stopwatch watch;
-    motion_ = tracer_.surface_motion(camera_, view_.width_px, view_.height_px, {camera_, 0});
+    motion_ = tracer_.at_rest().surface_motion(camera_, view_.width_px, view_.height_px, {camera_, 0});
     motion_ms_ = watch.elapsed_ms();
   }
   Picture picture;
-  picture.guides_ms = needs_guides ? guides_ms_ : 0;
+  picture.guides_ms = wanted ? guides_ms_ : 0;
   picture.temporal_ms = accumulates ? motion_ms_ : 0;
   TemporalHistory history;
   for (std::size_t i = 0; i < traced.frames.size(); ++i) {
     const auto& [map, sparse] = traced.frames[i];
     const Stopwatch watch;
-    Frame frame = reconstruct(sparse, map, filter, 0, needs_guides ? &*guides_ : nullptr);
+    Frame frame = reconstruction.frame(sparse, map, wanted ? &*guides_ : nullptr);
     picture.reconstruct_ms += watch.elapsed_ms() / clip_frames_;
     if (accumulates) {
       FrameRequest request;

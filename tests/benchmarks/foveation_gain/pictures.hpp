@@ -44,7 +44,7 @@ struct Picture {
 class Renderer {
  public:
   // Pictures are the last ones of clips of so many frames; from 2 on they accumulate by reprojection.
-  Renderer(const PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames);
+  Renderer(PathTracer& tracer, const Camera& camera, const benchmark::FrameSize& size, int clip_frames);
 
   // `surfaces`: for filters that need guides. Empty gaze: for maps that need none.
   [[nodiscard]] Traced trace(const FoveationSettings& settings, const std::optional<Gaze>& gaze, int seed,
@@ -59,7 +59,7 @@ class Renderer {
   [[nodiscard]] const PlanarView& view() const { return view_; }
 
  private:
-  const PathTracer& tracer_;
+  PathTracer& tracer_;
   Camera camera_;
   PlanarView view_;
   int clip_frames_ = 1;

@@ -35,7 +35,8 @@ std::vector<Variant> make_variants() {
 
 std::vector<Variant> variants_of(const std::string& filter) {
   std::vector<Variant> variants = make_variants();
-  std::erase_if(variants, [&](const Variant& variant) { return variant.orders && filter_needs_guides(filter); });
+  const bool surfaces = Reconstruction({filter, {}}).needs().surfaces;
+  std::erase_if(variants, [&](const Variant& variant) { return variant.orders && surfaces; });
   return variants;
 }
 

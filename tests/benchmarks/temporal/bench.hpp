@@ -66,7 +66,7 @@ class Bench {
 
   [[nodiscard]] PipelineSettings settings_of(const AccumulateSettings& accumulate, const std::string& filter) const {
     PipelineSettings settings;
-    settings.filter = filter;
+    settings.reconstruction.filter = filter;
     settings.accumulate = accumulate;
     settings.history_digest = "none";
     settings.trace.seed = 1;
@@ -81,6 +81,7 @@ class Bench {
     PipelineSettings settings;
     settings.foveation.falloff = "uniform";
     settings.foveation.uniform_spp = reference_spp(still) / 2;
+    settings.reconstruction.filter = "linear";
     settings.trace.seed = seed;
     return settings;
   }

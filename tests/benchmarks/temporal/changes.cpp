@@ -87,8 +87,8 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
   with_board.instances.push_back({static_cast<std::int32_t>(with_board.meshes.size()) - 1, {}});
   PathTracer board_tracer(with_board, {});
   const FramePlan one = bench.plan(false, kFirst, kFirst);
-  const SurfaceMotion seen =
-      board_tracer.surface_motion(one.frames[0].camera, bench.width_px(), options.height_px, {one.frames[0].camera, 0});
+  const SurfaceMotion seen = board_tracer.at_rest().surface_motion(one.frames[0].camera, bench.width_px(),
+                                                                   options.height_px, {one.frames[0].camera, 0});
   const auto board_object = static_cast<std::uint32_t>(with_board.instances.size());
   const auto truth = [&](PathTracer& of) {
     const auto a = render(of, one, bench.reference_settings(1001, true));

@@ -8,10 +8,10 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_write.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,25 +19,11 @@ namespace {
 struct ConvertArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
-  OptionTable table;
   std::vector<std::string> steps;
   std::string output;
   bool overwrite = false;
   bool keep_ids = false;
 };
-
-// Experiments write participants, serial numbers and dates into messages. Stamps stay: a copy is for other programs,
-// which hold it against recordings of the same clock.
-void leave_out_identities(GazeLog& log) {
-  log.clock = without_dates(log.clock);
-  const std::size_t left_out =
-      std::erase_if(log.events, [](const GazeEvent& event) { return event.type == GazeEventType::message; });
-  if (left_out > 0) {
-    print_warnings(
-        {fmt::format("{}: {} left out, as messages may say who was recorded; --keep-ids keeps them", log.source,
-                     left_out == 1 ? "1 message is" : fmt::format("{} messages are", left_out))});
-  }
-}
 
 std::string file_names(const std::vector<BidsLeftover>& files) {
   std::string names;
@@ -83,7 +69,7 @@ int run_convert(const ConvertArguments& arguments) {
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   print_warnings(log.warnings);
   if (!arguments.keep_ids) {
-    leave_out_identities(log);
+    print_warnings(leave_out_identities(log));
   }
   if (!arguments.steps.empty()) {
     complete_recording_geometry(log, arguments.screen);
@@ -125,11 +111,13 @@ int run_convert(const ConvertArguments& arguments) {
 
 Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<ConvertArguments>();
-  add_gaze_file_options(arguments->table, arguments->gaze);
-  add_screen_options(arguments->table, arguments->screen);
-  arguments->table.group("Processing");
-  add_gaze_process_options(arguments->table, arguments->steps);
-  bind_options(app, arguments->table);
+  OptionSchema<ConvertArguments> schema;
+  schema.include(gaze_file_schema(), &ConvertArguments::gaze);
+  schema.include(screen_schema(), &ConvertArguments::screen);
+  schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
+                 &ConvertArguments::steps);
+  const auto options = std::make_shared<CommandOptions<ConvertArguments>>(std::move(schema));
+  options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output,
                  "gazetrace CSV, or BIDS where the name is one of it: sub-01_task-view_physio.tsv.gz, with a file for "
@@ -143,7 +131,7 @@ Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also writes messages of the experiment and dates in the description of the clock, which can identify a "
                "person or a session; stamps are written as they are either way");
-  return {[arguments] { return run_convert(*arguments); }, nullptr};
+  return {[arguments, options] { return run_convert(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

@@ -7,11 +7,11 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/output.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,7 +19,6 @@ namespace {
 struct EventsArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
-  OptionTable table;
   std::string method = "auto";
   std::optional<GazeDevice> device;
   std::string output;
@@ -81,25 +80,26 @@ int run_events(const EventsArguments& arguments) {
 
 Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<EventsArguments>();
-  OptionTable& table = arguments->table;
-  table.group("Events");
-  table.value(
-      "--method", arguments->method, "NAME",
+  OptionSchema<EventsArguments> schema;
+  schema.group("Events");
+  schema.value(
+      "--method", &EventsArguments::method, "NAME",
       "A method with its published constants ('gazetrace list event-methods'), or log: what the log itself says "
       "of its events; auto: ivt on a screen, ivt-hmd in a headset, ivt-attention without a head pose");
-  table.value(
-      "--device", arguments->device, "desktop|head-mounted",
+  schema.value(
+      "--device", &EventsArguments::device, "desktop|head-mounted",
       "What it was recorded on, where places or directions do not tell: gaze in degrees from a desktop tracker");
-  add_gaze_file_options(table, arguments->gaze);
-  add_screen_options(table, arguments->screen);
-  bind_options(app, table);
+  schema.include(gaze_file_schema(), &EventsArguments::gaze);
+  schema.include(screen_schema(), &EventsArguments::screen);
+  const auto options = std::make_shared<CommandOptions<EventsArguments>>(std::move(schema));
+  options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("-o,--output", arguments->output, "Events, .tsv or .json; default: as TSV to stdout")
       ->type_name("FILE");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces the file when it is there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Times of day of the log stay; otherwise such times count from its first sample");
-  return {[arguments] { return run_events(*arguments); }, nullptr};
+  return {[arguments, options] { return run_events(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

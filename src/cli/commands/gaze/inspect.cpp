@@ -7,8 +7,8 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 struct InspectArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
-  OptionTable table;
   std::string save_columns;
   std::string svg;
   std::string frame_image;
@@ -63,9 +62,11 @@ int run_inspect(const InspectArguments& arguments) {
 
 Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<InspectArguments>();
-  add_gaze_file_options(arguments->table, arguments->gaze);
-  add_screen_options(arguments->table, arguments->screen);
-  bind_options(app, arguments->table);
+  OptionSchema<InspectArguments> schema;
+  schema.include(gaze_file_schema(), &InspectArguments::gaze);
+  schema.include(screen_schema(), &InspectArguments::screen);
+  const auto options = std::make_shared<CommandOptions<InspectArguments>>(std::move(schema));
+  options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_option("--svg", arguments->svg, "Draws x and y over time with gaps and events, and the scanpath")
       ->type_name("OUT.svg");
@@ -77,7 +78,7 @@ Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also shows what can identify a person or a session, such as times of day; left out otherwise");
   app.add_flag("--json", arguments->json, "As JSON");
-  return {[arguments] { return run_inspect(*arguments); }, nullptr};
+  return {[arguments, options] { return run_inspect(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

@@ -4,11 +4,11 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
-#include "cli/inputs.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_synth.hpp"
 #include "gazetrace/gaze_write.hpp"
 #include "gazetrace/output.hpp"
+#include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 struct SynthArguments {
   SynthSettings synth;
   ScreenSettings screen;
-  OptionTable table;
   DurationNs duration{10'000'000'000};
   DurationNs fixation{300'000'000};
   bool head = false;
@@ -48,28 +47,33 @@ int run_synth(const SynthArguments& arguments) {
 
 Command add_gaze_synth_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<SynthArguments>();
-  SynthSettings& synth = arguments->synth;
-  OptionTable& table = arguments->table;
-  table.group("Synthetic gaze");
-  table.value("--duration", arguments->duration, "DURATION", "How long");
-  table.value("--rate", synth.rate_hz, "HZ", "Samples a second");
-  table.value("--seed", synth.seed, "N", "Same seed, same gaze");
-  table.flag("--head", arguments->head, "Directions from the head instead of places on a screen");
-  table.value("--fixation", arguments->fixation, "DURATION", "Mean duration of a fixation");
-  table.value("--amplitude", synth.amplitude_deg, "DEG", "Mean amplitude of a saccade, from 1 deg on");
-  table.value("--drift", synth.drift_deg, "DEG", "Root mean square of the slow wandering in fixations");
-  table.value("--pursuit-share", synth.pursuit_share, "SHARE", "Of the fixations that follow something instead");
-  table.value("--pursuit-speed", synth.pursuit_deg_s, "DEG/S", "How fast");
-  table.value("--noise", synth.noise_deg, "DEG", "Standard deviation of white noise in azimuth and in elevation");
-  table.value("--lost-share", synth.lost_share, "SHARE", "Of the samples that are lost, four at a time");
-  table.value("--blinks", synth.blinks_per_min, "N", "Blinks a minute");
-  add_screen_options(table, arguments->screen);
-  bind_options(app, table);
+  OptionSchema<SynthArguments> schema;
+  schema.group("Synthetic gaze");
+  schema.value("--duration", &SynthArguments::duration, "DURATION", "How long");
+  schema.value("--rate", at(&SynthArguments::synth, &SynthSettings::rate_hz), "HZ", "Samples a second");
+  schema.value("--seed", at(&SynthArguments::synth, &SynthSettings::seed), "N", "Same seed, same gaze");
+  schema.flag("--head", &SynthArguments::head, "Directions from the head instead of places on a screen");
+  schema.value("--fixation", &SynthArguments::fixation, "DURATION", "Mean duration of a fixation");
+  schema.value("--amplitude", at(&SynthArguments::synth, &SynthSettings::amplitude_deg), "DEG",
+               "Mean amplitude of a saccade, from 1 deg on");
+  schema.value("--drift", at(&SynthArguments::synth, &SynthSettings::drift_deg), "DEG",
+               "Root mean square of the slow wandering in fixations");
+  schema.value("--pursuit-share", at(&SynthArguments::synth, &SynthSettings::pursuit_share), "SHARE",
+               "Of the fixations that follow something instead");
+  schema.value("--pursuit-speed", at(&SynthArguments::synth, &SynthSettings::pursuit_deg_s), "DEG/S", "How fast");
+  schema.value("--noise", at(&SynthArguments::synth, &SynthSettings::noise_deg), "DEG",
+               "Standard deviation of white noise in azimuth and in elevation");
+  schema.value("--lost-share", at(&SynthArguments::synth, &SynthSettings::lost_share), "SHARE",
+               "Of the samples that are lost, four at a time");
+  schema.value("--blinks", at(&SynthArguments::synth, &SynthSettings::blinks_per_min), "N", "Blinks a minute");
+  schema.include(screen_schema(), &SynthArguments::screen);
+  const auto options = std::make_shared<CommandOptions<SynthArguments>>(std::move(schema));
+  options->bind(app, *arguments);
   app.add_option("-o,--output", arguments->output, "gazetrace CSV")->required()->type_name("OUT.csv");
   app.add_option("--truth", arguments->truth, "What really happened, as 'gaze events' writes it: .tsv or .json")
       ->type_name("FILE");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
-  return {[arguments] { return run_synth(*arguments); }, nullptr};
+  return {[arguments, options] { return run_synth(*arguments); }, {}};
 }
 
 }  // namespace gazetrace

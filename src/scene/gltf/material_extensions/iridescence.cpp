@@ -8,7 +8,7 @@ void read_iridescence(ExtensionReader& from, Material& to) {
   IridescenceParameters& film = to.iridescence;
   film.factor = from.number("iridescenceFactor", 0, 0, 1);
   film.ior = from.number("iridescenceIor", 1.3, 1, 100);
-  constexpr double kMost_nm = 1e6;  // waves no longer interfere in a film of a millimetre
+  constexpr double kMost_nm = 1e6;  // there is no interference in a film of a millimetre
   film.thickness_min_nm = from.number("iridescenceThicknessMinimum", 100, 0, kMost_nm);
   film.thickness_max_nm = from.number("iridescenceThicknessMaximum", 400, 0, kMost_nm);
   if (film.factor > 0) {

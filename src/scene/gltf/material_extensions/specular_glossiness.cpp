@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_materials_pbrSpecularGlossiness, archived, as the dielectric that KHR_materials_ior and KHR_materials_specular
-// describe: metalness 0, base colour = diffuse, ior 0 (f0 = 1) times specular colour = specular, roughness = 1 -
-// glossiness, whose texture keeps its place in the alpha channel of the specular one. A file with both descriptions is
-// shown by this one, as the extension demands.
-// What is lost: nothing of the parameters. The archived model reflected diffuse (1 - max(specular)) under every angle;
-// here the diffuse part gets what the reflection leaves, which is the same at normal incidence on smooth surfaces and
-// keeps the energy under the others.
+// The archived KHR_materials_pbrSpecularGlossiness, converted to a dielectric of KHR_materials_ior and
+// KHR_materials_specular: metalness 0, base colour = diffuse, ior 0 (f0 = 1) times specular colour = specular,
+// roughness = 1 - glossiness, whose texture stays in the alpha channel of the specular one. Where a file has both
+// descriptions, this one is used, as the extension requires. No parameter is lost. The archived model reflected diffuse
+// (1 - max(specular)) at every angle; here the diffuse part gets what the specular reflection leaves, which is the same
+// at normal incidence on smooth surfaces and conserves energy at other angles.
 #include "scene/gltf/material_extension.hpp"
 
 namespace gazetrace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// KHR_materials_volume. The thickness texture is not read: it tells rasterisers how far light goes inside, which rays
-// find out themselves. A missing attenuation distance is infinite.
+// KHR_materials_volume. The thickness texture is not read: it tells rasterisers how far light travels inside, which
+// rays find by themselves. A missing attenuation distance is infinite.
 #include "scene/gltf/material_extension.hpp"
 
 namespace gazetrace {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// One frame, from the request to the picture: every stage in its order, and nothing on disk. render_sequence()
+// (pipeline.hpp) makes sequences of files with it.
+#pragma once
+
+#include "gazetrace/color.hpp"
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/plan.hpp"
+#include "gazetrace/reconstruct.hpp"
+#include "gazetrace/temporal.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+struct FrameSettings {
+  FoveationSettings foveation;
+  TraceSettings trace;                    // what the filter needs is added to it: `surfaces`, `pass_through_samples`
+  ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
+  AccumulateSettings accumulate;
+  ExposureSettings exposure;
+  double enhance_contrast = 0;  // strength of enhance_contrast(), after accumulation and the choice of an exposure
+  int threads = 0;              // 0: all
+};
+
+// A frame depends on those before it.
+bool uses_history(const FrameSettings& settings);
+
+// Wall time of the stages, ms.
+struct StageTimes {
+  double plan_ms = 0;         // the sampling map
+  double trace_ms = 0;        // samples, those of the first look included, and putting the scene into its pose
+  double guides_ms = 0;       // first hits for the filter
+  double reconstruct_ms = 0;  // the filter, and the enhancement
+  double temporal_ms = 0;     // accumulation, and where surfaces were before
+  double exposure_ms = 0;
+};
+
+// The samples of a frame and where they went.
+struct TracedFrame {
+  SamplingMap map;
+  SparseFrame sparse;
+  TraceStats first_look;  // of the samples that told where there is contrast; none unless `contrast_strength` asks
+  StageTimes times;       // plan_ms and trace_ms
+};
+
+struct RenderedFrame {
+  Frame frame;             // linear, after accumulation and enhancement
+  double exposure_ev = 0;  // stops; the radiance is not multiplied by it
+  SamplingMap map;
+  TraceStats samples, first_look;  // as SparseFrame::stats and TracedFrame::first_look
+  StageTimes times;
+};
+
+class FrameRenderer {
+ public:
+  // Error(usage) for a filter that is not there. Keeps a reference to `tracer`, which must outlive it; several
+  // renderers may share one.
+  FrameRenderer(PathTracer& tracer, FrameSettings settings);
+
+  [[nodiscard]] const FrameSettings& settings() const { return settings_; }
+
+  // map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure -> enhance.
+  // A function of its arguments: without history (uses_history) a frame has the same bits alone and in a sequence.
+  // `history` is that of the frames before, and then that of this frame as well; it begins empty.
+  [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
+
+  // The first two stages alone. With TraceSettings::samples their sums are what can be joined with other parts'.
+  [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;
+
+ private:
+  PathTracer* tracer_;
+  FrameSettings settings_;
+  Reconstruction reconstruction_;
+};
+
+// What the sampling map of a frame depends on beside settings, view and gaze.
+MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);
+
+}  // namespace gazetrace

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of a job: the one definition of each. To add one, add a field to JobSettings and a definition to the file
+// of src/job/schema/ that holds its neighbours.
+#pragma once
+
+#include "gazetrace/job_settings.hpp"
+#include "gazetrace/option_schema.hpp"
+
+namespace gazetrace {
+
+using JobSchema = OptionSchema<JobSettings>;
+// Made once and never changed.
+const JobSchema& job_schema();
+
+// Parts of it that other commands have as well, under the same names.
+OptionSchema<GazeFileSettings> gaze_file_schema();             // how a log is read, without the log itself
+OptionSchema<std::vector<std::string>> gaze_process_schema();  // the steps of processing
+OptionSchema<ScreenSettings> screen_schema();                  // where the viewer sat
+OptionSchema<ColorSettings> color_config_schema();             // the OpenColorIO config
+
+}  // namespace gazetrace

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be asked of a run, as typed values. resolve.hpp makes loaded and checked things of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/camera.hpp"
+#include "gazetrace/option_values.hpp"
+#include "gazetrace/pipeline.hpp"
+
+namespace gazetrace {
+
+// Where the viewer's eye is.
+struct ScreenSettings {
+  std::string name;
+  std::optional<Vec2d> size_px, size_cm;
+  std::optional<double> distance_cm;
+  std::optional<Vec2d> eye_cm;
+  std::optional<double> pixels_per_degree;
+};
+
+struct GazeFileSettings {
+  std::string path;
+  GazeReadOptions read;
+  std::string columns_file;  // a column map; what `read` says goes over it
+  std::optional<double> min_confidence;
+  bool sort = false;
+};
+
+// One run. In the order of the options, which job_schema.hpp describes.
+struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
+  std::string preset;
+
+  // Scene and light
+  std::string scene;
+  std::string animation;
+  std::string environment = "auto";
+  double environment_rotation_deg = 0;
+  double environment_ev = 0;
+
+  // Scene camera
+  std::string camera;
+  std::string camera_path;
+  bool camera_from_gaze = false;
+  CameraReadOptions camera_read;
+  std::optional<FrameRate> camera_fps;  // empty: that of the video
+  CameraPlacement camera_placement;     // `camera_up` says what z_up is
+  WorldUp camera_up = WorldUp::y;
+  CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
+  std::optional<Vec3d> eye, target;
+  Vec3d up{0, 1, 0};
+  std::optional<double> yfov_deg;
+
+  // Lens and shutter
+  Aperture aperture;
+  std::optional<double> focus_distance_m;
+  double sensor_height_mm = 24;
+  Shutter shutter;
+
+  // Gaze and screen
+  GazeFileSettings gaze;
+  std::optional<Vec2d> gaze_at;
+  GazeInterpolation gaze_mode = GazeInterpolation::hold;
+  NoGazePolicy gaze_missing = NoGazePolicy::hold;
+  DurationNs gaze_max_age{500'000'000};
+  DurationNs gaze_max_gap{75'000'000};
+  DurationNs gaze_offset;
+  double gaze_scale = 1.0;
+  std::optional<DurationNs> gaze_start;
+  DurationNs gaze_latency;
+  bool keep_ids = false;
+  std::vector<std::string> gaze_process;  // of parse_gaze_step()
+  std::vector<std::string> gaze_anchors;  // LOG=VIDEO
+  bool gaze_uncertainty = false;
+  std::optional<double> gaze_accuracy_deg, gaze_precision_deg;
+  ScreenSettings screen;
+  std::string recording_screen;  // a name or a file
+  std::optional<GazeTransfer> gaze_transfer;
+  std::optional<FrameRect> frame_rect;
+
+  // Frames
+  SizePx size{1280, 720};
+  FrameRate fps;
+  std::optional<FrameList> frames;
+  DurationNs start;
+  bool part = false;
+
+  // How it is rendered
+  FoveationSettings foveation;
+  TraceSettings trace;
+  BvhQuality bvh = BvhQuality::high;
+  std::string filter = "auto";  // filter_of() says which
+  std::optional<std::uint64_t> pass_through_samples;
+  double enhance_contrast = 0;
+  AccumulateSettings accumulate;
+  std::string checkpoint, resume_from;
+  std::int32_t checkpoint_every = 0, preroll = 0;
+  std::optional<PixelIndex> only_pixel;
+  int threads = 0;
+
+  // Exposure, colour, files
+  ExposureSettings exposure;
+  DurationNs exposure_smoothing;
+  ColorSettings color;
+  std::vector<std::string> outputs;
+  ExrSettings exr;
+  DisplaySettings picture;
+  std::string map_pattern;
+  bool overwrite = false;
+  bool resume = false;
+
+  // What the program says
+  std::string progress = "auto";
+  bool quiet = false;
+};
+
+}  // namespace gazetrace

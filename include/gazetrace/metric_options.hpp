@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which metrics are measured and what they are told of the display: the options that comparisons and sweeps share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gazetrace/compare.hpp"
+#include "gazetrace/option_schema.hpp"
+
+namespace gazetrace {
+
+struct MetricChoice {
+  std::vector<std::string> metrics;
+  ComparisonSettings settings;  // `metrics` are not yet in it
+  bool correct_border = false;
+};
+OptionSchema<MetricChoice> metric_schema();
+
+}  // namespace gazetrace

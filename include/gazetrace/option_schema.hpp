@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: Apache-2.0
+// One definition for each option: what it is called, what it means, where its value lies in a structure of settings,
+// and what it touches. The command line, settings files, help, run records, digests, warnings and the reference page
+// are all made from these definitions.
+//
+// A schema is not bound to any settings: its accessors take them. So settings are plain values that can be copied, and
+// any number of them can exist at the same time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "gazetrace/option_values.hpp"
+
+namespace gazetrace {
+
+// What of an option decides pixels.
+enum class Decides : std::uint8_t {
+  nothing,  // threads, names of outputs, progress
+  text,     // its value
+  file,     // the content of the file that it names, or its text where it names no file
+};
+
+// flag: true or false; value: one value; list: one value of several parts, an array in a settings file; repeated: may
+// be given several times.
+enum class OptionShape : std::uint8_t { flag, value, list, repeated };
+
+// What an option touches. A set, because some touch several things.
+enum class Touch : std::uint16_t {
+  scene = 1U << 0U,     // what is pictured: the scene's file and its animation
+  camera = 1U << 1U,    // from where it is pictured, lens and shutter included
+  light = 1U << 2U,     // the environment
+  gaze = 1U << 3U,      // where the viewer looked, and when
+  screen = 1U << 4U,    // where the viewer sat
+  frames = 1U << 5U,    // which pictures there are, and of what size
+  sampling = 1U << 6U,  // where samples go; a uniform frame does not heed it
+  tracing = 1U << 7U,   // how a path is traced
+  filter = 1U << 8U,    // how pixels are made of samples
+  history = 1U << 9U,   // what a frame takes from those before it
+  color = 1U << 10U,    // exposure and view
+  output = 1U << 11U,   // files
+  speed = 1U << 12U,    // how fast it goes, and nothing else
+  talk = 1U << 13U,     // what the program says
+};
+
+class Touches {
+ public:
+  constexpr Touches() = default;
+  constexpr Touches(Touch touch) : bits_(static_cast<std::uint16_t>(touch)) {}  // NOLINT: a set of one
+  [[nodiscard]] constexpr bool has(Touch touch) const { return (bits_ & static_cast<std::uint16_t>(touch)) != 0; }
+  [[nodiscard]] constexpr bool any() const { return bits_ != 0; }
+  [[nodiscard]] constexpr Touches without(Touch touch) const {
+    Touches rest = *this;
+    rest.bits_ = static_cast<std::uint16_t>(rest.bits_ & ~static_cast<unsigned>(touch));
+    return rest;
+  }
+  friend constexpr Touches operator|(Touches a, Touches b) {
+    Touches both;
+    both.bits_ = static_cast<std::uint16_t>(a.bits_ | b.bits_);
+    return both;
+  }
+  friend constexpr bool operator==(Touches, Touches) = default;
+
+ private:
+  std::uint16_t bits_ = 0;
+};
+constexpr Touches operator|(Touch a, Touch b) {
+  return Touches(a) | Touches(b);
+}
+std::vector<std::string> touch_names(Touches touches);  // "sampling", "filter"
+
+// What an option means where many settings are measured against one reference (sweep.hpp).
+enum class Trait : std::uint8_t {
+  trade_off,      // makes rendering cheaper and less true: a reference takes it from no row
+  needs_truth,    // a trade-off of which no value is right by itself: the reference must be told
+  own_seed,       // every row and every reference has its own
+  clock,          // decides when a camera that follows the head is where
+  gaze_source,    // decides whose gaze it is
+  one_run,        // means something to a single run only, such as the names of its files
+  always_stated,  // told in a paragraph on methods also where it is the default
+};
+
+// Bounds of a number, or of every part of a value of several numbers. The bounds themselves belong to the range, unless
+// `above` says that the lower one does not.
+struct OptionRange {
+  std::optional<double> least, most;
+  bool above = false;
+  std::string remedy;  // what to do outside; may be empty
+
+  [[nodiscard]] bool holds(double value) const;
+  [[nodiscard]] std::string words() const;  // "0..1000", "above 0"
+};
+
+// What is known of an option without its settings.
+struct Option {
+  std::string flags;  // "-o,--output"; without dashes: the command line takes it by its position
+  std::string name;   // "output"
+  std::string group;  // a heading for people, which decides nothing
+  std::string unit;   // stands for the value in the help: "DEG", "a|b|c"
+  std::string help;
+  OptionShape shape = OptionShape::value;
+  Decides decides = Decides::text;
+  Touches touches;
+  std::vector<Trait> traits;
+  std::optional<OptionRange> range;
+  std::vector<std::string> needs;       // what has to be given as well, in words with settings in back quotes
+  std::vector<std::string> idle_words;  // when it does nothing, likewise
+  std::vector<std::string> defaults;    // its values in settings that nothing was done to; empty: not set
+  // Error(usage, place, ...) unless the option takes these values.
+  std::function<void(const std::vector<std::string>& values, const std::string& place)> check;
+
+  [[nodiscard]] bool is(Trait trait) const;
+};
+using OptionList = std::vector<const Option*>;
+[[nodiscard]] const Option* find_option(const OptionList& options, const std::string& name);
+[[nodiscard]] std::vector<std::string> names_of(const OptionList& options);
+
+// When an option does nothing beside the others.
+template <class S>
+struct IdleRule {
+  std::string words;                               // for the reference page: "without gaze"
+  std::function<bool(const S&)> holds;             //
+  std::function<std::string(const S&)> said = {};  // as a warning says it, where that is not `words`
+};
+
+// An option of settings of the type S.
+template <class S>
+struct OptionOf : Option {
+  // Sets the value. Error(usage, place, ...) for values that the option does not take.
+  std::function<void(S& settings, const std::vector<std::string>& values, const std::string& place)> assign;
+  // The present value in canonical form; empty: not set.
+  std::function<std::vector<std::string>(const S& settings)> values;
+  // Its numbers, for the range.
+  std::function<std::vector<double>(const S& settings)> numbers;
+  std::vector<IdleRule<S>> idle;
+
+  OptionOf& decides_nothing() {
+    decides = Decides::nothing;
+    return *this;
+  }
+  OptionOf& decides_by_file() {
+    decides = Decides::file;
+    return *this;
+  }
+  OptionOf& with(Trait trait) {
+    traits.push_back(trait);
+    return *this;
+  }
+  OptionOf& within(double least, double most, std::string remedy = {}) {
+    range = OptionRange{least, most, false, std::move(remedy)};
+    return *this;
+  }
+  OptionOf& at_least(double least, std::string remedy = {}) {
+    range = OptionRange{least, std::nullopt, false, std::move(remedy)};
+    return *this;
+  }
+  OptionOf& above(double least, std::optional<double> most = std::nullopt) {
+    range = OptionRange{least, most, true, {}};
+    return *this;
+  }
+  OptionOf& need(std::string words) {
+    needs.push_back(std::move(words));
+    return *this;
+  }
+  OptionOf& idle_when(const std::vector<IdleRule<S>>& rules) {
+    for (const IdleRule<S>& rule : rules) {
+      idle_words.push_back(rule.words);
+      idle.push_back(rule);
+    }
+    return *this;
+  }
+};
+
+// The way from settings to a part of them: at(&JobSettings::foveation, &FoveationSettings::uniform_spp).
+template <class... Members>
+constexpr auto at(Members... members) {
+  return [members...](auto& settings) -> auto& {
+    return (settings.*....*members);
+  };
+}
+
+namespace option_detail {
+
+template <class T>
+struct Bare {
+  using Type = T;
+};
+template <class T>
+struct Bare<std::optional<T>> {
+  using Type = T;
+};
+
+// Of several parts: an array in a settings file.
+template <class T>
+constexpr bool is_list() {
+  return std::is_same_v<T, Vec2d> || std::is_same_v<T, Vec3d> || std::is_same_v<T, FrameRect> ||
+         std::is_same_v<T, PixelIndex> || std::is_same_v<T, std::array<std::uint32_t, 3>> ||
+         std::is_same_v<T, std::array<int, 2>> || std::is_same_v<T, std::array<double, 2>> ||
+         std::is_same_v<T, std::vector<std::string>>;
+}
+
+template <class T>
+std::vector<double> numbers_in(const T& value) {
+  if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>) {
+    return {static_cast<double>(value)};
+  } else if constexpr (std::is_same_v<T, DurationNs>) {
+    return {static_cast<double>(value.ns)};
+  } else if constexpr (std::is_same_v<T, Vec2d>) {
+    return {value.x, value.y};
+  } else if constexpr (std::is_same_v<T, ExposureSettings>) {
+    return {value.ev};
+  } else if constexpr (std::is_same_v<T, std::array<std::uint32_t, 3>> || std::is_same_v<T, std::array<int, 2>> ||
+                       std::is_same_v<T, std::array<double, 2>>) {
+    return {value.begin(), value.end()};
+  } else {
+    return {};
+  }
+}
+
+}  // namespace option_detail
+
+template <class S>
+class OptionSchema {
+ public:
+  // Heading of the options that follow.
+  void group(std::string heading) { group_ = std::move(heading); }
+
+  template <class Access>
+  OptionOf<S>& flag(const std::string& flags, Access access, Touches touches, const std::string& help) {
+    return value(flags, access, "", touches, help);
+  }
+  template <class Access>
+  OptionOf<S>& value(const std::string& flags, Access access, const std::string& unit, Touches touches,
+                     const std::string& help) {
+    if constexpr (std::is_member_object_pointer_v<Access>) {
+      return value(flags, at(access), unit, touches, help);
+    } else {
+      using Held = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
+      using T = typename option_detail::Bare<Held>::Type;
+      constexpr bool is_optional = !std::is_same_v<Held, T>;
+      OptionOf<S> option = start(flags, unit, touches, help);
+      option.shape = std::is_same_v<T, bool>       ? OptionShape::flag
+                     : option_detail::is_list<T>() ? OptionShape::list
+                                                   : OptionShape::value;
+      option.assign = [access](S& settings, const auto& values, const auto& place) {
+        if constexpr (is_optional) {
+          T parsed{};
+          parse_value(values.at(0), place, parsed);
+          access(settings) = parsed;
+        } else {
+          parse_value(values.at(0), place, access(settings));
+        }
+      };
+      option.check = [](const auto& values, const auto& place) {
+        T scratch{};
+        parse_value(values.at(0), place, scratch);
+      };
+      option.values = [access](const S& settings) -> std::vector<std::string> {
+        const Held& held = access(settings);
+        if constexpr (is_optional) {
+          return held ? std::vector{format_value(*held)} : std::vector<std::string>();
+        } else {
+          std::string text = format_value(held);
+          return text.empty() ? std::vector<std::string>() : std::vector{std::move(text)};
+        }
+      };
+      option.numbers = [access](const S& settings) -> std::vector<double> {
+        const Held& held = access(settings);
+        if constexpr (is_optional) {
+          return held ? option_detail::numbers_in(*held) : std::vector<double>();
+        } else {
+          return option_detail::numbers_in(held);
+        }
+      };
+      return finish(std::move(option));
+    }
+  }
+  // For settings of which nobody asks what they touch.
+  template <class Access>
+  OptionOf<S>& flag(const std::string& flags, Access access, const std::string& help) {
+    return value(flags, access, "", Touches(), help);
+  }
+  template <class Access>
+  OptionOf<S>& value(const std::string& flags, Access access, const std::string& unit, const std::string& help) {
+    return value(flags, access, unit, Touches(), help);
+  }
+  template <class Access>
+  OptionOf<S>& repeated(const std::string& flags, Access access, const std::string& unit, const std::string& help) {
+    return repeated(flags, access, unit, Touches(), help);
+  }
+  // May be given several times; values are taken as they are.
+  template <class Access>
+  OptionOf<S>& repeated(const std::string& flags, Access access, const std::string& unit, Touches touches,
+                        const std::string& help) {
+    if constexpr (std::is_member_object_pointer_v<Access>) {
+      return repeated(flags, at(access), unit, touches, help);
+    } else {
+      OptionOf<S> option = start(flags, unit, touches, help);
+      option.shape = OptionShape::repeated;
+      option.assign = [access](S& settings, const auto& values, const auto& /*place*/) { access(settings) = values; };
+      option.check = [](const auto& /*values*/, const auto& /*place*/) {};
+      option.values = [access](const S& settings) { return access(settings); };
+      option.numbers = [](const S& /*settings*/) { return std::vector<double>(); };
+      return finish(std::move(option));
+    }
+  }
+
+  // An option as it is, under its own heading.
+  OptionOf<S>& add(OptionOf<S> option) { return finish(std::move(option)); }
+
+  // All options of a part of these settings, with their headings; returns the last of them.
+  template <class Part, class Access>
+  OptionOf<S>& include(const OptionSchema<Part>& part, Access access) {
+    if constexpr (std::is_member_object_pointer_v<Access>) {
+      return include(part, at(access));
+    } else {
+      for (const OptionOf<Part>& inner : part.options()) {
+        OptionOf<S> option;
+        static_cast<Option&>(option) = inner;
+        option.assign = [inner = inner.assign, access](S& settings, const auto& values, const auto& place) {
+          inner(access(settings), values, place);
+        };
+        option.values = [inner = inner.values, access](const S& settings) { return inner(access(settings)); };
+        option.numbers = [inner = inner.numbers, access](const S& settings) { return inner(access(settings)); };
+        for (const IdleRule<Part>& rule : inner.idle) {
+          IdleRule<S> of_whole;
+          of_whole.words = rule.words;
+          of_whole.holds = [holds = rule.holds, access](const S& settings) { return holds(access(settings)); };
+          if (rule.said) {
+            of_whole.said = [said = rule.said, access](const S& settings) { return said(access(settings)); };
+          }
+          option.idle.push_back(std::move(of_whole));
+        }
+        finish(std::move(option));
+      }
+      return options_.back();
+    }
+  }
+
+  [[nodiscard]] const std::vector<OptionOf<S>>& options() const { return options_; }
+  [[nodiscard]] const OptionOf<S>* find(const std::string& name) const {
+    for (const OptionOf<S>& option : options_) {
+      if (option.name == name) {
+        return &option;
+      }
+    }
+    return nullptr;
+  }
+  [[nodiscard]] OptionList list() const {
+    OptionList list;
+    for (const OptionOf<S>& option : options_) {
+      list.push_back(&option);
+    }
+    return list;
+  }
+  // The same options under other headings, in the same order.
+  [[nodiscard]] OptionSchema with_headings(const std::function<std::string(const Option&)>& heading) const {
+    OptionSchema other = *this;
+    for (OptionOf<S>& option : other.options_) {
+      option.group = heading(option);
+    }
+    return other;
+  }
+
+ private:
+  [[nodiscard]] OptionOf<S> start(const std::string& flags, const std::string& unit, Touches touches,
+                                  const std::string& help) const {
+    OptionOf<S> option;
+    option.flags = flags;
+    const std::size_t dashes = flags.find("--");
+    option.name = dashes == std::string::npos ? flags : flags.substr(dashes + 2, flags.find(',', dashes) - dashes - 2);
+    option.group = group_;
+    option.unit = unit;
+    option.help = help;
+    option.touches = touches;
+    return option;
+  }
+  OptionOf<S>& finish(OptionOf<S> option) {
+    option.defaults = option.values(S{});
+    options_.push_back(std::move(option));
+    return options_.back();
+  }
+
+  std::string group_ = "Options";
+  std::vector<OptionOf<S>> options_;
+};
+
+// unknown_name_message() without the list of all that is known, where that would be a hundred: the nearest is enough.
+std::string unknown_among_many(const std::string& what, const std::string& given,
+                               const std::vector<std::string>& known);
+
+// An option of a settings file, as the command line would carry its values.
+struct TomlSetting {
+  std::string name;
+  std::vector<std::string> values;
+  std::string place;  // path:line
+};
+// The settings of a TOML text, every value checked by its option. Error(input) with path:line for a syntax error, an
+// unknown key (with the nearest known one) or a value that its option does not take. `remedy` is what to do about an
+// unknown key. An empty array sets nothing.
+std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
+                                            const std::string& remedy);
+// Every option with its value, its help as a comment; options that are not set stand in a comment. `values_of` gives an
+// option's values in canonical form.
+std::string settings_as_toml(const OptionList& options,
+                             const std::function<std::vector<std::string>(const Option&)>& values_of,
+                             const std::string& title);
+
+}  // namespace gazetrace

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/option_reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace gazetrace {
+namespace {
+
+constexpr const char* kHead =
+    "# Options of a job\n\n"
+    "What `gazetrace render` and `gazetrace plan` take on the command line, in a settings file (`--config`) and from "
+    "the\n"
+    "program that embeds the library. In a settings file the name stands without dashes: `spp = 16`.\n\n"
+    "This page is made by `gazetrace list options --markdown` from the definitions in `src/job/schema/`; a test holds "
+    "it\n"
+    "against them. *Touches* says what an option has an influence on: options that touch `sampling` mean nothing to a\n"
+    "uniform frame, and what only touches `speed`, `output` or `talk` changes no pixel's light.\n";
+
+bool is_positional(const Option& option) {
+  return !option.flags.starts_with('-');
+}
+
+std::string shown_name(const Option& option) {
+  return is_positional(option) ? option.name : "--" + option.name;
+}
+
+// "DEG" as it is; what has characters that markdown reads otherwise is code.
+std::string default_text(const Option& option) {
+  if (option.defaults.empty()) {
+    return "not set";
+  }
+  return fmt::format("`{}`", fmt::join(option.defaults, "`, `"));
+}
+
+std::string joined(const std::vector<std::string>& texts, const char* between) {
+  return fmt::format("{}", fmt::join(texts, between));
+}
+
+// Markdown would take what stands in angle brackets for a tag.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '<' || c == '>' || c == '*' || c == '_') {
+      result += '\\';
+    }
+    result += c;
+  }
+  return result;
+}
+
+std::string option_section(const Option& option) {
+  std::string text = fmt::format("\n### `{}{}{}`\n\n{}\n\n", shown_name(option), option.unit.empty() ? "" : " ",
+                                 option.unit, escaped(option.help));
+  text += fmt::format("Default: {}.", default_text(option));
+  if (option.range) {
+    text += fmt::format(" Range: {}.", option.range->words());
+  }
+  if (option.shape == OptionShape::repeated) {
+    text += " May be given several times.";
+  }
+  text += fmt::format(" Touches: {}.", joined(touch_names(option.touches), ", "));
+  if (option.decides == Decides::file) {
+    text += " The content of the file counts, not its name.";
+  }
+  if (!option.needs.empty()) {
+    text += fmt::format(" Needs {}.", joined(option.needs, ", "));
+  }
+  if (!option.idle_words.empty()) {
+    text += fmt::format(" Does nothing {}.", joined(option.idle_words, "; "));
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string options_as_markdown(const JobSchema& schema) {
+  std::string text = kHead;
+  std::string group;
+  for (const Option* option : schema.list()) {
+    if (option->group != group) {
+      group = option->group;
+      text += "\n## " + group + "\n";
+    }
+    text += option_section(*option);
+  }
+  return text;
+}
+
+std::string options_as_text(const JobSchema& schema) {
+  const OptionList options = schema.list();
+  std::size_t width = 0;
+  for (const Option* option : options) {
+    width = std::max(width, shown_name(*option).size());
+  }
+  std::string text;
+  std::string group;
+  for (const Option* option : options) {
+    if (option->group != group) {
+      group = option->group;
+      text += (text.empty() ? "" : "\n") + group + "\n";
+    }
+    text += fmt::format("  {:<{}}  {}\n", shown_name(*option), width, option->help);
+  }
+  return text;
+}
+
+std::string options_as_json(const JobSchema& schema) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Option* option : schema.list()) {
+    nlohmann::ordered_json one{{"name", option->name},        {"group", option->group},
+                               {"unit", option->unit},        {"help", option->help},
+                               {"default", option->defaults}, {"touches", touch_names(option->touches)},
+                               {"needs", option->needs},      {"idle", option->idle_words}};
+    if (option->range) {
+      one["range"] = option->range->words();
+    }
+    json.push_back(std::move(one));
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be said of a job's settings alone.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/resolve.hpp"
+#include "job/outputs.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Infos>
+void check_registry_name(const char* option, const char* what, const std::string& name, const Infos& infos) {
+  std::vector<std::string> known;
+  known.reserve(infos.size());
+  for (const auto& info : infos) {
+    known.push_back(info.name);
+  }
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    throw Error(ErrorKind::usage, option, unknown_name_message(what, name, known));
+  }
+}
+
+// So many screens away the eye looks along the screen, and squares of pixels are still numbers.
+constexpr double kMaxGazeScreens = 1000;
+
+void check_ranges(const JobSettings& job, const JobSchema& schema) {
+  for (const OptionOf<JobSettings>& option : schema.options()) {
+    if (!option.range) {
+      continue;
+    }
+    const std::vector<double> numbers = option.numbers(job);
+    for (const double number : numbers) {
+      if (!option.range->holds(number)) {
+        const std::string text = numbers.size() == 1 ? option.values(job).front() : fmt::format("{}", number);
+        throw Error(ErrorKind::usage, "`" + option.name + "`",
+                    fmt::format("{} is {}{}", text, option.range->least && option.range->most ? "outside " : "not ",
+                                option.range->words()),
+                    option.range->remedy);
+      }
+    }
+  }
+}
+
+void check_history_options(const JobSettings& job) {
+  const AccumulateSettings& accumulate = job.accumulate;
+  if (accumulate.blend > 0 && accumulate.blend < kLeastBlend) {
+    throw Error(ErrorKind::usage, "`accumulate-blend`",
+                fmt::format("a share of {} leaves nothing of the current frame", accumulate.blend),
+                fmt::format("give {} or more, or 0 for weights by samples", kLeastBlend));
+  }
+  PipelineSettings history;
+  history.accumulate = accumulate;
+  history.exposure = job.exposure;
+  history.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  for (const auto& [option, given] :
+       {std::pair("`checkpoint`", !job.checkpoint.empty()), std::pair("`resume-from`", !job.resume_from.empty()),
+        std::pair("`preroll`", job.preroll > 0)}) {
+    if (given && !uses_history(history)) {
+      throw Error(ErrorKind::usage, option, "frames do not depend on those before them",
+                  "leave it out, or give `accumulate` or `exposure-smoothing`");
+    }
+  }
+  if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
+      Reconstruction({filter_of(job).name, {}}).needs().surfaces) {
+    throw Error(ErrorKind::usage, "`accumulate-order`",
+                fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
+                "give after, or another `filter`");
+  }
+  if (job.preroll > 0 && !job.resume_from.empty()) {
+    throw Error(ErrorKind::usage, "`preroll`", "the history comes from `resume-from`", "give one of them");
+  }
+  if (job.checkpoint_every > 0 && job.checkpoint.empty()) {
+    throw Error(ErrorKind::usage, "`checkpoint-every`", "there is no file for it", "give `checkpoint`");
+  }
+  std::error_code ignored;
+  if (fs::is_directory(job.checkpoint, ignored)) {
+    throw Error(ErrorKind::usage, "`checkpoint`", fmt::format("'{}' is a folder", job.checkpoint), "name a file");
+  }
+}
+
+void check_sample_range(const JobSettings& job) {
+  if (!job.trace.samples) {
+    return;
+  }
+  PipelineSettings settings;
+  settings.foveation = job.foveation;
+  settings.reconstruction.filter = filter_of(job).name;
+  settings.accumulate = job.accumulate;
+  settings.exposure = job.exposure;
+  settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  settings.trace.only_pixel = job.only_pixel;
+  if (const std::string reason = needs_all_samples(settings); !reason.empty()) {
+    throw Error(ErrorKind::usage, "`sample-range`", reason, "leave it out, or change that");
+  }
+  const FoveationSettings& foveation = job.foveation;
+  if (foveation.falloff == "uniform" && !foveation.budget_spp && !foveation.budget_samples &&
+      job.trace.samples->end > foveation.uniform_spp) {
+    throw Error(
+        ErrorKind::usage, "`sample-range`",
+        fmt::format("{} is beyond the {} samples of a pixel", format_value(*job.trace.samples), foveation.uniform_spp),
+        "end it there, or raise `spp`");
+  }
+}
+
+}  // namespace
+
+void check_job(const Job& whole, const JobSchema& schema) {
+  const JobSettings& job = whole.settings;
+  check_registry_name("`falloff`", "falloff", job.foveation.falloff, falloffs());
+  check_foveation(job.foveation);
+  check_registry_name("`filter`", "filter", filter_of(job).name, reconstruction_filters());
+  if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job).name, {}}).filter().blurs_blocks) {
+    throw Error(ErrorKind::usage, "`enhance-contrast`",
+                fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
+                "give `filter` linear, push-pull or tent");
+  }
+  check_ranges(job, schema);
+  check_history_options(job);
+  check_sample_range(job);
+  if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
+    throw Error(ErrorKind::usage, "`gaze-at`",
+                fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
+                "give fractions of the screen, 0..1 on it");
+  }
+  gaze_steps_of(job.gaze_process);  // names and values of the steps
+  if (job.only_pixel && (job.only_pixel->x >= job.size.width || job.only_pixel->y >= job.size.height)) {
+    throw Error(
+        ErrorKind::usage, "`only-pixel`",
+        fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height));
+  }
+  if (job.progress != "auto" && job.progress != "always" && job.progress != "never") {
+    throw Error(ErrorKind::usage, "`progress`",
+                unknown_name_message("progress mode", job.progress, {"auto", "always", "never"}));
+  }
+  const OutputSettings output = output_settings(job);
+  check_output_settings(output, job.frames && job.frames->frames.size() > 1);
+  check_display_image_size(output.display, job.size.width, job.size.height);
+  if (job.overwrite && job.resume) {
+    throw Error(ErrorKind::usage, "`resume`", "`overwrite` starts over and `resume` goes on", "give one of them");
+  }
+  check_output_folders(output, job.checkpoint);
+}
+
+FilterChoice filter_of(const JobSettings& job) {
+  if (job.filter != "auto") {
+    return {job.filter, {}};
+  }
+  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;  // without any all frames are uniform
+  return choose_filter({.foveated = has_gaze && job.foveation.falloff != "uniform",
+                        .blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs(),
+                        .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
+                                             job.accumulate.order == AccumulateOrder::before,
+                        .enhances_contrast = job.enhance_contrast > 0,
+                        .part_of_samples = job.trace.samples.has_value()});
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frames there are, where the job does not say it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gazetrace/error.hpp"
+#include "job/choose_frames.hpp"
+
+namespace gazetrace {
+namespace {
+
+// More than four days at 24 a second: a wrong unit, not a wish.
+constexpr double kMostFrames = 1e7;
+
+std::int64_t frames_until(double end_ns, const JobSettings& job) {
+  // The last frame whose middle, start + (n - 1/2) / fps, is not after the end.
+  const double span_s = (end_ns - static_cast<double>(job.start.ns)) * 1e-9;
+  const double frames = span_s * static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
+  if (!(frames < kMostFrames)) {
+    throw Error(ErrorKind::usage, "`frames`", fmt::format("camera path or gaze log stand for {:.3g} frames", frames),
+                "name the frames to render, or check `gaze-scale`, `gaze-offset` and `fps`");
+  }
+  return static_cast<std::int64_t>(std::max(std::floor(frames + 0.5), 1.0));
+}
+
+std::int64_t last_motion_ns(const Scene* scene) {
+  std::int64_t last = 0;
+  if (scene != nullptr) {
+    for (const Motion& motion : scene->motions) {
+      last = std::max(last, motion.end_ns);
+    }
+    for (const Deformation& deformation : scene->deformations) {
+      last = std::max(last, deformation.end_ns);
+    }
+  }
+  return last;
+}
+
+}  // namespace
+
+// As long as the camera's path; without one, the gaze log; without one, the scene's bodies.
+std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
+                                        std::int64_t taken_off_ns, const Scene* scene, std::string& decision) {
+  if (job.frames) {
+    decision = format_frame_list(job.frames->frames);
+    return job.frames->frames;
+  }
+  std::int64_t count = 1;
+  std::string reason = "nothing moves";
+  if (!camera.is_static) {
+    count = frames_until(static_cast<double>(camera.end_ns), job);
+    reason = "as long as the camera's path";
+  } else if (log != nullptr && log->samples.size() > 1) {
+    const GazeMapping mapping = gaze_mapping(job, log, taken_off_ns);
+    const std::int64_t begin_ns = mapping.event_ns.value_or(log->samples.front().t_ns);
+    const double span_ns = static_cast<double>(log->samples.back().t_ns) - static_cast<double>(begin_ns);
+    count = frames_until(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns), job);
+    reason = "as long as the gaze log";
+  } else if (const std::int64_t end_ns = last_motion_ns(scene); end_ns > 0) {
+    count = frames_until(static_cast<double>(end_ns), job);
+    reason = "as long as the scene's animation";
+  }
+  std::vector<std::int32_t> frames(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i] = static_cast<std::int32_t>(i) + 1;
+  }
+  decision = fmt::format("{} ({}; `frames` changes it)", format_frame_list(frames), reason);
+  return frames;
+}
+
+// Up to `count` frames before the first, as far apart as the first two; none before frame 1.
+std::vector<std::int32_t> frames_before(const std::vector<std::int32_t>& frames, std::int32_t count) {
+  const std::int64_t step = frames.size() > 1 ? std::int64_t{frames[1]} - frames[0] : 1;
+  std::vector<std::int32_t> before;
+  for (std::int64_t k = count; k > 0; --k) {
+    const std::int64_t frame = frames.front() - k * step;
+    if (frame >= 1) {
+      before.push_back(static_cast<std::int32_t>(frame));
+    }
+  }
+  return before;
+}
+
+}  // namespace gazetrace

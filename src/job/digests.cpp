@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The digests that say whether a finished frame is still the one that is wanted.
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "gazetrace/resolve.hpp"
+#include "gazetrace/version.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ocio_file(const JobSettings& job) {
+  if (!job.color.config.empty()) {
+    return job.color.config;
+  }
+  const char* variable = std::getenv("OCIO");
+  return variable == nullptr ? std::string() : variable;
+}
+
+std::vector<std::string> existing(const std::vector<std::string>& paths) {
+  std::vector<std::string> found;
+  std::error_code ignored;
+  for (const std::string& path : paths) {
+    if (!path.empty() && fs::is_regular_file(path, ignored)) {
+      found.push_back(path);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
+  const fs::path camera_path(job.camera_path);
+  // COLMAP's lenses stand beside its pictures.
+  const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
+  std::vector<std::string> files = existing({job.environment, job.camera_path, lenses.string(), job.gaze.path,
+                                             job.gaze.columns_file, job.screen.name, job.recording_screen,
+                                             ocio_file(job), job.foveation.parameters.table.path, job.resume_from});
+  if (!job.scene.empty()) {
+    const std::vector<std::string> scene = scene_files(job.scene);
+    files.insert(files.end(), scene.begin(), scene.end());
+  }
+  return digest_files(files, job.threads);
+}
+
+void digest_job(const JobSettings& job, const std::vector<std::int32_t>& frames,
+                const std::map<std::string, std::string>& files, PipelineSettings& settings, const JobSchema& schema) {
+  std::vector<std::pair<std::string, std::string>> parts{{"version", kVersion}};
+  const auto digest_of = [&](const std::string& path) {
+    const auto found = files.find(path);
+    return found == files.end() ? std::string("missing") : found->second;
+  };
+  for (const OptionOf<JobSettings>& option : schema.options()) {
+    const std::vector<std::string> values = option.values(job);
+    const std::string text = values.empty() ? std::string() : fmt::format("{}", fmt::join(values, "\n"));
+    if (option.decides == Decides::file && files.contains(text)) {
+      parts.emplace_back(option.name, digest_of(text));
+    } else if (option.decides != Decides::nothing) {
+      parts.emplace_back(option.name, text);
+    }
+  }
+  for (const std::string& path : job.scene.empty() ? std::vector<std::string>() : scene_files(job.scene)) {
+    parts.emplace_back("scene file", digest_of(path));
+  }
+  parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
+  settings.history_digest = digest_settings(parts);
+  settings.settings_digest = uses_history(settings)
+                                 ? digest_of_sequence(settings.history_digest, format_frame_list(frames), job.preroll,
+                                                      job.resume_from.empty() ? "" : digest_of(job.resume_from))
+                                 : settings.history_digest;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// How gaze enters a run: its clock, what is done to it, and how far it is to be trusted.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_process.hpp"
+#include "job/gaze_inputs.hpp"
+#include "job/screen.hpp"
+
+namespace gazetrace {
+namespace {
+
+// A gaze that never moves is a log of one sample that never grows old.
+GazeLog fixed_gaze(const Vec2d& at) {
+  GazeLog log;
+  log.source = "`gaze-at`";
+  log.format = "fixed";
+  GazeSample sample;
+  sample.u = at.x;
+  sample.v = at.y;
+  log.samples.push_back(sample);
+  return log;
+}
+
+// `screen` is where the pictures are watched; of the recording it says only what nobody else does.
+GazeLog read_job_gaze(const JobSettings& job) {
+  GazeReadOptions options = read_options(job.gaze, {});
+  options.fallback_display = screen_geometry(job.screen);
+  if (!job.recording_screen.empty()) {
+    options.display = known_screen(job.recording_screen, "`recording-screen`");
+  }
+  return load_gaze_log(job.gaze.path, options);
+}
+
+constexpr const char* kAnchor = "`gaze-anchor`";
+
+ClockAnchor parse_anchor(const std::string& text, const GazeLog& log, std::int64_t taken_off_ns) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos) {
+    throw Error(ErrorKind::usage, kAnchor, fmt::format("'{}' has no video time", text),
+                "write LOG=VIDEO, such as 12.5s=0s or 'TRIAL 1=2s'");
+  }
+  DurationNs video;
+  parse_value(text.substr(equals + 1), kAnchor, video);
+  const std::string place = text.substr(0, equals);
+  DurationNs time;
+  try {
+    parse_value(place, kAnchor, time);
+    time.ns -= taken_off_ns;
+  } catch (const Error&) {
+    time.ns = time_of_message(log, place);  // not a time: a message
+  }
+  return {time.ns, video.ns};
+}
+
+GazeMapping mapping_from_anchors(const JobSettings& job, const GazeLog& log, std::int64_t taken_off_ns,
+                                 std::string* decision) {
+  if (job.gaze_start || job.gaze_offset.ns != 0 || job.gaze_scale != 1.0) {
+    throw Error(ErrorKind::usage, kAnchor, "anchors already say start, offset and scale",
+                "leave `gaze-start`, `gaze-offset` and `gaze-scale` out");
+  }
+  std::vector<ClockAnchor> anchors;
+  for (const std::string& text : job.gaze_anchors) {
+    anchors.push_back(parse_anchor(text, log, taken_off_ns));
+  }
+  const ClockFit fit = fit_clock(anchors);
+  if (decision != nullptr) {
+    *decision =
+        fmt::format("log time {} ns is video time {:.6f} s", fit.event_ns, static_cast<double>(fit.offset_ns) * 1e-9);
+    if (anchors.size() > 1) {
+      *decision += fmt::format(", scale {:.9f} ({:+.1f} ppm), by {} anchors; residual {:.3f} ms rms, {:.3f} ms at most",
+                               fit.scale, (fit.scale - 1) * 1e6, anchors.size(), fit.rms_residual_ns * 1e-6,
+                               fit.max_residual_ns * 1e-6);
+    }
+  }
+  GazeMapping mapping;
+  mapping.scale = fit.scale;
+  mapping.offset_ns = fit.offset_ns;
+  mapping.event_ns = fit.event_ns;
+  return mapping;
+}
+
+}  // namespace
+
+GazeMapping gaze_mapping(const JobSettings& job, const GazeLog* log, std::int64_t taken_off_ns, std::string* decision) {
+  GazeMapping mapping;
+  if (job.gaze_at) {
+    mapping.max_age_ns = std::numeric_limits<std::int64_t>::max();
+    mapping.offset_ns = job.start.ns;
+    return mapping;
+  }
+  if (!job.gaze_anchors.empty() && log != nullptr) {
+    mapping = mapping_from_anchors(job, *log, taken_off_ns, decision);
+  } else {
+    mapping.scale = job.gaze_scale;
+    mapping.offset_ns = job.gaze_offset.ns;
+    if (job.gaze_start) {
+      std::int64_t event_ns = 0;
+      if (__builtin_sub_overflow(job.gaze_start->ns, taken_off_ns, &event_ns)) {
+        throw Error(ErrorKind::usage, "`gaze-start`", "lies ages away from the log");
+      }
+      mapping.event_ns = event_ns;
+    }
+  }
+  mapping.interpolation = job.gaze_mode;
+  mapping.no_gaze = job.gaze_missing;
+  mapping.max_age_ns = job.gaze_max_age.ns;
+  mapping.max_interpolation_gap_ns = job.gaze_max_gap.ns;
+  return mapping;
+}
+
+GazeColumns merged_columns(const GazeFileSettings& gaze) {
+  return gaze.columns_file.empty() ? gaze.read.columns
+                                   : merge_gaze_columns(load_gaze_columns(gaze.columns_file), gaze.read.columns);
+}
+
+GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings& screen) {
+  GazeReadOptions options = gaze.read;
+  options.columns = merged_columns(gaze);
+  options.min_confidence = gaze.min_confidence.value_or(options.min_confidence);
+  options.display = screen_geometry(screen);
+  options.eye_cm = screen.eye_cm;
+  options.unordered = gaze.sort ? UnorderedPolicy::sort : UnorderedPolicy::error;
+  return options;
+}
+
+GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
+  return load_gaze_log(gaze.path, read_options(gaze, screen));
+}
+
+std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_off_ns) {
+  taken_off_ns = 0;
+  if (job.gaze_at) {
+    if (!job.gaze.path.empty()) {
+      throw Error(ErrorKind::usage, "`gaze-at`", "a fixed gaze and a gaze log exclude each other",
+                  "give one of `gaze` and `gaze-at`");
+    }
+    return fixed_gaze(*job.gaze_at);
+  }
+  if (job.gaze.path.empty()) {
+    return std::nullopt;
+  }
+  GazeLog log = read_job_gaze(job);
+  if (!job.keep_ids) {
+    LogWithoutTimesOfDay hidden = without_times_of_day(std::move(log));
+    log = std::move(hidden.log);
+    taken_off_ns = hidden.taken_off_ns.value_or(0);
+  }
+  complete_recording_geometry(log, job.screen);
+  return log;
+}
+
+void complete_recording_geometry(GazeLog& log, const ScreenSettings& screen) {
+  const std::optional<DisplayGeometry> given = screen_geometry(screen);
+  if (!given || log.kind != GazeKind::screen || knows_angles(log)) {
+    return;
+  }
+  log.recording_geometry = completed_geometry(log.recording_geometry.value_or(*given), *given);
+}
+
+std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts) {
+  std::vector<GazeStep> steps;
+  for (const std::string& text : texts) {
+    steps.push_back(parse_gaze_step(text));
+  }
+  return steps;
+}
+
+std::optional<GazeUncertainty> gaze_uncertainty(const JobSettings& job, const GazeLog& log) {
+  if (!job.gaze_uncertainty) {
+    if (job.gaze_accuracy_deg || job.gaze_precision_deg) {
+      throw Error(ErrorKind::usage, job.gaze_accuracy_deg ? "`gaze-accuracy`" : "`gaze-precision`",
+                  "says how far the fovea grows, and it is not asked to", "add `gaze-uncertainty`");
+    }
+    return std::nullopt;
+  }
+  const GazeUncertainty stated = uncertainty_of(log);
+  const GazeUncertainty uncertainty{job.gaze_accuracy_deg.value_or(stated.accuracy_deg),
+                                    job.gaze_precision_deg.value_or(stated.precision_deg)};
+  if (std::isnan(uncertainty.accuracy_deg)) {
+    throw Error(ErrorKind::input, log.source, "has no validation that would tell the tracker's accuracy",
+                "give `gaze-accuracy` DEG");
+  }
+  if (std::isnan(uncertainty.precision_deg)) {
+    throw Error(ErrorKind::input, log.source, "has no fixation to measure the tracker's precision in",
+                "give `gaze-precision` DEG");
+  }
+  if (!(uncertainty.accuracy_deg >= 0) || !(uncertainty.precision_deg >= 0)) {
+    throw Error(ErrorKind::usage, "`gaze-uncertainty`", "an error of a tracker is not negative");
+  }
+  return uncertainty;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "gazetrace/job.hpp"
+
+namespace gazetrace {
+
+Warnings idle_option_warnings(const Job& job, const JobSchema& schema) {
+  Warnings warnings;
+  for (const OptionOf<JobSettings>& option : schema.options()) {
+    if (!job.is_given(option.name) || option.values(job.settings) == option.defaults) {
+      continue;
+    }
+    const auto rule = std::find_if(option.idle.begin(), option.idle.end(),
+                                   [&](const IdleRule<JobSettings>& one) { return one.holds(job.settings); });
+    if (rule != option.idle.end()) {
+      warnings.push_back(
+          fmt::format("`{}` does nothing {}", option.name, rule->said ? rule->said(job.settings) : rule->words));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace gazetrace

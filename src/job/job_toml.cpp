@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings files: TOML, a key for each option.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/option_schema.hpp"
+#include "job/toml_values.hpp"
+
+namespace gazetrace {
+namespace {
+
+// A number stands bare only when reading it gives the very same text back.
+bool is_bare_number(const std::string& text) {
+  std::int64_t whole = 0;
+  const char* end = text.data() + text.size();
+  if (const auto result = std::from_chars(text.data(), end, whole); result.ec == std::errc() && result.ptr == end) {
+    return fmt::format("{}", whole) == text;
+  }
+  double number = 0;
+  if (const auto result = std::from_chars(text.data(), end, number); result.ec == std::errc() && result.ptr == end) {
+    return fmt::format("{}", number) == text && text.find_first_of(".e") != std::string::npos &&
+           text.find_first_not_of("0123456789+-.e") == std::string::npos;
+  }
+  return false;
+}
+
+std::string toml_quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    switch (c) {
+      case '"':
+        result += "\\\"";
+        break;
+      case '\\':
+        result += "\\\\";
+        break;
+      case '\n':
+        result += "\\n";
+        break;
+      case '\t':
+        result += "\\t";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+          result += fmt::format("\\u{:04X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+        } else {
+          result += c;
+        }
+    }
+  }
+  return result + "\"";
+}
+
+std::string scalar_text(const std::string& value) {
+  return is_bare_number(value) ? value : toml_quoted(value);
+}
+
+std::string toml_value(const Option& option, const std::vector<std::string>& values) {
+  if (option.shape == OptionShape::flag) {
+    return values.at(0);
+  }
+  if (option.shape == OptionShape::value) {
+    return scalar_text(values.at(0));
+  }
+  std::vector<std::string> items = values;
+  if (option.shape == OptionShape::list) {
+    parse_value(values.at(0), option.name, items);
+  }
+  std::string text = "[";
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + (option.shape == OptionShape::list ? scalar_text(items[i]) : toml_quoted(items[i]));
+  }
+  return text + "]";
+}
+
+std::string wrapped_comment(const std::string& text) {
+  constexpr std::size_t kColumns = 100;
+  std::string result;
+  std::string line = "#";
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t space = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, space - at);
+    if (line.size() + 1 + word.size() > kColumns) {
+      result += line + "\n";
+      line = "#";
+    }
+    line += " " + word;
+    at = space + 1;
+  }
+  return result + line + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> toml_values(const TomlNode& node, const Option& option, const std::string& path) {
+  if (node.kind != TomlNode::Kind::array) {
+    return {toml_scalar(node, path)};
+  }
+  if (option.shape == OptionShape::flag || option.shape == OptionShape::value) {
+    throw Error(ErrorKind::input, toml_place(path, node),
+                fmt::format("'{}' takes one value, not an array", option.name));
+  }
+  std::vector<std::string> values;
+  for (const TomlNode& item : node.items) {
+    values.push_back(toml_scalar(item, path));
+  }
+  if (option.shape == OptionShape::repeated) {
+    return values;
+  }
+  return {fmt::format("{}", fmt::join(values, ","))};
+}
+
+std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
+                                            const std::string& remedy) {
+  std::vector<TomlSetting> settings;
+  for (const auto& [key, node] : parse_toml(text, path).members) {
+    const std::string place = toml_place(path, node);
+    const Option* option = find_option(options, key);
+    if (option == nullptr) {
+      throw Error(ErrorKind::input, place, unknown_among_many("key", key, names_of(options)), remedy);
+    }
+    TomlSetting setting{key, toml_values(node, *option, path), place};
+    if (setting.values.empty()) {
+      continue;  // an empty array sets nothing
+    }
+    try {
+      option->check(setting.values, place + ": " + key);
+    } catch (const Error& error) {
+      throw Error(ErrorKind::input, "", error.what());
+    }
+    settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
+std::string settings_as_toml(const OptionList& options,
+                             const std::function<std::vector<std::string>(const Option&)>& values_of,
+                             const std::string& title) {
+  std::string text = "# Settings of '" + title + "'; paths are relative to the folder it is started in.\n";
+  std::string group;
+  for (const Option* option : options) {
+    if (option->group != group) {
+      group = option->group;
+      text += "\n# ---- " + group + "\n";
+    }
+    const std::string unit = option->unit.empty() ? "" : " (" + option->unit + ")";
+    text += "\n" + wrapped_comment(option->help + unit);
+    const std::vector<std::string> values = values_of(*option);
+    text += values.empty() ? "# " + option->name + " = (not set)\n"
+                           : option->name + " = " + toml_value(*option, values) + "\n";
+  }
+  return text;
+}
+
+}  // namespace gazetrace

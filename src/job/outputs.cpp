@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that a run writes: their names, their folders, and what must not be in their place.
+#include "job/outputs.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Stops at the first folder above that exists, so that a mistyped place is said before a scene is loaded.
+void check_folder(const fs::path& folder) {
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  std::error_code ignored;
+  while (!fs::exists(existing, ignored) && existing.has_relative_path()) {
+    existing = existing.parent_path();
+  }
+  if (!fs::is_directory(existing, ignored)) {
+    throw Error(ErrorKind::input, folder.string(), fmt::format("'{}' is not a folder", existing.string()),
+                "choose another output folder");
+  }
+  if (access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw Error(ErrorKind::input, folder.string(), fmt::format("'{}' is not writable", existing.string()),
+                "choose another output folder");
+  }
+}
+
+// Permissions lie on network and read-only file systems: only a file that was made proves anything.
+void prove_writable(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code && !fs::is_directory(folder)) {
+    throw Error(ErrorKind::input, folder.string(), "the folder cannot be made: " + code.message(),
+                "choose another output folder");
+  }
+  std::string probe = (folder / ".gazetrace.XXXXXX").string();
+  const int file = mkstemp(probe.data());
+  if (file < 0) {
+    throw Error(ErrorKind::input, folder.string(), std::string("no file can be made in it: ") + std::strerror(errno),
+                "choose another output folder");
+  }
+  close(file);
+  unlink(probe.c_str());
+}
+
+std::set<fs::path> output_folders(const OutputSettings& output, const std::string& checkpoint) {
+  std::set<fs::path> folders;
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern, checkpoint}) {
+    if (!pattern.empty()) {
+      const fs::path parent = fs::path(pattern).parent_path();
+      folders.insert(parent.empty() ? fs::path(".") : parent);
+    }
+  }
+  return folders;
+}
+
+// No output may take the place of another or of what is read.
+void check_names_differ(const PipelineSettings& settings, std::vector<std::string> outputs,
+                        std::map<std::string, std::string> inputs) {
+  if (!settings.checkpoint.empty()) {
+    outputs.push_back(settings.checkpoint);
+    inputs.erase(settings.resume_from);  // one file may hand the history on from run to run
+  }
+  std::error_code ignored;
+  for (const std::string& output : outputs) {
+    if (!fs::exists(output, ignored)) {
+      continue;
+    }
+    for (const auto& [input, digest] : inputs) {
+      if (fs::equivalent(output, input, ignored)) {
+        throw Error(ErrorKind::usage, output, "this output would replace an input", "give another name");
+      }
+    }
+  }
+  for (std::string& output : outputs) {
+    output = fs::absolute(output).lexically_normal().string();
+  }
+  std::sort(outputs.begin(), outputs.end());
+  if (const auto twice = std::adjacent_find(outputs.begin(), outputs.end()); twice != outputs.end()) {
+    throw Error(ErrorKind::usage, *twice, "two outputs have this name", "give each its own");
+  }
+}
+
+// What --resume will go on from, read before anything is rendered or written.
+void check_earlier_run(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
+  const std::vector<std::string> files = output_files(settings, frames);
+  if (files.size() < 2) {
+    return;
+  }
+  const std::string& record_path = files[0];
+  const std::string& timing_path = files[1];
+  if (fs::exists(timing_path)) {
+    read_timing_csv(timing_path);
+  }
+  if (!fs::exists(record_path)) {
+    return;
+  }
+  const std::vector<std::int32_t> before = parse_frame_list(read_run_record(record_path).frames);
+  for (const std::int32_t frame : before) {
+    if (std::find(frames.begin(), frames.end(), frame) == frames.end()) {
+      throw Error(ErrorKind::usage, "`resume`",
+                  fmt::format("{} is of a run over frames {}, and frame {} is not asked for now", record_path,
+                              format_frame_list(before), frame),
+                  "give frames that include those, `part`, or another folder");
+    }
+  }
+}
+
+}  // namespace
+
+OutputSettings output_settings(const JobSettings& job) {
+  OutputSettings output;
+  output.exr = job.exr;
+  output.display = job.picture;
+  output.map_pattern = job.map_pattern;
+  output.overwrite = job.overwrite;
+  output.resume = job.resume;
+  for (const std::string& pattern : job.outputs) {
+    std::string& place = pattern.ends_with(".exr") ? output.exr.pattern : output.display.pattern;
+    if (!place.empty()) {
+      throw Error(ErrorKind::usage, "`output`", fmt::format("'{}' and '{}' are of one kind", place, pattern),
+                  "give one linear picture (.exr) and one display picture (.png .jpg .tif .dpx)");
+    }
+    place = pattern;
+  }
+  const std::string& first = !job.outputs.empty() ? job.outputs.front() : job.map_pattern;
+  output.run_directory = first.empty() ? std::string() : fs::path(first).parent_path().string();
+  if (!first.empty() && output.run_directory.empty()) {
+    output.run_directory = ".";
+  }
+  return output;
+}
+
+void check_output_folders(const OutputSettings& output, const std::string& checkpoint) {
+  for (const fs::path& folder : output_folders(output, checkpoint)) {
+    check_folder(folder);
+  }
+}
+
+PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames) {
+  PipelineSettings settings;
+  settings.foveation = job.foveation;
+  settings.trace = job.trace;
+  settings.trace.only_pixel = job.only_pixel;
+  settings.reconstruction = {filter_of(job).name, job.pass_through_samples};
+  settings.enhance_contrast = job.enhance_contrast;
+  settings.accumulate = job.accumulate;
+  settings.checkpoint = job.checkpoint;
+  settings.checkpoint_every = job.checkpoint_every;
+  settings.resume_from = job.resume_from;
+  settings.exposure = job.exposure;
+  settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  settings.output = output_settings(job);
+  settings.fps = job.fps;
+  settings.threads = job.threads;
+  settings.is_part = job.part;
+  check_output_settings(settings.output, frames.size() > 1);
+  return settings;
+}
+
+void prepare_outputs(const ResolvedJob& resolved) {
+  const PipelineSettings& settings = resolved.pipeline;
+  const std::vector<std::int32_t>& frames = resolved.frames;
+  check_names_differ(settings, output_files(settings, frames), resolved.input_digests);
+  if (settings.output.resume) {
+    check_earlier_run(settings, frames);
+  }
+  if (!settings.output.overwrite && !settings.output.resume) {
+    for (const std::string& path : output_files(settings, frames)) {
+      if (fs::exists(path)) {
+        const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
+        throw Error(ErrorKind::input, path, "this output exists already",
+                    is_record && !settings.is_part && !settings.trace.samples
+                        ? "give `overwrite`, `resume`, `part` for one part of a sequence, or another folder"
+                        : "give `overwrite`, `resume` or another name");
+      }
+    }
+  }
+  for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
+    prove_writable(folder);
+  }
+}
+
+}  // namespace gazetrace

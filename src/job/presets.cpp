@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/job.hpp"
+
+#include <algorithm>
+
+#include "gazetrace/error.hpp"
+#include "job/preset_by_name.hpp"
+
+namespace gazetrace {
+namespace {
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+// "Foveated Path Tracing with Configurable Sampling and Block-Based Rendering", as far as the paper says.
+Settings paper_settings(const std::string& angle_reading) {
+  return {{"falloff", "regions"},   {"region-samples", "32,16,8"},
+          {"region-blocks", "2,4"}, {"region-angles", "5.2,17"},
+          {"region-shape", "disc"}, {"angle-reading", angle_reading},
+          {"sample-unit", "block"}, {"border-blend-deg", "0"},
+          {"filter", "linear"},     {"accumulate", "off"},
+          {"bounces", "3"},         {"russian-roulette", "false"},
+          {"diffuse", "burley"},    {"light-sampling", "mis"},
+          {"pixel-filter", "box"},  {"clamp-indirect", "0"},
+          {"exposure", "auto"},     {"view", "Reinhard"}};
+}
+
+}  // namespace
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> table{
+      {"paper", "the source paper, its angles as diameters: the reading that fits its timings",
+       paper_settings("full-angle")},
+      {"paper-radius", "the source paper, its angles as eccentricities", paper_settings("eccentricity")},
+      {"default",
+       "what is taken when nothing is said",
+       {{"falloff", "regions"},
+        {"region-samples", "32,16,8"},
+        {"region-blocks", "2,4"},
+        {"region-angles", "5.2,17"},
+        {"region-shape", "cone"},
+        {"angle-reading", "full-angle"},
+        {"sample-unit", "block"},
+        {"border-blend-deg", "0"},
+        {"filter", "auto"},
+        {"accumulate", "off"}}},
+      {"reference",
+       "what others are compared with: uniform at a high rate, every pixel by itself",
+       {{"falloff", "uniform"},
+        {"spp", "1024"},
+        {"filter", "none"},
+        {"accumulate", "off"},
+        {"clamp-indirect", "0"},
+        {"exr-pixels", "float"}}},
+  };
+  return table;
+}
+
+const Preset& preset_by_name(const std::string& name, const std::string& place) {
+  const auto found =
+      std::find_if(presets().begin(), presets().end(), [&](const Preset& preset) { return preset.name == name; });
+  if (found == presets().end()) {
+    std::vector<std::string> known;
+    for (const Preset& preset : presets()) {
+      known.push_back(preset.name);
+    }
+    throw Error(ErrorKind::usage, place, unknown_name_message("preset", name, known));
+  }
+  return *found;
+}
+
+}  // namespace gazetrace

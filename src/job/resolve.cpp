@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/resolve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "gazetrace/error.hpp"
+#include "job/choose_frames.hpp"
+#include "job/gaze_inputs.hpp"
+#include "job/scene_camera.hpp"
+
+namespace gazetrace {
+namespace {
+
+void append(Warnings& to, const Warnings& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+// With the size that the log's pixels per degree mean where it does not state one: only its ratio to the distance
+// matters.
+DisplayGeometry recording_display(const GazeLog& log, Decisions& decisions) {
+  const DisplayGeometry& stated = *log.recording_geometry;
+  const bool no_angles = !(stated.width_cm > 0) || !(stated.height_cm > 0) || !(stated.distance_cm > 0);
+  const auto& ppd = log.pixels_per_degree;
+  if (no_angles && stated.width_px > 0 && stated.height_px > 0 && ppd && ppd->x > 0 && ppd->y > 0) {
+    decisions.emplace_back(
+        "screen", fmt::format("that of the recording, by the log's {:.4g} x {:.4g} pixels a degree", ppd->x, ppd->y));
+    return display_of_pixels_per_degree(stated.width_px, stated.height_px, *ppd);
+  }
+  decisions.emplace_back("screen", "that of the recording, as the gaze log states it");
+  return stated;
+}
+
+PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_t>& frames, const GazeLog* log,
+                           std::int64_t taken_off_ns, Decisions& decisions) {
+  PlanSettings settings;
+  settings.frames = frames;
+  settings.fps = job.fps;
+  settings.start_ns = job.start.ns;
+  settings.shutter = job.shutter;
+  settings.camera_extrapolation = job.camera_extrapolation;
+  std::string clock;
+  settings.gaze = gaze_mapping(job, log, taken_off_ns, &clock);
+  if (!clock.empty()) {
+    decisions.emplace_back("gaze clock", clock);
+  }
+  settings.gaze_latency_ns = job.gaze_at ? 0 : job.gaze_latency.ns;
+  settings.width_px = job.size.width;
+  settings.height_px = job.size.height;
+  settings.display = screen_geometry(job.screen);
+  if (settings.display && (log == nullptr || log->kind == GazeKind::direction)) {
+    check_display(*settings.display);
+  }
+  if (settings.display) {
+    decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
+  } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {
+    settings.display = recording_display(*log, decisions);
+  }
+  settings.transfer = job.gaze_transfer;
+  if (job.frame_rect) {
+    settings.frame_rect = *job.frame_rect;
+  }
+  if (log != nullptr && log->kind == GazeKind::screen) {
+    if (!settings.display) {
+      throw Error(ErrorKind::input, log->source, "gaze on a screen needs the screen's size and distance",
+                  "give `screen` NAME, or `screen-px`, `screen-cm` and `screen-distance-cm`");
+    }
+    check_display(*settings.display);
+  }
+  return settings;
+}
+
+// Of first hits, which filters with guides see through a pinhole in the middle of the frame's time.
+std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
+  if (!Reconstruction({job.filter, {}}).needs().guides) {
+    return {};
+  }
+  const bool moves =
+      !camera.is_static || (scene != nullptr && !(scene->motions.empty() && scene->deformations.empty()));
+  const bool motion = job.shutter.blurs() && moves;
+  if (camera.lens.radius_m > 0) {
+    return motion ? "blur of lens and shutter" : "blur of the lens";
+  }
+  return motion ? "blur of the shutter" : "";
+}
+
+bool moves(const Scene& scene) {
+  return !(scene.motions.empty() && scene.deformations.empty());
+}
+
+void load_scene_of(const JobSettings& job, const ResolveOptions& options, ResolvedJob& resolved) {
+  if (job.scene.empty()) {
+    throw Error(ErrorKind::usage, "", "no scene was given", "name a .gltf or .glb file");
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  SceneReadOptions reading;
+  reading.animation = job.animation;
+  reading.threads = job.threads;
+  reading.progress = options.progress;
+  resolved.scene = std::make_unique<Scene>(load_scene(job.scene, reading));
+  if (options.scope == ResolveScope::render) {
+    resolved.decisions.emplace_back("environment", set_environment(job, *resolved.scene));
+  }
+  resolved.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  append(resolved.warnings, resolved.scene->warnings);
+  append(resolved.warnings, resolved.scene->environment.warnings);
+  if (job.accumulate.mode == AccumulateMode::running && moves(*resolved.scene)) {
+    resolved.warnings.emplace_back(
+        "`accumulate` running looks at the camera alone: what moves in the scene is smeared");
+  }
+}
+
+std::string sampling_without_gaze(const FoveationSettings& foveation) {
+  const std::string rate = foveation.budget_spp       ? fmt::format("{} samples a pixel", *foveation.budget_spp)
+                           : foveation.budget_samples ? fmt::format("{} samples in all", *foveation.budget_samples)
+                                                      : fmt::format("{} samples", foveation.uniform_spp);
+  return rate + " everywhere: there is no gaze";
+}
+
+void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
+  planned.insert(planned.end(), resolved.frames.begin(), resolved.frames.end());
+  PlanSettings settings = plan_settings(job, planned, log, taken_off_ns, resolved.decisions);
+  if (log != nullptr) {
+    settings.uncertainty = gaze_uncertainty(job, *log);
+  }
+  if (log != nullptr && !job.gaze_at) {
+    settings.find_speed = job.foveation.retinal_velocity;
+    if (!job.gaze_process.empty()) {
+      resolved.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
+      resolved.decisions.emplace_back("gaze processing",
+                                      fmt::format("{}", fmt::join(resolved.steering->reports, "; ")));
+    }
+  }
+  resolved.plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
+  resolved.plan_settings = std::move(settings);
+  if (resolved.plan.ages && !job.gaze_at) {
+    resolved.decisions.emplace_back("effective gaze age", gaze_ages_text(*resolved.plan.ages));
+  }
+}
+
+void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene, Warnings& warnings) {
+  if (const std::string lost = blur_lost_by_filter(job, camera, scene); !lost.empty()) {
+    warnings.push_back(fmt::format(
+        "`filter` {} takes edges, texture, what shines and the background from a pinhole at one instant: {} is missing "
+        "there, `filter` linear or tent keep it",
+        job.filter, lost));
+  }
+  if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter, {}}).needs().guides) {
+    warnings.push_back(
+        fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
+                    "blackman-harris is missing there, `filter` linear or tent keep it",
+                    job.filter));
+  }
+}
+
+// What is quick to read comes first: a wrong name must not cost the loading of a scene.
+void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
+  const JobSettings& job = resolved.job.settings;
+  std::int64_t taken_off_ns = 0;
+  resolved.gaze = gaze_of_job(job, taken_off_ns);
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  {
+    Decisions unused;
+    plan_settings(job, {1}, log, taken_off_ns, unused);  // only to fail early
+  }
+  CameraPath camera;
+  std::string decision;
+  const bool needs_scene = camera_needs_scene(job);
+  if (!needs_scene) {
+    camera = choose_camera(job, nullptr, log, taken_off_ns, decision);
+  }
+  if (options.loaded == nullptr && (options.scope == ResolveScope::render || (needs_scene && !job.scene.empty()))) {
+    load_scene_of(job, options, resolved);
+  }
+  const Scene* scene = options.loaded != nullptr ? options.loaded : resolved.scene.get();
+  if (needs_scene) {
+    camera = choose_camera(job, scene, log, taken_off_ns, decision);
+  }
+  resolved.decisions.emplace_back("camera", decision);
+  resolved.frames = choose_frames(job, camera, log, taken_off_ns, scene, decision);
+  resolved.decisions.emplace_back("frames", decision);
+  if (log == nullptr) {
+    resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
+  }
+  make_plan(job, camera, taken_off_ns, resolved);
+  const auto& aovs = job.exr.aovs;
+  if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
+    throw Error(ErrorKind::usage, "`aov`", "there is no eccentricity without gaze", "give `gaze` or `gaze-at`");
+  }
+  append(resolved.warnings, camera.warnings);
+  warn_of_filter(job, camera, scene, resolved.warnings);
+  if (log != nullptr) {
+    append(resolved.warnings, log->warnings);
+  }
+  append(resolved.warnings, resolved.plan.warnings);
+}
+
+}  // namespace
+
+ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
+  check_job(job);
+  ResolvedJob resolved;
+  resolved.job = job;
+  resolved.decisions = job.decisions;
+  if (options.tell_idle) {
+    resolved.warnings = idle_option_warnings(job);
+  }
+  const FilterChoice filter = filter_of(job.settings);
+  resolved.job.settings.filter = filter.name;
+  load_and_plan(options, resolved);
+  if (!filter.reason.empty()) {
+    resolved.decisions.emplace_back("filter", filter.name + ", because " + filter.reason);
+  }
+  const JobSettings& settings = resolved.job.settings;
+  resolved.pipeline = pipeline_settings(settings, resolved.frames);
+  resolved.pipeline.preroll = static_cast<std::int32_t>(resolved.plan.frames.size() - resolved.frames.size());
+  if (options.scope != ResolveScope::plan) {
+    resolved.input_digests = digest_job_files(settings);
+    digest_job(settings, resolved.frames, resolved.input_digests, resolved.pipeline);
+  }
+  if (options.scope == ResolveScope::render) {
+    resolved.history = starting_history(resolved.plan, resolved.pipeline, resolved.warnings);
+    if (resolved.gaze && !resolved.history.passed.empty()) {
+      join_plan(resolved.plan, resolved.history.passed.back(), *resolved.gaze, resolved.plan_settings);
+    }
+  }
+  return resolved;
+}
+
+TracerOptions tracer_options(const JobSettings& job) {
+  TracerOptions options;
+  options.threads = job.threads;
+  options.bvh_quality = job.bvh;
+  return options;
+}
+
+}  // namespace gazetrace

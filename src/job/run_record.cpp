@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run says of itself.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gazetrace/resolve.hpp"
+#include "gazetrace/version.hpp"
+
+namespace gazetrace {
+
+RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
+                           const std::vector<std::string>& command_line) {
+  const PipelineSettings& settings = resolved.pipeline;
+  RunRecord record;
+  record.version = kVersion;
+  record.build = build_description();
+  record.instruction_set = instruction_set();
+  record.ray_library = tracer.ray_library();
+  record.command_line = command_line;
+  record.config_toml = job_as_toml(resolved.job);
+  record.settings_digest = settings.settings_digest;
+  record.history = recorded_history(resolved.plan, settings, resolved.history);
+  record.input_digests = resolved.input_digests;
+  record.frames = format_frame_list(resolved.frames);
+  record.is_part = settings.is_part || settings.trace.samples.has_value();
+  record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
+  record.warnings = resolved.warnings;
+  for (const auto& [name, text] : resolved.decisions) {
+    record.facts[name] = text;
+  }
+  record.facts["working_space"] = "linear Rec.709, D65";
+  record.facts["view"] = color.description();
+  record.facts["load_s"] = fmt::format("{:.3f}", resolved.load_s);
+  record.facts["bvh_build_s"] = fmt::format("{:.3f}", tracer.memory().build_s);
+  record.facts["bvh_mib"] = fmt::format("{:.1f}", static_cast<double>(tracer.memory().bvh_bytes) / 1048576.0);
+  record.facts["state"] = "running";
+  return record;
+}
+
+void finish_run_record(RunRecord& record, const SequenceResult& result, const FramePlan& plan, double wall_s) {
+  record.facts["state"] = "done";
+  record.facts["wall_s"] = fmt::format("{:.3f}", wall_s);
+  record.facts["peak_memory_mib"] = fmt::format("{:.1f}", peak_memory_mib());
+  const Warnings late = result_warnings(result, plan);
+  record.warnings.insert(record.warnings.end(), late.begin(), late.end());
+  record.bad_samples = result.bad_samples;
+}
+
+Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {
+  Warnings warnings = result.warnings;
+  const auto count = [&](GazeState state) {
+    return std::count_if(plan.frames.begin(), plan.frames.end(),
+                         [&](const FrameRequest& request) { return request.gaze_render.state == state; });
+  };
+  const auto held = std::count_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
+    return request.gaze_render.no_gaze && request.gaze_render.state == GazeState::held;
+  });
+  if (held > 0) {
+    warnings.push_back(fmt::format("{} frames without gaze hold the nearest one in the past, or the first", held));
+  }
+  const auto centered = count(GazeState::center);
+  const bool has_gaze = std::any_of(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
+    return request.gaze_render.state != GazeState::none;
+  });
+  if (centered > 0) {
+    warnings.push_back(fmt::format("{} frames without gaze look at the centre", centered));
+  }
+  if (const auto uniform = count(GazeState::none); uniform > 0 && has_gaze) {
+    warnings.push_back(fmt::format("{} frames without gaze are rendered uniformly", uniform));
+  }
+  if (result.clamped_half_values > 0) {
+    warnings.push_back(fmt::format("{} values were clamped to the range of half floats; `exr-pixels` float keeps them",
+                                   result.clamped_half_values));
+  }
+  if (result.clamped_view_pixels > 0) {
+    warnings.push_back(fmt::format("{} pixels were clamped before the viewing transform", result.clamped_view_pixels));
+  }
+  std::uint64_t non_finite = 0;
+  std::uint64_t rejected = 0;
+  for (const TimingRow& row : result.rows) {
+    non_finite += row.non_finite_samples;
+    rejected += row.rejected_rays;
+  }
+  if (non_finite + rejected > 0) {
+    std::string text = fmt::format("{} samples were not finite and {} rays were rejected", non_finite, rejected);
+    if (!result.bad_samples.empty()) {
+      const BadSample& first = result.bad_samples.front();
+      text += fmt::format(
+          "; the first: {} in frame {}, pixel {},{}, sample {}; replay it with `frames` {} `only-pixel` {},{}",
+          first.what, first.frame, first.x_px, first.y_px, first.sample, first.frame, first.x_px, first.y_px);
+    }
+    warnings.push_back(text);
+  }
+  return warnings;
+}
+
+}  // namespace gazetrace

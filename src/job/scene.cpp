@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The scene of a run and the light around it.
+#include <cmath>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/resolve.hpp"
+
+namespace gazetrace {
+
+std::string set_environment(const JobSettings& job, Scene& scene) {
+  const std::string& wanted = job.environment;
+  const auto gain = static_cast<float>(std::exp2(job.environment_ev));
+  if (wanted == "none") {
+    return "none";
+  }
+  if (wanted == "auto") {
+    const SceneFeatures features = features_of(scene);
+    if (features.emissive_triangles || features.punctual_lights || scene.environment.present()) {
+      return "none (the scene brings its own light; `env` chooses)";
+    }
+    scene.environment = builtin_sky(job.environment_rotation_deg, job.environment_ev);
+    return "the built-in sky (the scene has no light of its own; `env` chooses)";
+  }
+  if (wanted == "sky") {
+    scene.environment = builtin_sky(job.environment_rotation_deg, job.environment_ev);
+    return "the built-in sky";
+  }
+  if (wanted.starts_with("constant:")) {
+    Vec3d radiance;
+    parse_value(wanted.substr(9), "`env` constant:R,G,B", radiance);
+    if (radiance.x < 0 || radiance.y < 0 || radiance.z < 0) {
+      throw Error(ErrorKind::usage, "`env`", "a radiance cannot be negative");
+    }
+    scene.environment = constant_environment(to_float(radiance) * gain);
+    return wanted;
+  }
+  scene.environment = load_environment(wanted, job.environment_rotation_deg, job.environment_ev);
+  return wanted;
+}
+
+Scene load_job_scene(const JobSettings& job, const std::function<void(std::size_t, std::size_t)>& progress) {
+  SceneReadOptions options;
+  options.animation = job.animation;
+  options.threads = job.threads;
+  options.progress = progress;
+  Scene scene = load_scene(job.scene, options);
+  set_environment(job, scene);
+  return scene;
+}
+
+}  // namespace gazetrace

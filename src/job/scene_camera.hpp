@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "gazetrace/resolve.hpp"
+
+namespace gazetrace {
+
+// Error(usage, input) where the job names no camera, or two. `decision` says which it is.
+CameraPath choose_camera(const JobSettings& job, const Scene* scene, const GazeLog* log, std::int64_t taken_off_ns,
+                         std::string& decision);
+
+}  // namespace gazetrace

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr auto color(auto member) {
+  return at(&JobSettings::color, member);
+}
+
+}  // namespace
+
+OptionSchema<ColorSettings> color_config_schema() {
+  OptionSchema<ColorSettings> schema;
+  schema.group("Exposure and colour");
+  schema
+      .value("--ocio", &ColorSettings::config, "FILE", Touch::color,
+             "OpenColorIO config; default: $OCIO, else the built-in one")
+      .decides_by_file();
+  schema.value("--ocio-input", &ColorSettings::input, "NAME", Touch::color,
+               "The config's name of linear Rec.709, where it has no aces_interchange role");
+  return schema;
+}
+
+void add_color_options(JobSchema& schema) {
+  schema.group("Exposure and colour");
+  schema
+      .value("--exposure", &JobSettings::exposure, "STOPS|auto", Touch::color,
+             "Stops, or auto for the log-average, with a shift: auto+0.5")
+      .within(-kMaxStops, kMaxStops)
+      .with(Trait::always_stated);
+  schema
+      .value("--exposure-key", at(&JobSettings::exposure, &ExposureSettings::key), "LUMINANCE", Touch::color,
+             "Luminance that auto brings the log-average to")
+      .above(0);
+  schema
+      .value("--exposure-smoothing", &JobSettings::exposure_smoothing, "DURATION", Touch::color,
+             "Time constant over video time; 0s: off")
+      .at_least(0);
+  schema.include(color_config_schema(), &JobSettings::color);
+  schema.value("--display", color(&ColorSettings::display), "NAME", Touch::color,
+               "OpenColorIO display; default: the config's ('gazetrace list views')");
+  schema.value("--view", color(&ColorSettings::view), "NAME", Touch::color, "OpenColorIO view; default: the display's")
+      .with(Trait::always_stated);
+  schema.value("--look", color(&ColorSettings::look), "NAME", Touch::color, "OpenColorIO look; default: the view's");
+  schema.value(
+      "--view-precision", color(&ColorSettings::precision), choices<ViewPrecision>(), Touch::color,
+      "exact: OpenColorIO for every pixel; baked: a table where it is within half an 8-bit code value of that, "
+      "several times faster; auto: baked for the built-in ACES view at 8 bits");
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+
+void add_filter_options(JobSchema& schema) {
+  schema.group("Between the samples");
+  schema
+      .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
+             "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which "
+             "passes single pixels through, for uniform ones (without gaze all are), with --aperture or --shutter, "
+             "--sample-range, --enhance-contrast and --accumulate-order before. All frames have one filter: where "
+             "--gaze-missing uniform makes some of a log's frames uniform, they are guided as well. What guided takes "
+             "from first hits shows no blur of lens and shutter")
+      .with(Trait::always_stated);
+  schema.value("--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
+               "Pixels with at least so many samples keep their own mean in every filter; 0: guided and oidn smooth "
+               "all; default: in a fovea of 8 and more its full rate, at most 16; none in uniform frames");
+  schema
+      .value("--enhance-contrast", &JobSettings::enhance_contrast, "0..1", Touch::filter,
+             "An enhancement, no estimate: raises what contrast blocks have left, as the eye's periphery misses "
+             "contrast more than detail; 1: a wave of half the blocks' limit is as strong as at full rate")
+      .within(0, 1)
+      .need("`filter` linear, push-pull or tent");
+}
+
+}  // namespace gazetrace

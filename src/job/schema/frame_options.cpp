@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+
+void add_frame_options(JobSchema& schema) {
+  schema.group("Frames");
+  schema.value("--size", &JobSettings::size, "WxH", Touch::frames, "Size of the pictures in pixels")
+      .with(Trait::always_stated);
+  schema.value("--fps", &JobSettings::fps, "RATE", Touch::frames, "Frames a second: 24, 23.976 or 24000/1001")
+      .with(Trait::always_stated);
+  schema
+      .value("--frames,--only-frame", &JobSettings::frames, "LIST", Touch::frames,
+             "Which frames, counted from 1: 1-100, 1-100x2, 3,7,9-12; default: as long as the animated camera, else "
+             "the gaze log, else frame 1")
+      .decides_nothing();
+  schema.value("--start", &JobSettings::start, "DURATION", Touch::frames, "Video time at which frame 1 begins");
+  schema
+      .flag("--part", &JobSettings::part, Touch::frames,
+            "The frames are a part of a sequence that other runs share: timing and run record carry the range in their "
+            "names, 'gazetrace merge' joins them; frames that depend on those before need --resume-from, or --preroll")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema
+      .value("--sample-range", at(&JobSettings::trace, &TraceSettings::samples), "A:B", Touch::frames,
+             "Only samples A to B - 1 of every pixel or block: keeps their sums in place of pictures, and 'gazetrace "
+             "merge' makes the pictures once all parts are there, to the bit those of one run")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema.value("--frame-rect", &JobSettings::frame_rect, "X,Y,W,H", Touch::frames,
+               "Where the frame lies on the screen, in screen pixels; default: it fills the screen");
+}
+
+}  // namespace gazetrace

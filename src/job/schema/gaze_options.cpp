@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/idle_rules.hpp"
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr auto read(auto member) {
+  return at(&GazeFileSettings::read, member);
+}
+constexpr auto column(auto member) {
+  return at(&GazeFileSettings::read, &GazeReadOptions::columns, member);
+}
+
+void add_column_options(OptionSchema<GazeFileSettings>& schema) {
+  schema.value("--gaze-time-column", column(&GazeColumns::time), "NAME", Touch::gaze, "Column of the stamps");
+  schema.value("--gaze-x-column", column(&GazeColumns::x), "NAME", Touch::gaze,
+               "Column of the horizontal position, or direction x");
+  schema.value("--gaze-y-column", column(&GazeColumns::y), "NAME", Touch::gaze,
+               "Column of the vertical position, or direction y");
+  schema.value("--gaze-z-column", column(&GazeColumns::z), "NAME", Touch::gaze, "Column of direction z");
+  schema.value("--gaze-validity-column", column(&GazeColumns::validity), "NAME", Touch::gaze,
+               "Column that says which samples are good");
+  schema.value("--gaze-valid-values", column(&GazeColumns::valid_values), "TEXT,TEXT", Touch::gaze,
+               "What good samples have in it; default: 1, true, ok, valid");
+  schema.value("--gaze-confidence-column", column(&GazeColumns::confidence), "NAME", Touch::gaze,
+               "Column of the confidence");
+  schema.value("--gaze-pupil-column", column(&GazeColumns::pupil), "NAME", Touch::gaze, "Column of the pupil's size");
+  schema.value("--gaze-eye-column", column(&GazeColumns::eye), "NAME", Touch::gaze, "Column of the eye");
+  schema.value("--gaze-time-unit", column(&GazeColumns::time_unit), choices<TimeUnit>(), Touch::gaze,
+               "Unit of the stamps");
+  schema.value("--gaze-unit", column(&GazeColumns::position_unit), choices<PositionUnit>(), Touch::gaze,
+               "Unit of the positions");
+  schema.value("--gaze-origin", column(&GazeColumns::origin), choices<PositionOrigin>(), Touch::gaze,
+               "Where (0, 0) is");
+}
+
+void add_clock_options(JobSchema& schema) {
+  schema
+      .value("--gaze-offset", &JobSettings::gaze_offset, "DURATION", Touch::gaze,
+             "t_video = scale (t_log - start) + offset")
+      .with(Trait::clock)
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-scale", &JobSettings::gaze_scale, "FACTOR", Touch::gaze,
+             "Clock rate of video over that of the log")
+      .with(Trait::clock)
+      .above(0)
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-start", &JobSettings::gaze_start, "DURATION", Touch::gaze,
+             "Time on the log's clock that is video time --gaze-offset; default: its first sample")
+      .with(Trait::clock)
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-latency", &JobSettings::gaze_latency, "DURATION", Touch::gaze,
+             "Sampling follows the gaze of this long ago; measurements keep the true gaze")
+      .idle_when({without_gaze_log()});
+  schema
+      .flag("--keep-ids", &JobSettings::keep_ids, Touch::gaze,
+            "Times of day of the log stay in plan, headers and records; otherwise time counts from its first sample")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema
+      .repeated("--gaze-anchor", &JobSettings::gaze_anchors, "LOG=VIDEO", Touch::gaze,
+                "An event on both clocks, in place of --gaze-start, --gaze-offset and --gaze-scale: a time of the log "
+                "or the text of its message, and the video time of it; with two or more, offset and scale are fitted")
+      .with(Trait::clock)
+      .idle_when({without_gaze_log()});
+}
+
+void add_time_options(JobSchema& schema) {
+  schema.group("Gaze in time");
+  schema
+      .value("--gaze-at", &JobSettings::gaze_at, "U,V", Touch::gaze,
+             "A fixed gaze in fractions of the screen from its top left, in place of a log")
+      .with(Trait::gaze_source);
+  schema
+      .value("--gaze-mode", &JobSettings::gaze_mode, choices<GazeInterpolation>(), Touch::gaze,
+             "Which samples of the log a frame gets")
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-missing", &JobSettings::gaze_missing, choices<NoGazePolicy>(), Touch::gaze,
+             "For frames without usable gaze: hold the last (the centre before there is one), look at the centre, "
+             "render uniformly, or stop")
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-max-age", &JobSettings::gaze_max_age, "DURATION", Touch::gaze, "An older sample counts as no gaze")
+      .at_least(0)
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-max-gap", &JobSettings::gaze_max_gap, "DURATION", Touch::gaze,
+             "A longer step between two samples is a gap: not interpolated, and held samples in it are marked so")
+      .at_least(0)
+      .idle_when({without_gaze_log()});
+  add_clock_options(schema);
+}
+
+void add_uncertainty_options(JobSchema& schema) {
+  schema
+      .flag("--gaze-uncertainty", &JobSettings::gaze_uncertainty, Touch::gaze,
+            "The fovea grows by what the gaze may be off: accuracy + precision + age x speed")
+      .idle_when({without_gaze(), with_uniform()});
+  schema
+      .value("--gaze-accuracy", &JobSettings::gaze_accuracy_deg, "DEG", Touch::gaze,
+             "The tracker's systematic error; default: the mean error of the log's validations")
+      .need("`gaze-uncertainty`")
+      .idle_when({without_gaze()});
+  schema
+      .value("--gaze-precision", &JobSettings::gaze_precision_deg, "DEG", Touch::gaze,
+             "The tracker's scatter; default: the root mean square in the log's fixations")
+      .need("`gaze-uncertainty`")
+      .idle_when({without_gaze()});
+}
+
+}  // namespace
+
+OptionSchema<GazeFileSettings> gaze_file_schema() {
+  OptionSchema<GazeFileSettings> schema;
+  schema.group("Gaze log");
+  schema.value("--gaze-format", read(&GazeReadOptions::format), "NAME", Touch::gaze,
+               "Default: by its content ('gazetrace list gaze-formats')");
+  add_column_options(schema);
+  schema.flag("--gaze-sort", &GazeFileSettings::sort, Touch::gaze,
+              "Sorts unordered stamps and keeps the last of equal ones");
+  schema
+      .value("--gaze-columns", &GazeFileSettings::columns_file, "FILE", Touch::gaze,
+             "Column map as JSON, for tables of one's own; 'gazetrace gaze inspect --save-columns' writes one")
+      .decides_by_file();
+  schema.value("--gaze-axes", column(&GazeColumns::axes), choices<GazeAxes>(), Touch::gaze,
+               "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
+               "left, cv along +z with y down; default: the format's own");
+  schema.value("--gaze-frame", read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
+               "Of logs that know several: head takes directions from the head, scene-camera places on its picture");
+  schema.value("--gaze-eye", read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
+               "Of binocular logs: auto takes the log's combined gaze, else the mean of both eyes in angle");
+  schema.value("--gaze-dominant", read(&GazeReadOptions::dominant_eye), choices<Eye>(), Touch::gaze,
+               "The eye of --gaze-eye dominant");
+  schema.value("--gaze-min-confidence", &GazeFileSettings::min_confidence, "SHARE", Touch::gaze,
+               "Samples below it are not used; default: the format's own, such as 0.6 for Pupil Core");
+  schema.flag("--gaze-zero-missing", read(&GazeReadOptions::zero_is_missing), Touch::gaze,
+              "Takes positions of exactly (0, 0) for missing ones");
+  schema.value("--gaze-missing-value", read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
+               "What the log has in both axes, such as -1, where it has no position; -32768, and 1e7 and beyond, are "
+               "always taken for that");
+  schema.flag("--gaze-swap-xy", read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
+  schema.flag("--gaze-flip-x", read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
+  schema.flag("--gaze-flip-y", read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
+  schema.flag("--gaze-decimal-comma", read(&GazeReadOptions::decimal_comma), Touch::gaze,
+              "Numbers have decimal commas though commas separate the columns; not needed with tabs or semicolons");
+  return schema;
+}
+
+OptionSchema<std::vector<std::string>> gaze_process_schema() {
+  OptionSchema<std::vector<std::string>> schema;
+  schema.group("Gaze in time");
+  schema.repeated(
+      "--gaze-process", [](auto& steps) -> auto& { return steps; }, "STEP[:NAME=VALUE,...]", Touch::gaze,
+      "A step of processing, one option each, in this order ('gazetrace list gaze-steps'): fill-gaps:max=75ms, "
+      "median:samples=5, noise:sd=0.5deg,seed=1. Measurements keep the gaze as it was read");
+  return schema;
+}
+
+void add_gaze_options(JobSchema& schema) {
+  schema.group("Gaze log");
+  schema
+      .value("--gaze", at(&JobSettings::gaze, &GazeFileSettings::path), "FILE", Touch::gaze,
+             "Where the viewer looked, over time")
+      .decides_by_file()
+      .with(Trait::gaze_source);
+  schema.include(gaze_file_schema(), &JobSettings::gaze);
+  add_time_options(schema);
+  schema.include(gaze_process_schema(), &JobSettings::gaze_process).idle_when({without_gaze_log()});
+  add_uncertainty_options(schema);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/idle_rules.hpp"
+
+namespace gazetrace {
+
+bool has_gaze_log(const JobSettings& job) {
+  return !job.gaze.path.empty();
+}
+
+bool has_gaze(const JobSettings& job) {
+  return has_gaze_log(job) || job.gaze_at.has_value();
+}
+
+JobIdleRule without_gaze() {
+  return {"without gaze", [](const JobSettings& job) { return !has_gaze(job); }};
+}
+
+JobIdleRule without_gaze_log() {
+  return {"without a gaze log", [](const JobSettings& job) { return !has_gaze_log(job); }};
+}
+
+JobIdleRule with_uniform() {
+  return {"with `falloff` uniform", [](const JobSettings& job) { return job.foveation.falloff == "uniform"; }};
+}
+
+JobIdleRule with_hard_regions() {
+  return {"with `falloff` regions and hard borders (`border-blend-deg` 0)", [](const JobSettings& job) {
+            return job.foveation.falloff == "regions" && job.foveation.border_blend_deg == 0;
+          }};
+}
+
+JobIdleRule without_regions() {
+  return {"with any other `falloff` than regions",
+          [](const JobSettings& job) { return job.foveation.falloff != "regions"; },
+          [](const JobSettings& job) { return "with `falloff` " + job.foveation.falloff; }};
+}
+
+JobIdleRule without_reproject() {
+  return {"without `accumulate` reproject",
+          [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::reproject; }};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// When options of a job do nothing beside the others.
+#pragma once
+
+#include "gazetrace/job_schema.hpp"
+
+namespace gazetrace {
+
+using JobIdleRule = IdleRule<JobSettings>;
+
+bool has_gaze_log(const JobSettings& job);
+bool has_gaze(const JobSettings& job);  // from a log or fixed
+
+JobIdleRule without_gaze();
+JobIdleRule without_gaze_log();
+JobIdleRule with_uniform();
+JobIdleRule with_hard_regions();
+JobIdleRule without_regions();
+JobIdleRule without_reproject();
+
+}  // namespace gazetrace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/job_schema.hpp"
+
+#include "job/preset_by_name.hpp"
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+namespace {
+
+// What the presets set.
+constexpr Touches kOfPresets =
+    Touch::sampling | Touch::tracing | Touch::filter | Touch::history | Touch::color | Touch::output;
+
+// set_option() sets what the preset is made of.
+void add_preset_option(JobSchema& schema) {
+  schema.group("Presets");
+  OptionOf<JobSettings>& option =
+      schema.value("--preset", &JobSettings::preset, "NAME", kOfPresets,
+                   "A named list of settings, below all other options ('gazetrace list presets')");
+  option.decides_nothing();
+  option.check = [](const auto& values, const auto& place) { (void)preset_by_name(values.at(0), place); };
+}
+
+JobSchema make_schema() {
+  JobSchema schema;
+  add_preset_option(schema);
+  add_scene_options(schema);
+  add_camera_options(schema);
+  add_gaze_options(schema);
+  add_screen_options(schema);
+  add_frame_options(schema);
+  add_sampling_options(schema);
+  add_filter_options(schema);
+  add_history_options(schema);
+  add_tracing_options(schema);
+  add_color_options(schema);
+  add_output_options(schema);
+  return schema;
+}
+
+}  // namespace
+
+const JobSchema& job_schema() {
+  static const JobSchema schema = make_schema();
+  return schema;
+}
+
+}  // namespace gazetrace

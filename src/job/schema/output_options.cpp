@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+namespace {
+
+void add_exr_options(JobSchema& schema) {
+  const auto exr = [](auto member) { return at(&JobSettings::exr, member); };
+  schema
+      .value("--exr-pixels", exr(&ExrSettings::pixels), choices<ExrPixels>(), Touch::output,
+             "Type of the colour channels")
+      .with(Trait::one_run);
+  schema
+      .value("--exr-compression", exr(&ExrSettings::compression), "NAME", Touch::output,
+             "none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab")
+      .with(Trait::one_run);
+  schema
+      .value("--exr-zip-level", exr(&ExrSettings::zip_level), "1..9", Touch::output,
+             "Of zip and zips: 1 fast, 9 small; lossless at every level")
+      .decides_nothing()
+      .within(1, 9)
+      .with(Trait::one_run);
+  schema
+      .value("--aov", exr(&ExrSettings::aovs), "NAME,NAME", Touch::output,
+             "More channels of the .exr ('gazetrace list aovs')")
+      .with(Trait::one_run);
+}
+
+}  // namespace
+
+void add_output_options(JobSchema& schema) {
+  schema.group("Files");
+  schema
+      .repeated("-o,--output", &JobSettings::outputs, "PATTERN", Touch::output,
+                "Linear pictures (.exr) and display pictures (.png .jpg .tif .dpx), one option each; the frame's "
+                "number stands where ####, %04d or <frame> is")
+      .decides_nothing()
+      .with(Trait::one_run);
+  add_exr_options(schema);
+  schema
+      .value("--map", &JobSettings::map_pattern, "PATTERN", Touch::output,
+             "Sampling maps (.exr): region, samples a pixel, eccentricity")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema.value("--bits", at(&JobSettings::picture, &DisplaySettings::bits), "8|16", Touch::output,
+               "Bits a channel of .png and .tif");
+  schema.value("--jpeg-quality", at(&JobSettings::picture, &DisplaySettings::quality), "1..100", Touch::output,
+               "Quality of .jpg");
+  schema.flag("--overwrite", &JobSettings::overwrite, Touch::output, "Replaces files that are there")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema
+      .flag("--resume", &JobSettings::resume, Touch::output,
+            "Keeps finished frames of the same settings and renders the rest")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema.group("Talk");
+  schema
+      .value("--progress", &JobSettings::progress, "auto|always|never", Touch::talk,
+             "A bar on a terminal, plain lines elsewhere (auto); always: the bar")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema.flag("--quiet", &JobSettings::quiet, Touch::talk, "No progress and no summary; warnings and errors stay")
+      .decides_nothing()
+      .with(Trait::one_run);
+}
+
+}  // namespace gazetrace

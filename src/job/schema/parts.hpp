@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts that the schema of a job is put together from, in this order.
+#pragma once
+
+#include "gazetrace/job_schema.hpp"
+
+namespace gazetrace {
+
+// Beyond this no picture has a meaning, and 2^stops times a bright light still fits a float.
+inline constexpr double kMaxStops = 64;
+
+void add_scene_options(JobSchema& schema);
+void add_camera_options(JobSchema& schema);
+void add_gaze_options(JobSchema& schema);
+void add_screen_options(JobSchema& schema);
+void add_frame_options(JobSchema& schema);
+void add_sampling_options(JobSchema& schema);
+void add_filter_options(JobSchema& schema);
+void add_history_options(JobSchema& schema);
+void add_tracing_options(JobSchema& schema);
+void add_color_options(JobSchema& schema);
+void add_output_options(JobSchema& schema);
+
+}  // namespace gazetrace

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/schema/parts.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr auto trace(auto member) {
+  return at(&JobSettings::trace, member);
+}
+
+constexpr double kMostBounces = 1000;
+constexpr double kWidestCone = 1000;
+constexpr double kMostThreads = 1024;
+
+void add_path_options(JobSchema& schema) {
+  schema
+      .value("--bounces", trace(&TraceSettings::max_bounces), "N", Touch::tracing,
+             "Scattering events on a path; 0 shows emission only")
+      .within(0, kMostBounces)
+      .with(Trait::trade_off)
+      .with(Trait::needs_truth)
+      .with(Trait::always_stated);
+  schema
+      .flag("--russian-roulette", trace(&TraceSettings::russian_roulette), Touch::tracing,
+            "Ends dim paths early from the third bounce on, without bias")
+      .with(Trait::trade_off);
+  schema.value("--diffuse", trace(&TraceSettings::diffuse), choices<DiffuseModel>(), Touch::tracing, "Diffuse lobe")
+      .with(Trait::always_stated);
+  schema
+      .value("--light-sampling", trace(&TraceSettings::light_sampling), choices<LightSampling>(), Touch::tracing,
+             "Lights and surfaces together (mis), or one of them alone")
+      .with(Trait::trade_off)
+      .with(Trait::always_stated);
+  schema
+      .flag("--compensate-environment", trace(&TraceSettings::compensate_environment), Touch::tracing,
+            "Light samples of the environment go where it stands out: less noise in the open, more indoors")
+      .with(Trait::trade_off);
+  schema
+      .value("--clamp-indirect", trace(&TraceSettings::clamp_indirect), "RADIANCE", Touch::tracing,
+             "Most that a sample may add after more than one scattering event: fewer fireflies, with bias; 0: off")
+      .at_least(0, "give a positive number, or 0 for none")
+      .with(Trait::trade_off)
+      .with(Trait::always_stated);
+}
+
+void add_texture_options(JobSchema& schema) {
+  schema
+      .value("--pixel-filter", trace(&TraceSettings::filter), choices<PixelFilter>(), Touch::tracing,
+             "Spread of the samples of a pixel; --filter guided has edges and texture of a box in any case")
+      .with(Trait::always_stated);
+  schema
+      .value("--pixel-cone", trace(&TraceSettings::pixel_cone), "PIXELS", Touch::tracing,
+             "Texture detail at first hits: width of a camera ray's footprint; 0: full resolution, averaged by the "
+             "samples; with --filter guided never less than 1")
+      .within(0, kWidestCone)
+      .with(Trait::trade_off)
+      .with(Trait::needs_truth)
+      .with(Trait::always_stated);
+  schema
+      .value("--bounce-cone", trace(&TraceSettings::bounce_cone_rad), "RADIANS", Touch::tracing,
+             "Texture detail after bounces: how much a diffuse bounce widens the footprint; 0: not at all")
+      .within(0, kWidestCone)
+      .with(Trait::trade_off)
+      .with(Trait::needs_truth)
+      .with(Trait::always_stated);
+}
+
+}  // namespace
+
+void add_tracing_options(JobSchema& schema) {
+  schema.group("Light transport");
+  add_path_options(schema);
+  add_texture_options(schema);
+  schema
+      .value("--seed", trace(&TraceSettings::seed), "N", Touch::tracing,
+             "Same seed, same pictures, for any number of threads")
+      .with(Trait::own_seed)
+      .with(Trait::always_stated);
+  schema.value("--bvh", &JobSettings::bvh, choices<BvhQuality>(), Touch::speed, "Build quality of the ray tracing tree")
+      .decides_nothing();
+  schema
+      .value("--threads", &JobSettings::threads, "N", Touch::speed,
+             "0: as many as the machine has; pictures do not depend on it")
+      .decides_nothing()
+      .within(0, kMostThreads, "0 takes all");
+  schema
+      .value("--only-pixel", &JobSettings::only_pixel, "X,Y", Touch::tracing,
+             "Traces only the samples of this pixel, for replaying a bad one; without --output it is printed")
+      .with(Trait::one_run);
+}
+
+}  // namespace gazetrace

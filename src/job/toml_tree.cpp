@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/toml_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+TomlNode tree_of(const toml::node& node) {
+  TomlNode tree;
+  tree.line = static_cast<int>(node.source().begin.line);
+  tree.kind = TomlNode::Kind::scalar;
+  if (const auto* text = node.as_string()) {
+    tree.text = text->get();
+  } else if (const auto* whole = node.as_integer()) {
+    tree.text = fmt::format("{}", whole->get());
+  } else if (const auto* number = node.as_floating_point()) {
+    tree.text = fmt::format("{}", number->get());
+  } else if (const auto* truth = node.as_boolean()) {
+    tree.text = truth->get() ? "true" : "false";
+  } else if (const auto* array = node.as_array()) {
+    tree.kind = TomlNode::Kind::array;
+    for (const toml::node& item : *array) {
+      tree.items.push_back(tree_of(item));
+    }
+  } else if (const auto* table = node.as_table()) {
+    tree.kind = TomlNode::Kind::table;
+    std::vector<std::pair<toml::source_position, std::string>> order;
+    for (const auto& [key, value] : *table) {
+      order.emplace_back(key.source().begin, std::string(key.str()));
+    }
+    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [position, key] : order) {
+      tree.members.emplace_back(key, tree_of(*table->get(key)));
+      // A value's own line may be that of a bracket below: people look for the key.
+      tree.members.back().second.line = static_cast<int>(position.line);
+    }
+  } else {
+    tree.kind = TomlNode::Kind::other;
+  }
+  return tree;
+}
+
+}  // namespace
+
+const TomlNode* TomlNode::find(std::string_view key) const {
+  const auto found =
+      std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == key; });
+  return found == members.end() ? nullptr : &found->second;
+}
+
+TomlNode parse_toml(std::string_view text, const std::string& path) {
+  try {
+    return tree_of(toml::parse(text));
+  } catch (const toml::parse_error& error) {
+    throw Error(ErrorKind::input, fmt::format("{}:{}", path, error.source().begin.line),
+                std::string(error.description()), "this is not TOML");
+  }
+}
+
+std::string toml_place(const std::string& path, const TomlNode& node) {
+  return fmt::format("{}:{}", path, node.line);
+}
+
+std::string toml_scalar(const TomlNode& node, const std::string& path) {
+  if (node.kind != TomlNode::Kind::scalar) {
+    throw Error(ErrorKind::input, toml_place(path, node), "dates, times and nested tables are no values of options",
+                "write text, a number, true, false or an array of them");
+  }
+  return node.text;
+}
+
+}  // namespace gazetrace

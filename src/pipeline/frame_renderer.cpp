@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/frame_renderer.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "pipeline/contrast_prepass.hpp"
+#include "pipeline/frame_stages.hpp"
+
+namespace gazetrace {
+namespace {
+
+ShutterTimes shutter_of(const FrameRequest& request) {
+  return {request.shutter_open_ns, request.shutter_close_ns};
+}
+
+}  // namespace
+
+FrameRenderer::FrameRenderer(PathTracer& tracer, FrameSettings settings)
+    : tracer_(&tracer), settings_(std::move(settings)), reconstruction_(settings_.reconstruction) {}
+
+TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
+  TracedFrame traced;
+  StageTimes& times = traced.times;
+  const PosedScene scene = timed(times.trace_ms, [&] { return tracer_->at(shutter_of(request)); });
+  MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
+  FoveationSettings foveation = settings_.foveation;
+  ImageGray contrast;
+  if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
+    foveation = less_first_look(foveation, request);
+    ContrastPrepass first_look = timed(times.trace_ms, [&] {
+      return trace_contrast(scene, request, settings_.trace, settings_.foveation.contrast_strength);
+    });
+    contrast = std::move(first_look.multiplier);
+    context.contrast = &contrast;
+    traced.first_look = std::move(first_look.stats);
+  }
+  traced.map = timed(times.plan_ms, [&] {
+    return make_sampling_map(foveation, request.view, request.gaze_direction_render, context);
+  });
+  traced.sparse = timed(times.trace_ms, [&] {
+    return scene.trace(request.camera, request.frame, traced.map, reconstruction_.trace_settings(settings_.trace));
+  });
+  return traced;
+}
+
+RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history) const {
+  TracedFrame traced = trace(request);
+  const PosedScene scene = tracer_->at(shutter_of(request));
+  RenderedFrame rendered;
+  rendered.times = traced.times;
+  StageTimes& times = rendered.times;
+  std::optional<Guides> guides;
+  if (const auto wanted = reconstruction_.guide_settings(settings_.trace)) {
+    guides = timed(times.guides_ms,
+                   [&] { return scene.guides(request.camera, request.width_px, request.height_px, *wanted); });
+  }
+  const auto filtered = [&](const SparseFrame& sparse, const Reconstruction& by) {
+    return timed(times.reconstruct_ms,
+                 [&] { return by.frame(sparse, traced.map, guides ? &*guides : nullptr, settings_.threads); });
+  };
+  const auto reprojected = [&](Frame frame) {
+    return timed(times.temporal_ms, [&] {
+      const EarlierView earlier{history.camera.value_or(request.camera),
+                                history.camera ? history.t_video_ns : request.t_video_ns};
+      const SurfaceMotion motion =
+          scene.surface_motion(request.camera, traced.map.width_px, traced.map.height_px, earlier);
+      return reproject(std::move(frame), traced.map, motion, request, settings_.accumulate, history, settings_.threads);
+    });
+  };
+  if (settings_.accumulate.mode != AccumulateMode::reproject) {
+    Frame frame = filtered(traced.sparse, reconstruction_);
+    rendered.frame = timed(times.temporal_ms, [&] {
+      return accumulate(std::move(frame), request, settings_.accumulate, history, settings_.threads);
+    });
+  } else if (settings_.accumulate.order == AccumulateOrder::before && !reconstruction_.needs().surfaces) {
+    const Frame sites = reprojected(filtered(traced.sparse, Reconstruction({"none", {}})));
+    rendered.frame = filtered(sites_of_frame(sites, traced.sparse, traced.map), reconstruction_);
+  } else {
+    rendered.frame = reprojected(filtered(traced.sparse, reconstruction_));
+  }
+  rendered.map = std::move(traced.map);
+  rendered.samples = std::move(traced.sparse.stats);
+  rendered.first_look = std::move(traced.first_look);
+  history.passed.push_back(request.frame);
+  expose(request, settings_, history, rendered);
+  return rendered;
+}
+
+bool uses_history(const FrameSettings& settings) {
+  return settings.accumulate.mode != AccumulateMode::off ||
+         (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
+}
+
+void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,
+            RenderedFrame& rendered) {
+  rendered.exposure_ev = timed(rendered.times.exposure_ms, [&] {
+    return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
+  });
+  if (settings.enhance_contrast > 0) {
+    rendered.frame.radiance = timed(rendered.times.reconstruct_ms, [&] {
+      return enhance_contrast(std::move(rendered.frame.radiance), rendered.map, settings.enhance_contrast,
+                              settings.threads);
+    });
+  }
+}
+
+MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads) {
+  MapContext context;
+  context.seed = seed;
+  context.frame = request.frame;
+  context.uncertainty_deg = request.gaze_uncertainty_deg;
+  context.gaze_speed_deg_s = request.eye_speed_deg_s;
+  context.in_saccade = request.eye_in_saccade;
+  context.threads = threads;
+  return context;
+}
+
+}  // namespace gazetrace

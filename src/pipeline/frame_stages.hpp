@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stages that a frame goes through whether its samples were traced now or are joined from files.
+#pragma once
+
+#include "core/stopwatch.hpp"
+#include "gazetrace/frame_renderer.hpp"
+
+namespace gazetrace {
+
+// Adds the wall time of a stage to `ms` and passes its result through.
+template <class Stage>
+auto timed(double& ms, Stage&& stage) {
+  const Stopwatch watch;
+  auto result = stage();
+  ms += watch.elapsed_ms();
+  return result;
+}
+
+// Chooses the frame's exposure, then enhances its picture where that is asked for.
+void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,
+            RenderedFrame& rendered);
+
+}  // namespace gazetrace

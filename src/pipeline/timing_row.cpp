@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/timing_row.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gazetrace {
+namespace {
+
+void add_counts(const TraceStats& stats, TimingRow& row) {
+  row.samples += stats.samples;
+  row.rays_primary += stats.rays_primary;
+  row.rays_bounce += stats.rays_bounce;
+  row.rays_shadow += stats.rays_shadow;
+  row.rejected_rays += stats.rejected_rays;
+  row.non_finite_samples += stats.non_finite_samples;
+  for (const RegionTraceStats& region : stats.regions) {
+    row.trace_cpu_ms += static_cast<double>(region.cpu_ns) * 1e-6;
+  }
+}
+
+}  // namespace
+
+TimingRow timing_row(const FrameRequest& request) {
+  TimingRow row;
+  row.frame = request.frame;
+  row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
+  const GazeAtTime& gaze = request.gaze_render;
+  row.gaze_state = to_string(gaze.state);
+  row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
+  const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
+  row.gaze_age_ms = !has_row            ? ""
+                    : gaze.age_is_known ? fmt::format("{:.3f}", static_cast<double>(gaze.age_ns) * 1e-6)
+                                        : "unknown";
+  if (request.gaze_effective_age_ns) {
+    row.gaze_effective_age_ms = fmt::format("{:.3f}", static_cast<double>(*request.gaze_effective_age_ns) * 1e-6);
+  }
+  row.no_gaze = gaze.no_gaze ? 1 : 0;
+  return row;
+}
+
+void add_times(const StageTimes& times, TimingRow& row) {
+  row.plan_ms += times.plan_ms;
+  row.trace_ms += times.trace_ms;
+  row.guides_ms += times.guides_ms;
+  row.reconstruct_ms += times.reconstruct_ms;
+  row.temporal_ms += times.temporal_ms;
+  row.exposure_ms += times.exposure_ms;
+}
+
+void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row) {
+  add_counts(samples, row);
+  add_counts(first_look, row);
+  const std::vector<std::string>& names = timing_regions();
+  for (std::size_t i = 0; i < map.regions.size(); ++i) {
+    const auto name = std::find(names.begin(), names.end(), map.regions[i].name);
+    if (name != names.end()) {
+      const auto column = static_cast<std::size_t>(name - names.begin());
+      row.region_pixels.at(column) += map.regions[i].pixels;
+      row.region_samples.at(column) += samples.regions[i].samples;
+      row.region_cpu_ms.at(column) += static_cast<double>(samples.regions[i].cpu_ns) * 1e-6;
+    }
+  }
+}
+
+}  // namespace gazetrace

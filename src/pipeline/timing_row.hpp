@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// A frame's row of timing.csv, from what the stages say of themselves.
+#pragma once
+
+#include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+
+// The frame's number, its size, and where the eye was.
+TimingRow timing_row(const FrameRequest& request);
+
+void add_times(const StageTimes& times, TimingRow& row);
+// `samples` are those of the map's sites; samples of the first look belong to no region.
+void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row);
+
+}  // namespace gazetrace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sweep's plan as it is written: TOML, every value checked by itself, every message with its line.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/job.hpp"
+#include "gazetrace/metric_options.hpp"
+
+namespace gazetrace {
+
+// `names`: any list of texts.
+template <class Names>
+bool is_among(const Names& names, std::string_view name) {
+  return std::find(std::begin(names), std::end(names), name) != std::end(names);
+}
+
+// An option of `render` and what a plan gives it.
+struct Assignment {
+  std::string option;
+  std::vector<std::string> values;
+  std::string place;  // file:line
+};
+
+struct SweepFileScene {
+  std::string name, place;
+  std::vector<Assignment> options;
+};
+using SweepFileGaze = SweepFileScene;
+
+struct SweepFileSetting {
+  std::string label;  // of a [[setting]]; empty: made of the options
+  std::string place;
+  std::vector<Assignment> options;
+  double resolution_scale = 1;
+};
+
+// What was printed elsewhere for a scene and a setting of this label.
+struct SweepFilePublished {
+  std::string scene, setting, source, place;
+  double speed_up = 0;
+};
+
+struct SweepFileReference {
+  std::vector<Assignment> options;
+  int scramblings = 4;
+  std::uint64_t seed = 1000003;
+};
+
+struct SweepFileMeasure {
+  int repeats = 3, warm_up = 1;
+  DurationNs leave_out;
+  std::vector<std::string> baselines{"uniform-reference-rate", "equal-samples", "equal-time", "low-resolution"};
+  bool controls = true;
+  std::uint32_t reference_rate = 32;
+  std::vector<std::string> uniform_rates;
+  std::vector<std::string> quality;  // METRIC=VALUE
+  std::string pictures = "png";      // png, exr, both, none
+  std::uint32_t efficiency_spp = 4;
+  MetricChoice compare;  // metrics and the display they need
+};
+
+struct SweepFile {
+  std::string path, title;
+  std::vector<Assignment> common;
+  std::vector<SweepFileScene> scenes;
+  std::vector<SweepFileGaze> gazes;
+  std::vector<SweepFileSetting> settings;  // every [[setting]] with every combination of the [grid]
+  std::vector<SweepFilePublished> published;
+  SweepFileReference reference;
+  SweepFileMeasure measure;
+  std::map<std::string, std::string> places;  // of the keys of [reference] and [measure]
+  std::vector<std::string> varied;            // options that settings give
+};
+
+// Error(input) in one line for whatever can be known from the file alone.
+SweepFile read_sweep_file(const std::string& path, const JobSchema& schema);
+// The line of a key of [reference] or [measure]; where it is not given, the file.
+std::string place_of(const SweepFile& file, const std::string& key);
+
+}  // namespace gazetrace

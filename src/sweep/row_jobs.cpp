@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sweep/row_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "gazetrace/resolve.hpp"
+
+namespace gazetrace {
+namespace {
+
+// What a uniform frame does not see. A preset, which is not only of sampling, is among it: its effective values are
+// taken one by one.
+bool is_of_sampling_or_gaze(const Option& option) {
+  return option.touches.has(Touch::sampling) || option.touches.has(Touch::gaze);
+}
+
+// What becomes of samples after they were traced. A reference has neither a filter nor a history.
+bool is_after_sampling(const Option& option) {
+  return option.touches.has(Touch::filter) || option.touches.has(Touch::history);
+}
+
+void assign(Job& job, const std::vector<Assignment>& options, const JobSchema& schema,
+            const std::function<bool(const Option&)>& wanted = {}) {
+  for (const Assignment& given : options) {
+    if (!wanted || wanted(*schema.find(given.option))) {
+      set_option(job, given.option, given.values, {Origin::file, given.place, {}}, given.place + ": " + given.option,
+                 schema);
+    }
+  }
+}
+
+// The effective values of another job, those of its presets among them.
+void take(Job& job, const Job& other, const JobSchema& schema, const std::function<bool(const Option&)>& wanted) {
+  for (const OptionOf<JobSettings>& option : schema.options()) {
+    const std::vector<std::string> values = option.values(other.settings);
+    if (!values.empty() && values != option.defaults && wanted(option)) {
+      const auto source = other.sources.find(option.name);
+      const std::string place = source == other.sources.end() ? std::string() : source->second.place;
+      set_option(job, option.name, values, {Origin::file, place, {}}, option.name, schema);
+    }
+  }
+}
+
+void check_truth_is_known(const Job& reference, const SweepFileSetting& setting, const JobSchema& schema) {
+  for (const Assignment& given : setting.options) {
+    if (schema.find(given.option)->is(Trait::needs_truth) && !reference.is_given(given.option)) {
+      throw Error(ErrorKind::input, given.place,
+                  fmt::format("'{}' varies, and the reference does not know which value is right", given.option),
+                  fmt::format("give '{}' in [reference]", given.option));
+    }
+  }
+}
+
+}  // namespace
+
+Job shared_job(const SweepRequest& request, const SweepFileScene& scene) {
+  Job job;
+  assign(job, request.file.common, request.schema);
+  if (request.frames) {
+    job.settings.frames = request.frames;
+  }
+  if (request.threads) {
+    job.settings.threads = *request.threads;
+  }
+  assign(job, scene.options, request.schema);
+  job.settings.quiet = true;
+  return job;
+}
+
+Job test_job(const SweepRequest& request, const SweepFileScene& scene, const SweepFileGaze* gaze,
+             const SweepFileSetting& setting) {
+  Job job = shared_job(request, scene);
+  if (gaze != nullptr) {
+    assign(job, gaze->options, request.schema);
+  }
+  assign(job, setting.options, request.schema);
+  // Its baselines go through the same one.
+  job.settings.filter = filter_of(job.settings).name;
+  return job;
+}
+
+Job reference_job(const SweepRequest& request, const SweepFileScene& scene, const Job& test,
+                  const SweepFileSetting& setting) {
+  const JobSchema& schema = request.schema;
+  const auto is_trade_off = [](const Option& option) { return option.is(Trait::trade_off); };
+  Job job;
+  take(job, test, schema, [&](const Option& option) {
+    return !is_of_sampling_or_gaze(option) && !is_after_sampling(option) && !is_trade_off(option) &&
+           !option.is(Trait::own_seed);
+  });
+  assign(job, request.file.common, schema, is_trade_off);
+  assign(job, scene.options, schema, is_trade_off);
+  for (const auto& [option, value] :
+       {std::pair("falloff", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
+        std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0")}) {
+    set_option(job, option, {value}, {Origin::file, {}, {}}, option, schema);
+  }
+  assign(job, request.file.reference.options, schema);
+  job.settings.frames = test.settings.frames;
+  job.settings.threads = test.settings.threads;
+  if (test.settings.camera_from_gaze) {
+    job.settings.camera_from_gaze = true;
+    job.settings.gaze = test.settings.gaze;
+    take(job, test, schema, [](const Option& option) { return option.is(Trait::clock); });
+  }
+  check_truth_is_known(job, setting, schema);
+  return job;
+}
+
+Job uniform_job(const Job& test, const JobSchema& schema) {
+  Job job;
+  take(job, test, schema, [](const Option& option) { return !is_of_sampling_or_gaze(option); });
+  return job;
+}
+
+bool uses_gaze_otherwise(const Job& test) {
+  const AccumulateSettings& accumulate = test.settings.accumulate;
+  return test.settings.camera_from_gaze || accumulate.reset_at_saccades || accumulate.reset_at_blinks;
+}
+
+bool uniform_sees(const Option& option, const Job& test) {
+  return option.touches.without(Touch::sampling).any() &&
+         (!option.touches.has(Touch::gaze) || uses_gaze_otherwise(test));
+}
+
+std::string place_of_error(const Job& job, const JobSchema& schema, const std::string& otherwise,
+                           const std::string& text) {
+  if (text.starts_with('`')) {
+    const auto found = job.sources.find(text.substr(1, text.find('`', 1) - 1));
+    return found == job.sources.end() ? otherwise : found->second.place;
+  }
+  std::string place = otherwise;
+  for (const OptionOf<JobSettings>& option : schema.options()) {
+    const auto source = job.sources.find(option.name);
+    if (option.decides == Decides::file && source != job.sources.end()) {
+      const std::string file = option_text(job, option.name, schema);
+      if (!file.empty() && text.starts_with(file)) {
+        place = source->second.place;
+      }
+    }
+  }
+  return place;
+}
+
+}  // namespace gazetrace

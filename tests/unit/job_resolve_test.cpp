@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run by the library alone: from a job to files and their record.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gazetrace/resolve.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gazetrace {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::int64_t kFirstNs = 1698682600011534600;  // 30 October 2023
+constexpr const char* kStamp = "16986826";
+
+class Resolve : public testing::Test {
+ protected:
+  Resolve() {
+    std::string log = "# gazetrace-gaze 1\n# clock host, 2023/10/30 13:34:49.156\nt[ns],dx,dy,dz\n";
+    for (int i = 0; i < 60; ++i) {
+      log += fmt::format("{},{},0,-1\n", kFirstNs + i * 10'000'000, 0.001 * i);
+    }
+    write_text_atomically(folder_ / "log.csv", log);
+    set_option(job_, "scene", GAZETRACE_SOURCE_DIR "/tests/data/package/triangle.gltf");
+    set_option(job_, "gaze", folder_ / "log.csv");
+    set_option(job_, "eye", "0,0,3");
+    set_option(job_, "target", "0,0,0");
+    set_option(job_, "size", "32x18");
+    set_option(job_, "spp", "1");
+    set_option(job_, "frames", "1-2");
+    set_option(job_, "output", folder_ / "f.####.exr");
+  }
+  // As a program does that has nothing but the library.
+  static std::string rendered(const Job& job) {
+    ResolvedJob resolved = resolve(job);
+    prepare_outputs(resolved);
+    const ColorPipeline color(resolved.job.settings.color);
+    PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
+    RunRecord record = start_run_record(resolved, tracer, color);
+    const SequenceResult result =
+        render_sequence(tracer, resolved.plan, color, resolved.pipeline, {}, std::move(resolved.history));
+    finish_run_record(record, result, resolved.plan, 1.0);
+    return run_record_json(record);
+  }
+
+  TemporaryFolder folder_;
+  Job job_;
+};
+
+TEST_F(Resolve, ARecordOfAnEmbeddedRunCarriesNoTimeOfDay) {
+  const std::string record = rendered(job_);
+  EXPECT_THAT(record, Not(HasSubstr(kStamp)));
+  EXPECT_THAT(record, Not(HasSubstr("2023/10/30")));
+  EXPECT_THAT(record, HasSubstr("\"state\": \"done\""));
+  for (const char* name : {"f.0001.exr", "f.0002.exr", "timing.csv"}) {
+    EXPECT_THAT(file_bytes(folder_ / name), Not(HasSubstr(kStamp))) << name;
+  }
+}
+
+// So that the test above would see one.
+TEST_F(Resolve, WhoAsksForTimesOfDayGetsThem) {
+  set_option(job_, "keep-ids", "true");
+  rendered(job_);
+  EXPECT_THAT(file_bytes(folder_ / "f.0001.exr"), HasSubstr(kStamp));
+}
+
+TEST_F(Resolve, SaysWhatItDecidedAndWhy) {
+  const ResolvedJob resolved = resolve(job_);
+  EXPECT_EQ(resolved.job.settings.filter, "guided");
+  std::map<std::string, std::string> decisions(resolved.decisions.begin(), resolved.decisions.end());
+  EXPECT_THAT(decisions.at("filter"), HasSubstr("guided, because"));
+  EXPECT_EQ(decisions.at("camera"), "still, from `eye`");
+  EXPECT_THAT(decisions.at("environment"), HasSubstr("the built-in sky"));
+  EXPECT_EQ(resolved.pipeline.reconstruction.filter, "guided");
+  set_option(job_, "filter", "tent");
+  const ResolvedJob named = resolve(job_);
+  decisions = {named.decisions.begin(), named.decisions.end()};
+  EXPECT_FALSE(decisions.contains("filter"));
+}
+
+TEST_F(Resolve, TheSameFilesUnderOtherNamesHaveTheSameDigests) {
+  const std::string digest = resolve(job_).pipeline.settings_digest;
+  EXPECT_FALSE(digest.empty());
+  write_text_atomically(folder_ / "other.csv", file_bytes(folder_ / "log.csv"));
+  Job other = job_;
+  set_option(other, "gaze", folder_ / "other.csv");
+  EXPECT_EQ(resolve(other).pipeline.settings_digest, digest);
+  set_option(other, "seed", "7");
+  EXPECT_NE(resolve(other).pipeline.settings_digest, digest);
+}
+
+TEST_F(Resolve, ARecordGivesTheSameDigestAgain) {
+  const ResolvedJob resolved = resolve(job_);
+  const PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
+  const RunRecord record = start_run_record(resolved, tracer, ColorPipeline({}));
+  EXPECT_EQ(resolve(job_of_record(record, "run.json")).pipeline.settings_digest, record.settings_digest);
+}
+
+TEST_F(Resolve, APlanNeedsNoSceneAndHashesNothing) {
+  set_option(job_, "scene", folder_ / "gone.gltf");
+  ResolveOptions options;
+  options.scope = ResolveScope::plan;
+  const ResolvedJob resolved = resolve(job_, options);
+  EXPECT_EQ(resolved.plan.frames.size(), 2U);
+  EXPECT_EQ(resolved.scene, nullptr);
+  EXPECT_TRUE(resolved.input_digests.empty());
+}
+
+// An empty digest would match every file that has none.
+TEST_F(Resolve, ResumingWithoutADigestIsAnErrorAndNoMatch) {
+  set_option(job_, "resume", "true");
+  ResolvedJob resolved = resolve(job_);
+  PathTracer tracer(*resolved.scene, {});
+  const ColorPipeline color({});
+  write_text_atomically(folder_ / "f.0001.exr", "something else");
+  resolved.pipeline.settings_digest.clear();
+  try {
+    render_sequence(tracer, resolved.plan, color, resolved.pipeline, {});
+    FAIL() << "it went on";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_THAT(error.what(), HasSubstr("`resume`: no settings digest"));
+  }
+  EXPECT_EQ(file_bytes(folder_ / "f.0001.exr"), "something else");
+}
+
+}  // namespace
+}  // namespace gazetrace

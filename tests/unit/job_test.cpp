@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// A job as a value: who gave its options, what stands above what, and what it is as text.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gazetrace/job.hpp"
+#include "gazetrace/resolve.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gazetrace {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kCommandLine = "the command line";
+
+void on_command_line(Job& job, const std::string& option, const std::string& value) {
+  set_option(job, option, {value}, {Origin::given, kCommandLine, {}});
+}
+
+std::string error_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::vector<std::string> decisions_of(const Job& job) {
+  std::vector<std::string> texts;
+  for (const auto& [name, text] : job.decisions) {
+    texts.push_back(text);
+  }
+  return texts;
+}
+
+TEST(Job, CopiesAreIndependent) {
+  Job first;
+  set_option(first, "spp", "4");
+  Job second = first;
+  set_option(second, "spp", "8");
+  EXPECT_EQ(first.settings.foveation.uniform_spp, 4U);
+  EXPECT_EQ(second.settings.foveation.uniform_spp, 8U);
+  EXPECT_EQ(option_text(first, "spp"), "4");
+}
+
+TEST(Job, TextGivesTheSameJobBack) {
+  Job job;
+  set_option(job, "scene", "a \"b\" #c.gltf");
+  set_option(job, "output", std::vector<std::string>{"f.####.exr", "f.####.png"});
+  set_option(job, "gaze-start", "12345678901234567ns");
+  set_option(job, "region-angles", "5.2,17");
+  set_option(job, "seed", "18446744073709551615");
+  const std::string text = job_as_toml(job);
+  const Job back = job_from_toml(text, "job.toml");
+  EXPECT_EQ(job_as_toml(back), text);
+  EXPECT_EQ(back.settings.outputs, job.settings.outputs);
+  EXPECT_EQ(back.settings.trace.seed, 18446744073709551615U);
+  EXPECT_EQ(back.sources.at("scene").origin, Origin::file);
+}
+
+TEST(Job, FilesThatCannotBeReadAndWrongValuesAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(error_of([&] { load_job(folder / "gone.toml"); }), HasSubstr("gone.toml: the settings file cannot be"));
+  EXPECT_THAT(error_of([] { job_from_toml("\nspp = \"many\"\n", "job.toml"); }), HasSubstr("job.toml:2: spp: 'many'"));
+  EXPECT_THAT(error_of([] { job_from_toml("ssp = 1\n", "job.toml"); }), HasSubstr("did you mean 'spp'"));
+  Job job;
+  EXPECT_THAT(error_of([&] { set_option(job, "spp", "many"); }), HasSubstr("`spp`: 'many' is not a whole number"));
+  EXPECT_THAT(error_of([&] { set_option(job, "ssp", "1"); }), HasSubstr("did you mean 'spp'"));
+  EXPECT_THAT(error_of([&] { set_option(job, "spp", std::vector<std::string>{"1", "2"}); }), HasSubstr("one value"));
+  EXPECT_THAT(error_of([&] { set_option(job, "preset", "papre"); }), HasSubstr("did you mean 'paper'"));
+}
+
+TEST(Job, TheCommandLineIsAboveAFileInWhateverOrder) {
+  Job first;
+  on_command_line(first, "spp", "3");
+  add_toml(first, "# one\nspp = 7\nbounces = 5\n", "job.toml");
+  Job second;
+  add_toml(second, "# one\nspp = 7\nbounces = 5\n", "job.toml");
+  on_command_line(second, "spp", "3");
+  EXPECT_EQ(job_as_toml(first), job_as_toml(second));
+  EXPECT_EQ(first.settings.foveation.uniform_spp, 3U);
+  EXPECT_EQ(first.settings.trace.max_bounces, 5);
+  const std::vector<std::string> replaced{"the command line replaces spp = 7 of job.toml:2"};
+  EXPECT_EQ(decisions_of(first), replaced);
+  EXPECT_EQ(decisions_of(second), replaced);
+}
+
+TEST(Job, EqualValuesReplaceNothing) {
+  Job job;
+  add_toml(job, "gaze-max-age = \"0.25s\"\n", "job.toml");
+  on_command_line(job, "gaze-max-age", "250ms");
+  EXPECT_TRUE(job.decisions.empty());
+}
+
+TEST(Job, OfARecordOrRefusedWithTheVersionThatWroteIt) {
+  Job job;
+  set_option(job, "spp", "4");
+  RunRecord record;
+  record.version = "0.0.9";
+  record.config_toml = job_as_toml(job);
+  EXPECT_EQ(job_as_toml(job_of_record(record, "run.json")), record.config_toml);
+  record.config_toml += "option-of-long-ago = 3\n";
+  const std::string error = error_of([&] { job_of_record(record, "run.json"); });
+  EXPECT_THAT(error, HasSubstr("option-of-long-ago"));
+  EXPECT_THAT(error, HasSubstr("gazetrace 0.0.9 wrote it"));
+}
+
+TEST(Job, RangesOfTheSchemaAreChecked) {
+  const auto refused = [](const std::string& option, const std::string& value) {
+    Job job;
+    set_option(job, option, value);
+    return error_of([&] { check_job(job); });
+  };
+  EXPECT_EQ(refused("bounces", "1001"), "`bounces`: 1001 is outside 0..1000");
+  EXPECT_EQ(refused("threads", "-1"), "`threads`: -1 is outside 0..1024; 0 takes all");
+  EXPECT_EQ(refused("exposure-key", "0"), "`exposure-key`: 0 is not above 0");
+  EXPECT_EQ(refused("gaze-max-gap", "-5ms"), "`gaze-max-gap`: -5ms is not at least 0");
+  EXPECT_EQ(refused("bounces", "1000"), "");
+}
+
+TEST(JobSchema, EveryOptionSaysWhatItTouchesAndReadsItsDefaultBack) {
+  for (const OptionOf<JobSettings>& option : job_schema().options()) {
+    EXPECT_TRUE(option.touches.any()) << option.name;
+    EXPECT_FALSE(option.help.empty()) << option.name;
+    if (!option.defaults.empty()) {
+      JobSettings settings;
+      option.assign(settings, option.defaults, option.name);
+      EXPECT_EQ(option.values(settings), option.defaults) << option.name;
+    }
+    if (option.is(Trait::needs_truth)) {
+      EXPECT_TRUE(option.is(Trait::trade_off)) << option.name;
+    }
+  }
+}
+
+TEST(JobSchema, EveryDefaultIsInItsRange) {
+  EXPECT_NO_THROW(check_job(Job{}));
+}
+
+TEST(JobSchema, WhatPresetsSetExists) {
+  for (const Preset& preset : presets()) {
+    Job job;
+    EXPECT_NO_THROW(set_option(job, "preset", preset.name));
+    for (const auto& [option, value] : preset.settings) {
+      EXPECT_EQ(option_text(job, option), value) << preset.name;
+    }
+  }
+}
+
+TEST(IdleOptions, AreThoseThatWereGivenAndDoNothing) {
+  Job job;
+  set_option(job, "accumulate-blend", "0.2");
+  EXPECT_EQ(idle_option_warnings(job), Warnings{"`accumulate-blend` does nothing without `accumulate` reproject"});
+  set_option(job, "accumulate", "reproject");
+  EXPECT_TRUE(idle_option_warnings(job).empty());
+  Job of_preset;
+  set_option(of_preset, "preset", "paper");
+  EXPECT_TRUE(idle_option_warnings(of_preset).empty());
+}
+
+}  // namespace
+}  // namespace gazetrace

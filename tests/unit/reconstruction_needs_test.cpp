@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// What filters state of themselves, what the tracer is told of it, and which filter suits a job.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/reconstruct.hpp"
+
+namespace gazetrace {
+namespace {
+
+TEST(ReconstructionNeeds, OnlyGuidedFiltersNeedMoreThanSums) {
+  for (const FilterInfo& info : reconstruction_filters()) {
+    SCOPED_TRACE(info.name);
+    const bool guided = info.name == "guided" || info.name == "oidn";
+    EXPECT_EQ(info.needs.guides.has_value(), guided);
+    EXPECT_EQ(info.needs.surfaces, guided);
+    EXPECT_EQ(info.blurs_blocks, !guided && info.name != "none");
+    EXPECT_EQ(Reconstruction({info.name, {}}).filter().name, info.name);
+  }
+}
+
+TEST(ReconstructionNeeds, TheTracerIsToldThem) {
+  TraceSettings trace;
+  trace.seed = 7;
+  trace.guides = true;  // of AOVs, which no filter takes away
+  const TraceSettings guided = Reconstruction({"guided", 12}).trace_settings(trace);
+  EXPECT_TRUE(guided.surfaces);
+  EXPECT_EQ(guided.pass_through_samples, 12U);
+  EXPECT_TRUE(guided.guides);
+  EXPECT_EQ(guided.seed, 7U);
+  trace.surfaces = true;  // left over from another filter
+  EXPECT_FALSE(Reconstruction({"linear", {}}).trace_settings(trace).surfaces);
+}
+
+// One ray stands for a pixel, so that its cone is never narrower than that; materials are those of the samples.
+TEST(ReconstructionNeeds, GuidesFollowTheSamples) {
+  TraceSettings trace;
+  trace.diffuse = DiffuseModel::lambert;
+  EXPECT_FALSE(Reconstruction({"tent", {}}).guide_settings(trace).has_value());
+  const Reconstruction guided({"guided", {}});
+  const GuideSettings narrow = guided.guide_settings(trace).value();
+  EXPECT_EQ(narrow.pixel_cone, 1);
+  EXPECT_EQ(narrow.diffuse, DiffuseModel::lambert);
+  EXPECT_EQ(narrow.edge_rays, guided.needs().guides.value().edge_rays);
+  trace.pixel_cone = 2.5;
+  EXPECT_EQ(guided.guide_settings(trace).value().pixel_cone, 2.5);
+}
+
+TEST(ReconstructionNeeds, AFilterMustBeNamed) {
+  try {
+    const Reconstruction none{ReconstructionSettings{}};
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.kind(), ErrorKind::usage);
+    EXPECT_THAT(e.what(), testing::HasSubstr("no reconstruction filter is named"));
+  }
+}
+
+TEST(ChooseFilter, GuidedForWhatIsFoveatedAndNothingElse) {
+  EXPECT_EQ(choose_filter({}).name, "guided");
+  for (const FilterFacts& facts :
+       std::vector<FilterFacts>{{.foveated = false},
+                                {.blurs = true},
+                                {.accumulates_sites = true},
+                                {.enhances_contrast = true},
+                                {.part_of_samples = true},
+                                {.foveated = false, .blurs = true, .part_of_samples = true}}) {
+    const FilterChoice choice = choose_filter(facts);
+    EXPECT_EQ(choice.name, "linear");
+    EXPECT_NE(choice.reason, choose_filter({}).reason);
+    // What is chosen goes with what it was chosen for.
+    const FilterInfo filter = Reconstruction({choice.name, {}}).filter();
+    EXPECT_FALSE(filter.needs.surfaces);
+    EXPECT_TRUE(filter.blurs_blocks);
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
