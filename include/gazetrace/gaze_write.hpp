@@ -10,28 +10,32 @@
 
 namespace gazetrace {
 
-// Lossless, bit by bit, for samples, both eyes and origins, but `row`: header `t[ns],u[1],v[1],valid,eye,...` or
-// `t[ns],dx,dy,dz,...`. With both eyes there are three rows a time; where the gaze is one eye's everywhere, that eye's
-// rows are not written twice and `# eye` names it. The head's pose stands in the first row of a time; poses between
-// samples, events, messages and calibrations stand in lines before the header.
+// Writes gazetrace CSV. Samples, both eyes and the eyes' origins are read again bit by bit; only `GazeSample::row` is
+// not kept. The header is `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`. A log with both eyes has three rows
+// for each time. Where the gaze is one eye's everywhere, the rows of that eye are not written twice, and `# eye` names
+// it. The head's pose stands in the first row of a time; poses between samples, events, messages and calibrations stand
+// in lines above the header. Error(runtime) where the file cannot be written.
 void write_gaze_csv(const GazeLog& log, const std::string& path);
 
-// The same as BIDS eye tracking: one file for each eye, and one for what was made of both, with sidecars, the log's
-// events and the screen, but no head poses. `path` names it: sub-01_task-view_physio.tsv.gz; a recording- in it is
-// replaced by eye1, eye2 and cyclopean. Lossless as above. Error(usage) for another name, Error(input) for gaze on a
-// scene camera's picture.
+// Writes the log as BIDS eye tracking: one file for each eye and one for the gaze that was made of both, with sidecars,
+// the log's events and the screen, but without the head's poses. `path` names it, as in
+// sub-01_task-view_physio.tsv.gz; a `recording-` in the name is replaced by eye1, eye2 and cyclopean. What is written
+// is read again bit by bit, as above. Error(usage) for a name that is none of BIDS, Error(input) for gaze on a scene
+// camera's picture.
 void write_gaze_bids(const GazeLog& log, const std::string& path);
-std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& path);  // what it would write
+// The tables that `write_gaze_bids` would write.
+std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& path);
 bool is_bids_file_name(const std::string& path);
 
+// A file that lies in a BIDS folder beside those that a conversion writes, and that would be read together with them.
 struct BidsLeftover {
   std::string path;
   bool is_own = false;  // gazetrace wrote it: its sidecar says so
 };
 
-// Gaze recordings with their sidecars and events, and a screen of gazetrace's own, that have the name of the `written`
-// files (of `bids_file_names`, which see) but for recording-, and are not among them. Who reads what was written reads
-// them, too. Recordings that are no gaze are none of them. Error(input) for broken sidecars.
+// Finds them. `written` are the tables of a conversion, as `bids_file_names` lists them. A leftover has their name
+// except for its `recording-` part, and is not among them: a gaze recording, its sidecar and its events, or a screen
+// that gazetrace wrote. Recordings of other signals, such as pulse, are left out. Error(input) for broken sidecars.
 std::vector<BidsLeftover> bids_leftovers(const std::vector<std::string>& written);
 
 }  // namespace gazetrace

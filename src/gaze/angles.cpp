@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/statistics.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
@@ -36,31 +37,6 @@ class HeadWalker {
 
 }  // namespace
 
-ScreenAngles::ScreenAngles(const GazeLog& log) {
-  if (log.kind != GazeKind::screen || !log.recording_geometry) {
-    return;
-  }
-  const DisplayGeometry& g = *log.recording_geometry;
-  if (g.width_cm > 0 && g.height_cm > 0 && g.distance_cm > 0) {
-    width_ = g.width_cm / g.distance_cm;
-    height_ = g.height_cm / g.distance_cm;
-    eye_x_ = g.eye_x_cm / g.distance_cm;
-    eye_y_ = g.eye_y_cm / g.distance_cm;
-  } else if (log.pixels_per_degree && g.width_px > 0 && g.height_px > 0) {
-    // A screen with so many pixels a degree at its centre is (pixels per degree) / tan(1 deg) pixels away.
-    const double per_degree = std::tan(kRadPerDeg);
-    width_ = g.width_px / log.pixels_per_degree->x * per_degree;
-    height_ = g.height_px / log.pixels_per_degree->y * per_degree;
-  }
-}
-
-Vec2d ScreenAngles::place(const Vec3d& direction) const {
-  if (!(direction.z < 0)) {
-    return {kNan, kNan};
-  }
-  return {0.5 + (direction.x / -direction.z + eye_x_) / width_, 0.5 - (direction.y / -direction.z + eye_y_) / height_};
-}
-
 Vec3d between_directions(const Vec3d& a, const Vec3d& b, double s) {
   const double angle = angle_between_rad(a, b);
   const double sine = std::sin(angle);
@@ -78,9 +54,7 @@ std::int64_t median_step_ns(const std::vector<std::int64_t>& t_ns) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     steps[i] = t_ns[i + 1] - t_ns[i];
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upper_median(steps);
 }
 
 std::vector<std::int64_t> times_of(const GazeLog& log) {

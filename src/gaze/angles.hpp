@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gazelog/screen_angles.hpp"
 #include "gazetrace/gaze_log.hpp"
 #include "gazetrace/math.hpp"
 
@@ -41,21 +42,6 @@ inline bool is_seen(const Vec3d& direction) {
 
 // Between two directions, s from 0 to 1, along the shorter arc.
 Vec3d between_directions(const Vec3d& a, const Vec3d& b, double s);
-
-// How u, v of a screen log become directions and back.
-class ScreenAngles {
- public:
-  explicit ScreenAngles(const GazeLog& log);
-  [[nodiscard]] bool known() const { return width_ > 0; }
-  [[nodiscard]] Vec3d direction(double u, double v) const {
-    return normalize(Vec3d{(u - 0.5) * width_ - eye_x_, (0.5 - v) * height_ - eye_y_, -1});
-  }
-  // {NaN, NaN} for directions that never meet the screen.
-  [[nodiscard]] Vec2d place(const Vec3d& direction) const;
-
- private:
-  double width_ = 0, height_ = 0, eye_x_ = 0, eye_y_ = 0;  // at distance 1
-};
 
 // The median step between neighbouring samples; 0 with fewer than two.
 std::int64_t median_step_ns(const std::vector<std::int64_t>& t_ns);

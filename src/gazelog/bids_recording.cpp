@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/statistics.hpp"
 #include "core/text.hpp"
 #include "gazelog/gzip.hpp"
 #include "gazelog/read_support.hpp"
@@ -106,10 +107,9 @@ int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::siz
     steps.push_back(std::abs(times[i] - times[i - 1]));
   }
   if (!steps.empty() && rate_hz > 0) {
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
+    const double step = upper_median(steps);
     for (const int exponent : {9, 6, 3, 0}) {
-      const double ratio = *middle * std::pow(10.0, exponent) * 1e-9 * rate_hz;
+      const double ratio = step * std::pow(10.0, exponent) * 1e-9 * rate_hz;
       if (ratio > 0.5 && ratio < 2) {
         return exponent;
       }

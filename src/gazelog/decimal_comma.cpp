@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/statistics.hpp"
 #include "core/text.hpp"
 #include "gazelog/table.hpp"
 
@@ -122,9 +123,7 @@ double roughness(const RowsOfCells& table, const std::vector<bool>& fractions) {
       steps.push_back(std::abs(rows[r][c] - rows[r - 1][c]));
       sum += c == 0 && rows[r][c] < rows[r - 1][c] ? 1 : 0;
     }
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-    std::nth_element(steps.begin(), middle, steps.end());
-    sum += high > low ? *middle / (high - low) : 0;
+    sum += high > low ? upper_median(steps) / (high - low) : 0;
   }
   return sum;
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/statistics.hpp"
+#include "gazelog/screen_angles.hpp"
 
 namespace gazetrace {
 namespace {
@@ -20,38 +21,19 @@ constexpr double kMaxVerticalDisparityDeg = 0.5;
 constexpr double kOffsetTimeNs = 1e9;                 // of the running offset
 constexpr std::int64_t kShortAbsenceNs = 75'000'000;  // that which trackers bridge: Olsen 2012
 
-// Places of the eyes as two angles: azimuth and elevation where the geometry is known, else what the log has.
+// Places of the eyes as two angles, azimuth and elevation in radians; where the geometry is not known, what the log
+// has.
 class AnglePlane {
  public:
-  explicit AnglePlane(const GazeLog& log) : is_direction_(log.kind == GazeKind::direction) {
-    if (is_direction_ || log.kind == GazeKind::scene_camera) {
-      return;
-    }
-    if (log.recording_geometry) {
-      const DisplayGeometry& g = *log.recording_geometry;
-      if (g.width_cm > 0 && g.height_cm > 0 && g.distance_cm > 0) {
-        geometry_ = g;
-      } else if (log.pixels_per_degree && g.width_px > 0 && g.height_px > 0) {
-        degrees_ = Vec2d{g.width_px / log.pixels_per_degree->x, g.height_px / log.pixels_per_degree->y};
-      }
-    }
-  }
+  explicit AnglePlane(const GazeLog& log) : is_direction_(log.kind == GazeKind::direction), screen_(log) {}
 
-  [[nodiscard]] bool knows_angles() const { return is_direction_ || geometry_ || degrees_; }
+  [[nodiscard]] bool knows_angles() const { return is_direction_ || screen_.known(); }
 
-  // Radians where angles are known.
   [[nodiscard]] Vec2d angles(const Vec3d& at) const {
     if (is_direction_) {
       return {std::atan2(at.x, -at.z), std::atan2(at.y, std::sqrt(at.x * at.x + at.z * at.z))};
     }
-    if (geometry_) {
-      const DisplayGeometry& g = *geometry_;
-      const double right = (at.x - 0.5) * g.width_cm - g.eye_x_cm;
-      const double up = (0.5 - at.y) * g.height_cm - g.eye_y_cm;
-      return {std::atan2(right, g.distance_cm),
-              std::atan2(up, std::sqrt(right * right + g.distance_cm * g.distance_cm))};
-    }
-    return degrees_ ? Vec2d{at.x * degrees_->x * kRadPerDeg, -at.y * degrees_->y * kRadPerDeg} : Vec2d{at.x, at.y};
+    return screen_.known() ? screen_.angles(at.x, at.y) : Vec2d{at.x, at.y};
   }
 
   void place(const Vec2d& angles, GazeSample& sample) const {
@@ -60,25 +42,14 @@ class AnglePlane {
                           -std::cos(angles.x) * std::cos(angles.y)};
       return;
     }
-    if (geometry_) {
-      const DisplayGeometry& g = *geometry_;
-      const double right = std::tan(angles.x) * g.distance_cm;
-      sample.u = 0.5 + (right + g.eye_x_cm) / g.width_cm;
-      sample.v = 0.5 - (std::tan(angles.y) * std::sqrt(right * right + g.distance_cm * g.distance_cm) + g.eye_y_cm) /
-                           g.height_cm;
-    } else if (degrees_) {
-      sample.u = angles.x * kDegPerRad / degrees_->x;
-      sample.v = -angles.y * kDegPerRad / degrees_->y;
-    } else {
-      sample.u = angles.x;
-      sample.v = angles.y;
-    }
+    const Vec2d at = screen_.known() ? screen_.place_at(angles) : angles;
+    sample.u = at.x;
+    sample.v = at.y;
   }
 
  private:
   bool is_direction_;
-  std::optional<DisplayGeometry> geometry_;
-  std::optional<Vec2d> degrees_;  // of the whole display
+  ScreenAngles screen_;
 };
 
 Vec2d operator-(const Vec2d& a, const Vec2d& b) {

@@ -63,15 +63,16 @@ std::vector<Guess> sniff(const GazeFile& file) {
   return guesses;
 }
 
-// A file of another format than the one that was named is told so.
-RawGaze read_named(const GazeFormat& format, const GazeFile& file, const GazeReadOptions& options) {
+// A file of another format than the one that was named is told so: what `act` throws says what the file looks like.
+template <class Act>
+auto with_a_hint_of_the_format(const std::string& named, const GazeFile& file, const Act& act) {
   try {
-    return format.read(file, options);
+    return act();
   } catch (const Error& error) {
-    const std::vector<Guess> guesses = sniff(file);
     constexpr double kSure = 0.8;
-    if (error.kind() != ErrorKind::input || guesses.empty() || guesses.front().format == &format ||
-        guesses.front().confidence < kSure) {
+    const std::vector<Guess> guesses =
+        error.kind() == ErrorKind::input && !named.empty() ? sniff(file) : std::vector<Guess>();
+    if (guesses.empty() || guesses.front().format->name == named || guesses.front().confidence < kSure) {
       throw;
     }
     throw Error(ErrorKind::input, "", error.what(), "it looks like --gaze-format " + guesses.front().format->name);
@@ -157,6 +158,33 @@ void add_decimal_mark(const GazeFile& file, RawGaze& raw) {
     add_note(raw, "decimal mark", "comma", Evidence::statistics,
              file.fractions.empty() ? "understood" : "cells that it split are joined");
   }
+}
+
+RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptions& options, Mending mending) {
+  const GazeFormat* format = options.format.empty() ? nullptr : &format_by_name(options.format);
+  double confidence = 1;
+  if (file.text.empty() || trim(head_of(file)).empty()) {
+    throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
+  }
+  if (format == nullptr) {
+    const std::vector<Guess> guesses = sniff(file);
+    if (guesses.empty()) {
+      throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
+                  "give a CSV or TSV with a header, or name the format with --gaze-format");
+    }
+    format = guesses.front().format;
+    confidence = guesses.front().confidence;
+  }
+  const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
+  RawGaze raw = format->read(file, options);
+  if (commas) {
+    raw.faults.push_back(*commas);
+  }
+  add_decimal_mark(file, raw);
+  raw.source = path;
+  raw.format = format->name;
+  raw.format_confidence = confidence;
+  return raw;
 }
 
 }  // namespace
@@ -256,31 +284,8 @@ std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
 }
 
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending) {
-  const GazeFormat* format = options.format.empty() ? nullptr : &format_by_name(options.format);
-  double confidence = 1;
   GazeFile file = open_file(path);
-  if (file.text.empty() || trim(head_of(file)).empty()) {
-    throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
-  }
-  if (format == nullptr) {
-    const std::vector<Guess> guesses = sniff(file);
-    if (guesses.empty()) {
-      throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
-                  "give a CSV or TSV with a header, or name the format with --gaze-format");
-    }
-    format = guesses.front().format;
-    confidence = guesses.front().confidence;
-  }
-  const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
-  RawGaze raw = options.format.empty() ? format->read(file, options) : read_named(*format, file, options);
-  if (commas) {
-    raw.faults.push_back(*commas);
-  }
-  add_decimal_mark(file, raw);
-  raw.source = path;
-  raw.format = format->name;
-  raw.format_confidence = confidence;
-  return raw;
+  return with_a_hint_of_the_format(options.format, file, [&] { return read_opened(file, path, options, mending); });
 }
 
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
@@ -289,12 +294,23 @@ RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
 
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
   const RawGaze raw = read_raw_gaze(path, options);
-  const Conventions conventions = conclude_conventions(raw, options);
-  if (!raw.faults.empty()) {
-    const RawFault& fault = raw.faults.front();
-    throw Error(ErrorKind::input, fault.place, fault.problem, fault.remedy);
+  const auto make_log = [&] {
+    const Conventions conventions = conclude_conventions(raw, options);
+    if (!raw.faults.empty()) {
+      const RawFault& fault = raw.faults.front();
+      throw Error(ErrorKind::input, fault.place, fault.problem, fault.remedy);
+    }
+    return interpret(raw, conventions);
+  };
+  if (options.format.empty()) {
+    return make_log();
   }
-  return interpret(raw, conventions);
+  try {
+    return make_log();
+  } catch (const Error&) {
+    const GazeFile file = open_file(path);
+    return with_a_hint_of_the_format(options.format, file, make_log);
+  }
 }
 
 }  // namespace gazetrace

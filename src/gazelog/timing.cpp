@@ -33,9 +33,7 @@ GazeTiming measure_timing(const GazeLog& log) {
   timing.step_q1_ns = lower_quantile(steps, 0.25);
   timing.step_q3_ns = lower_quantile(steps, 0.75);
   timing.median_rate_hz = median > 0 ? 1e9 / median : 0;
-  double count = 0;
-  double mean = 0;
-  double squares = 0;
+  RunningSpread between_gaps;
   for (const double step : steps) {
     if (step > kGapInSteps * median) {
       ++timing.gaps;
@@ -43,13 +41,10 @@ GazeTiming measure_timing(const GazeLog& log) {
       timing.longest_gap_ns = std::max(timing.longest_gap_ns, static_cast<std::int64_t>(std::min(step, 9e18)));
       continue;
     }
-    ++count;
-    const double from = step - mean;
-    mean += from / count;
-    squares += from * (step - mean);
+    between_gaps.add(step);
   }
-  timing.mean_rate_hz = mean > 0 ? 1e9 / mean : 0;
-  timing.jitter_ns = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
+  timing.mean_rate_hz = between_gaps.mean() > 0 ? 1e9 / between_gaps.mean() : 0;
+  timing.jitter_ns = between_gaps.deviation();
   return timing;
 }
 

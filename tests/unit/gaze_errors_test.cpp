@@ -111,9 +111,9 @@ TEST(GazeErrors, Rows) {
   expect_errors({
       {"backwards.csv", header + "2.433,.5,.5,1,left\n2.417,.5,.5,1,left\n",
        "backwards.csv:4: time 2417000000 ns is before that of line 3 (2433000000 ns); sort the log, or use "
-       "--gaze-sort"},
+       "`gaze-sort`"},
       {"duplicate.csv", header + "1,.5,.5,1,left\n1,.6,.5,1,left\n",
-       "duplicate.csv:4: time 1000000000 ns repeats that of line 3; remove one of them, or use --gaze-sort, which "
+       "duplicate.csv:4: time 1000000000 ns repeats that of line 3; remove one of them, or use `gaze-sort`, which "
        "keeps the "
        "last"},
       {"short.csv", header + "1,.5,.5\n",
@@ -174,7 +174,7 @@ TEST(GazeErrors, FilesAndFormats) {
   options.columns.origin = PositionOrigin::top_left;
   EXPECT_EQ(files.without_folder(message_of(log, options, ErrorKind::usage)),
             "log.csv:1: positions in degrees cannot count from the top-left; degrees count from straight ahead: "
-            "--gaze-origin center");
+            "`gaze-origin` center");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gazelog/screen_angles.hpp"
 #include "gazetrace/gaze_inspect.hpp"
 
 namespace gazetrace {
@@ -25,8 +26,7 @@ class GazePlane {
 
  private:
   bool is_direction_ = false;
-  DisplayGeometry geometry_;
-  bool has_angles_ = false;
+  ScreenAngles screen_;
   double x_scale_ = 1, y_scale_ = 1;
   double units_per_degree_ = 1;
   std::string unit_ = "deg";

@@ -29,10 +29,11 @@ GazePlane::GazePlane(const GazeLog& log, const std::optional<DisplayGeometry>& g
       g.eye_y_cm = stated->eye_y_cm;
     }
   }
-  geometry_ = g;
-  if (g.width_cm > 0 && g.height_cm > 0 && g.distance_cm > 0) {
-    has_angles_ = true;
-  } else if (log.pixels_per_degree && g.width_px > 0 && g.height_px > 0) {
+  screen_ = ScreenAngles(g, log.pixels_per_degree);
+  if (screen_.known_by_size()) {
+    return;
+  }
+  if (log.pixels_per_degree && g.width_px > 0 && g.height_px > 0) {
     x_scale_ = g.width_px / log.pixels_per_degree->x;
     y_scale_ = g.height_px / log.pixels_per_degree->y;
   } else if (g.width_px > 0 && g.height_px > 0) {
@@ -51,11 +52,9 @@ Vec2d GazePlane::at(const Vec3d& place) const {
     return {std::atan2(place.x, -place.z) * kDegPerRad,
             std::atan2(place.y, std::sqrt(place.x * place.x + place.z * place.z)) * kDegPerRad};
   }
-  if (has_angles_) {
-    const double right = (place.x - 0.5) * geometry_.width_cm - geometry_.eye_x_cm;
-    const double up = (0.5 - place.y) * geometry_.height_cm - geometry_.eye_y_cm;
-    const double d = geometry_.distance_cm;
-    return {std::atan2(right, d) * kDegPerRad, std::atan2(up, std::sqrt(right * right + d * d)) * kDegPerRad};
+  if (screen_.known_by_size()) {
+    const Vec2d angles = screen_.angles(place.x, place.y);
+    return {angles.x * kDegPerRad, angles.y * kDegPerRad};
   }
   return {place.x * x_scale_, -place.y * y_scale_};
 }

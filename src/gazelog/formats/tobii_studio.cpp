@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
 
@@ -92,12 +93,6 @@ class Slope {
  private:
   double n_ = 0, sx_ = 0, sy_ = 0, sxx_ = 0, sxy_ = 0;
 };
-
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class StudioReader {
  public:
@@ -234,15 +229,15 @@ class StudioReader {
 
   void place_eyes(DisplayGeometry& g) {
     if (!eyes_z_mm_.empty() && g.width_cm > 0) {
-      g.distance_cm = median_of(eyes_z_mm_) / 10;
-      g.eye_x_cm = median_of(eyes_x_mm_) / 10 - 0.5 * g.width_cm;
-      g.eye_y_cm = median_of(eyes_y_mm_) / 10 - 0.5 * g.height_cm;
+      g.distance_cm = upper_median(eyes_z_mm_) / 10;
+      g.eye_x_cm = upper_median(eyes_x_mm_) / 10 - 0.5 * g.width_cm;
+      g.eye_y_cm = upper_median(eyes_y_mm_) / 10 - 0.5 * g.height_cm;
       add_note(raw_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
                "median of EyePosLeftZ and EyePosRightZ (ADCSmm)");
       add_note(raw_, "eye off the display's center", fmt::format("{:.1f}, {:.1f} cm", g.eye_x_cm, g.eye_y_cm),
                Evidence::header, "right, up: medians of EyePos (ADCSmm)");
     } else if (!distances_mm_.empty()) {
-      g.distance_cm = median_of(distances_mm_) / 10;
+      g.distance_cm = upper_median(distances_mm_) / 10;
       add_note(raw_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
                "median of DistanceLeft and DistanceRight");
     }

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "core/statistics.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/events/event_method.hpp"
 
@@ -73,19 +74,14 @@ Motion motion_of(const GazeDirections& gaze, const std::vector<LabelRun>& runs, 
   return motion;
 }
 
-double median_of(std::vector<double> values) {
+double median_of_known(std::vector<double> values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }), values.end());
-  if (values.empty()) {
-    return kNan;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(values);
 }
 
 // What no eye does, and its flanks, loses its speed.
 void remove_noise(Motion& motion, const EventSettings& settings) {
-  const double quiet = 2 * median_of(motion.speed);
+  const double quiet = 2 * median_of_known(motion.speed);
   std::vector<double>& speed = motion.speed;
   std::vector<char> bad(speed.size(), 0);
   for (std::size_t i = 0; i < speed.size(); ++i) {
@@ -109,18 +105,13 @@ struct MeanAndSpread {
 };
 
 MeanAndSpread statistics(const std::vector<double>& values, std::size_t begin, std::size_t end, double below) {
-  double count = 0;
-  double mean = 0;
-  double squares = 0;
+  RunningSpread spread;
   for (std::size_t i = begin; i < end; ++i) {
     if (values[i] < below) {
-      ++count;
-      const double difference = values[i] - mean;
-      mean += difference / count;
-      squares += difference * (values[i] - mean);
+      spread.add(values[i]);
     }
   }
-  return {mean, count > 1 ? std::sqrt(squares / (count - 1)) : 0};
+  return {spread.mean(), spread.deviation()};
 }
 
 struct Thresholds {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/statistics.hpp"
 #include "gaze/process/gaze_step.hpp"
 
 namespace gazetrace {
@@ -18,11 +19,6 @@ std::string apply_median(GazeLog& log, const GazeStep& step) {
   const std::vector<GazeSample> before = log.samples;
   std::vector<double> x;
   std::vector<double> y;
-  const auto middle = [](std::vector<double>& values) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-  };
   std::size_t changed = 0;
   for (const FilterRun& run : filter_runs(log)) {
     for (std::size_t i = run.first; i < run.end; ++i) {
@@ -36,7 +32,7 @@ std::string apply_median(GazeLog& log, const GazeStep& step) {
         x.push_back(at.x);
         y.push_back(at.y);
       }
-      const Vec2d at{middle(x), middle(y)};
+      const Vec2d at{upper_median(x), upper_median(y)};
       if (log.kind == GazeKind::direction) {
         // A window's middle that is the median stays the very same.
         if (at.x != 0 || at.y != 0) {

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// The steps between a file and a log: the numbers as they stand there, what is concluded of them, and the log of both.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gazetrace/gaze_privacy.hpp"
+#include "gazetrace/gaze_raw.hpp"
+#include "support/gaze_format_files.hpp"
+
+namespace gazetrace {
+namespace {
+
+using ::testing::HasSubstr;
+
+class GazeInterpret : public GazeFormats {
+ protected:
+  RawGaze read_raw(const std::string& text) { return read_raw_gaze(files_.write("log.csv", text), options_); }
+
+  GazeReadOptions options_;
+};
+
+constexpr const char* kPixels = "time[ms],x[px],y[px]\n0,480,270\n16,960,540\n33,0,0\n50,1440,810\n";
+
+TEST_F(GazeInterpret, RawNumbersAreThoseOfTheFile) {
+  const RawGaze raw = read_raw(kPixels);
+  ASSERT_EQ(raw.rows.size(), 4U);
+  EXPECT_EQ(raw.rows[0].at.x, 480);
+  EXPECT_EQ(raw.rows[0].at.y, 270);
+  EXPECT_EQ(raw.rows[3].t_ns, 50'000'000);
+  EXPECT_EQ(raw.declared.unit.value, PositionUnit::px);
+  EXPECT_EQ(raw.declared.unit.evidence, Evidence::header);
+  EXPECT_EQ(raw.declared.time_exponent.value, 6);
+}
+
+TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
+  options_.display = DisplayGeometry{.width_px = 1920, .height_px = 1080};
+  const RawGaze raw = read_raw(kPixels);
+  const GazeLog steps = interpret(raw, conclude_conventions(raw, options_));
+  const GazeLog loaded = load_gaze_log(files_.path("log.csv"), options_);
+  ASSERT_EQ(steps.samples.size(), loaded.samples.size());
+  for (std::size_t i = 0; i < steps.samples.size(); ++i) {
+    EXPECT_EQ(steps.samples[i].u, loaded.samples[i].u);
+    EXPECT_EQ(steps.samples[i].t_ns, loaded.samples[i].t_ns);
+  }
+  EXPECT_EQ(steps.samples[0].u, 0.25);
+  EXPECT_EQ(steps.samples[3].v, 0.75);
+}
+
+TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
+  options_.display = DisplayGeometry{.width_px = 1920, .height_px = 1080};
+  const RawGaze raw = read_raw(kPixels);
+  Conventions conventions = conclude_conventions(raw, options_);
+  EXPECT_EQ(interpret(raw, conventions).samples[2].validity, GazeValidity::ok);
+  conventions.zero_is_missing = true;
+  EXPECT_EQ(interpret(raw, conventions).samples[2].validity, GazeValidity::lost);
+  conventions.zero_is_missing = false;
+  conventions.origin.value = PositionOrigin::bottom_left;
+  EXPECT_EQ(interpret(raw, conventions).samples[0].v, 0.75);
+  conventions.flip_x = true;
+  EXPECT_EQ(interpret(raw, conventions).samples[0].u, 0.75);
+  conventions.time_exponent.value = 3;
+  EXPECT_EQ(interpret(raw, conventions).samples[3].t_ns, 50'000);
+}
+
+TEST_F(GazeInterpret, EvidenceSaysWhoSaidIt) {
+  const RawGaze raw = read_raw("time[ms],x,y\n0,480,270\n16,960,540\n33,100,1000\n");
+  options_.guess_display = true;
+  const Conventions guessed = conclude_conventions(raw, options_);
+  EXPECT_EQ(guessed.unit.value, PositionUnit::px);
+  EXPECT_EQ(guessed.unit.evidence, Evidence::statistics);
+  ASSERT_TRUE(guessed.display);
+  EXPECT_EQ(guessed.display->evidence, Evidence::statistics);
+  EXPECT_THAT(guessed.warnings.at(0), HasSubstr("guessed from its values"));
+  options_.columns.position_unit = PositionUnit::px;
+  options_.columns.origin = PositionOrigin::center;
+  const Conventions given = conclude_conventions(read_raw("time[ms],x[mm],y[mm]\n0,4,2\n16,9,5\n33,1,1\n"), options_);
+  EXPECT_EQ(given.unit.value, PositionUnit::px);
+  EXPECT_EQ(given.unit.evidence, Evidence::option);
+  EXPECT_EQ(given.origin.evidence, Evidence::option);
+}
+
+TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
+  GazeLog log;
+  log.clock = "computer, 2022/09/19 13:34:49.156";
+  log.warnings = {"started 13:34:49"};
+  for (const std::int64_t t_ns : {1'700'000'000'000'000'000, 1'700'000'000'016'000'000}) {
+    log.samples.emplace_back().t_ns = t_ns;
+  }
+  const LogWithoutTimesOfDay hidden = without_times_of_day(log);
+  EXPECT_EQ(hidden.taken_off_ns, 1'700'000'000'000'000'000);
+  EXPECT_EQ(hidden.log.samples[0].t_ns, 0);
+  EXPECT_EQ(hidden.log.samples[1].t_ns, 16'000'000);
+  EXPECT_EQ(hidden.log.clock, "computer, (date)");
+  EXPECT_EQ(hidden.log.warnings[0], "started (date)");
+  log.samples.front().t_ns = 5;
+  EXPECT_FALSE(without_times_of_day(log).taken_off_ns);
+}
+
+}  // namespace
+}  // namespace gazetrace
