@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build into a fresh prefix, builds examples/embed against it and renders one frame.
+# Installs the build into a fresh prefix, builds examples/embed against it and renders one frame, which has the same bits
+# as the program's.
 file(REMOVE_RECURSE ${WORK_DIR})
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err)
@@ -17,3 +18,6 @@ if(NOT EXISTS ${WORK_DIR}/frame.exr)
   message(FATAL_ERROR "embed wrote no frame")
 endif()
 run(${WORK_DIR}/prefix/bin/gazetrace --version)
+run(${WORK_DIR}/prefix/bin/gazetrace render ${SCENE} -o ${WORK_DIR}/program/frame.exr --gaze-at 0.25,0.5 --screen paper
+  --size 320x180)
+run(${CMAKE_COMMAND} -E compare_files ${WORK_DIR}/frame.exr ${WORK_DIR}/program/frame.exr)
