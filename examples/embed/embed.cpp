@@ -1,58 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library without the program: one foveated frame of a scene, with the picture that
-//   gazetrace render scene.gltf -o out.exr --gaze-at U,V --screen paper --size 320x180 --overwrite
-// makes, and what it cost.
-//   embed scene.gltf out.exr [u v]      (u, v: gaze as fractions of the screen)
+// The library without the program: one frame, foveated about a fixed gaze. It is the picture that
+//   gazetrace render scene.gltf --gaze-at U,V --screen paper --size 320x180 --frames 1 -o out.exr
+// makes, to the bit: a job stands for the options, resolve() reads and checks what it names, and a FrameRenderer
+// renders each frame of the plan.
+//   embed scene.gltf out.exr [U V]      (U, V: gaze in fractions of the screen; default: its middle)
 #include <cstdio>
 #include <string>
-#include <utility>
 
-#include "gazetrace/color.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/job.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/output.hpp"
 #include "gazetrace/resolve.hpp"
-#include "gazetrace/trace.hpp"
 
 namespace {
 
-int render(const std::string& scene, const std::string& picture, const std::string& u, const std::string& v) {
+void render(const std::string& scene, const std::string& exr, const std::string& gaze) {
   using namespace gazetrace;
   Job job;
   set_option(job, "scene", scene);
-  set_option(job, "output", picture);
-  set_option(job, "gaze-at", u + "," + v);
+  set_option(job, "gaze-at", gaze);
   set_option(job, "screen", "paper");
   set_option(job, "size", "320x180");
-  set_option(job, "overwrite", "true");
+  set_option(job, "frames", "1");
 
-  ResolvedJob resolved = resolve(job);  // everything that can fail is found here
-  prepare_outputs(resolved);
+  ResolvedJob resolved = resolve(job);
   for (const auto& [what, decision] : resolved.decisions) {
     std::printf("%s: %s\n", what.c_str(), decision.c_str());
   }
   PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
-  const ColorPipeline color(resolved.job.settings.color);
-  const SequenceResult result =
-      render_sequence(tracer, resolved.plan, color, resolved.pipeline, {}, std::move(resolved.history));
-
-  for (const TimingRow& row : result.rows) {
-    std::printf("frame %d: %llu samples for %llu pixels in %.1f ms\n", row.frame,
-                static_cast<unsigned long long>(row.samples), static_cast<unsigned long long>(row.pixels),
-                row.total_ms);
+  const FrameRenderer renderer(tracer, resolved.pipeline);
+  for (const FrameRequest& request : resolved.plan.frames) {
+    const RenderedFrame rendered = renderer.render(request, resolved.history);
+    FrameHeader header;
+    header.frame = request.frame;
+    header.camera = request.camera;
+    write_frame_exr(exr, rendered.frame, nullptr, header, {});
+    std::printf("frame %d: %llu samples, %.1f ms of tracing\n", request.frame,
+                static_cast<unsigned long long>(rendered.samples.samples), rendered.times.trace_ms);
   }
-  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3 && argc != 5) {
-    std::fprintf(stderr, "usage: embed scene.gltf out.exr [u v]\n");
+    std::fprintf(stderr, "usage: embed scene.gltf out.exr [U V]\n");
     return 2;
   }
   try {
-    return render(argv[1], argv[2], argc == 5 ? argv[3] : "0.5", argc == 5 ? argv[4] : "0.5");
+    render(argv[1], argv[2], argc == 5 ? std::string(argv[3]) + "," + argv[4] : "0.5,0.5");
+    return 0;
   } catch (const gazetrace::Error& error) {
     std::fprintf(stderr, "embed: %s\n", error.what());
     return error.kind() == gazetrace::ErrorKind::runtime ? 3 : 2;

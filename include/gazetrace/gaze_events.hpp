@@ -25,10 +25,7 @@ std::string_view to_string(EyeMovement movement);
 
 // Directions in the head are those of the log; world turns them by the head's pose at the time.
 enum class GazeSpace : std::uint8_t { head, world };
-// What a method's constants were published for. Data of one kind are never measured with those of the other.
-enum class GazeDevice : std::uint8_t { desktop, head_mounted };
 std::string_view to_string(GazeSpace space);
-std::string_view to_string(GazeDevice device);
 
 // One direction for each sample of a log, of unit length; NaN in all parts where the sample is not usable.
 struct GazeDirections {

@@ -10,22 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_log.hpp"
+#include "gazetrace/gaze_privacy.hpp"
+#include "gazetrace/gaze_raw.hpp"
+#include "gazetrace/gaze_read.hpp"
 
 namespace gazetrace {
-
-// Times in the log's own nanoseconds. A gap is a step of more than three median steps.
-struct GazeTiming {
-  std::int64_t first_ns = 0, last_ns = 0;
-  double nominal_rate_hz = 0;  // stated by the log; 0: it does not
-  double median_rate_hz = 0;   // one over the median step
-  double mean_rate_hz = 0;     // of the steps that are no gaps
-  double step_q1_ns = 0, step_q3_ns = 0;
-  double jitter_ns = 0;  // standard deviation of the steps that are no gaps
-  std::size_t gaps = 0;
-  std::int64_t longest_gap_ns = 0;  // 0: none
-  std::int64_t gaps_total_ns = 0;
-};
 
 // Which samples can be used. Time without usable gaze goes from one usable sample to the next, less one median step.
 struct GazeLoss {
@@ -135,17 +125,20 @@ struct GazeInspectOptions {
   std::optional<DisplayGeometry> display;
   bool keep_ids = false;
 };
+// What can be told of a log alone.
 GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options);
-// Reads with `read.for_inspection` set: broken logs are mended where an option can, and what was wrong is a finding.
-GazeLog load_for_inspection(const std::string& path, GazeReadOptions read);
 
-// Stamps that count from 1970 and fall into this century are times of day, which identify a session.
-bool is_wall_clock(const GazeLog& log);
-// Counts all stamps of a log from its first sample on; returns what was taken off. Mapping to video time only knows
-// differences, so nothing else changes.
-std::int64_t count_from_first_sample(GazeLog& log);
-// Dates and times of day become "(date)".
-std::string without_dates(const std::string& text);
+// A log with the numbers of its file, which an inspection can read again under other conventions.
+struct GazeUnderInspection {
+  RawGaze raw;
+  Conventions conventions;
+  bool is_sorted_by_option = false;  // else rows that are out of order, or repeated, are findings
+  GazeLog log;
+};
+// Broken logs are mended where an option can mend them, and what was wrong is a finding; gaze on a scene camera's
+// picture is taken; sizes that nobody states are guessed, as `GazeReadOptions::guess_display` says.
+GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read);
+GazeInspection inspect_gaze(const GazeUnderInspection& gaze, const GazeInspectOptions& options);
 
 std::string inspection_text(const GazeInspection& inspection);
 std::string inspection_json(const GazeInspection& inspection);

@@ -16,19 +16,10 @@
 
 #include "gazetrace/display.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_conventions.hpp"
 #include "gazetrace/math.hpp"
 
 namespace gazetrace {
-
-// scene_camera: u, v are fractions of the picture of a camera on the head. That is no place on a display: such a log
-// can be looked at and converted, but not rendered with.
-enum class GazeKind : std::uint8_t { screen, direction, scene_camera };
-enum class GazeValidity : std::uint8_t { ok, low_confidence, blink, lost, off_screen, interpolated };
-enum class Eye : std::uint8_t { left, right, cyclopean };
-
-std::string_view to_string(GazeKind kind);
-std::string_view to_string(GazeValidity validity);
-std::string_view to_string(Eye eye);
 
 struct GazeSample {
   std::int64_t t_ns = 0;
@@ -73,10 +64,6 @@ struct HeadPose {
   Quatd orientation;
 };
 
-// From what something was concluded, in the order of trust. statistics is a guess.
-enum class Evidence : std::uint8_t { option, sidecar, header, format, statistics };
-std::string_view to_string(Evidence evidence);
-
 // "time unit" = "us", from the header: "Recording timestamp [us]".
 struct GazeFact {
   std::string what;   // "time column", "time unit", "position columns", "position unit", "origin", "axes", ...
@@ -111,22 +98,19 @@ struct GazeCalibration {
   std::int64_t row = 0;
 };
 
-// What reading for inspection mended where it stops otherwise.
-struct GazeFault {
-  std::string code;     // "unordered", "duplicates", "decimal-commas"; "position-unit": doubted, not mended
-  std::string problem;  // with file and line
-  std::string flag;     // the option under which reading does the same, or better; empty: there is none
-};
-
 // Rows of the file against the clock, before anything was sorted or dropped; each eye's rows count for themselves.
 struct GazeOrder {
   std::size_t rows = 0;
   std::size_t backward_steps = 0;
   std::int64_t longest_backward_ns = 0;
-  std::int64_t first_backward_row = 0;   // 1-based, 0: none
+  // The first row at an earlier time than the row before it, both 1-based, and both times; 0: none.
+  std::int64_t first_backward_row = 0, row_before = 0;
+  std::int64_t first_backward_ns = 0, before_ns = 0;
   std::size_t duplicates = 0;            // rows of a time and an eye that were there already
   std::size_t identical_duplicates = 0;  // with the very same position
-  std::int64_t first_duplicate_row = 0;
+  // The first row at the time of one that was there already, and that one; 0: none.
+  std::int64_t first_duplicate_row = 0, row_repeated = 0;
+  std::int64_t first_duplicate_ns = 0;
 };
 
 // Another account of the same gaze in the same file: positions in other units, means of fixations by the tracker.
@@ -139,16 +123,9 @@ struct GazeWitness {
   std::optional<Eye> eye = std::nullopt;  // whose gaze it tells of; empty: that of all rows
 };
 
-// A place beside the display, in the file's unit, that is left and come back to by jumps alone, over and over: no eye
-// does that.
-struct RecurringPlace {
-  double x = 0, y = 0;
-  std::size_t rows = 0;
-};
-
 struct GazeLog {
   GazeKind kind = GazeKind::screen;
-  // Times increase. One gaze a time: of both eyes as `GazeReadOptions::eye` says.
+  // Times increase. One gaze a time: of both eyes as `Conventions::eye` says.
   std::vector<GazeSample> samples;
   std::string source;            // the path as given
   std::string format;            // a name of `gaze_formats()`
@@ -167,14 +144,28 @@ struct GazeLog {
   std::vector<HeadPose> head;       // empty, or the head's poses with increasing times
   std::vector<GazeEvent> events;    // in the order of the file
   std::vector<GazeCalibration> calibrations;
+  std::optional<Eye> stated_eye;     // a converted log's: the eye that was chosen before
+  std::optional<GazeDevice> device;  // where the log states it
+  // Under which the numbers of the file were read, and, in words for people, what was concluded from what.
+  Conventions conventions;
   std::vector<GazeFact> facts;
   Warnings warnings;
 
   GazeOrder order;
-  std::size_t zero_positions = 0;  // rows at exactly (0, 0) in the file's units that nothing marks as missing
-  std::optional<RecurringPlace> recurring_place;  // the one with most rows; only after GazeReadOptions::for_inspection
   std::vector<GazeWitness> witnesses;
-  std::vector<GazeFault> faults;  // empty but after GazeReadOptions::for_inspection
+};
+
+// Times in the log's own nanoseconds. A gap is a step of more than three median steps.
+struct GazeTiming {
+  std::int64_t first_ns = 0, last_ns = 0;
+  double nominal_rate_hz = 0;  // stated by the log; 0: it does not
+  double median_rate_hz = 0;   // one over the median step
+  double mean_rate_hz = 0;     // of the steps that are no gaps
+  double step_q1_ns = 0, step_q3_ns = 0;
+  double jitter_ns = 0;  // standard deviation of the steps that are no gaps
+  std::size_t gaps = 0;
+  std::int64_t longest_gap_ns = 0;  // 0: none
+  std::int64_t gaps_total_ns = 0;
 };
 
 }  // namespace gazetrace

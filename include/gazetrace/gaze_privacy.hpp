@@ -1,22 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaze is biometric, and a time of day tells whose it is. What is written by itself shall carry neither times of day
-// nor what an experiment said of its participants; this is the one place that says how that is done.
+// Gaze is biometric, and a time of day tells whose it is. What is written shall carry neither times of day nor what an
+// experiment said of its participants, unless it was asked to be kept. This is the one place that says how it is
+// hidden.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_log.hpp"
 
 namespace gazetrace {
 
-// For what is computed from a log: takes dates out of its warnings and, where its stamps are times of day, counts them
-// from the first sample. Returns what was taken off the stamps, ns; 0: they are no times of day.
-std::int64_t hide_times_of_day(GazeLog& log);
+// Stamps that count from 1970 and fall into this century are times of day, which identify a session.
+bool is_wall_clock(const GazeLog& log);
+// Counts all stamps of a log from its first sample on; returns what was taken off. Mapping to video time only knows
+// differences, so nothing else changes.
+std::int64_t count_from_first_sample(GazeLog& log);
+// Dates and times of day in a text become "(date)".
+std::string without_dates(const std::string& text);
+
+struct LogWithoutTimesOfDay {
+  GazeLog log;
+  // What was taken off every stamp; empty where the stamps are no times of day and stay as they are.
+  std::optional<std::int64_t> taken_off_ns;
+};
+// The log with its stamps counted from the first sample where they are times of day, and without dates in its clock's
+// description and its warnings. Its messages and events keep their words.
+LogWithoutTimesOfDay without_times_of_day(GazeLog log);
 
 // For copies of a log, whose stamps stay, because other programs hold them against recordings of the same clock: takes
-// dates out of what is said of the clock, and leaves out messages of the experiment, into which participants, serial
-// numbers and dates are written. Returns what to tell of that.
+// dates out of what is said of the clock, and leaves out the messages of the experiment, into which participants,
+// serial numbers and dates are written. Returns what to tell of that.
 Warnings leave_out_identities(GazeLog& log);
 
 }  // namespace gazetrace

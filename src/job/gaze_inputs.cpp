@@ -145,7 +145,9 @@ std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_o
   }
   GazeLog log = read_job_gaze(job);
   if (!job.keep_ids) {
-    taken_off_ns = hide_times_of_day(log);
+    LogWithoutTimesOfDay hidden = without_times_of_day(std::move(log));
+    log = std::move(hidden.log);
+    taken_off_ns = hidden.taken_off_ns.value_or(0);
   }
   complete_recording_geometry(log, job.screen);
   return log;

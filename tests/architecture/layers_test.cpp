@@ -17,17 +17,33 @@ namespace fs = std::filesystem;
 
 const fs::path kSource = GAZETRACE_SOURCE_DIR;
 
-// A module may include modules of a smaller number, and itself.
-const std::map<std::string, int> kLayer = {
-    {"core", 0},    {"display", 1},     {"camera", 1},   {"material", 1}, {"gaze", 1},    {"scene", 2},
-    {"plan", 2},    {"foveation", 2},   {"trace", 3},    {"temporal", 4}, {"color", 4},   {"output", 4},
-    {"metrics", 4}, {"reconstruct", 4}, {"pipeline", 5}, {"compare", 5},  {"results", 5}, {"job", 6},
-    {"sweep", 7},   {"report", 7},      {"video", 7},    {"cli", 8},
+// The layers from the bottom up. A module may include modules of the layers below it, and itself.
+const std::vector<std::vector<std::string>> kLayers = {
+    {"core"},
+    {"display", "camera", "material", "gazelog", "gaze"},
+    {"scene", "plan", "foveation"},
+    {"trace"},
+    {"reconstruct", "temporal", "color", "output", "metrics"},
+    {"pipeline", "compare", "results"},
+    {"job"},
+    {"sweep", "report", "video"},
+    {"cli"},
 };
+const std::map<std::string, int> kLayer = [] {
+  std::map<std::string, int> layer;
+  for (std::size_t i = 0; i < kLayers.size(); ++i) {
+    for (const std::string& module : kLayers[i]) {
+      layer[module] = static_cast<int>(i);
+    }
+  }
+  return layer;
+}();
 
 // Within a layer, the order of the data: what may be seen sideways.
 const std::set<std::pair<std::string, std::string>> kSideways = {
-    {"gaze", "display"},          // logs carry the geometry of their recording
+    {"gazelog", "display"},       // logs carry the geometry of their recording
+    {"gaze", "gazelog"},          // what is done with gaze begins with a log
+    {"gaze", "display"},          // gaze on a display is an angle
     {"camera", "display"},        // a camera's image plane is a view
     {"temporal", "reconstruct"},  // accumulates frames
     {"color", "temporal"},        // smoothed exposure is history
@@ -35,21 +51,40 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
     {"output", "reconstruct"},    // writes frames
 };
 
-// The module of each public header.
-const std::map<std::string, std::string> kPublicHeader = {
-    {"math", "core"},          {"image", "core"},        {"error", "core"},          {"version", "core"},
-    {"display", "display"},    {"gaze", "gaze"},         {"gaze_log", "gaze"},       {"camera", "camera"},
-    {"material", "material"},  {"scene", "scene"},       {"plan", "plan"},           {"foveation", "foveation"},
-    {"trace", "trace"},        {"guides", "trace"},      {"sample_sums", "trace"},   {"reconstruct", "reconstruct"},
-    {"temporal", "temporal"},  {"color", "color"},       {"output", "output"},       {"frame_renderer", "pipeline"},
-    {"pipeline", "pipeline"},  {"metrics", "metrics"},   {"fovvideovdp", "metrics"}, {"flicker", "metrics"},
-    {"compare", "compare"},    {"gaze_inspect", "gaze"}, {"gaze_events", "gaze"},    {"gaze_process", "gaze"},
-    {"gaze_synth", "gaze"},    {"gaze_bids", "gaze"},    {"motion", "camera"},       {"deformation", "scene"},
-    {"report", "report"},      {"video", "video"},       {"sweep", "sweep"},         {"job", "job"},
-    {"job_schema", "job"},     {"job_settings", "job"},  {"option_schema", "job"},   {"option_values", "job"},
-    {"metric_options", "job"}, {"resolve", "job"},       {"gaze_privacy", "job"},    {"sweep_plan", "sweep"},
-    {"results", "results"},
+// The public headers of each module.
+const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
+    {"core", {"math", "image", "error", "version"}},
+    {"display", {"display"}},
+    {"camera", {"camera", "motion"}},
+    {"material", {"material"}},
+    {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_read", "gaze_write"}},
+    {"gaze", {"gaze", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process", "gaze_synth"}},
+    {"scene", {"scene", "deformation"}},
+    {"plan", {"plan"}},
+    {"foveation", {"foveation"}},
+    {"trace", {"trace", "guides", "sample_sums"}},
+    {"reconstruct", {"reconstruct"}},
+    {"temporal", {"temporal"}},
+    {"color", {"color"}},
+    {"output", {"output"}},
+    {"metrics", {"metrics", "fovvideovdp", "flicker"}},
+    {"pipeline", {"pipeline", "frame_renderer"}},
+    {"compare", {"compare"}},
+    {"results", {"results"}},
+    {"job", {"job", "job_schema", "job_settings", "option_schema", "option_values", "metric_options", "resolve"}},
+    {"sweep", {"sweep", "sweep_plan"}},
+    {"report", {"report"}},
+    {"video", {"video"}},
 };
+const std::map<std::string, std::string> kPublicHeader = [] {
+  std::map<std::string, std::string> module_of;
+  for (const auto& [module, headers] : kPublicHeaders) {
+    for (const std::string& header : headers) {
+      module_of[header] = module;
+    }
+  }
+  return module_of;
+}();
 
 // Which files may meet which dependency.
 const std::vector<std::pair<std::string, std::string>> kDependency = {
@@ -65,9 +100,9 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(CLI/)", R"(src/cli/.*)"},
     {R"(toml\+\+/|toml\.hpp)", R"(src/job/toml_tree\.cpp)"},
     {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp))"},
-    {R"(pugixml)", R"(src/gaze/formats/xdf\.cpp)"},
+    {R"(pugixml)", R"(src/gazelog/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
-    {R"(zlib\.h)", R"(src/(gaze/gzip|core/png_file)\.cpp)"},
+    {R"(zlib\.h)", R"(src/(gazelog/gzip|core/png_file)\.cpp)"},
 };
 
 std::vector<fs::path> sources(const std::vector<std::string>& folders) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "gazetrace/gaze_synth.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "support/gaze_format_files.hpp"
 
 namespace gazetrace {

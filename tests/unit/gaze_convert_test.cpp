@@ -11,6 +11,7 @@
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_synth.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
 namespace gazetrace {

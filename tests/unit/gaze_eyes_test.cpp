@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
 namespace gazetrace {

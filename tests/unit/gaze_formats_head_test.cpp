@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "gaze/scene_lens.hpp"
+#include "gazelog/scene_lens.hpp"
 #include "support/gaze_format_files.hpp"
 
 namespace gazetrace {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <random>
 
-#include "gaze/decimal_comma.hpp"
+#include "gazelog/decimal_comma.hpp"
 
 namespace gazetrace {
 namespace {

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
 namespace gazetrace {

@@ -7,6 +7,7 @@
 
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/gaze_synth.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "support/text_file.hpp"
 
 namespace gazetrace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazetrace/gaze_events.hpp"
 
-#include "gaze/facts.hpp"
-
 namespace gazetrace {
 
 const std::vector<EventPreset>& event_presets() {
@@ -33,20 +31,11 @@ const EventPreset& default_event_preset(const GazeLog& log, std::optional<GazeDe
 }
 
 GazeDevice recorded_device(const GazeLog& log) {
-  for (const GazeDevice device : {GazeDevice::desktop, GazeDevice::head_mounted}) {
-    if (fact_value(log, kDevice) == to_string(device)) {
-      return device;
-    }
-  }
-  return log.kind == GazeKind::screen ? GazeDevice::desktop : GazeDevice::head_mounted;
+  return log.device.value_or(log.kind == GazeKind::screen ? GazeDevice::desktop : GazeDevice::head_mounted);
 }
 
 std::string_view to_string(GazeSpace space) {
   return space == GazeSpace::head ? "head" : "world";
-}
-
-std::string_view to_string(GazeDevice device) {
-  return device == GazeDevice::desktop ? "desktop" : "head-mounted";
 }
 
 std::string_view to_string(EyeMovement movement) {

@@ -103,11 +103,11 @@ class Axes {
 
   // The eye that alone was taken of two.
   [[nodiscard]] std::optional<Eye> only_eye() const {
-    const GazeFact* const eye = find_fact(log_, "eye");
-    if (eye == nullptr || eye->detail != "alone") {
+    const auto& taken = log_.conventions.eye_taken;
+    if (!taken || !taken->value.is_alone) {
       return std::nullopt;
     }
-    return eye->value == "left" ? Eye::left : Eye::right;
+    return taken->value.eye == Conventions::TakenEye::left ? Eye::left : Eye::right;
   }
 
   // Of one eye alone, the witnesses of that eye speak where it has some.

@@ -6,20 +6,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "gaze/inspect/inspect.hpp"
+#include "gaze/inspect/recurring_place.hpp"
+#include "gazelog/row_order.hpp"
+#include "gazelog/units.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr std::string_view kPositionUnit = "position-unit";
 constexpr double kPlausibleLowHz = 5, kPlausibleHighHz = 5000;
 
 class Doctor {
  public:
-  Doctor(const GazeLog& log, const GazeInspectOptions& options, GazeInspection& report)
-      : log_(log), options_(options), report_(report) {
+  Doctor(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
+         GazeInspection& report)
+      : log_(log), whole_(whole), options_(options), report_(report) {
     for (const GazeSample& sample : log.samples) {
       if (is_usable(sample.validity)) {
         usable_.push_back(&sample);
@@ -59,52 +61,76 @@ class Doctor {
   void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string flag = {}) {
     report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(flag)});
   }
-  [[nodiscard]] const GazeFact* fact(std::string_view what) const { return find_fact(log_, what); }
-  [[nodiscard]] std::string fact_text(std::string_view what) const {
-    const GazeFact* const found = fact(what);
-    return found == nullptr ? "" : found->value;
+  // What else the file would be: the same numbers under other conventions, in a few words.
+  template <class Change>
+  [[nodiscard]] std::string read_otherwise(const Change& change) const {
+    if (whole_ == nullptr) {
+      return {};
+    }
+    Conventions other = whole_->conventions;
+    change(other);
+    try {
+      return fmt::format("; as read, {}; read so, {}", state_of(log_), state_of(interpret(whole_->raw, other)));
+    } catch (const Error&) {
+      return {};  // needs what nobody knows, as the size of the display
+    }
+  }
+  static std::string state_of(const GazeLog& log) {
+    std::size_t usable = 0;
+    std::size_t on_display = 0;
+    for (const GazeSample& sample : log.samples) {
+      usable += is_usable(sample.validity) ? 1 : 0;
+      on_display += is_usable(sample.validity) && sample.validity != GazeValidity::off_screen ? 1 : 0;
+    }
+    const auto share = [&](std::size_t n) {
+      return 100 * static_cast<double>(n) / static_cast<double>(std::max<std::size_t>(1, log.samples.size()));
+    };
+    return log.kind == GazeKind::screen ? fmt::format("{:.0f} % of the samples lie on the display", share(on_display))
+                                        : fmt::format("{:.0f} % of the samples are usable", share(usable));
   }
 
   void faults_of_reading() {
+    if (whole_ == nullptr) {
+      return;
+    }
+    for (const RawFault& fault : whole_->raw.faults) {
+      add(FindingKind::fault, fault.code, fault.found, "the rows themselves", fault.flag);
+    }
+    if (!whole_->is_sorted_by_option) {
+      faults_of_order();
+    }
+  }
+
+  void faults_of_order() {
     const GazeOrder& order = log_.order;
+    if (order.backward_steps == 0 && order.duplicates == 0) {
+      return;
+    }
     const bool repeats = order.duplicates > 0 && order.identical_duplicates * 10 >= order.duplicates * 9;
-    bool said = false;
-    for (const GazeFault& fault : log_.faults) {
-      if (fault.code == kPositionUnit) {
-        add(FindingKind::suspicion, fault.code, fault.problem, "statistics: the sizes of the positions", fault.flag);
-        continue;
-      }
-      if (fault.code != "unordered" && fault.code != "duplicates") {
-        add(FindingKind::fault, fault.code, fault.problem, "the rows themselves", fault.flag);
-        continue;
-      }
-      if (said) {
-        continue;  // a repeated block goes back in time as well: one finding is enough
-      }
-      said = true;
-      const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
-                                           order.backward_steps, order.rows, order.duplicates);
-      if (order.backward_steps * 50 > order.rows) {
-        add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + fault.problem, seen,
-            fault.flag);
-      } else if (repeats) {
-        add(FindingKind::fault, "repeated-rows",
-            fmt::format("{} rows are repeated, the first in line {}", order.duplicates, order.first_duplicate_row),
-            fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), fault.flag);
-      } else if (order.duplicates > 0 && order.backward_steps == 0) {
-        add(FindingKind::fault, "duplicates",
-            fmt::format("{} rows stand at the time of another row with another position: {}", order.duplicates,
-                        fault.problem),
-            seen, fault.flag);
-      } else if (order.longest_backward_ns > 1'000'000'000) {
-        add(FindingKind::fault, "clock-restarts",
-            fmt::format("the clock starts again {} {}, the first time in line {}", order.backward_steps,
-                        order.backward_steps == 1 ? "time" : "times", order.first_backward_row),
-            seen + "; sorting would mix the parts: give each a file of its own");
-      } else {
-        add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + fault.problem, seen,
-            fault.flag);
-      }
+    // A repeated block goes back in time as well: one finding is enough.
+    const std::string problem = order.backward_steps > 0
+                                    ? fmt::format("line {}: {}", order.first_backward_row, unordered_problem(order))
+                                    : fmt::format("line {}: {}", order.first_duplicate_row, duplicate_problem(order));
+    const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
+                                         order.backward_steps, order.rows, order.duplicates);
+    constexpr const char* kFlag = "--gaze-sort";
+    if (order.backward_steps * 50 > order.rows) {
+      add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, kFlag);
+    } else if (repeats) {
+      add(FindingKind::fault, "repeated-rows",
+          fmt::format("{} rows are repeated, the first in line {}", order.duplicates, order.first_duplicate_row),
+          fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), kFlag);
+    } else if (order.duplicates > 0 && order.backward_steps == 0) {
+      add(FindingKind::fault, "duplicates",
+          fmt::format("{} rows stand at the time of another row with another position: {}", order.duplicates, problem),
+          seen, kFlag);
+    } else if (order.longest_backward_ns > 1'000'000'000) {
+      add(FindingKind::fault, "clock-restarts",
+          fmt::format("the clock starts again {} {}, the first time in line {}", order.backward_steps,
+                      order.backward_steps == 1 ? "time" : "times", order.first_backward_row),
+          seen + "; sorting would mix the parts: give each a file of its own");
+    } else {
+      add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen, kFlag);
     }
   }
 
@@ -112,15 +138,11 @@ class Doctor {
   [[nodiscard]] std::string time_unit_flag(int shift) const {
     static constexpr std::array<std::pair<std::string_view, int>, 4> kUnits{
         {{"ns", 0}, {"us", 3}, {"ms", 6}, {"s", 9}}};
-    const std::string now = fact_text("time unit");
-    for (const auto& [name, exponent] : kUnits) {
-      if (name != now) {
-        continue;
-      }
-      for (const auto& [other, wanted] : kUnits) {
-        if (wanted == exponent + shift) {
-          return fmt::format("--gaze-time-unit {}", other);
-        }
+    const int now = log_.conventions.time_exponent.value;
+    const bool is_named = std::any_of(kUnits.begin(), kUnits.end(), [&](const auto& u) { return u.second == now; });
+    for (const auto& [other, wanted] : kUnits) {
+      if (whole_ != nullptr && is_named && wanted == now + shift) {
+        return fmt::format("--gaze-time-unit {}", other);
       }
     }
     return {};
@@ -143,14 +165,14 @@ class Doctor {
         if (meant / nominal > 0.5 && meant / nominal < 2) {
           add(FindingKind::fault, "time-unit",
               fmt::format("the stamps are not in {}: the log states {:.6g} Hz, and its stamps give {:.4g} Hz",
-                          fact_text("time unit"), nominal, rate),
+                          time_unit_text(log_.conventions.time_exponent.value), nominal, rate),
               fmt::format("the stated rate against the median step; the two differ by 10^{}", shift), flag);
           return;
         }
       } else if ((rate > kPlausibleHighHz || rate < kPlausibleLowHz) && meant >= 20 && meant <= 2100) {
         add(FindingKind::suspicion, "time-unit",
             fmt::format("the stamps can hardly be in {}: they give {:.4g} Hz, {:.4g} Hz in the other unit",
-                        fact_text("time unit"), rate, meant),
+                        time_unit_text(log_.conventions.time_exponent.value), rate, meant),
             "statistics: the median step against the rates that eye trackers have", flag);
         return;
       }
@@ -161,73 +183,20 @@ class Doctor {
     }
   }
 
-  // Quantiles of a coordinate in the file's unit, as far as that can be told back.
-  struct Extent {
-    double low, median, high;
-  };
-  [[nodiscard]] Extent extent(double scale, double GazeSample::*coordinate) const {
-    std::vector<double> values;
-    values.reserve(usable_.size());
-    for (const GazeSample* const sample : usable_) {
-      values.push_back(sample->*coordinate * scale);
-    }
-    return {quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95)};
-  }
-
   bool position_unit() {
-    if (std::any_of(log_.faults.begin(), log_.faults.end(),
-                    [](const GazeFault& fault) { return fault.code == kPositionUnit; })) {
-      return true;  // was seen before degrees and lengths became places
-    }
-    const std::string unit = fact_text("position unit");
-    if (log_.kind == GazeKind::direction || usable_.size() < 10 || (unit != "px" && unit != "fraction")) {
+    if (whole_ == nullptr) {
       return false;
     }
-    const Vec2d size = unit == "px" ? picture_px() : Vec2d{1, 1};
-    if (!(size.x > 0)) {
-      return false;
+    DisplayGeometry display = completed_geometry(options_.display.value_or(DisplayGeometry{}),
+                                                 whole_->conventions.recording_geometry.value_or(DisplayGeometry{}));
+    const Vec2d size = picture_px();
+    display.width_px = static_cast<int>(size.x);
+    display.height_px = static_cast<int>(size.y);
+    std::optional<GazeFinding> doubt = doubt_position_unit(*whole_, display);
+    if (doubt) {
+      report_.findings.push_back(*std::move(doubt));
     }
-    Extent x = extent(size.x, &GazeSample::u);
-    Extent y = extent(size.y, &GazeSample::v);
-    const std::string seen = fmt::format("90 % of x lie in {:.4g} .. {:.4g}, of y in {:.4g} .. {:.4g} {}", x.low,
-                                         x.high, y.low, y.high, unit);
-    const bool both_signs = (x.low < 0 && x.high > 0) || (y.low < 0 && y.high > 0);
-    const auto within = [&](double most) {
-      return std::max({std::abs(x.low), std::abs(x.high), std::abs(y.low), std::abs(y.high)}) < most;
-    };
-    const bool from_top_left = fact_text("origin") == "top-left";
-    const bool guessed = fact("position unit")->evidence == Evidence::statistics;
-    if (guessed) {
-      return false;
-    }
-    const double spread = std::max(x.high - x.low, y.high - y.low);
-    if (unit == "px" && within(1.5) && spread > 0.02) {
-      add(FindingKind::suspicion, "position-unit", "the positions are no pixels but fractions of the display",
-          "statistics: " + seen, "--gaze-unit fraction");
-      return true;
-    }
-    if (unit == "px" && both_signs && within(60) && within(0.12 * size.x) && spread > 0.5) {
-      add(FindingKind::suspicion, "position-unit", "the positions are no pixels but degrees from straight ahead",
-          "statistics: " + seen, "--gaze-unit deg");
-      return true;
-    }
-    if (unit == "fraction" && !within(5)) {
-      add(FindingKind::suspicion, "position-unit", "the positions are no fractions of the display but pixels",
-          "statistics: " + seen, "--gaze-unit px");
-      return true;
-    }
-    if (from_top_left && log_.kind == GazeKind::screen) {
-      const auto centred = [](const Extent& e) {
-        return e.low < 0 && e.high > 0 && std::abs(e.median) < 0.25 * (e.high - e.low);
-      };
-      const bool fits = x.high - x.low <= 1.05 * size.x && y.high - y.low <= 1.05 * size.y;
-      if (centred(x) && centred(y) && fits && spread > 0.05 * size.x) {
-        add(FindingKind::suspicion, "origin", "the positions count from the center of the display, not its top left",
-            "statistics: " + seen, "--gaze-origin center");
-        return true;
-      }
-    }
-    return false;
+    return doubt.has_value();
   }
 
   // Of the display or the scene camera's picture; by a guess where the log was looked at with one.
@@ -239,50 +208,58 @@ class Doctor {
     if (const auto& g = log_.recording_geometry; g && g->width_px > 0) {
       return {static_cast<double>(g->width_px), static_cast<double>(g->height_px)};
     }
-    const std::string text = fact_text(log_.kind == GazeKind::scene_camera ? "picture size" : "display size");
-    int width = 0;
-    int height = 0;
-    return std::sscanf(text.c_str(), "%dx%d", &width, &height) == 2
-               ? Vec2d{static_cast<double>(width), static_cast<double>(height)}
-               : Vec2d{};
+    const auto& display = log_.conventions.display;
+    return display ? Vec2d{static_cast<double>(display->value.width_px), static_cast<double>(display->value.height_px)}
+                   : Vec2d{};
   }
 
   void zeros() {
-    const std::size_t zeros = log_.zero_positions;
-    if (zeros < 3 || zeros * 2000 < log_.order.rows) {
+    if (whole_ == nullptr || whole_->conventions.form != PlaceForm::position || whole_->conventions.zero_is_missing) {
+      return;
+    }
+    const std::vector<RawSample>& rows = whole_->raw.rows;
+    const auto zeros = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const RawSample& row) {
+      return row.at.x == 0 && row.at.y == 0 && is_usable(row.validity);
+    }));
+    if (whole_->conventions.missing_value == 0 || zeros < 3 || zeros * 2000 < log_.order.rows) {
       return;
     }
     // Straight ahead in degrees is a place like any other: only zeros that come and go by a jump are none.
-    if (fact_text("origin") == "center" && zeros * 200 < log_.order.rows) {
+    if (log_.conventions.origin.value == PositionOrigin::center && zeros * 200 < log_.order.rows) {
       return;
     }
     add(FindingKind::suspicion, "zero-missing",
         fmt::format("{} of {} rows are exactly at (0, 0) and count as good: missing values written as zeros", zeros,
                     log_.order.rows),
-        "statistics: noise never gives exact zeros in both axes that often", "--gaze-zero-missing");
+        "statistics: noise never gives exact zeros in both axes that often" +
+            read_otherwise([](Conventions& c) { c.zero_is_missing = true; }),
+        "--gaze-zero-missing");
   }
 
   void recurring_place() {
-    if (!log_.recurring_place) {
+    const auto place = whole_ == nullptr ? std::nullopt : find_recurring_place(whole_->raw, whole_->conventions);
+    if (!place) {
       return;
     }
-    const RecurringPlace& place = *log_.recurring_place;
-    const bool is_vector = log_.kind == GazeKind::direction && fact_text("position unit") != "deg";
-    const std::string where = is_vector && place.x == 0 ? "straight ahead"
-                              : is_vector               ? fmt::format("at ({0}, {0}, {0})", place.x)
-                                                        : fmt::format("at ({}, {})", place.x, place.y);
-    const bool option_takes_it = place.x == place.y && place.x != 0;
+    const double x = place->raw.x;
+    const double y = place->raw.y;
+    const bool is_vector = whole_->conventions.form == PlaceForm::vector;
+    const std::string where = is_vector && x == 0 ? "straight ahead"
+                              : is_vector         ? fmt::format("at ({0}, {0}, {0})", x)
+                                                  : fmt::format("at ({}, {})", x, y);
+    const bool option_takes_it = x == y && x != 0;
     add(FindingKind::suspicion, "missing-value",
-        fmt::format("{} of {} rows are exactly {} and count as good: a mark of missing values", place.rows,
+        fmt::format("{} of {} rows are exactly {} and count as good: a mark of missing values", place->rows,
                     log_.order.rows, where),
-        "statistics: gaze comes to this place again and again, and by jumps",
-        option_takes_it ? fmt::format("--gaze-missing-value {}", place.x) : "");
+        "statistics: gaze comes to this place again and again, and by jumps" +
+            (option_takes_it ? read_otherwise([&](Conventions& c) { c.missing_value = x; }) : ""),
+        option_takes_it ? fmt::format("--gaze-missing-value {}", x) : "");
   }
 
   // More than a display's height but never its width.
   void swapped_by_extent() {
     const Vec2d size = picture_px();
-    if (log_.kind != GazeKind::screen || fact_text("position unit") != "px" || !(size.x > 1.2 * size.y) ||
+    if (log_.kind != GazeKind::screen || log_.conventions.unit.value != PositionUnit::px || !(size.x > 1.2 * size.y) ||
         usable_.size() < 50) {
       return;
     }
@@ -303,7 +280,8 @@ class Doctor {
       };
       add(FindingKind::suspicion, "swapped-axes", "the axes seem to be exchanged",
           fmt::format("statistics: {:.0f} % of the samples lie beside the display, {:.0f} % with x and y exchanged",
-                      share(beside), share(beside_swapped)),
+                      share(beside), share(beside_swapped)) +
+              read_otherwise([](Conventions& c) { c.swap_xy = !c.swap_xy; }),
           "--gaze-swap-xy");
     }
   }
@@ -363,12 +341,12 @@ class Doctor {
                       report_.disparity->vertical),
           fmt::format("{} pairs", report_.disparity->pairs));
     }
-    if (const GazeFact* const size = fact("display size");
-        size != nullptr && size->evidence == Evidence::statistics && log_.kind == GazeKind::screen) {
+    if (const auto& display = log_.conventions.display;
+        display && display->evidence == Evidence::statistics && log_.kind == GazeKind::screen) {
       add(FindingKind::note, "display-unknown",
           "the display's size is not stated; a usual one was taken to look at the log, and what is beside it is not "
           "known",
-          "statistics: " + size->detail + "; reading for anything else needs --screen-px W,H");
+          "statistics: " + display->detail + "; reading for anything else needs --screen-px W,H");
     }
   }
 
@@ -408,6 +386,7 @@ class Doctor {
   }
 
   const GazeLog& log_;
+  const GazeUnderInspection* whole_;
   const GazeInspectOptions& options_;
   GazeInspection& report_;
   std::vector<const GazeSample*> usable_;  // of a long log, a part
@@ -415,14 +394,9 @@ class Doctor {
 
 }  // namespace
 
-const GazeFact* find_fact(const GazeLog& log, std::string_view what) {
-  const auto found =
-      std::find_if(log.facts.rbegin(), log.facts.rend(), [&](const GazeFact& f) { return f.what == what; });
-  return found == log.facts.rend() ? nullptr : &*found;
-}
-
-void conclude(const GazeLog& log, const GazeInspectOptions& options, GazeInspection& inspection) {
-  Doctor(log, options, inspection).examine();
+void find_what_is_wrong(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
+                        GazeInspection& inspection) {
+  Doctor(log, whole, options, inspection).examine();
 }
 
 }  // namespace gazetrace

@@ -7,6 +7,9 @@
 #include <limits>
 #include <regex>
 
+#include "gazelog/mending.hpp"
+#include "gazelog/timing.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -51,51 +54,9 @@ std::string_view to_string(FindingKind kind) {
   return "note";
 }
 
-std::string without_dates(const std::string& text) {
-  // 2022/09/19, 19.09.2022, 2022-09-19T13:34:49.156, 13:34:49.156
-  static const std::regex kDate(
-      R"((\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{4})([T ]?\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?Z?)?|\d{1,2}:\d{2}:\d{2}([.,]\d+)?)");
-  return std::regex_replace(text, kDate, "(date)");
-}
+namespace {
 
-bool is_wall_clock(const GazeLog& log) {
-  constexpr std::int64_t kYear2000 = 946'684'800'000'000'000;
-  constexpr std::int64_t kYear2100 = 4'102'444'800'000'000'000;
-  return !log.samples.empty() && log.samples.front().t_ns >= kYear2000 && log.samples.front().t_ns < kYear2100;
-}
-
-std::int64_t count_from_first_sample(GazeLog& log) {
-  const std::int64_t first = log.samples.empty() ? 0 : log.samples.front().t_ns;
-  const auto shift = [&](std::int64_t& t_ns) {
-    if (__builtin_sub_overflow(t_ns, first, &t_ns)) {
-      t_ns = 0;  // half an age away from the recording: no time of it
-    }
-  };
-  for (GazeSample& sample : log.samples) {
-    shift(sample.t_ns);
-  }
-  for (EyeOrigins& origins : log.origins) {
-    shift(origins.t_ns);
-  }
-  for (HeadPose& pose : log.head) {
-    shift(pose.t_ns);
-  }
-  for (GazeEvent& event : log.events) {
-    shift(event.begin_ns);
-    shift(event.end_ns);
-  }
-  for (GazeCalibration& calibration : log.calibrations) {
-    shift(calibration.t_ns);
-  }
-  return first;
-}
-
-GazeLog load_for_inspection(const std::string& path, GazeReadOptions read) {
-  read.for_inspection = true;
-  return load_gaze_log(path, read);
-}
-
-GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options) {
+GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options) {
   GazeInspection report;
   const auto shown = [&](const std::string& text) { return options.keep_ids ? text : without_dates(text); };
   report.source = log.source;
@@ -129,7 +90,7 @@ GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& option
   measure_ranges(log, report);
   report.vor = test_vor(log);
   report.is_wall_clock = is_wall_clock(log);
-  conclude(log, options, report);
+  find_what_is_wrong(log, whole, options, report);
   if (report.is_wall_clock && !options.keep_ids) {
     report.timing.first_ns = report.timing.last_ns = 0;
     for (GazeFinding& finding : report.findings) {
@@ -141,6 +102,28 @@ GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& option
     }
   }
   return report;
+}
+
+}  // namespace
+
+GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read) {
+  read.guess_display = true;
+  read.frame = read.frame == GazeFrame::automatic ? GazeFrame::scene_camera : read.frame;
+  GazeUnderInspection gaze;
+  gaze.raw = read_raw_gaze(path, read, Mending::decimal_commas);
+  gaze.conventions = conclude_conventions(gaze.raw, read);
+  gaze.is_sorted_by_option = gaze.conventions.unordered == UnorderedPolicy::sort;
+  gaze.conventions.unordered = UnorderedPolicy::sort;
+  gaze.log = interpret(gaze.raw, gaze.conventions);
+  return gaze;
+}
+
+GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options) {
+  return inspect(log, nullptr, options);
+}
+
+GazeInspection inspect_gaze(const GazeUnderInspection& gaze, const GazeInspectOptions& options) {
+  return inspect(gaze.log, &gaze, options);
 }
 
 }  // namespace gazetrace

@@ -32,7 +32,6 @@ class GazePlane {
   std::string unit_ = "deg";
 };
 
-GazeTiming measure_timing(const GazeLog& log);
 GazeLoss measure_loss(const GazeLog& log, double median_step_ns);
 GazeFrozen measure_frozen(const GazeLog& log);
 std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePlane& plane, double median_step_ns);
@@ -43,13 +42,12 @@ std::vector<VorTest> test_vor(const GazeLog& log);
 // be looked at because `unit_is_wrong`.
 bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspection);
 
-// The last fact of that name; null: there is none.
-const GazeFact* find_fact(const GazeLog& log, std::string_view what);
+// Empty: 90 % of the positions can well be in the unit, and count from the origin, under which they were read.
+// `display` is what is known of the display or the scene camera's picture.
+std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, const DisplayGeometry& display);
 
-// Fills axes, findings, verdict and flags from the rest of the inspection.
-void conclude(const GazeLog& log, const GazeInspectOptions& options, GazeInspection& inspection);
-
-// Quantile of unordered values, which it reorders; NaN of none.
-double quantile(std::vector<double>& values, double share);
+// Fills axes, findings, verdict and flags from the rest of the inspection. `whole`: the log's file, or null.
+void find_what_is_wrong(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
+                        GazeInspection& inspection);
 
 }  // namespace gazetrace

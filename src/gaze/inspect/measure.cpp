@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Timing, losses, frozen values, precision and binocular disparity.
+// Losses, frozen values, precision and binocular disparity.
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gaze/inspect/inspect.hpp"
+#include "gazelog/timing.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr double kGapInSteps = 3;
 constexpr double kBlinkLeastMs = 50, kBlinkMostMs = 500;
 constexpr std::size_t kFrozenSamples = 5;
 constexpr std::int64_t kFrozenNs = 100'000'000;
@@ -45,70 +46,7 @@ class Stretch {
   double squares_ = 0, steps_ = 0;
 };
 
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  double mean_a = 0;
-  double mean_b = 0;
-  const auto n = static_cast<double>(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    mean_a += a[i] / n;
-    mean_b += b[i] / n;
-  }
-  double aa = 0;
-  double bb = 0;
-  double ab = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-  }
-  return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0;
-}
-
 }  // namespace
-
-GazeTiming measure_timing(const GazeLog& log) {
-  GazeTiming timing;
-  timing.first_ns = log.samples.front().t_ns;
-  timing.last_ns = log.samples.back().t_ns;
-  timing.nominal_rate_hz = log.nominal_rate_hz;
-  std::vector<double> steps;
-  steps.reserve(log.samples.size());
-  for (std::size_t i = 1; i < log.samples.size(); ++i) {
-    steps.push_back(static_cast<double>(log.samples[i].t_ns) - static_cast<double>(log.samples[i - 1].t_ns));
-  }
-  // Nanoseconds from 1970 do not fit a double: differences of integers do.
-  for (std::size_t i = 1; i < log.samples.size(); ++i) {
-    std::int64_t step = 0;
-    if (!__builtin_sub_overflow(log.samples[i].t_ns, log.samples[i - 1].t_ns, &step)) {
-      steps[i - 1] = static_cast<double>(step);
-    }
-  }
-  if (steps.empty()) {
-    return timing;
-  }
-  const double median = quantile(steps, 0.5);
-  timing.step_q1_ns = quantile(steps, 0.25);
-  timing.step_q3_ns = quantile(steps, 0.75);
-  timing.median_rate_hz = median > 0 ? 1e9 / median : 0;
-  double count = 0;
-  double mean = 0;
-  double squares = 0;
-  for (const double step : steps) {
-    if (step > kGapInSteps * median) {
-      ++timing.gaps;
-      timing.gaps_total_ns += static_cast<std::int64_t>(std::min(step, 9e18));
-      timing.longest_gap_ns = std::max(timing.longest_gap_ns, static_cast<std::int64_t>(std::min(step, 9e18)));
-      continue;
-    }
-    ++count;
-    const double from = step - mean;
-    mean += from / count;
-    squares += from * (step - mean);
-  }
-  timing.mean_rate_hz = mean > 0 ? 1e9 / mean : 0;
-  timing.jitter_ns = count > 1 ? std::sqrt(squares / (count - 1)) : 0;
-  return timing;
-}
 
 GazeLoss measure_loss(const GazeLog& log, double median_step_ns) {
   GazeLoss loss;
@@ -133,7 +71,7 @@ GazeLoss measure_loss(const GazeLog& log, double median_step_ns) {
     before = &sample;
   }
   loss.blink_like = blinks_ms.size();
-  loss.blink_like_median_ms = blinks_ms.empty() ? 0 : quantile(blinks_ms, 0.5);
+  loss.blink_like_median_ms = blinks_ms.empty() ? 0 : lower_quantile(blinks_ms, 0.5);
   if (!log.eyes.empty()) {
     std::array<std::size_t, 2> usable{};
     for (const BothEyes& eyes : log.eyes) {
@@ -233,7 +171,7 @@ std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePla
   if (rms.empty()) {
     return std::nullopt;
   }
-  return GazePrecision{rms.size(), quantile(rms, 0.5), quantile(sd, 0.5)};
+  return GazePrecision{rms.size(), lower_quantile(rms, 0.5), lower_quantile(sd, 0.5)};
 }
 
 std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane) {
@@ -266,11 +204,11 @@ std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePla
     left_y[i] -= right_y[i];
   }
   const auto spread = [](std::vector<double>& values) {
-    const double q1 = quantile(values, 0.25);
-    return (quantile(values, 0.75) - q1) / 1.349;
+    const double q1 = lower_quantile(values, 0.25);
+    return (lower_quantile(values, 0.75) - q1) / 1.349;
   };
-  disparity.horizontal = quantile(left_x, 0.5);
-  disparity.vertical = quantile(left_y, 0.5);
+  disparity.horizontal = lower_quantile(left_x, 0.5);
+  disparity.vertical = lower_quantile(left_y, 0.5);
   disparity.horizontal_spread = spread(left_x);
   disparity.vertical_spread = spread(left_y);
   return disparity;

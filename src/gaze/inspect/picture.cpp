@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/statistics.hpp"
 #include "core/svg.hpp"
 #include "core/text.hpp"
 #include "gaze/inspect/inspect.hpp"
@@ -78,10 +79,10 @@ Track make_track(const GazeLog& log, const GazeInspection& inspection) {
     track.x.push_back(at.x);
     track.y.push_back(at.y);
   }
-  const double x_low = quantile(xs, 0.002);
-  const double x_high = quantile(xs, 0.998);
-  const double y_low = quantile(ys, 0.002);
-  const double y_high = quantile(ys, 0.998);
+  const double x_low = lower_quantile(xs, 0.002);
+  const double x_high = lower_quantile(xs, 0.998);
+  const double y_low = lower_quantile(ys, 0.002);
+  const double y_high = lower_quantile(ys, 0.998);
   if (direction) {
     const double pad = xs.empty() ? 5 : std::max(1.0, 0.08 * std::max(x_high - x_low, y_high - y_low));
     track.x_low = (xs.empty() ? 0 : x_low) - pad;

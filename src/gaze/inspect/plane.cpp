@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <cmath>
 
 #include "gaze/inspect/inspect.hpp"
@@ -59,15 +58,6 @@ Vec2d GazePlane::at(const Vec3d& place) const {
     return {std::atan2(right, d) * kDegPerRad, std::atan2(up, std::sqrt(right * right + d * d)) * kDegPerRad};
   }
   return {place.x * x_scale_, -place.y * y_scale_};
-}
-
-double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) {
-    return std::nan("");
-  }
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
 }
 
 }  // namespace gazetrace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.hpp"
 #include "gaze/inspect/inspect.hpp"
 
 namespace gazetrace {
@@ -100,8 +101,8 @@ VorTest decide(char axis, const std::vector<std::array<double, 2>>& stretches) {
   if (stretches.empty()) {
     return test;
   }
-  test.speed_as_read_deg_s = quantile(as_read, 0.5);
-  test.speed_flipped_deg_s = quantile(flipped, 0.5);
+  test.speed_as_read_deg_s = lower_quantile(as_read, 0.5);
+  test.speed_flipped_deg_s = lower_quantile(flipped, 0.5);
   if (test.stretches < kLeastStretches || sign_test(test.steadier_as_read, test.stretches) > kMostChance) {
     return test;
   }
@@ -147,13 +148,13 @@ std::vector<VorTest> test_vor(const GazeLog& log) {
       continue;
     }
     // Medians: a saccade within the stretch takes less than half of it.
-    const double yaw = std::abs(quantile(s.yaw, 0.5));
-    const double pitch = std::abs(quantile(s.pitch, 0.5));
-    const double as_read = quantile(s.as_read, 0.5);
+    const double yaw = std::abs(lower_quantile(s.yaw, 0.5));
+    const double pitch = std::abs(lower_quantile(s.pitch, 0.5));
+    const double as_read = lower_quantile(s.as_read, 0.5);
     if (yaw >= kLeastHeadDegPerS && yaw <= kMostHeadDegPerS && yaw > pitch) {
-      for_x.push_back({as_read, quantile(s.flipped_x, 0.5)});
+      for_x.push_back({as_read, lower_quantile(s.flipped_x, 0.5)});
     } else if (pitch >= kLeastHeadDegPerS && pitch <= kMostHeadDegPerS && pitch > yaw) {
-      for_y.push_back({as_read, quantile(s.flipped_y, 0.5)});
+      for_y.push_back({as_read, lower_quantile(s.flipped_y, 0.5)});
     }
   }
   return {decide('x', for_x), decide('y', for_y)};

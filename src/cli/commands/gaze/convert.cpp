@@ -9,8 +9,8 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/gaze_bids.hpp"
-#include "gazetrace/gaze_inspect.hpp"
+#include "gazetrace/gaze_privacy.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "gazetrace/resolve.hpp"
 
 namespace gazetrace {

@@ -3,12 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_events.hpp"
-#include "gazetrace/gaze_inspect.hpp"
+#include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/resolve.hpp"
 
@@ -55,9 +56,13 @@ int run_events(const EventsArguments& arguments) {
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   complete_recording_geometry(log, arguments.screen);
   print_warnings(log.warnings);
-  if (!arguments.keep_ids && hide_times_of_day(log) != 0) {
-    print_warnings({log.source + ": its stamps are times of day; events count from its first sample, with --keep-ids "
-                                 "from where the stamps do"});
+  if (!arguments.keep_ids) {
+    auto [without, taken_off_ns] = without_times_of_day(std::move(log));
+    log = std::move(without);
+    if (taken_off_ns) {
+      print_warnings({log.source + ": its stamps are times of day; events count from its first sample, with --keep-ids "
+                                   "from where the stamps do"});
+    }
   }
   const EyeEvents events = find_events(arguments, log);
   const bool json = arguments.output.ends_with(".json");

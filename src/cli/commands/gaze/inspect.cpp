@@ -42,16 +42,17 @@ int run_inspect(const InspectArguments& arguments) {
       check_output_file(output, arguments.overwrite);
     }
   }
-  const GazeLog log = load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
+  const GazeUnderInspection gaze =
+      load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
   GazeInspectOptions options;
   options.display = screen_geometry(arguments.screen);
   options.keep_ids = arguments.keep_ids;
-  const GazeInspection inspection = inspect_gaze(log, options);
+  const GazeInspection inspection = inspect_gaze(gaze, options);
   if (!arguments.save_columns.empty()) {
     save_gaze_columns(merged_columns(arguments.gaze), arguments.save_columns);
   }
   if (!arguments.svg.empty()) {
-    write_picture(arguments, log, inspection);
+    write_picture(arguments, gaze.log, inspection);
   }
   print_result(arguments.json ? inspection_json(inspection) : inspection_text(inspection));
   return exit_done;

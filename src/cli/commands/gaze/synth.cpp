@@ -6,6 +6,7 @@
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_synth.hpp"
+#include "gazetrace/gaze_write.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/resolve.hpp"
 

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gaze/inspect/recurring_place.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "gazelog/interpret.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kJump = 0.1;  // of the display, or of a unit vector, in any axis
+constexpr std::size_t kFewestRows = 3;
+constexpr std::size_t kFewestRowsInLog = 2000;  // one of so many
+constexpr std::size_t kFewestVisits = 3;
+
+// Where gaze may well be, a mark must be written oftener, and no other place like it.
+constexpr std::size_t kFewestRowsInLogWhereGazeIs = 100;  // one of so many
+constexpr std::size_t kFewestVisitsWhereGazeIs = 10;
+constexpr std::size_t kMarkOverNext = 4;
+
+struct Visits {
+  Vec3d raw;
+  bool is_beside = false;  // the display
+  std::size_t rows = 0;
+  // Of each eye: rows of a chosen eye may be there twice. A loss between is no end of a visit, as a value may be held.
+  std::array<std::size_t, 3> times{};
+  std::size_t moves = 0, jumps = 0;  // to it and away from it
+
+  [[nodiscard]] bool look_like_a_mark(std::size_t rows_in_log) const;
+};
+
+using Place = std::tuple<double, double, double>;
+
+Vec3d place_of(const RawSample& row, bool has_three) {
+  return has_three ? row.at : Vec3d{row.at.x, row.at.y, 0};
+}
+Vec3d place_of(const GazeSample& sample, GazeKind kind) {
+  return kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0};
+}
+Place key_of(const Vec3d& at) {
+  return {at.x, at.y, at.z};
+}
+bool is_known(const Vec3d& at) {
+  return !std::isnan(at.x) && !std::isnan(at.y) && !std::isnan(at.z);
+}
+
+bool is_often(std::size_t rows, std::size_t rows_in_log) {
+  return rows >= kFewestRows && rows * kFewestRowsInLog >= rows_in_log;
+}
+
+// Steps within a fixation are small: a place that gaze fixates is hardly ever come to by jumps.
+bool Visits::look_like_a_mark(std::size_t rows_in_log) const {
+  const std::size_t most_times = *std::max_element(times.begin(), times.end());
+  if (is_beside) {
+    return is_often(rows, rows_in_log) && most_times >= kFewestVisits && moves > 0 && jumps * 10 >= moves * 9;
+  }
+  // From fixations near the mark the steps to it are short.
+  return rows * kFewestRowsInLogWhereGazeIs >= rows_in_log && most_times >= kFewestVisitsWhereGazeIs && moves > 0 &&
+         jumps * 2 >= moves;
+}
+
+// A place at which many rows of a log lie, and one of them.
+struct FrequentPlace {
+  Vec3d raw;               // as in the file
+  std::size_t sample = 0;  // index
+};
+
+// At most a few thousand places, whatever the log's length.
+std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, bool has_three) {
+  // A log has nearly as many places as rows. Counting them by a hash first leaves few to be told apart.
+  constexpr int kHashBits = 18;
+  const auto hash = [](const Vec3d& at) {
+    const auto x = std::bit_cast<std::uint64_t>(at.x);
+    const auto y = std::bit_cast<std::uint64_t>(at.y);
+    const auto z = std::bit_cast<std::uint64_t>(at.z);
+    return ((x ^ std::rotl(y, 32) ^ std::rotl(z, 16)) * 0x9E37'79B9'7F4A'7C15U) >> (64 - kHashBits);
+  };
+  std::vector<std::uint32_t> counts(std::size_t{1} << kHashBits, 0);
+  for (const RawSample& row : rows) {
+    ++counts[hash(place_of(row, has_three))];
+  }
+  struct Found {
+    std::size_t rows = 0, first = 0;
+  };
+  std::map<Place, Found> found;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Vec3d at = place_of(rows[i], has_three);
+    if (is_known(at) && is_often(counts[hash(at)], rows.size())) {
+      ++found.try_emplace(key_of(at), Found{0, i}).first->second.rows;
+    }
+  }
+  std::vector<FrequentPlace> frequent;
+  for (const auto& [place, times] : found) {
+    if (is_often(times.rows, rows.size())) {
+      frequent.push_back({{std::get<0>(place), std::get<1>(place), std::get<2>(place)}, times.first});
+    }
+  }
+  return frequent;
+}
+
+// A place that gaze comes to again and again, and from elsewhere by a jump: beside the display rarely, else in a
+// hundredth of the rows and at no other place alike. `log` has a sample for each row, in the order of the rows.
+std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<FrequentPlace>& frequent) {
+  std::map<Place, Visits> places;
+  for (const FrequentPlace& place : frequent) {
+    const Vec3d at = place_of(log.samples[place.sample], log.kind);
+    const bool is_zero = place.raw.x == 0 && place.raw.y == 0 && place.raw.z == 0;  // are counted by themselves
+    if (is_known(at) && !is_zero) {
+      const bool is_beside = log.kind != GazeKind::direction && !(at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1);
+      places.try_emplace(key_of(at), Visits{.raw = place.raw, .is_beside = is_beside});
+    }
+  }
+  if (places.empty()) {
+    return std::nullopt;
+  }
+  struct Last {
+    std::optional<Vec3d> at;
+    Visits* visits = nullptr;  // of its place, where it is one of those looked at
+  };
+  std::array<Last, 3> last_of_eye;
+  std::array<const Visits*, 3> was_at{};  // the same, losses left out
+  for (const GazeSample& sample : log.samples) {
+    const auto eye = static_cast<std::size_t>(sample.eye);
+    Last& last = last_of_eye[eye];
+    const Vec3d at = place_of(sample, log.kind);
+    if (!is_usable(sample.validity) || !is_known(at)) {
+      last = {};
+      continue;
+    }
+    const auto known = places.find(key_of(at));
+    const Last now{at, known == places.end() ? nullptr : &known->second};
+    if (now.visits != nullptr) {
+      ++now.visits->rows;
+      now.visits->times[eye] += was_at[eye] != now.visits ? 1 : 0;
+    }
+    was_at[eye] = now.visits;
+    if (last.at && key_of(*last.at) != key_of(at)) {
+      const Vec3d step = at - *last.at;
+      const bool jumps = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)}) > kJump;
+      for (Visits* const visits : {last.visits, now.visits}) {
+        if (visits != nullptr) {
+          ++visits->moves;
+          visits->jumps += jumps ? 1 : 0;
+        }
+      }
+    }
+    last = now;
+  }
+  const Visits* beside = nullptr;
+  const Visits* within = nullptr;
+  std::size_t next_within_rows = 0;
+  for (const auto& [at, visits] : places) {
+    if (!visits.look_like_a_mark(log.samples.size())) {
+      continue;
+    }
+    const Visits*& most = visits.is_beside ? beside : within;
+    const Visits* next = &visits;
+    if (most == nullptr || visits.rows > most->rows) {
+      std::swap(most, next);
+    }
+    if (!visits.is_beside && next != nullptr) {
+      next_within_rows = std::max(next_within_rows, next->rows);
+    }
+  }
+  // Gaze without noise, as of a mouse or a model, is at many places exactly and leaves them by jumps.
+  if (within != nullptr && next_within_rows * kMarkOverNext > within->rows) {
+    within = nullptr;
+  }
+  const Visits* const mark = beside != nullptr ? beside : within;
+  return mark == nullptr ? std::nullopt : std::optional(RecurringPlace{mark->raw, mark->rows});
+}
+
+}  // namespace
+
+std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Conventions& conventions) {
+  const bool has_three = conventions.form == PlaceForm::vector;
+  const std::vector<FrequentPlace> frequent = frequent_places(raw.rows, has_three);
+  const std::optional<RecurringPlace> mark = find_mark(interpret_rows(raw, conventions), frequent);
+  // Of directions only those that loggers write: three times one number, and straight ahead.
+  const bool is_plain =
+      mark && ((mark->raw.x == mark->raw.y && mark->raw.y == mark->raw.z) || (mark->raw.x == 0 && mark->raw.y == 0));
+  return mark && (!has_three || is_plain) ? mark : std::nullopt;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the positions of a file can be in the unit, and count from the origin, under which they were read. Where they
+// cannot, they are read again under the convention that fits.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/statistics.hpp"
+#include "gaze/inspect/inspect.hpp"
+#include "gazelog/interpret.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+// 90 % of the values of usable rows.
+struct Extent {
+  double low = 0, median = 0, high = 0;
+};
+// Empty of a few.
+std::optional<Extent> extent_of(const std::vector<RawSample>& rows, double Vec3d::*coordinate) {
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const RawSample& row : rows) {
+    if (is_usable(row.validity) && std::isfinite(row.at.*coordinate)) {
+      values.push_back(row.at.*coordinate);
+    }
+  }
+  if (values.size() < 10) {
+    return std::nullopt;
+  }
+  return Extent{lower_quantile(values, 0.05), lower_quantile(values, 0.5), lower_quantile(values, 0.95)};
+}
+
+bool is_known(const Vec2d& size) {
+  return size.x > 0 && size.y > 0;
+}
+
+// A unit, and perhaps an origin, that would fit better, and the option that says so.
+struct BetterUnit {
+  std::string_view name;  // of the unit, in the plural
+  PositionUnit unit = PositionUnit::automatic;
+  std::string flag;
+  PositionOrigin origin = PositionOrigin::top_left;
+};
+
+struct Positions {
+  Extent x, y;
+  double most = 0, spread = 0;
+};
+
+// Degrees, and lengths on a display that is known.
+std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionUnit stated, PositionOrigin origin,
+                                                   const DisplayGeometry& display) {
+  const auto& [x, y, most, spread] = p;
+  const Vec2d size_cm{display.width_cm, display.height_cm};
+  const Vec2d size_mm{10 * size_cm.x, 10 * size_cm.y};
+  const Vec2d size_px{static_cast<double>(display.width_px), static_cast<double>(display.height_px)};
+  const bool is_deg = stated == PositionUnit::deg;
+  const bool is_length = stated == PositionUnit::mm || stated == PositionUnit::cm;
+  const bool from_center = origin == PositionOrigin::center;
+  if (is_length && !from_center && most < 1.5 && spread > 0.02) {
+    return BetterUnit{"fractions of the display", PositionUnit::fraction, "--gaze-unit fraction"};
+  }
+  const Vec2d size = stated == PositionUnit::mm ? size_mm : size_cm;
+  const Vec2d reach = from_center ? Vec2d{0.5 * size.x, 0.5 * size.y} : size;
+  const auto far = [](const Extent& e, double most_of_it, bool both_ways) {
+    return e.high > 1.5 * most_of_it && (both_ways ? e.low < -1.5 * most_of_it : e.median > most_of_it);
+  };
+  // No eye turns by a right angle, and no gaze is beside the display for most of the time. Medians, because the ends
+  // may be marks of missing values.
+  const auto turns_too_far = [](const Extent& e) { return std::abs(e.median) > 90 || (e.low < -90 && e.high > 90); };
+  const bool is_wrong =
+      is_deg ? turns_too_far(x) || turns_too_far(y)
+             : is_length && is_known(size) && (far(x, reach.x, from_center) || far(y, reach.y, from_center));
+  if (!is_wrong) {
+    return std::nullopt;
+  }
+
+  const bool centered = std::min(x.low, y.low) < -0.1 * most;
+  const auto fits = [&](const Vec2d& wanted) {
+    const double low = centered ? -0.6 : -0.1;
+    const double high = centered ? 0.6 : 1.1;
+    return is_known(wanted) && x.low >= low * wanted.x && x.high <= high * wanted.x && y.low >= low * wanted.y &&
+           y.high <= high * wanted.y;
+  };
+  const PositionOrigin better_origin = centered ? PositionOrigin::center : PositionOrigin::top_left;
+  const std::string_view counts_from = centered == from_center ? ""
+                                       : centered              ? " --gaze-origin center"
+                                                               : " --gaze-origin top-left";
+  if (stated != PositionUnit::mm && fits(size_mm)) {
+    return BetterUnit{"millimetres", PositionUnit::mm, fmt::format("--gaze-unit mm{}", counts_from), better_origin};
+  }
+  if (fits(size_px) || (is_deg && !is_known(size_px))) {
+    return BetterUnit{"pixels", PositionUnit::px, fmt::format("--gaze-unit px{}", counts_from), better_origin};
+  }
+  return is_deg ? std::optional(BetterUnit{"something else", PositionUnit::automatic, ""}) : std::nullopt;
+}
+
+// Pixels and fractions.
+std::optional<BetterUnit> doubt_places(const Positions& p, PositionUnit unit, double width) {
+  const auto& [x, y, most, spread] = p;
+  const bool both_signs = (x.low < 0 && x.high > 0) || (y.low < 0 && y.high > 0);
+  if (unit == PositionUnit::px && most < 1.5 && spread > 0.02) {
+    return BetterUnit{"fractions of the display", PositionUnit::fraction, "--gaze-unit fraction"};
+  }
+  if (unit == PositionUnit::px && both_signs && most < 60 && most < 0.12 * width && spread > 0.5) {
+    return BetterUnit{"degrees from straight ahead", PositionUnit::deg, "--gaze-unit deg", PositionOrigin::center};
+  }
+  if (unit == PositionUnit::fraction && !(most < 5)) {
+    return BetterUnit{"pixels", PositionUnit::px, "--gaze-unit px"};
+  }
+  return std::nullopt;
+}
+
+bool count_from_center(const Positions& p, const Vec2d& size) {
+  const auto centred = [](const Extent& e) {
+    return e.low < 0 && e.high > 0 && std::abs(e.median) < 0.25 * (e.high - e.low);
+  };
+  const bool fits = p.x.high - p.x.low <= 1.05 * size.x && p.y.high - p.y.low <= 1.05 * size.y;
+  return centred(p.x) && centred(p.y) && fits && p.spread > 0.05 * size.x;
+}
+
+std::string_view plural_of(PositionUnit unit) {
+  switch (unit) {
+    case PositionUnit::fraction:
+      return "fractions of the display";
+    case PositionUnit::px:
+      return "pixels";
+    case PositionUnit::mm:
+      return "millimetres";
+    case PositionUnit::cm:
+      return "centimetres";
+    case PositionUnit::deg:
+      return "degrees";
+    default:
+      return "such numbers";
+  }
+}
+
+// How much of the log lies on the display, or can be used, when it is read under other conventions.
+std::string read_so(const GazeUnderInspection& gaze, const Conventions& conventions) {
+  try {
+    const GazeLog log = interpret(gaze.raw, conventions);
+    const auto usable = std::count_if(log.samples.begin(), log.samples.end(), [&](const GazeSample& sample) {
+      return is_usable(sample.validity) && sample.validity != GazeValidity::off_screen;
+    });
+    return fmt::format("; read so, {:.0f} % of the samples {}",
+                       100 * static_cast<double>(usable) / static_cast<double>(log.samples.size()),
+                       log.kind == GazeKind::screen ? "lie on the display" : "are usable");
+  } catch (const Error&) {
+    return {};  // it would need what nobody knows, as the size of the display
+  }
+}
+
+}  // namespace
+
+std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, const DisplayGeometry& display) {
+  const RawGaze& raw = gaze.raw;
+  const Conventions& c = gaze.conventions;
+  if (c.form != PlaceForm::position || c.unit.evidence == Evidence::statistics) {
+    return std::nullopt;
+  }
+  const std::vector<RawSample> rows = measurable_rows(raw, c);
+  const std::optional<Extent> x = extent_of(rows, &Vec3d::x);
+  const std::optional<Extent> y = extent_of(rows, &Vec3d::y);
+  if (!x || !y) {
+    return std::nullopt;
+  }
+  const Positions p{*x, *y, std::max({-x->low, x->high, -y->low, y->high}),
+                    std::max(x->high - x->low, y->high - y->low)};
+  const PositionUnit unit = c.unit.value;
+  const std::string seen =
+      fmt::format("90 % of x lie in {:.4g} .. {:.4g}, of y in {:.4g} .. {:.4g}", p.x.low, p.x.high, p.y.low, p.y.high);
+  const bool is_place = unit == PositionUnit::px || unit == PositionUnit::fraction;
+  const Vec2d size = unit == PositionUnit::px
+                         ? Vec2d{static_cast<double>(display.width_px), static_cast<double>(display.height_px)}
+                         : Vec2d{1, 1};
+  if (is_place && !(size.x > 0)) {
+    return std::nullopt;
+  }
+  std::optional<BetterUnit> better;
+  if (is_place) {
+    better = doubt_places(p, unit, size.x);
+  } else if (raw.kind == GazeKind::screen) {
+    // Degrees count from straight ahead, whatever else the log's positions count from.
+    better = doubt_angles_and_lengths(p, unit, unit == PositionUnit::deg ? raw.declared.origin.value : c.origin.value,
+                                      display);
+  }
+  Conventions other = c;
+  if (better) {
+    other.unit.value = better->unit;
+    other.origin.value = better->origin;
+    other.display = Concluded<DisplayGeometry>{display, Evidence::statistics, {}};
+    return GazeFinding{FindingKind::suspicion, "position-unit",
+                       fmt::format("the positions are no {} but {}", plural_of(unit), better->name),
+                       "statistics: " + seen + (better->unit == PositionUnit::automatic ? "" : read_so(gaze, other)),
+                       better->flag};
+  }
+  if (is_place && c.origin.value == PositionOrigin::top_left && raw.kind == GazeKind::screen &&
+      count_from_center(p, size)) {
+    other.origin.value = PositionOrigin::center;
+    return GazeFinding{
+        FindingKind::suspicion, "origin", "the positions count from the center of the display, not its top left",
+        fmt::format("statistics: {} {}{}", seen, to_string(unit), read_so(gaze, other)), "--gaze-origin center"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// BIDS' inheritance: what holds for a file may stand in JSON files with fewer entities in their names, beside it or in
+// folders above it. The most specific one wins, key by key.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazelog/json.hpp"
+
+namespace gazetrace {
+
+// "sub-01_task-view_recording-eye1_physio.tsv.gz"
+struct BidsName {
+  std::string folder;
+  std::vector<std::string> entities;  // "sub-01", "task-view", "recording-eye1"
+  std::string suffix;                 // "physio"
+  std::string extension;              // ".tsv.gz"
+};
+BidsName parse_bids_name(const std::string& path);
+
+class Sidecars {
+ public:
+  // Those of `suffix` that apply to `name`, from its folder upwards to the data set's root. Error(input) for broken
+  // JSON.
+  Sidecars(const BidsName& name, std::string_view suffix);
+
+  [[nodiscard]] std::string text(std::string_view path) const;
+  [[nodiscard]] std::optional<double> number(std::string_view path) const;
+  [[nodiscard]] std::vector<double> numbers(std::string_view path) const;
+  [[nodiscard]] std::vector<std::string> texts(std::string_view path) const;
+  [[nodiscard]] bool empty() const { return files_.empty(); }
+  [[nodiscard]] std::string source(std::string_view path) const;  // the file that says it
+
+ private:
+  struct File {
+    std::string path;
+    JsonLeaves json;
+  };
+  [[nodiscard]] const File* file_with(std::string_view path) const;
+  std::vector<File> files_;  // the most specific first
+};
+
+// Files in the folder of `name` with the same entities but for `recording`.
+std::vector<std::string> files_of_bids_name(const BidsName& name);
+// The tables of them that have this suffix, without that of `name`.
+std::vector<std::string> sibling_recordings(const BidsName& name, std::string_view suffix);
+
+// Physiology is recorded in files of the same names. mislabeled: has positions, but its PhysioType is not eyetrack.
+enum class BidsSignal { gaze, mislabeled, other };
+// `x_column`: the column of positions where it has a name of its own.
+BidsSignal recorded_signal(const Sidecars& sidecars, const std::string& x_column = {});
+
+// Our own key, in every JSON file that gazetrace writes.
+inline constexpr const char* kBidsWriterKey = "WrittenBy";
+inline constexpr const char* kBidsWriter = "gazetrace";
+
+}  // namespace gazetrace

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "core/text.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+using Names = std::span<const std::string_view>;
+
+class Finder {
+ public:
+  Finder(const DelimitedTable& table, const std::string& place) : table_(table), place_(place) {}
+
+  [[nodiscard]] OptionalColumn by_role(Names names) const {
+    for (const std::string_view name : names) {
+      for (std::size_t i = 0; i < table_.headings.size(); ++i) {
+        if (letters_and_digits(table_.headings[i].name) == name) {
+          table_.check_unique(i);
+          return i;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] OptionalColumn optional(const std::string& name, Names names = {}) const {
+    return name.empty() ? by_role(names) : std::optional(declared_column(table_, name, place_));
+  }
+
+  [[nodiscard]] std::size_t required(const std::string& name, Names names, std::string_view what,
+                                     std::string_view option) const {
+    if (const auto found = optional(name, names)) {
+      return *found;
+    }
+    throw Error(ErrorKind::input, place_,
+                fmt::format("no column for {} is found; the columns are: {}", what, column_listing(table_)),
+                fmt::format("name it with {}", option));
+  }
+
+ private:
+  const DelimitedTable& table_;
+  const std::string& place_;
+};
+
+using std::string_view_literals::operator""sv;
+constexpr std::array kTime{"t"sv, "time"sv, "timestamp"sv, "recordingtimestamp"sv, "gazetimestamp"sv};
+constexpr std::array kValidity{"valid"sv, "validity"sv, "isvalid"sv};
+constexpr std::array kConfidence{"confidence"sv, "conf"sv};
+constexpr std::array kPupil{"pupil"sv, "pupilsize"sv, "pupildiameter"sv};
+constexpr std::array kEye{"eye"sv, "recordedeye"sv};
+constexpr std::array kDirectionX{"dx"sv, "dirx"sv, "directionx"sv, "gazedirectionx"sv, "gazedirx"sv};
+constexpr std::array kDirectionY{"dy"sv, "diry"sv, "directiony"sv, "gazedirectiony"sv, "gazediry"sv};
+constexpr std::array kDirectionZ{"dz"sv, "dirz"sv, "directionz"sv, "gazedirectionz"sv, "gazedirz"sv};
+constexpr std::array kOriginX{"ox"sv};
+constexpr std::array kOriginY{"oy"sv};
+constexpr std::array kOriginZ{"oz"sv};
+constexpr std::array kScreenX{"u"sv,        "x"sv,    "gazex"sv, "xcoordinate"sv, "gazepointx"sv,
+                              "gazeposx"sv, "porx"sv, "posx"sv,  "xpos"sv};
+constexpr std::array kScreenY{"v"sv,        "y"sv,    "gazey"sv, "ycoordinate"sv, "gazepointy"sv,
+                              "gazeposy"sv, "pory"sv, "posy"sv,  "ypos"sv};
+
+bool is_declared(const EyeColumns& eye) {
+  return !eye.x.empty() || !eye.y.empty();
+}
+
+GazeSource eye_source(const Finder& find, const EyeColumns& declared, Eye eye) {
+  GazeSource source;
+  source.eye = eye;
+  const std::string side(to_string(eye));
+  source.x = find.required(declared.x, {}, side + " x", side + ".x of the column map");
+  source.y = find.required(declared.y, {}, side + " y", side + ".y of the column map");
+  source.z = find.optional(declared.z);
+  source.validity = find.optional(declared.validity);
+  source.confidence = find.optional(declared.confidence);
+  source.pupil = find.optional(declared.pupil);
+  source.openness = find.optional(declared.openness);
+  source.origin = {find.optional(declared.origin_x), find.optional(declared.origin_y),
+                   find.optional(declared.origin_z)};
+  return source;
+}
+
+void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
+  const bool by_eye = is_declared(declared.left) || is_declared(declared.right);
+  if (by_eye) {
+    for (const auto& [columns, eye] : {std::pair(&declared.left, Eye::left), std::pair(&declared.right, Eye::right)}) {
+      if (is_declared(*columns)) {
+        plan.sources.push_back(eye_source(find, *columns, eye));
+        plan.kind = plan.sources.back().z ? GazeKind::direction : GazeKind::screen;
+      }
+    }
+  }
+  if (by_eye && declared.x.empty()) {
+    return;
+  }
+  GazeSource source;
+  const bool directions_named = find.by_role(kDirectionX) && find.by_role(kDirectionY) && find.by_role(kDirectionZ);
+  const bool is_direction = !declared.z.empty() || declared.position_unit == PositionUnit::unit_vector ||
+                            (directions_named && declared.x.empty() && declared.y.empty());
+  if (is_direction) {
+    plan.kind = GazeKind::direction;
+    source.x = find.required(declared.x, kDirectionX, "direction x", "--gaze-x-column");
+    source.y = find.required(declared.y, kDirectionY, "direction y", "--gaze-y-column");
+    source.z = find.required(declared.z, kDirectionZ, "direction z", "--gaze-z-column");
+  } else {
+    source.x = find.required(declared.x, kScreenX, "the horizontal position", "--gaze-x-column");
+    source.y = find.required(declared.y, kScreenY, "the vertical position", "--gaze-y-column");
+  }
+  source.validity = find.optional(declared.validity, kValidity);
+  source.confidence = find.optional(declared.confidence, kConfidence);
+  source.pupil = find.optional(declared.pupil, kPupil);
+  source.origin = {find.by_role(kOriginX), find.by_role(kOriginY), find.by_role(kOriginZ)};
+  plan.sources.insert(plan.sources.begin(), source);
+}
+
+void plan_head(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
+  plan.head_position = {find.optional(declared.head_x), find.optional(declared.head_y), find.optional(declared.head_z)};
+  plan.head_rotation = {find.optional(declared.head_rotation_x), find.optional(declared.head_rotation_y),
+                        find.optional(declared.head_rotation_z), find.optional(declared.head_rotation_w)};
+}
+
+void plan_time_unit(ColumnPlan& plan, const ColumnHeading& heading, const GazeColumns& declared,
+                    const std::string& place) {
+  if (!heading.unit.empty()) {
+    plan.time_exponent = time_exponent(heading.unit);
+  }
+  const auto flag = time_exponent_of(declared.time_unit);
+  if (flag && plan.time_exponent && *flag != *plan.time_exponent) {
+    plan.warnings.push_back(
+        fmt::format("{}: the header says that '{}' is in {}; --gaze-time-unit {} was given and is used", place,
+                    heading.text, time_unit_text(*plan.time_exponent), time_unit_text(*flag)));
+  }
+  if (flag) {
+    plan.time_exponent = flag;
+  } else if (!heading.unit.empty() && !plan.time_exponent) {
+    throw Error(ErrorKind::input, place,
+                fmt::format("unknown unit '{}' of time column '{}'", heading.unit, heading.text),
+                "use [s], [ms], [us] or [ns], or give --gaze-time-unit");
+  }
+}
+
+PositionUnit unit_of(const ColumnHeading& heading, const GazeColumns& declared, const std::string& place) {
+  if (heading.unit.empty()) {
+    // u and v are nothing but fractions; other names say nothing.
+    return heading.name == "u" || heading.name == "v" ? PositionUnit::fraction : PositionUnit::automatic;
+  }
+  const auto unit = position_unit_from(heading.unit);
+  if (!unit && declared.position_unit == PositionUnit::automatic) {
+    throw Error(ErrorKind::input, place, fmt::format("unknown unit '{}' of column '{}'", heading.unit, heading.text),
+                "use [1], [px], [mm], [cm] or [deg], or give --gaze-unit");
+  }
+  return unit.value_or(PositionUnit::automatic);
+}
+
+void plan_position_unit(ColumnPlan& plan, const DelimitedTable& table, const GazeColumns& declared,
+                        const std::string& place) {
+  const PositionUnit flag = declared.position_unit;
+  const ColumnHeading& x_heading = table.headings[plan.sources.front().x];
+  const ColumnHeading& y_heading = table.headings[plan.sources.front().y];
+  if (plan.kind == GazeKind::direction) {
+    if (flag != PositionUnit::automatic && flag != PositionUnit::unit_vector) {
+      throw Error(ErrorKind::usage, place, fmt::format("directions of three columns cannot be in {}", to_string(flag)),
+                  "leave --gaze-unit out, or name two columns");
+    }
+    plan.unit = PositionUnit::unit_vector;
+    return;
+  }
+  const PositionUnit x = unit_of(x_heading, declared, place);
+  const PositionUnit y = unit_of(y_heading, declared, place);
+  if (x != y && flag == PositionUnit::automatic) {
+    throw Error(ErrorKind::input, place,
+                fmt::format("columns '{}' and '{}' are in different units", x_heading.text, y_heading.text),
+                "name two columns of one unit, or give --gaze-unit");
+  }
+  if (flag != PositionUnit::automatic && x != PositionUnit::automatic && x != flag) {
+    plan.warnings.push_back(fmt::format("{}: the header says that '{}' is in {}; --gaze-unit {} was given and is used",
+                                        place, x_heading.text, to_string(x), to_string(flag)));
+  }
+  plan.unit = flag != PositionUnit::automatic ? flag : x;
+  plan.unit_evidence = flag != PositionUnit::automatic ? Evidence::option : Evidence::header;
+}
+
+}  // namespace
+
+std::size_t ColumnPlan::needed_cells() const {
+  std::size_t needed = time + 1;
+  const auto reach = [&](const OptionalColumn& column) { needed = std::max(needed, column ? *column + 1 : 0); };
+  for (const GazeSource& source : sources) {
+    for (const OptionalColumn& column :
+         {OptionalColumn(source.x), OptionalColumn(source.y), source.z, source.validity, source.confidence,
+          source.pupil, source.openness, source.origin[0], source.origin[1], source.origin[2]}) {
+      reach(column);
+    }
+  }
+  for (const OptionalColumn& column : {eye, frame, head_position[0], head_position[1], head_position[2],
+                                       head_rotation[0], head_rotation[1], head_rotation[2], head_rotation[3]}) {
+    reach(column);
+  }
+  return needed;
+}
+
+ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared, const std::string& place) {
+  const Finder find(table, place);
+  ColumnPlan plan;
+  plan.time = find.required(declared.time, kTime, "time", "--gaze-time-column");
+  plan_positions(plan, find, declared);
+  plan_head(plan, find, declared);
+  plan.eye = find.optional(declared.eye, kEye);
+  plan.frame = find.optional(declared.frame);
+  plan_time_unit(plan, table.headings[plan.time], declared, place);
+  plan_position_unit(plan, table, declared, place);
+  for (const GazeSource& source : plan.sources) {
+    if (source.pupil && plan.pupil_unit.empty()) {
+      plan.pupil_unit = table.headings[*source.pupil].unit;
+    }
+  }
+  return plan;
+}
+
+}  // namespace gazetrace

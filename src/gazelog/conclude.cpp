@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the numbers of a log mean: what the user says wins over what the log says, and what nobody says is guessed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/statistics.hpp"
+#include "gazelog/interpret.hpp"
+#include "gazelog/recording_geometry.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+void refuse_scene_camera(const RawGaze& raw, const GazeReadOptions& options) {
+  if (raw.kind == GazeKind::scene_camera && options.frame == GazeFrame::automatic) {
+    throw Error(ErrorKind::input, raw.source,
+                "holds gaze on the picture of a scene camera, which moves with the head: it is no place on a display",
+                raw.way_out);
+  }
+}
+
+// x and y as the file has them, but for marks of missing values: a unit is guessed before anything else is known.
+std::vector<RawSample> rows_for_a_guess(const RawGaze& raw, const Conventions& c) {
+  Conventions plain;
+  plain.missing_value = c.missing_value;
+  return measurable_rows(raw, plain);
+}
+
+void conclude_unit(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
+  if (c.unit.value == PositionUnit::automatic) {
+    std::string evidence;
+    c.unit.value = guess_position_unit(rows_for_a_guess(raw, c), evidence);
+    c.unit.evidence = Evidence::statistics;
+    c.warnings.push_back(
+        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with --gaze-unit",
+                    raw.place, evidence, to_string(c.unit.value)));
+  }
+  const PositionUnit given = options.columns.position_unit;
+  if (given != PositionUnit::automatic && given != c.unit.value) {
+    c.warnings.push_back(fmt::format("{}: positions of {} are in {}; --gaze-unit {} was given and is used", raw.place,
+                                     raw.format, to_string(c.unit.value), to_string(given)));
+    c.unit = {given, Evidence::option, {}};
+    c.origin.value = given == PositionUnit::deg ? PositionOrigin::center : c.origin.value;
+  }
+}
+
+void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
+  const PositionOrigin given = options.columns.origin;
+  if (given != PositionOrigin::automatic && given != c.origin.value) {
+    c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; --gaze-origin {} was given and is used",
+                                     raw.place, raw.format, to_string(c.origin.value), to_string(given)));
+    c.origin = {given, Evidence::option, {}};
+  }
+  if (c.origin.value != PositionOrigin::automatic) {
+    return;
+  }
+  const bool is_deg = c.unit.value == PositionUnit::deg;
+  c.origin = {is_deg ? PositionOrigin::center : PositionOrigin::top_left, Evidence::statistics, {}};
+  if (is_deg) {
+    return;
+  }
+  const double share_negative = measure_positions(measurable_rows(raw, c)).share_negative;
+  if (share_negative > 0.25) {
+    c.warnings.push_back(
+        fmt::format("{}: {:.0f} % of the positions are negative, counted from the top left: is the origin at the "
+                    "center (--gaze-origin center)?",
+                    raw.place, 100 * share_negative));
+  }
+}
+
+// The smallest usual display that holds nearly all places: good enough to look at a log, never to render from one.
+void guess_display(const RawGaze& raw, Conventions& c) {
+  static constexpr std::array<std::array<int, 2>, 12> kUsual{{{640, 480},
+                                                              {800, 600},
+                                                              {1024, 768},
+                                                              {1280, 720},
+                                                              {1280, 1024},
+                                                              {1600, 900},
+                                                              {1680, 1050},
+                                                              {1920, 1080},
+                                                              {1920, 1200},
+                                                              {2560, 1440},
+                                                              {3840, 2160},
+                                                              {7680, 4320}}};
+  std::size_t usable = 0;
+  std::array<std::size_t, kUsual.size()> inside{};
+  for (const RawSample& row : measurable_rows(raw, c)) {
+    if (!is_usable(row.validity)) {
+      continue;
+    }
+    ++usable;
+    for (std::size_t i = 0; i < kUsual.size(); ++i) {
+      inside[i] += row.at.x <= kUsual[i][0] && row.at.y <= kUsual[i][1] ? 1 : 0;
+    }
+  }
+  std::size_t best = 0;
+  while (best + 1 < kUsual.size() && inside[best] * 100 < usable * 98) {
+    ++best;
+  }
+  DisplayGeometry display = c.display ? c.display->value : DisplayGeometry{};
+  display.width_px = kUsual[best][0];
+  display.height_px = kUsual[best][1];
+  c.display = {display, Evidence::statistics, "the smallest usual display that holds 98 % of the positions"};
+  c.warnings.push_back(
+      fmt::format("{}: the size of the display is not stated; {}x{} px were guessed from the positions to look at "
+                  "them; give --screen-px W,H",
+                  raw.place, display.width_px, display.height_px));
+}
+
+void conclude_display(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
+  c.display = conversion_display(raw, options, c);
+  const bool sized = c.display && c.display->value.width_px > 0 && c.display->value.height_px > 0;
+  if (c.unit.value == PositionUnit::px && !sized && options.guess_display) {
+    guess_display(raw, c);
+  }
+}
+
+void conclude_axes(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
+  const GazeAxes given = options.columns.axes;
+  const GazeAxes own = c.axes.value;
+  if (given != GazeAxes::automatic && given != own) {
+    if (own != GazeAxes::automatic) {
+      c.warnings.push_back(
+          fmt::format("{}: directions of this log are in {} axes; --gaze-axes {} was given and is used", raw.place,
+                      to_string(own), to_string(given)));
+    }
+    c.axes = {given, Evidence::option, {}};
+  }
+  if (c.axes.value == GazeAxes::automatic) {
+    c.axes.value = GazeAxes::gl;
+  }
+}
+
+// The left eye lies left of the right one: where the log's origins say otherwise, its x axis is the other way round, as
+// in logs whose maker had already turned the vectors.
+void conclude_handedness(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
+  if (!c.x_is_turned || options.columns.axes != GazeAxes::automatic) {
+    c.x_is_turned.reset();
+    return;
+  }
+  std::vector<float> differences;
+  for (const EyeOrigins& origins : raw.origins) {
+    const auto x_of = [&](const Vec3f& origin) { return to_float(from_axes(to_double(origin), c.axes.value)).x; };
+    const float difference = x_of(origins.left_mm) - x_of(origins.right_mm);
+    if (std::isfinite(difference) && difference != 0) {
+      differences.push_back(difference);
+    }
+  }
+  if (differences.empty()) {
+    c.x_is_turned.reset();
+    return;
+  }
+  const float median = upper_median(differences);
+  c.x_is_turned = {!(median < 0), Evidence::statistics,
+                   fmt::format("the left eye lies {:.0f} mm to the {} of the right one in these axes", std::abs(median),
+                               median < 0 ? "left" : "right")};
+}
+
+}  // namespace
+
+Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& options) {
+  refuse_scene_camera(raw, options);
+  Conventions c = raw.declared;
+  c.swap_xy = options.swap_xy;
+  c.flip_x = options.flip_x;
+  c.flip_y = options.flip_y;
+  c.missing_value = options.missing_value;
+  c.zero_is_missing = options.zero_is_missing;
+  c.unordered = options.unordered;
+  c.eye = options.eye;
+  c.dominant_eye = options.dominant_eye;
+  c.recording_geometry = raw.recording_geometry;
+  if (c.form != PlaceForm::position) {
+    conclude_axes(raw, options, c);
+    conclude_handedness(raw, options, c);
+    return c;
+  }
+  conclude_unit(raw, options, c);
+  conclude_origin(raw, options, c);
+  const bool no_display = !options.display && !raw.recording_geometry && !raw.picture_px;
+  c.degrees_are_directions =
+      c.unit.value == PositionUnit::deg &&
+      (c.degrees_are_directions || options.frame == GazeFrame::head || (options.guess_display && no_display));
+  if (!c.degrees_are_directions) {
+    conclude_display(raw, options, c);
+  }
+  return c;
+}
+
+}  // namespace gazetrace

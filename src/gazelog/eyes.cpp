@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/eyes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/statistics.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kMaxVerticalDisparityDeg = 0.5;
+constexpr double kOffsetTimeNs = 1e9;                 // of the running offset
+constexpr std::int64_t kShortAbsenceNs = 75'000'000;  // that which trackers bridge: Olsen 2012
+
+// Places of the eyes as two angles: azimuth and elevation where the geometry is known, else what the log has.
+class AnglePlane {
+ public:
+  explicit AnglePlane(const GazeLog& log) : is_direction_(log.kind == GazeKind::direction) {
+    if (is_direction_ || log.kind == GazeKind::scene_camera) {
+      return;
+    }
+    if (log.recording_geometry) {
+      const DisplayGeometry& g = *log.recording_geometry;
+      if (g.width_cm > 0 && g.height_cm > 0 && g.distance_cm > 0) {
+        geometry_ = g;
+      } else if (log.pixels_per_degree && g.width_px > 0 && g.height_px > 0) {
+        degrees_ = Vec2d{g.width_px / log.pixels_per_degree->x, g.height_px / log.pixels_per_degree->y};
+      }
+    }
+  }
+
+  [[nodiscard]] bool knows_angles() const { return is_direction_ || geometry_ || degrees_; }
+
+  // Radians where angles are known.
+  [[nodiscard]] Vec2d angles(const Vec3d& at) const {
+    if (is_direction_) {
+      return {std::atan2(at.x, -at.z), std::atan2(at.y, std::sqrt(at.x * at.x + at.z * at.z))};
+    }
+    if (geometry_) {
+      const DisplayGeometry& g = *geometry_;
+      const double right = (at.x - 0.5) * g.width_cm - g.eye_x_cm;
+      const double up = (0.5 - at.y) * g.height_cm - g.eye_y_cm;
+      return {std::atan2(right, g.distance_cm),
+              std::atan2(up, std::sqrt(right * right + g.distance_cm * g.distance_cm))};
+    }
+    return degrees_ ? Vec2d{at.x * degrees_->x * kRadPerDeg, -at.y * degrees_->y * kRadPerDeg} : Vec2d{at.x, at.y};
+  }
+
+  void place(const Vec2d& angles, GazeSample& sample) const {
+    if (is_direction_) {
+      sample.direction = {std::sin(angles.x) * std::cos(angles.y), std::sin(angles.y),
+                          -std::cos(angles.x) * std::cos(angles.y)};
+      return;
+    }
+    if (geometry_) {
+      const DisplayGeometry& g = *geometry_;
+      const double right = std::tan(angles.x) * g.distance_cm;
+      sample.u = 0.5 + (right + g.eye_x_cm) / g.width_cm;
+      sample.v = 0.5 - (std::tan(angles.y) * std::sqrt(right * right + g.distance_cm * g.distance_cm) + g.eye_y_cm) /
+                           g.height_cm;
+    } else if (degrees_) {
+      sample.u = angles.x * kDegPerRad / degrees_->x;
+      sample.v = -angles.y * kDegPerRad / degrees_->y;
+    } else {
+      sample.u = angles.x;
+      sample.v = angles.y;
+    }
+  }
+
+ private:
+  bool is_direction_;
+  std::optional<DisplayGeometry> geometry_;
+  std::optional<Vec2d> degrees_;  // of the whole display
+};
+
+Vec2d operator-(const Vec2d& a, const Vec2d& b) {
+  return {a.x - b.x, a.y - b.y};
+}
+
+bool sees_both(const BothEyes& eyes) {
+  return is_usable(eyes.left.validity) && is_usable(eyes.right.validity);
+}
+
+// left minus right, smoothed over time; known before the first pair from the first ones, as the whole log is there.
+class RunningOffset {
+ public:
+  RunningOffset(const GazeLog& log, const AnglePlane& plane) {
+    for (std::size_t i = 0; i < log.eyes.size() && count_ < 50; ++i) {
+      const BothEyes& eyes = log.eyes[i];
+      if (sees_both(eyes)) {
+        add(plane.angles(eyes.left.at) - plane.angles(eyes.right.at), log.samples[i].t_ns);
+      }
+    }
+    count_ = 0;
+  }
+
+  void add(const Vec2d& difference, std::int64_t t_ns) {
+    ++count_;
+    const double passed = count_ > 1 ? static_cast<double>(t_ns) - static_cast<double>(last_ns_) : 0;
+    if (passed != passed_) {  // mostly one step of the tracker's clock
+      passed_ = passed;
+      forgotten_ = 1.0 - std::exp(-passed / kOffsetTimeNs);
+    }
+    const double weight = std::max(1.0 / static_cast<double>(count_), forgotten_);
+    offset_ = {offset_.x + weight * (difference.x - offset_.x), offset_.y + weight * (difference.y - offset_.y)};
+    last_ns_ = t_ns;
+  }
+
+  [[nodiscard]] const Vec2d& value() const { return offset_; }
+
+ private:
+  Vec2d offset_;
+  std::size_t count_ = 0;
+  std::int64_t last_ns_ = 0;
+  double passed_ = 0, forgotten_ = 0;
+};
+
+// left minus right while one eye is away for a short time: straight from the difference before to the one after, so
+// that the gaze jumps at neither end.
+class ShortAbsences {
+ public:
+  ShortAbsences(const GazeLog& log, const AnglePlane& plane) : log_(log), plane_(plane) {}
+
+  // At sample `i`, which sees one eye; to be asked in the order of time. Empty in long absences.
+  [[nodiscard]] std::optional<Vec2d> difference(std::size_t i) {
+    if (after_ <= i) {
+      for (std::size_t k = after_; k < i; ++k) {
+        if (sees_both(log_.eyes[k])) {
+          before_ = k;
+          has_before_ = true;
+        }
+      }
+      after_ = i + 1;
+      while (after_ < log_.eyes.size() && !sees_both(log_.eyes[after_])) {
+        ++after_;
+      }
+    }
+    if (!has_before_ || after_ == log_.eyes.size()) {
+      return std::nullopt;
+    }
+    const std::int64_t begin_ns = log_.samples[before_].t_ns;
+    const std::int64_t absence_ns = log_.samples[after_].t_ns - begin_ns;
+    if (absence_ns > kShortAbsenceNs || absence_ns <= 0) {
+      return std::nullopt;
+    }
+    const double s = static_cast<double>(log_.samples[i].t_ns - begin_ns) / static_cast<double>(absence_ns);
+    const Vec2d a = difference_of(before_);
+    const Vec2d b = difference_of(after_);
+    return Vec2d{a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)};
+  }
+
+ private:
+  [[nodiscard]] Vec2d difference_of(std::size_t i) const {
+    return plane_.angles(log_.eyes[i].left.at) - plane_.angles(log_.eyes[i].right.at);
+  }
+
+  const GazeLog& log_;
+  const AnglePlane& plane_;
+  std::size_t before_ = 0;  // the last pair before after_
+  bool has_before_ = false;
+  std::size_t after_ = 0;  // the first pair behind the sample last asked for
+};
+
+EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
+  return {kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0}, sample.confidence,
+          sample.pupil, sample.validity};
+}
+
+void set_place(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
+  if (kind == GazeKind::direction) {
+    sample.direction = eye.at;
+  } else {
+    sample.u = eye.at.x;
+    sample.v = eye.at.y;
+  }
+}
+
+void take_eye(GazeSample& sample, const EyeGaze& eye, GazeKind kind) {
+  set_place(sample, eye, kind);
+  sample.validity = eye.validity;
+  sample.confidence = eye.confidence;
+  sample.pupil = eye.pupil;
+}
+
+using TakenEye = Conventions::TakenEye;
+
+TakenEye taken_of(Eye eye) {
+  return eye == Eye::left ? TakenEye::left : TakenEye::right;
+}
+
+void note_taken(GazeLog& log, TakenEye eye, Evidence evidence, bool is_alone = false, std::string detail = {}) {
+  log.conventions.eye_taken = {Conventions::Taken{eye, is_alone}, evidence, std::move(detail)};
+}
+
+// A time at which the log has no gaze of its own.
+GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, GazeKind kind) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  GazeSample sample;
+  sample.t_ns = t_ns;
+  sample.row = row;
+  sample.validity = GazeValidity::lost;
+  sample.confidence = sample.pupil = std::numeric_limits<float>::quiet_NaN();
+  if (kind == GazeKind::direction) {
+    sample.direction = {kNan, kNan, kNan};
+  } else {
+    sample.u = sample.v = kNan;
+  }
+  return sample;
+}
+
+struct Rows {
+  std::array<std::size_t, 3> of_eye{};
+  [[nodiscard]] std::size_t left() const { return of_eye[static_cast<std::size_t>(Eye::left)]; }
+  [[nodiscard]] std::size_t right() const { return of_eye[static_cast<std::size_t>(Eye::right)]; }
+  [[nodiscard]] std::size_t own() const { return of_eye[static_cast<std::size_t>(Eye::cyclopean)]; }
+};
+
+// One sample a time, the log's own combined gaze where it has one, and the eyes beside it.
+void group_rows(GazeLog& log) {
+  std::vector<GazeSample>& samples = log.samples;
+  std::size_t times = samples.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    times += samples[i].t_ns != samples[i - 1].t_ns ? 1 : 0;
+  }
+  log.eyes.reserve(times);
+  std::size_t kept = 0;
+  for (std::size_t begin = 0; begin < samples.size();) {
+    BothEyes eyes;
+    std::optional<GazeSample> own;
+    std::size_t end = begin;
+    for (; end < samples.size() && samples[end].t_ns == samples[begin].t_ns; ++end) {
+      const GazeSample& row = samples[end];
+      if (row.eye == Eye::cyclopean) {
+        own = row;
+      } else {
+        (row.eye == Eye::left ? eyes.left : eyes.right) = eye_gaze(row, log.kind);
+      }
+    }
+    samples[kept++] = own ? *own : missing_sample(samples[begin].t_ns, samples[begin].row, log.kind);
+    log.eyes.push_back(eyes);
+    begin = end;
+  }
+  samples.resize(kept);
+}
+
+struct EyeQuality {
+  std::size_t usable = 0;
+  double step = 0;  // median of squared steps between neighbours
+};
+
+EyeQuality quality_of(const GazeLog& log, const AnglePlane& plane, EyeGaze BothEyes::*eye) {
+  EyeQuality quality;
+  std::vector<double> steps;
+  const std::size_t stride = std::max<std::size_t>(1, log.eyes.size() / 50'000);
+  for (std::size_t i = 0; i < log.eyes.size(); ++i) {
+    const EyeGaze& gaze = log.eyes[i].*eye;
+    if (!is_usable(gaze.validity)) {
+      continue;
+    }
+    ++quality.usable;
+    if (i % stride == 0 && i > 0 && is_usable((log.eyes[i - 1].*eye).validity)) {
+      const Vec2d step = plane.angles(gaze.at) - plane.angles((log.eyes[i - 1].*eye).at);
+      steps.push_back(step.x * step.x + step.y * step.y);
+    }
+  }
+  if (!steps.empty()) {
+    quality.step = upper_median(steps);
+  }
+  return quality;
+}
+
+Eye better_eye(const GazeLog& log, const AnglePlane& plane) {
+  const EyeQuality left = quality_of(log, plane, &BothEyes::left);
+  const EyeQuality right = quality_of(log, plane, &BothEyes::right);
+  const auto more = static_cast<double>(std::max(left.usable, right.usable));
+  const double difference = static_cast<double>(left.usable) - static_cast<double>(right.usable);
+  if (std::abs(difference) > 0.01 * more) {
+    return difference > 0 ? Eye::left : Eye::right;
+  }
+  return left.step <= right.step ? Eye::left : Eye::right;
+}
+
+// Degrees; empty where angles are not known or the eyes are never seen together.
+std::optional<double> median_vertical_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
+  if (!plane.knows_angles()) {
+    return std::nullopt;
+  }
+  std::vector<double> differences;
+  const std::size_t stride = std::max<std::size_t>(1, log.eyes.size() / 100'000);
+  for (std::size_t i = 0; i < log.eyes.size(); i += stride) {
+    const BothEyes& eyes = log.eyes[i];
+    if (sees_both(eyes)) {
+      differences.push_back((plane.angles(eyes.left.at).y - plane.angles(eyes.right.at).y) * kDegPerRad);
+    }
+  }
+  if (differences.empty()) {
+    return std::nullopt;
+  }
+  return upper_median(differences);
+}
+
+float mean_or_known(float a, float b) {
+  return std::isnan(a) ? b : std::isnan(b) ? a : 0.5F * (a + b);
+}
+
+void take_mean(GazeSample& sample, const BothEyes& eyes, const Vec2d& left, const Vec2d& right, GazeKind kind,
+               const AnglePlane& plane) {
+  take_eye(sample, eyes.left, kind);
+  plane.place({0.5 * (left.x + right.x), 0.5 * (left.y + right.y)}, sample);
+  if (kind != GazeKind::direction && eyes.left.validity != eyes.right.validity) {
+    // One eye beside the display and one on it: the mean decides.
+    const bool on_display = sample.u >= 0 && sample.u <= 1 && sample.v >= 0 && sample.v <= 1;
+    sample.validity = on_display ? GazeValidity::ok : GazeValidity::off_screen;
+  }
+  sample.confidence = mean_or_known(eyes.left.confidence, eyes.right.confidence);
+  sample.pupil = mean_or_known(eyes.left.pupil, eyes.right.pupil);
+}
+
+// `preferred` is cyclopean for the mean. Returns how many times one eye stood in.
+std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
+  RunningOffset offset(log, plane);
+  ShortAbsences short_absences(log, plane);
+  std::size_t alone = 0;
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    GazeSample& sample = log.samples[i];
+    const BothEyes& eyes = log.eyes[i];
+    const bool left = is_usable(eyes.left.validity);
+    const bool right = is_usable(eyes.right.validity);
+    sample.eye = preferred;
+    if (left && right) {
+      const Vec2d left_angles = plane.angles(eyes.left.at);
+      const Vec2d right_angles = plane.angles(eyes.right.at);
+      offset.add(left_angles - right_angles, sample.t_ns);
+      if (preferred == Eye::cyclopean) {
+        take_mean(sample, eyes, left_angles, right_angles, log.kind, plane);
+      } else {
+        take_eye(sample, preferred == Eye::left ? eyes.left : eyes.right, log.kind);
+      }
+      continue;
+    }
+    // With both lost: the one of which the log says more than that.
+    const bool use_left =
+        left || (!right && (eyes.left.validity != GazeValidity::lost || eyes.right.validity == GazeValidity::lost));
+    const EyeGaze& used = use_left ? eyes.left : eyes.right;
+    take_eye(sample, used, log.kind);
+    if (!left && !right) {
+      continue;
+    }
+    ++alone;
+    const Eye seen = use_left ? Eye::left : Eye::right;
+    const double share = seen == preferred ? 0 : preferred == Eye::cyclopean ? 0.5 : 1.0;
+    const double sign = seen == Eye::left ? -1.0 : 1.0;  // left minus right is taken from the left eye
+    const Vec2d apart = short_absences.difference(i).value_or(offset.value());
+    if (share > 0 && (apart.x != 0 || apart.y != 0)) {
+      const Vec2d at = plane.angles(used.at);
+      plane.place({at.x + sign * share * apart.x, at.y + sign * share * apart.y}, sample);
+    }
+  }
+  return alone;
+}
+
+std::optional<double> great_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
+  const auto disparity = median_vertical_disparity_deg(log, plane);
+  return disparity && std::abs(*disparity) > kMaxVerticalDisparityDeg ? disparity : std::nullopt;
+}
+
+void warn_of_disparity(GazeLog& log, double disparity_deg, Eye taken) {
+  log.warnings.push_back(
+      fmt::format("{}: the eyes differ vertically by {:.2f} deg in the median, as after a poor calibration; the {} eye "
+                  "is used, --gaze-eye mean takes the mean",
+                  log.source, disparity_deg, to_string(taken)));
+}
+
+void take_one_eye(GazeLog& log, Eye eye) {
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    log.samples[i].eye = eye;
+    take_eye(log.samples[i], eye == Eye::left ? log.eyes[i].left : log.eyes[i].right, log.kind);
+  }
+}
+
+// What was chosen before the log was converted stays chosen.
+void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane& plane) {
+  if (has_own_rows) {  // the other eye stood in where it was lost, or they were processed
+    for (GazeSample& sample : log.samples) {
+      sample.eye = eye;
+    }
+  } else {
+    take_one_eye(log, eye);
+  }
+  note_taken(log, taken_of(eye), Evidence::header, !has_own_rows);
+  if (const auto disparity = great_disparity_deg(log, plane)) {
+    warn_of_disparity(log, *disparity, eye);
+  }
+}
+
+[[noreturn]] void no_such_eye(const GazeLog& log, std::string_view eye) {
+  throw Error(ErrorKind::usage, log.source, fmt::format("has no rows of the {} eye", eye),
+              "leave --gaze-eye out, or choose another");
+}
+
+}  // namespace
+
+ChosenEye chosen_eye(const GazeLog& log) {
+  if (log.eyes.empty() || log.samples.empty() || log.samples.front().eye == Eye::cyclopean) {
+    return {};
+  }
+  const auto same = [](auto a, auto b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  ChosenEye chosen{log.samples.front().eye, true};
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample& sample = log.samples[i];
+    if (sample.eye != *chosen.eye) {
+      return {};
+    }
+    const EyeGaze a = eye_gaze(sample, log.kind);
+    const EyeGaze& b = *chosen.eye == Eye::left ? log.eyes[i].left : log.eyes[i].right;
+    chosen.is_alone = chosen.is_alone && a.validity == b.validity && same(a.confidence, b.confidence) &&
+                      same(a.pupil, b.pupil) && same(a.at.x, b.at.x) && same(a.at.y, b.at.y) &&
+                      (log.kind != GazeKind::direction || same(a.at.z, b.at.z));
+  }
+  return chosen;
+}
+
+void choose_eyes(GazeLog& log) {
+  const Conventions& c = log.conventions;
+  Rows rows;
+  for (const GazeSample& sample : log.samples) {
+    ++rows.of_eye[static_cast<std::size_t>(sample.eye)];
+  }
+  const EyeChoice choice = c.eye;
+  if ((choice == EyeChoice::left && rows.left() == 0) || (choice == EyeChoice::right && rows.right() == 0)) {
+    no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
+  }
+  if (choice == EyeChoice::dominant && !c.dominant_eye) {
+    throw Error(ErrorKind::usage, "--gaze-eye", "which eye is the dominant one is not known",
+                "give --gaze-dominant left or right");
+  }
+  const std::size_t kinds =
+      static_cast<std::size_t>(std::count_if(rows.of_eye.begin(), rows.of_eye.end(), [](auto n) { return n > 0; }));
+  if (kinds < 2) {
+    note_taken(log,
+               rows.own() > 0    ? TakenEye::combined
+               : rows.left() > 0 ? TakenEye::left
+                                 : TakenEye::right,
+               Evidence::format);
+    return;  // one eye, or one that stands for both
+  }
+  group_rows(log);
+  const AnglePlane plane(log);
+  const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
+  if (choice == EyeChoice::left || choice == EyeChoice::right) {
+    take_one_eye(log, choice == EyeChoice::left ? Eye::left : Eye::right);
+    note_taken(log, choice == EyeChoice::left ? TakenEye::left : TakenEye::right, evidence, true);
+    return;
+  }
+  if (const auto& stated = log.stated_eye;
+      choice == EyeChoice::automatic && stated && (rows.own() > 0 || (rows.left() > 0 && rows.right() > 0))) {
+    take_stated_eye(log, *stated, rows.own() > 0, plane);
+    return;
+  }
+  if (choice == EyeChoice::automatic && rows.own() > 0) {
+    note_taken(log, TakenEye::combined, Evidence::format, false, "by the tracker");
+    return;
+  }
+  Eye preferred = Eye::cyclopean;
+  if (choice == EyeChoice::dominant) {
+    preferred = *c.dominant_eye;
+  } else if (choice == EyeChoice::best) {
+    preferred = better_eye(log, plane);
+  } else if (choice == EyeChoice::automatic) {
+    if (const auto disparity = great_disparity_deg(log, plane)) {
+      preferred = better_eye(log, plane);
+      warn_of_disparity(log, *disparity, preferred);
+    }
+  }
+  const std::size_t alone = join_eyes(log, plane, preferred);
+  note_taken(log, preferred == Eye::cyclopean ? TakenEye::mean : taken_of(preferred), evidence, false,
+             plane.knows_angles() ? "in angle" : "in places: angles are not known");
+  if (preferred == Eye::cyclopean) {
+    log.warnings.push_back(
+        fmt::format("{}: rows of several eyes merged to their mean: {} times, {} of them with one usable eye only",
+                    log.source, log.samples.size(), alone));
+  }
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: Apache-2.0
+// EyeLink ASC, what SR Research's edf2asc writes: `** ` preamble, MSG, START, SAMPLES, END, events, and samples that
+// begin with a digit, `t x y pupil` or `t xl yl pl xr yr pr`, milliseconds of the tracker's clock. What a sample holds
+// is announced by the SAMPLES line. At 2000 Hz each whole stamp stands twice; the second is half a millisecond later.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::int64_t kHalfMs = 500'000;
+constexpr double kMissing = -32768;
+
+struct Block {
+  bool has_left = true, has_right = false;
+  std::string data = "GAZE";  // GAZE, HREF or PUPIL
+  double rate_hz = 0;
+  bool has_velocity = false, has_resolution = false, has_input = false, has_buttons = false;
+
+  [[nodiscard]] std::size_t eyes() const { return (has_left ? 1U : 0U) + (has_right ? 1U : 0U); }
+  [[nodiscard]] std::size_t resolution_column() const { return 1 + 3 * eyes() + (has_velocity ? 2 * eyes() : 0); }
+  [[nodiscard]] std::size_t flags_column() const {
+    return resolution_column() + (has_resolution ? 2U : 0U) + (has_buttons ? 1U : 0U) + (has_input ? 1U : 0U);
+  }
+};
+
+std::size_t rows_that_begin_with_a_digit(std::string_view text) {
+  std::size_t rows = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    rows += text[at] >= '0' && text[at] <= '9' ? 1 : 0;
+    const std::size_t end = text.find('\n', at);
+    at = end == std::string_view::npos ? text.size() : end + 1;
+  }
+  return rows;
+}
+
+struct Span {
+  std::int64_t begin_ns, end_ns;
+};
+
+class AscReader {
+ public:
+  AscReader(const GazeFile& file, const GazeReadOptions& options) : file_(file), options_(options) {
+    raw_.source = file.path;
+    raw_.format = "eyelink-asc";
+    raw_.clock = "tracker, from its start";
+    exponent_ = declare_time(raw_, options, "first of a sample", 6, Evidence::format, file.path).exponent;
+  }
+
+  RawGaze read() {
+    // Two eyes a row at most. What is not used costs no memory; growing would hold the samples twice.
+    raw_.rows.reserve(2 * rows_that_begin_with_a_digit(file_.text));
+    // Messages of a calibration go on in lines that begin with digits; only what stands between START and END is a
+    // sample. Files of samples alone have neither.
+    const bool has_blocks = file_.text.starts_with("START") || file_.text.find("\nSTART") != std::string::npos;
+    LineReader lines(file_.text);
+    for (std::string_view line; lines.next(line);) {
+      line_ = lines.number();
+      split_cells(line, ' ', words_);  // runs of blanks and tabs
+      if (words_.empty()) {
+        continue;
+      }
+      const char first = words_[0].front();
+      if (first >= '0' && first <= '9') {
+        if (in_block_ || !has_blocks) {
+          read_sample();
+        }
+      } else if (first >= 'A' && first <= 'Z') {
+        read_keyword(line);
+      }
+    }
+    finish();
+    return std::move(raw_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem, std::string_view remedy = "the line is damaged; remove it") const {
+    throw Error(ErrorKind::input, place_of(file_, line_), problem, remedy);
+  }
+  [[nodiscard]] bool has_word(std::string_view word) const {
+    return std::find(words_.begin(), words_.end(), word) != words_.end();
+  }
+  [[nodiscard]] std::string_view word(std::size_t i) const { return i < words_.size() ? words_[i] : ""; }
+  [[nodiscard]] std::int64_t time(std::string_view text) const {
+    std::int64_t t_ns = 0;
+    if (scaled_integer(text, exponent_, t_ns) != NumberStatus::ok) {
+      fail(fmt::format("time '{}' is not a number of milliseconds", text.substr(0, 40)));
+    }
+    return t_ns;
+  }
+  [[nodiscard]] double number(std::size_t i) const {
+    const auto value = number_from(word(i));
+    // Anything else is what the exporter was told to write for missing values.
+    return value && *value != kMissing && std::abs(*value) < 1e7 ? *value : kNan;
+  }
+
+  void read_keyword(std::string_view line) {
+    const std::string_view key = words_[0];
+    if (key == "MSG") {
+      read_message(line);
+    } else if (key == "START") {
+      block_start_ = time(word(1));
+      in_block_ = true;
+      last_stamp_.clear();
+      compared_.fill(raw_.rows.size());  // the clock may start anew
+      block_.has_left = has_word("LEFT") || !has_word("RIGHT");
+      block_.has_right = has_word("RIGHT");
+    } else if (key == "END") {
+      read_end();
+    } else if (key == "SAMPLES") {
+      read_samples_line();
+    } else if (key == "PUPIL") {
+      raw_.pupil_unit = to_lower(word(1));  // area or diameter, arbitrary units
+    } else if (key == "EFIX" || key == "ESACC" || key == "EBLINK") {
+      read_event(key);
+    }
+  }
+
+  void read_samples_line() {
+    block_ = {};
+    block_.has_left = has_word("LEFT") || !has_word("RIGHT");
+    block_.has_right = has_word("RIGHT");
+    block_.data = word(1);
+    block_.has_velocity = has_word("VEL");
+    block_.has_resolution = has_word("RES");
+    block_.has_input = has_word("INPUT");
+    block_.has_buttons = has_word("BUTTONS");
+    const auto rate = std::find(words_.begin(), words_.end(), "RATE");
+    if (rate != words_.end() && rate + 1 != words_.end()) {
+      block_.rate_hz = number_from(rate[1]).value_or(0);
+      raw_.nominal_rate_hz = std::max(raw_.nominal_rate_hz, block_.rate_hz);
+    }
+    if (block_.data != "GAZE") {
+      fail(fmt::format("samples are {} data, not places on the screen", block_.data.substr(0, 20)),
+           "export again with gaze positions: edf2asc -sg");
+    }
+  }
+
+  void read_end() {
+    const std::int64_t t_ns = time(word(1));
+    if (in_block_) {
+      raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, t_ns, "recording block", line_});
+    }
+    in_block_ = false;
+    const auto res = std::find(words_.begin(), words_.end(), "RES");
+    if (res != words_.end() && words_.end() - res > 2) {
+      const auto x = number_from(res[1]);
+      const auto y = number_from(res[2]);
+      if (x && y && *x > 0 && *y > 0) {
+        resolutions_.push_back({*x, *y});
+      }
+    }
+  }
+
+  void read_message(std::string_view line) {
+    const std::int64_t t_ns = time(word(1));
+    const auto at = static_cast<std::size_t>(word(1).data() - line.data()) + word(1).size();
+    const std::string_view text = trim(line.substr(at));
+    if (word(2) == "GAZE_COORDS" || word(2) == "DISPLAY_COORDS") {
+      read_coordinates(word(2) == "GAZE_COORDS");
+    } else if (word(2) == "!CAL" && word(3) == "VALIDATION") {
+      read_validation(t_ns);
+    }
+    raw_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(text), line_});
+  }
+
+  // Corners are inclusive: 0 0 1919 1079 is 1920 x 1080.
+  void read_coordinates(bool is_gaze) {
+    std::array<double, 4> corners{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      corners[i] = number(3 + i);
+      if (std::isnan(corners[i])) {
+        return;
+      }
+    }
+    const double width = corners[2] - corners[0] + 1;
+    const double height = corners[3] - corners[1] + 1;
+    if (!(width >= 2 && height >= 2 && width < 1e5 && height < 1e5) || (coordinates_are_gaze_ && !is_gaze)) {
+      return;
+    }
+    coordinates_are_gaze_ = is_gaze;
+    left_px_ = corners[0];
+    top_px_ = corners[1];
+    raw_.recording_geometry = DisplayGeometry{.width_px = static_cast<int>(std::lround(width)),
+                                              .height_px = static_cast<int>(std::lround(height))};
+    coordinates_ = fmt::format("{} {} {} {} {}", word(2), word(3), word(4), word(5), word(6));
+  }
+
+  // !CAL VALIDATION HV13 LR LEFT  GOOD ERROR 0.35 avg. 0.48 max  OFFSET 0.18 deg. -6.4,-0.9 pix.
+  void read_validation(std::int64_t t_ns) {
+    const auto error = std::find(words_.begin(), words_.end(), "ERROR");
+    if (error == words_.end() || words_.end() - error < 4) {
+      return;
+    }
+    const auto mean = number_from(error[1]);
+    const auto most = number_from(error[3]);
+    if (mean) {
+      raw_.calibrations.push_back({t_ns,
+                                   has_word("LEFT")    ? Eye::left
+                                   : has_word("RIGHT") ? Eye::right
+                                                       : Eye::cyclopean,
+                                   *mean, most.value_or(kNan), line_});
+    }
+  }
+
+  // EFIX L begin end duration ...; durations can be garbage, so only begin and end are believed.
+  void read_event(std::string_view key) {
+    if (words_.size() < 4) {
+      return;
+    }
+    const Eye eye = word(1) == "R" ? Eye::right : Eye::left;
+    const std::int64_t begin = time(word(2));
+    const std::int64_t end = time(word(3));
+    if (end < begin) {
+      return;
+    }
+    const GazeEventType type = key == "EFIX"    ? GazeEventType::fixation
+                               : key == "ESACC" ? GazeEventType::saccade
+                                                : GazeEventType::blink;
+    raw_.events.push_back({type, eye, begin, end, {}, line_});
+    if (type == GazeEventType::fixation) {
+      compare_fixation(eye, begin, end);
+    }
+    if (type == GazeEventType::blink) {
+      blinks_[eye == Eye::right ? 1 : 0].push_back({begin, end});
+    } else if (type == GazeEventType::saccade) {
+      saccades_[eye == Eye::right ? 1 : 0].push_back({begin, end});
+    }
+  }
+
+  // The tracker's own mean of a fixation, behind the duration, or behind HREF's where both are written, against that of
+  // its samples, which stand above it. Fixations of one eye follow each other, so each sample is looked at for one
+  // only.
+  void compare_fixation(Eye eye, std::int64_t begin_ns, std::int64_t end_ns) {
+    const std::size_t column = words_.size() == 8 || words_.size() == 10 ? 5 : 8;
+    if (words_.size() < column + 2) {
+      return;
+    }
+    double x = 0;
+    double y = 0;
+    double count = 0;
+    std::size_t& compared = compared_[eye == Eye::right ? 1 : 0];
+    const auto first = raw_.rows.begin() + static_cast<std::ptrdiff_t>(compared);
+    const auto behind =
+        std::partition_point(first, raw_.rows.end(), [&](const RawSample& sample) { return sample.t_ns <= end_ns; });
+    for (auto sample = behind; sample != first && (sample - 1)->t_ns >= begin_ns; --sample) {
+      const RawSample& s = *(sample - 1);
+      if (s.eye == eye && !std::isnan(s.at.x)) {
+        x += s.at.x;
+        y += s.at.y;
+        ++count;
+      }
+    }
+    compared = static_cast<std::size_t>(behind - raw_.rows.begin());
+    if (count > 0) {
+      const Vec2d mean{number(column), number(column + 1)};
+      fixations_.add(x / count, y / count, mean.x, mean.y);
+      fixations_of_eye_[eye == Eye::right ? 1 : 0].add(x / count, y / count, mean.x, mean.y);
+    }
+  }
+
+  void read_sample() {
+    std::int64_t t_ns = time(words_[0]);
+    const bool repeats = words_[0] == last_stamp_;
+    last_stamp_ = words_[0];
+    if (repeats && block_.rate_hz > 1000) {
+      t_ns += kHalfMs;
+      last_stamp_.clear();  // a third one would be a repeat indeed
+    }
+    const std::size_t needed = 1 + 3 * block_.eyes();
+    if (words_.size() < needed) {
+      fail(fmt::format("the sample has {} of {} values of {}", words_.size(), needed,
+                       block_.eyes() == 2 ? "two eyes" : "one eye"),
+           "it is short or cut off; remove or mend it");
+    }
+    const std::string_view flags = find_flags();
+    std::size_t column = 1;
+    for (const Eye eye : {Eye::left, Eye::right}) {
+      if (eye == Eye::left ? block_.has_left : block_.has_right) {
+        raw_.rows.push_back(eye_sample(t_ns, eye, column, flags));
+        column += 3;
+      }
+    }
+    if (block_.has_resolution) {
+      const Vec2d res{number(block_.resolution_column()), number(block_.resolution_column() + 1)};
+      if (res.x > 0 && res.y > 0) {
+        resolutions_.push_back(res);
+      }
+    }
+  }
+
+  [[nodiscard]] std::string_view find_flags() const {
+    const std::string_view text = word(block_.flags_column());
+    const std::size_t length = block_.eyes() == 2 ? 5 : 3;
+    return text.size() == length && text.find_first_not_of(".ICR") == std::string_view::npos ? text : "";
+  }
+
+  RawSample eye_sample(std::int64_t t_ns, Eye eye, std::size_t column, std::string_view flags) {
+    RawSample sample;
+    sample.t_ns = t_ns;
+    sample.row = line_;
+    sample.eye = eye;
+    sample.confidence = static_cast<float>(kNan);
+    sample.at = {number(column), number(column + 1), 0};
+    const double pupil = number(column + 2);
+    sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+      sample.at.x = sample.at.y = kNan;
+      sample.validity = GazeValidity::lost;
+    } else if (!flags.empty()) {
+      // I..: interpolated. Then two for each eye: the corneal reflection lost, or just found again.
+      const std::size_t at = flags.size() == 5 && eye == Eye::right ? 3 : 1;
+      if (flags[at] == 'C' || flags[at + 1] == 'R') {
+        sample.validity = GazeValidity::low_confidence;
+      } else if (flags[0] == 'I') {
+        sample.validity = GazeValidity::interpolated;
+      }
+    }
+    return sample;
+  }
+
+  // A blink begins and ends in what the tracker takes for a saccade; all of it is blink.
+  void mark_blinks() {
+    for (std::size_t side = 0; side < 2; ++side) {
+      std::vector<Span> spans = blinks_[side];
+      std::size_t b = 0;
+      for (const Span& saccade : saccades_[side]) {
+        while (b < blinks_[side].size() && blinks_[side][b].end_ns < saccade.begin_ns) {
+          ++b;
+        }
+        if (b < blinks_[side].size() && blinks_[side][b].begin_ns >= saccade.begin_ns &&
+            blinks_[side][b].end_ns <= saccade.end_ns) {
+          spans.push_back(saccade);
+        }
+      }
+      std::sort(spans.begin(), spans.end(), [](const Span& x, const Span& y) { return x.begin_ns < y.begin_ns; });
+      std::size_t s = 0;
+      for (RawSample& sample : raw_.rows) {
+        if (sample.eye != (side == 0 ? Eye::left : Eye::right)) {
+          continue;
+        }
+        while (s < spans.size() && spans[s].end_ns < sample.t_ns) {
+          ++s;
+        }
+        // Spans may hold each other: a saccade and the blink within.
+        for (std::size_t i = s; i < spans.size() && spans[i].begin_ns <= sample.t_ns; ++i) {
+          if (sample.t_ns <= spans[i].end_ns) {
+            sample.validity = GazeValidity::blink;
+            break;
+          }
+        }
+      }
+    }
+  }
+
+  void finish() {
+    if (raw_.rows.empty()) {
+      return;
+    }
+    mark_blinks();
+    if (in_block_) {
+      raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, raw_.rows.back().t_ns,
+                             "recording block without its end", line_});
+      raw_.warnings.push_back(
+          fmt::format("{}: the last recording block has no END: the file may be cut off", file_.path));
+    }
+    if (!resolutions_.empty()) {
+      Vec2d sum;
+      for (const Vec2d& r : resolutions_) {
+        sum = {sum.x + r.x, sum.y + r.y};
+      }
+      const auto n = static_cast<double>(resolutions_.size());
+      raw_.pixels_per_degree = Vec2d{sum.x / n, sum.y / n};
+      add_note(raw_, "resolution",
+               fmt::format("{:.2f} x {:.2f} px/deg", raw_.pixels_per_degree->x, raw_.pixels_per_degree->y),
+               Evidence::header, block_.has_resolution ? "RES of the samples and blocks" : "RES of END");
+    }
+    if (raw_.recording_geometry) {
+      add_note(raw_, "display size",
+               fmt::format("{}x{} px", raw_.recording_geometry->width_px, raw_.recording_geometry->height_px),
+               Evidence::header, coordinates_ + ", inclusive corners");
+    }
+    fixations_.finish(raw_, "the fixations' means (EFIX)");
+    if (block_.eyes() == 2) {
+      fixations_of_eye_[0].finish(raw_, "the left eye's fixations' means (EFIX L)", Eye::left);
+      fixations_of_eye_[1].finish(raw_, "the right eye's fixations' means (EFIX R)", Eye::right);
+    }
+    declare_places(raw_, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"}, file_.path);
+    raw_.declared.corner = {left_px_, top_px_};
+  }
+
+  const GazeFile& file_;
+  const GazeReadOptions& options_;
+  RawGaze raw_;
+  int exponent_ = 6;
+  Block block_;
+  std::int64_t line_ = 0;
+  std::vector<std::string_view> words_;
+  std::string last_stamp_;
+  std::int64_t block_start_ = 0;
+  bool in_block_ = false;
+  bool coordinates_are_gaze_ = false;
+  double left_px_ = 0, top_px_ = 0;
+  std::string coordinates_;
+  std::vector<Vec2d> resolutions_;
+  std::array<std::vector<Span>, 2> blinks_, saccades_;
+  WitnessTally fixations_;
+  std::array<WitnessTally, 2> fixations_of_eye_;
+  std::array<std::size_t, 2> compared_{};  // of each eye: the first sample behind its last fixation in the block
+};
+
+}  // namespace
+
+double sniff_gaze_eyelink(const GazeFile& file) {
+  const std::string_view head = head_of(file);
+  const bool converted = head.starts_with("** CONVERTED FROM");
+  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  if (converted && has("EYELINK")) {
+    return 0.99;
+  }
+  const int marks = (has("\nSAMPLES") ? 1 : 0) + (has("\nSTART") ? 1 : 0) + (has("\nMSG") ? 1 : 0) +
+                    (has("\nPRESCALER") ? 1 : 0) + (head.starts_with("**") || head.starts_with("MSG") ? 1 : 0);
+  return marks >= 3 ? 0.9 : marks == 2 ? 0.4 : 0.0;
+}
+
+RawGaze read_gaze_eyelink(const GazeFile& file, const GazeReadOptions& options) {
+  return AscReader(file, options).read();
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// gazetrace CSV. Preamble `# gazetrace-gaze 1` with `# display_px W H`, `# display_mm W H`, `# distance_mm D` and
+// `# clock TEXT`; header with units, `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`, with a head's pose
+// `hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw` (position and quaternion; empty in rows without one). What is no row stands in
+// the preamble, see mapped_table.hpp.
+#include <fmt/format.h>
+
+#include "gazelog/mapped_table.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+
+double sniff_gaze_gazetrace_csv(const GazeFile& file) {
+  constexpr std::string_view kMark = "# gazetrace-gaze";
+  if (file.text.starts_with(kMark)) {
+    return 1.0;
+  }
+  const auto has = [line = head_of(file).substr(0, file.text.find('\n'))](std::string_view text) {
+    return line.find(text) != std::string_view::npos;
+  };
+  return has("t[ns],") && (has("u[1],v[1]") || has("dx,dy,dz")) ? 0.9 : 0.0;
+}
+
+RawGaze read_gaze_gazetrace_csv(const GazeFile& file, const GazeReadOptions& options) {
+  const DelimitedTable table = open_table(file);
+  const GazetracePreamble preamble = read_preamble(file, table);
+  if (preamble.version.value_or(1) != 1) {
+    throw Error(ErrorKind::input, file.path,
+                fmt::format("is gazetrace CSV of version {}; this program reads version 1", *preamble.version),
+                "use a newer gazetrace");
+  }
+  GazeColumns columns = options.columns;
+  if (columns.head_x.empty() && columns.head_rotation_x.empty() &&
+      table.has_all({"hx[m]", "hy[m]", "hz[m]", "hqx", "hqy", "hqz", "hqw"})) {
+    columns.head_x = "hx[m]";
+    columns.head_y = "hy[m]";
+    columns.head_z = "hz[m]";
+    columns.head_rotation_x = "hqx";
+    columns.head_rotation_y = "hqy";
+    columns.head_rotation_z = "hqz";
+    columns.head_rotation_w = "hqw";
+  }
+  const bool names = options.columns.valid_values.empty() && options.columns.valid_mask == 0;
+  RawGaze raw = read_mapped_table(file, table, columns, names ? ValidityStyle::names : ValidityStyle::any);
+  raw.nominal_rate_hz = preamble.nominal_rate_hz;
+  raw.sample_age_unknown = preamble.sample_age_unknown;
+  if (preamble.eye) {
+    raw.stated_eye = preamble.eye;
+    add_note(raw, "chosen eye", std::string(to_string(*preamble.eye)), Evidence::header,
+             "chosen before it was converted");
+  }
+  if (preamble.device) {
+    raw.device = preamble.device;
+    add_note(raw, "device", std::string(to_string(*preamble.device)), Evidence::header);
+  }
+  raw.events = preamble.events;
+  raw.calibrations = preamble.calibrations;
+  raw.head.insert(raw.head.end(), preamble.head.begin(), preamble.head.end());
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any CSV or TSV with a column of time and two or three of position; what the header does not say, the user declares.
+#include "core/text.hpp"
+#include "gazelog/mapped_table.hpp"
+
+namespace gazetrace {
+
+double sniff_gaze_generic(const GazeFile& file) {
+  if (head_of(file).find_first_of(std::string_view("\0\xFF", 2)) != std::string_view::npos) {
+    return 0.0;  // binary
+  }
+  LineReader lines(file.text);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty() || text.front() == '#') {
+      continue;
+    }
+    if (text.front() == '{' || text.front() == '[') {
+      return 0.0;  // JSON, such as a sidecar
+    }
+    return text.find_first_of(",;\t") == std::string_view::npos ? 0.05 : 0.2;
+  }
+  return 0.05;
+}
+
+RawGaze read_gaze_generic(const GazeFile& file, const GazeReadOptions& options) {
+  return read_mapped_table(file, open_table(file), options.columns, ValidityStyle::any);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pupil Core gaze_positions.csv, from Pupil Player's raw data exporter. gaze_timestamp is in seconds of Pupil's clock;
+// norm_pos_x and _y are fractions of the scene camera's picture from the bottom left; gaze_normal0 and 1 are the eyes'
+// directions and eye_center their places (mm), +x right, +y down, +z forward. Bad samples have a low confidence and
+// wild places; rows of one eye leave the cells of the other empty.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kLeastConfidence = 0.6;  // as Pupil Labs advise
+
+using Triple = std::array<std::size_t, 3>;
+
+struct CoreColumns {
+  std::size_t time = 0, confidence = 0, x = 0, y = 0;
+  std::array<std::optional<Triple>, 2> normal, center;
+  std::optional<Triple> point;
+  std::size_t needed = 0;
+};
+
+CoreColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+  CoreColumns c;
+  const auto need = [&](std::string_view name) {
+    const auto found = table.find(name);
+    if (!found) {
+      throw Error(ErrorKind::input, place, fmt::format("there is no column '{}'", name),
+                  "the columns are: " + column_listing(table));
+    }
+    c.needed = std::max(c.needed, *found + 1);
+    return *found;
+  };
+  c.time = time_column(table, options, need(table.find("gaze_timestamp") ? "gaze_timestamp" : "timestamp"), place);
+  c.confidence = need("confidence");
+  c.x = need("norm_pos_x");
+  c.y = need("norm_pos_y");
+  const auto triple = [&](std::string_view stem) -> std::optional<Triple> {
+    if (!table.find(fmt::format("{}_x", stem))) {
+      return std::nullopt;
+    }
+    return Triple{need(fmt::format("{}_x", stem)), need(fmt::format("{}_y", stem)), need(fmt::format("{}_z", stem))};
+  };
+  c.point = triple("gaze_point_3d");
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    c.normal[eye] = triple(fmt::format("gaze_normal{}", eye));
+    c.center[eye] = triple(fmt::format("eye_center{}_3d", eye));
+  }
+  c.needed = std::max(c.needed, c.time + 1);
+  return c;
+}
+
+Vec3d vector(TableRows& rows, const std::optional<Triple>& columns) {
+  return columns ? Vec3d{rows.number((*columns)[0]), rows.number((*columns)[1]), rows.number((*columns)[2])}
+                 : Vec3d{kNan, kNan, kNan};
+}
+
+// Documents disagree on which eye is 0: the one whose center lies further right (+x) is the right one.
+bool eye_0_is_right(const GazeFile& file, const DelimitedTable& table, const CoreColumns& c, RawGaze& raw) {
+  double sum = 0;
+  std::size_t count = 0;
+  TableRows rows(file, table, c.needed);
+  while (count < 2000 && rows.next()) {
+    rows.check_length();
+    const double difference = vector(rows, c.center[0]).x - vector(rows, c.center[1]).x;
+    if (std::isfinite(difference)) {
+      sum += difference;
+      ++count;
+    }
+  }
+  if (count == 0) {
+    add_note(raw, "eye 0", "right", Evidence::format, "Pupil Core's usual order; no center of both eyes confirms it");
+    return true;
+  }
+  const double mean = sum / static_cast<double>(count);
+  add_note(
+      raw, "eye 0", mean > 0 ? "right" : "left", Evidence::statistics,
+      fmt::format("its center lies {:.0f} mm to the {} of the other's", std::abs(mean), mean > 0 ? "right" : "left"));
+  return mean > 0;
+}
+
+}  // namespace
+
+double sniff_gaze_pupil_core(const GazeFile& file) {
+  const std::string_view head = head_of(file, 4096);
+  const std::string_view line = head.substr(0, head.find('\n'));
+  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  return has("norm_pos_x") && has("confidence") && has("timestamp") && !has("x_norm") && !has("dispersion")
+             ? has("base_data") ? 0.99 : 0.8
+             : 0.0;
+}
+
+RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& options) {
+  const DelimitedTable table = open_table(file);
+  const std::string place = place_of(file, table.header_line);
+  const CoreColumns c = find_columns(table, options, place);
+  RawGaze raw;
+  raw.way_out =
+      "export gaze on a surface (gaze_positions_on_surface_....csv), or take directions from the head "
+      "with --gaze-frame head";
+  raw.source = file.path;
+  raw.format = "pupil-core";
+  raw.clock = "Pupil, arbitrary zero";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  const bool by_eye = c.normal[0] && c.normal[1];
+  if (raw.kind == GazeKind::direction && !by_eye) {
+    throw Error(ErrorKind::input, place, "it has no directions (gaze_normal0_x, ...), only places on the scene picture",
+                "export again with the 3D gaze mapper, or a surface");
+  }
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 9, Evidence::format, place);
+  const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
+  const bool right_first = by_eye && eye_0_is_right(file, table, c, raw);
+  TableRows rows(file, table, c.needed);
+  WitnessTally points;
+  while (rows.next()) {
+    rows.check_length();
+    const std::int64_t t_ns = rows.time_ns(c.time, scale);
+    const double confidence = rows.number(c.confidence);
+    const GazeValidity validity = confidence >= least ? GazeValidity::ok
+                                  : confidence > 0    ? GazeValidity::low_confidence
+                                                      : GazeValidity::lost;
+    const auto add = [&](RawSample sample, bool known) {
+      sample.confidence = static_cast<float>(confidence);
+      sample.validity = known ? validity : GazeValidity::lost;
+      raw.rows.push_back(sample);
+    };
+    if (raw.kind == GazeKind::scene_camera) {
+      RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
+      sample.at.x = rows.number(c.x);
+      sample.at.y = rows.number(c.y);
+      if (const Vec3d at = vector(rows, c.point); validity == GazeValidity::ok && at.z > 0) {
+        points.add(sample.at.x, sample.at.y, at.x / at.z, -at.y / at.z);
+      }
+      add(sample, !std::isnan(sample.at.x) && !std::isnan(sample.at.y));
+      continue;
+    }
+    Vec3f origins[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const bool right = (i == 0) == right_first;
+      RawSample sample = missing_row(t_ns, rows.line(), right ? Eye::right : Eye::left);
+      sample.at = vector(rows, c.normal[i]);
+      add(sample, length(sample.at) > 0);
+      origins[right ? 1 : 0] = to_float(vector(rows, c.center[i]));
+    }
+    raw.origins.push_back({origins[0], origins[1], t_ns});
+  }
+  points.finish(raw, "the gaze point in 3D");
+  add_note(raw, "least confidence", fmt::format("{}", least),
+           std::isnan(options.min_confidence) ? Evidence::format : Evidence::option);
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {"gaze_normal0, gaze_normal1", Evidence::header}, GazeAxes::cv, Evidence::format, place);
+  } else {
+    declare_places(
+        raw, {PositionUnit::fraction, PositionOrigin::bottom_left, Evidence::format, "norm_pos_x, norm_pos_y"}, place);
+  }
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gaze on a surface: Pupil Core's gaze_positions_on_surface_NAME.csv (x_norm, y_norm from the bottom left, on_surf,
+// confidence, seconds of Pupil's clock) and Pupil Cloud's marker mapper (gaze position on surface x [normalized] from
+// the top left, nanoseconds). Gaze beside the surface is off screen.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kLeastConfidence = 0.6;  // as Pupil Labs advise
+
+bool is_cloud(const DelimitedTable& table) {
+  return table.find("gaze position on surface x").has_value();
+}
+
+}  // namespace
+
+double sniff_gaze_pupil_surface(const GazeFile& file) {
+  const std::string_view head = head_of(file, 4096);
+  const std::string_view line = head.substr(0, head.find('\n'));
+  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  const bool core = has("x_norm") && has("y_norm") && has("on_surf");
+  return (core && has("gaze_timestamp")) || has("gaze position on surface x") ? 0.99 : core ? 0.7 : 0.0;
+}
+
+RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& options) {
+  const DelimitedTable table = open_table(file);
+  const std::string place = place_of(file, table.header_line);
+  const bool cloud = is_cloud(table);
+  const auto time = cloud ? table.find("timestamp") : table.find_any({"gaze_timestamp", "world_timestamp"});
+  const auto x = cloud ? table.find("gaze position on surface x") : table.find("x_norm");
+  const auto y = cloud ? table.find("gaze position on surface y") : table.find("y_norm");
+  if (!time || !x || !y) {
+    throw Error(ErrorKind::input, place, "there are no columns of time and of places on a surface",
+                "the columns are: " + column_listing(table));
+  }
+  const auto confidence = table.find("confidence");
+  const auto blink = table.find("blink id");
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "pupil-surface";
+  raw.clock = cloud ? "UTC, from 1970" : "Pupil, arbitrary zero";
+  const std::size_t time_at = time_column(table, options, *time, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time_at].text, cloud ? 0 : 9,
+                                       cloud ? Evidence::header : Evidence::format, place);
+  const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
+  TableRows rows(file, table, std::max({time_at, *x, *y, confidence.value_or(0), blink.value_or(0)}) + 1);
+  while (rows.next()) {
+    rows.check_length();
+    RawSample sample;
+    sample.t_ns = rows.time_ns(time_at, scale);
+    sample.row = rows.line();
+    sample.pupil = static_cast<float>(kNan);
+    sample.at.x = rows.number(*x);
+    sample.at.y = rows.number(*y);
+    sample.confidence = static_cast<float>(rows.number(confidence));
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y) || sample.confidence == 0) {
+      sample.validity = GazeValidity::lost;
+    } else if (sample.confidence < least) {
+      sample.validity = GazeValidity::low_confidence;
+    }
+    if (!is_missing(rows.cell(blink))) {
+      sample.validity = GazeValidity::blink;
+    }
+    raw.rows.push_back(sample);
+  }
+  declare_places(raw,
+                 {PositionUnit::fraction, cloud ? PositionOrigin::top_left : PositionOrigin::bottom_left,
+                  Evidence::format, table.headings[*x].text + ", " + table.headings[*y].text},
+                 place);
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// SMI BeGaze and iView X text: `## ` preamble (sample rate, calibration area, stimulus in mm, head distance), a line of
+// names, rows of Type SMP and MSG. Time in microseconds; POR in pixels from the top left, (0, 0) is missing. Raw is the
+// eye camera's picture, not the screen.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct SmiColumns {
+  Eye eye = Eye::left;
+  std::size_t x = 0, y = 0;
+  std::optional<std::size_t> pupil, validity, event;
+};
+
+std::vector<double> numbers_after_colon(std::string_view line) {
+  std::vector<double> values;
+  std::vector<std::string_view> words;
+  const std::size_t colon = line.find(':');
+  split_cells(colon == std::string_view::npos ? "" : line.substr(colon + 1), ' ', words);
+  for (const std::string_view word : words) {
+    if (const auto value = number_from(word); value && *value > 0 && *value < 1e6) {
+      values.push_back(*value);
+    }
+  }
+  return values;
+}
+
+void read_preamble_lines(const DelimitedTable& table, RawGaze& raw) {
+  DisplayGeometry geometry;
+  for (const PreambleLine& line : table.preamble) {
+    std::string_view text = line.text;
+    text.remove_prefix(std::min(text.find_first_not_of('#'), text.size()));
+    text = trim(text);
+    const std::vector<double> values = numbers_after_colon(text);
+    if (text.starts_with("Sample Rate") && !values.empty()) {
+      raw.nominal_rate_hz = values[0];
+    } else if (text.starts_with("Calibration Area") && values.size() == 2) {
+      geometry.width_px = static_cast<int>(std::lround(values[0]));
+      geometry.height_px = static_cast<int>(std::lround(values[1]));
+    } else if (text.starts_with("Stimulus Dimension") && values.size() == 2) {
+      geometry.width_cm = values[0] / 10;
+      geometry.height_cm = values[1] / 10;
+    } else if (text.starts_with("Head Distance") && !values.empty()) {
+      geometry.distance_cm = values[0] / 10;
+    }
+  }
+  if (geometry.width_px > 0) {
+    raw.recording_geometry = geometry;
+    add_note(raw, "display size", fmt::format("{}x{} px", geometry.width_px, geometry.height_px), Evidence::header,
+             "Calibration Area");
+  }
+}
+
+std::vector<SmiColumns> eye_columns(const DelimitedTable& table, const std::string& place) {
+  std::vector<SmiColumns> eyes;
+  for (const auto& [letter, eye] : {std::pair("L", Eye::left), std::pair("R", Eye::right)}) {
+    const auto column = [&table, side = letter](std::string_view name) {
+      return table.find(fmt::format("{} {}", side, name));
+    };
+    const auto x = column("POR X [px]");
+    const auto y = column("POR Y [px]");
+    if (x && y) {
+      const auto diameter = column("Pupil Diameter [mm]");
+      const auto mapped = diameter ? diameter : column("Mapped Diameter [mm]");
+      eyes.push_back({eye, *x, *y, mapped ? mapped : column("Dia X [px]"), column("Validity"), column("Event Info")});
+    }
+  }
+  if (eyes.empty()) {
+    throw Error(ErrorKind::input, place, "there is no point of regard (L POR X [px], R POR X [px])",
+                "Raw columns are places in the eye camera's picture; export again with POR");
+  }
+  return eyes;
+}
+
+}  // namespace
+
+double sniff_gaze_smi(const GazeFile& file) {
+  const std::string_view head = head_of(file);
+  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  const bool columns = has("Time\tType\t") && (has("POR X [px]") || has("Raw X [px]"));
+  const bool preamble = head.starts_with("## ") && (has("[iView]") || has("BeGaze"));
+  return columns && preamble ? 0.99 : columns ? 0.9 : preamble ? 0.6 : 0.0;
+}
+
+RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
+  const DelimitedTable table = open_table(file);
+  const std::string place = place_of(file, table.header_line);
+  const auto own_time = table.find("Time");
+  const auto type = table.find("Type");
+  if (!own_time || !type) {
+    throw Error(ErrorKind::input, place, "there are no columns 'Time' and 'Type'", "is this an SMI export?");
+  }
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "smi";
+  raw.clock = "tracker";
+  read_preamble_lines(table, raw);
+  const std::vector<SmiColumns> eyes = eye_columns(table, place);
+  const std::size_t time = time_column(table, options, *own_time, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, place);
+  std::size_t needed = std::max(time, *type) + 1;
+  std::string columns;
+  for (const SmiColumns& eye : eyes) {
+    needed = std::max({needed, eye.x + 1, eye.y + 1, eye.pupil.value_or(0) + 1, eye.validity.value_or(0) + 1,
+                       eye.event.value_or(0) + 1});
+    columns += (columns.empty() ? "" : ", ") + table.headings[eye.x].text + ", " + table.headings[eye.y].text;
+    if (eye.pupil) {
+      raw.pupil_unit = table.headings[*eye.pupil].unit;
+    }
+  }
+  const auto trial_column = table.find("Trial");
+  std::string trial;
+  LabelRuns runs;
+  TableRows rows(file, table, needed);
+  while (rows.next()) {
+    const std::int64_t t_ns = rows.time_ns(time, scale);
+    if (rows.cell(*type) == "MSG") {
+      // Free text in the fourth column.
+      raw.events.push_back(
+          {GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(rows.cell(std::size_t{3})), rows.line()});
+      continue;
+    }
+    if (rows.cell(*type) != "SMP") {
+      continue;
+    }
+    rows.check_length();
+    if (trial_column && rows.cell(*trial_column) != trial) {
+      trial = rows.cell(*trial_column);
+      raw.events.push_back(
+          {GazeEventType::segment, Eye::cyclopean, t_ns, t_ns, "trial " + trial.substr(0, 20), rows.line()});
+    } else if (trial_column && !raw.events.empty()) {
+      for (auto event = raw.events.rbegin(); event != raw.events.rend(); ++event) {
+        if (event->type == GazeEventType::segment) {
+          event->end_ns = t_ns;
+          break;
+        }
+      }
+    }
+    for (const SmiColumns& eye : eyes) {
+      RawSample sample;
+      sample.t_ns = t_ns;
+      sample.row = rows.line();
+      sample.eye = eye.eye;
+      sample.confidence = static_cast<float>(kNan);
+      const double pupil = rows.number(eye.pupil);
+      sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
+      sample.at.x = rows.number(eye.x);
+      sample.at.y = rows.number(eye.y);
+      if ((sample.at.x == 0 && sample.at.y == 0) || std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+        sample.at.x = sample.at.y = kNan;
+        sample.validity = GazeValidity::lost;
+      }
+      if (eye.validity && rows.number(*eye.validity) == 0) {
+        sample.validity = GazeValidity::lost;
+      }
+      const std::string_view event = rows.cell(eye.event);
+      if (event == "Blink") {
+        sample.validity = GazeValidity::blink;
+      }
+      if (eye.eye == eyes.front().eye) {
+        if (event == "Fixation" || event == "Saccade" || event == "Blink") {
+          runs.add(event == "Fixation"  ? GazeEventType::fixation
+                   : event == "Saccade" ? GazeEventType::saccade
+                                        : GazeEventType::blink,
+                   eye.eye, event, t_ns, rows.line());
+        } else {
+          runs.end();
+        }
+      }
+      raw.rows.push_back(sample);
+    }
+  }
+  runs.finish(raw);
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, columns}, place);
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tobii Pro Glasses 3 gazedata(.gz): one JSON object a line, `timestamp` in seconds from the start of the recording,
+// `data` with gaze2d (fractions of the scene video from the top left) and for each eye gazeorigin (mm), gazedirection
+// and pupildiameter (mm). A lost sample has no data, a lost eye an empty object. Axes: +x to the wearer's left, +y up,
+// +z forward.
+#include <fmt/format.h>
+
+#include "gazelog/json_lines.hpp"
+
+namespace gazetrace {
+namespace {
+
+void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, RawGaze& raw, WitnessTally& points) {
+  if (raw.kind == GazeKind::scene_camera) {
+    RawSample sample = missing_row(t_ns, row, Eye::cyclopean);
+    const std::vector<double> at = json.numbers("data.gaze2d");
+    if (at.size() == 2) {
+      sample.at.x = at[0];
+      sample.at.y = at[1];
+      sample.validity = GazeValidity::ok;
+      if (const Vec3d point = json_vector(json, "data.gaze3d"); point.z > 0) {
+        points.add(at[0], at[1], -point.x / point.z, -point.y / point.z);
+      }
+    }
+    raw.rows.push_back(sample);
+    return;
+  }
+  Vec3f origins[2];
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::string eye = side == 0 ? "data.eyeleft." : "data.eyeright.";
+    RawSample sample = missing_row(t_ns, row, side == 0 ? Eye::left : Eye::right);
+    const Vec3d direction = json_vector(json, eye + "gazedirection");
+    if (length(direction) > 0) {
+      sample.at = direction;
+      sample.validity = GazeValidity::ok;
+    }
+    sample.pupil = static_cast<float>(json.number(eye + "pupildiameter").value_or(kNan));
+    origins[side] = to_float(json_vector(json, eye + "gazeorigin"));
+    raw.rows.push_back(sample);
+  }
+  raw.origins.push_back({origins[0], origins[1], t_ns});
+}
+
+}  // namespace
+
+double sniff_gaze_tobii_glasses3(const GazeFile& file) {
+  const std::string_view head = head_of(file, 4096);
+  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  if (!head.starts_with("{\"type\":")) {
+    return 0.0;
+  }
+  return has("\"type\":\"gaze\"") && (has("gaze2d") || has("\"data\":{}")) ? 0.99 : 0.0;
+}
+
+RawGaze read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw;
+  raw.way_out =
+      "--gaze-frame head takes the directions of the eyes from the head; or map gaze onto the display "
+      "and export that";
+  raw.source = file.path;
+  raw.format = "tobii-glasses-3";
+  raw.clock = "recording, from its start";
+  raw.pupil_unit = "mm";
+  raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
+  const int exponent = declare_time(raw, options, "timestamp", 9, Evidence::format, file.path).exponent;
+  WitnessTally points;
+  for_each_json_line(file, raw.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
+    if (json.text("type") != "gaze") {
+      return;
+    }
+    const auto t_ns = json_time_ns(json, "timestamp", exponent, place);
+    if (!t_ns) {
+      throw Error(ErrorKind::input, place, "this sample has no timestamp", "remove the line");
+    }
+    add_line(json, *t_ns, row, raw, points);
+  });
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {"gazedirection", Evidence::format, "of each eye"}, GazeAxes::sranipal, Evidence::format,
+                       file.path);
+  } else {
+    points.finish(raw, "gaze3d");
+    declare_places(raw, {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format, "gaze2d"}, file.path);
+  }
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tobii Pro Lab TSV. `Recording timestamp` is in microseconds where the header is bare or says so, in milliseconds
+// where it says [ms]. Rows of several sensors interleave; only those of the eye tracker are gaze. Gaze points are
+// pixels of the display, `Gaze point X`, `(DACSpx)` or `[DACS px]`; media coordinates (MCS) do not say where on the
+// display the medium was. Exports of glasses hold places on the scene camera's picture under the same names.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+#include "gazelog/validity.hpp"
+
+namespace gazetrace {
+namespace {
+
+using OptionalColumn = std::optional<std::size_t>;
+
+struct EyeInLab {
+  Eye eye = Eye::cyclopean;
+  OptionalColumn x, y, validity, pupil;
+};
+
+struct LabColumns {
+  std::size_t time = 0;
+  int time_exponent = 3;
+  OptionalColumn sensor, event, movement, movement_index, width, height;
+  std::vector<EyeInLab> eyes;
+  bool is_declared = false;
+  std::size_t needed = 0;
+};
+
+// "Gaze point X", "Gaze point X (DACSpx)", "Gaze point X [DACS px]": of the display, or bare.
+OptionalColumn display_column(const DelimitedTable& table, std::string_view name) {
+  const std::string wanted = letters_and_digits(name);
+  OptionalColumn bare;
+  for (std::size_t i = 0; i < table.headings.size(); ++i) {
+    const ColumnHeading& heading = table.headings[i];
+    if (letters_and_digits(heading.name) != wanted) {
+      continue;
+    }
+    const std::string unit = letters_and_digits(heading.unit);
+    if (unit == "dacspx") {
+      return i;
+    }
+    if (unit.empty() || unit == "px") {
+      bare = i;
+    }
+  }
+  return bare;
+}
+
+bool has_prefix(const DelimitedTable& table, std::string_view prefix) {
+  return std::any_of(table.headings.begin(), table.headings.end(),
+                     [&](const ColumnHeading& heading) { return heading.text.starts_with(prefix); });
+}
+
+[[noreturn]] void no_gaze_points(const DelimitedTable& table, const std::string& place) {
+  if (has_prefix(table, "Gaze point X")) {
+    throw Error(ErrorKind::input, place,
+                "its gaze points are in media coordinates (MCS), relative to what was shown, not to the display",
+                "export again with DACS columns, or name the columns with --gaze-x-column and --gaze-y-column and give "
+                "the size of the medium with --screen-px");
+  }
+  const bool fixations = has_prefix(table, "Fixation point X") || has_prefix(table, "Mapped fixation X");
+  throw Error(ErrorKind::input, place,
+              fmt::format("this export has no gaze points (Gaze point X){}",
+                          fixations ? ", only fixations, which leave out every saccade" : ""),
+              "export again with gaze points, or name the columns to read as places with --gaze-x-column and "
+              "--gaze-y-column and give their picture's size with --screen-px");
+}
+
+LabColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+  LabColumns c;
+  const auto keep = [&](OptionalColumn column) {
+    c.needed = std::max(c.needed, column ? *column + 1 : 0);
+    return column;
+  };
+  const auto time = table.find("Recording timestamp");
+  if (!time) {
+    throw Error(ErrorKind::input, place, "there is no column 'Recording timestamp'", "is this a Tobii Pro Lab export?");
+  }
+  c.time = time_column(table, options, *time, place);
+  c.time_exponent = time_exponent(table.headings[c.time].unit).value_or(3);
+  c.sensor = keep(table.find("Sensor"));
+  c.event = keep(table.find("Event"));
+  c.movement = keep(table.find("Eye movement type"));
+  c.movement_index = keep(table.find("Eye movement type index"));
+  c.width = keep(table.find("Recording resolution width"));
+  c.height = keep(table.find("Recording resolution height"));
+  if (!options.columns.x.empty()) {
+    c.is_declared = true;
+    c.eyes.push_back({Eye::cyclopean,
+                      keep(declared_column(table, options.columns.x, place)),
+                      keep(declared_column(table, options.columns.y, place)),
+                      {},
+                      {}});
+  } else {
+    for (const auto& [part, side, eye] : {std::tuple("", "", Eye::cyclopean), std::tuple("left ", "left", Eye::left),
+                                          std::tuple("right ", "right", Eye::right)}) {
+      EyeInLab columns{eye,
+                       display_column(table, fmt::format("Gaze point {}X", part)),
+                       display_column(table, fmt::format("Gaze point {}Y", part)),
+                       {},
+                       {}};
+      if (columns.x && columns.y) {
+        keep(columns.x);
+        keep(columns.y);
+        if (eye != Eye::cyclopean) {
+          columns.validity = keep(table.find(fmt::format("Validity {}", side)));
+          columns.pupil = keep(table.find(fmt::format("Pupil diameter {}", side)));
+        }
+        c.eyes.push_back(columns);
+      }
+    }
+  }
+  if (c.eyes.empty()) {
+    no_gaze_points(table, place);
+  }
+  c.needed = std::max(c.needed, c.time + 1);
+  return c;
+}
+
+// Glasses have an accelerometer and a gyroscope, and gaze in space.
+bool is_of_glasses(const GazeFile& file, const DelimitedTable& table) {
+  const std::string_view head = head_of(file);
+  return has_prefix(table, "Gaze point 3D") || has_prefix(table, "Gyro") || has_prefix(table, "Accelerometer") ||
+         head.find("\tGyroscope\t") != std::string_view::npos ||
+         head.find("\tAccelerometer\t") != std::string_view::npos;
+}
+
+std::optional<GazeEventType> movement_type(std::string_view text) {
+  return text == "Fixation"  ? std::optional(GazeEventType::fixation)
+         : text == "Saccade" ? std::optional(GazeEventType::saccade)
+                             : std::nullopt;
+}
+
+}  // namespace
+
+double sniff_gaze_tobii_pro_lab(const GazeFile& file) {
+  const std::string_view head = head_of(file);
+  const std::string_view line = head.substr(0, head.find('\n'));
+  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  if (!has("Recording timestamp") || !has("\t")) {
+    return 0.0;
+  }
+  return has("Participant name") && (has("Sensor") || has("Gaze point") || has("Eye movement type")) ? 0.99 : 0.8;
+}
+
+RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& options) {
+  const DelimitedTable table = open_table(file);
+  const std::string place = place_of(file, table.header_line);
+  const LabColumns c = find_columns(table, options, place);
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "tobii-pro-lab";
+  raw.clock = "recording, from its start";
+  raw.pupil_unit = "mm";
+  if (!c.is_declared && is_of_glasses(file, table)) {
+    raw.way_out =
+        "export gaze mapped onto a snapshot, or read the glasses' own files (gazedata.gz) with "
+        "--gaze-frame head";
+    raw.kind = GazeKind::scene_camera;
+  }
+  const bool unit_stated = !table.headings[c.time].unit.empty();
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, c.time_exponent,
+                                       unit_stated ? Evidence::header : Evidence::format, place);
+  LabelRuns runs;
+  std::size_t others = 0;
+  TableRows rows(file, table, c.needed);
+  while (rows.next()) {
+    rows.check_length();
+    const std::int64_t t_ns = rows.time_ns(c.time, scale);
+    if (const std::string_view event = rows.cell(c.event); !event.empty()) {
+      raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(event), rows.line()});
+    }
+    if (c.sensor && rows.cell(*c.sensor) != "Eye Tracker") {
+      ++others;
+      continue;
+    }
+    if (c.width && c.height && !raw.recording_geometry) {
+      const double width = rows.number(*c.width);
+      const double height = rows.number(*c.height);
+      if (width >= 1 && height >= 1 && width < 1e5 && height < 1e5) {
+        raw.recording_geometry =
+            DisplayGeometry{.width_px = static_cast<int>(width), .height_px = static_cast<int>(height)};
+        add_note(raw, "display size", fmt::format("{:.0f}x{:.0f} px", width, height), Evidence::header,
+                 "Recording resolution width and height");
+      }
+    }
+    for (const EyeInLab& eye : c.eyes) {
+      RawSample sample;
+      sample.t_ns = t_ns;
+      sample.row = rows.line();
+      sample.eye = eye.eye;
+      sample.confidence = static_cast<float>(kNan);
+      sample.pupil = static_cast<float>(rows.number(eye.pupil));
+      sample.at.x = rows.number(eye.x);
+      sample.at.y = rows.number(eye.y);
+      const std::string validity = to_lower(rows.cell(eye.validity));
+      if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+        sample.at.x = sample.at.y = kNan;
+        sample.validity = GazeValidity::lost;
+      } else if (eye.validity && validity != "valid" && validity != "1") {
+        sample.validity = GazeValidity::lost;
+      }
+      raw.rows.push_back(sample);
+    }
+    if (const auto movement = movement_type(rows.cell(c.movement))) {
+      runs.add(*movement, Eye::cyclopean, std::string(rows.cell(c.movement_index)), t_ns, rows.line());
+    } else {
+      runs.end();
+    }
+  }
+  runs.finish(raw);
+  if (others > 0) {
+    add_note(raw, "rows left out", std::to_string(others), Evidence::header, "of other sensors, and of events");
+  }
+  const std::string columns = table.headings[*c.eyes.front().x].text + ", " + table.headings[*c.eyes.front().y].text;
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::format, columns}, place);
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tobii Studio TSV (3.x): RecordingTimestamp in milliseconds from the start, GazePointX (ADCSpx) in pixels of the whole
+// display from the top left, ValidityLeft and Right 0 (sure) to 4 (not found), rows of events without gaze in between.
+// (MCSpx) counts from the shown medium and (ADCSmm) from the bottom left: neither is taken for the display's pixels.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kWorstValidity = 1;  // 0 and 1: this eye was found, and it is the right one
+
+struct StudioColumns {
+  std::size_t time = 0;
+  std::optional<std::size_t> x, y, left_x, left_y, right_x, right_y, left_validity, right_validity, left_pupil,
+      right_pupil, left_distance, right_distance, left_x_mm, left_y_mm, event_type, fixation, saccade;
+  std::array<std::array<std::optional<std::size_t>, 3>, 2> eye_mm;  // places of the left and right eye
+  std::vector<std::size_t> events;                                  // texts of what happened
+  std::size_t needed = 0;
+};
+
+StudioColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+  StudioColumns c;
+  const auto own = [&](std::string_view name) {
+    const auto found = table.find(name);
+    c.needed = std::max(c.needed, found ? *found + 1 : 0);
+    return found;
+  };
+  const auto time = own("RecordingTimestamp");
+  if (!time) {
+    throw Error(ErrorKind::input, place, "there is no column 'RecordingTimestamp'", "is this a Tobii Studio export?");
+  }
+  c.time = time_column(table, options, *time, place);
+  c.x = own("GazePointX (ADCSpx)");
+  c.y = own("GazePointY (ADCSpx)");
+  c.left_x = own("GazePointLeftX (ADCSpx)");
+  c.left_y = own("GazePointLeftY (ADCSpx)");
+  c.right_x = own("GazePointRightX (ADCSpx)");
+  c.right_y = own("GazePointRightY (ADCSpx)");
+  c.left_validity = own("ValidityLeft");
+  c.right_validity = own("ValidityRight");
+  c.left_pupil = own("PupilLeft");
+  c.right_pupil = own("PupilRight");
+  c.left_distance = own("DistanceLeft");
+  c.right_distance = own("DistanceRight");
+  c.left_x_mm = own("GazePointLeftX (ADCSmm)");
+  c.left_y_mm = own("GazePointLeftY (ADCSmm)");
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      c.eye_mm[eye][axis] = own(fmt::format("EyePos{}{} (ADCSmm)", eye == 0 ? "Left" : "Right", "XYZ"[axis]));
+    }
+  }
+  c.event_type = own("GazeEventType");
+  c.fixation = own("FixationIndex");
+  c.saccade = own("SaccadeIndex");
+  for (const std::string_view name : {"StudioEvent", "MouseEvent", "KeyPressEvent", "ExternalEvent"}) {
+    if (const auto found = own(name)) {
+      c.events.push_back(*found);
+    }
+  }
+  if ((!c.x || !c.y) && (!c.left_x || !c.left_y) && (!c.right_x || !c.right_y)) {
+    throw Error(ErrorKind::input, place, "there is no gaze in pixels of the display (GazePointX (ADCSpx))",
+                "media coordinates (MCSpx) are relative to what was shown; export again with ADCS columns");
+  }
+  c.needed = std::max(c.needed, c.time + 1);
+  return c;
+}
+
+// Least squares of y over x.
+class Slope {
+ public:
+  void add(double x, double y) {
+    if (std::isfinite(x) && std::isfinite(y)) {
+      ++n_;
+      sx_ += x;
+      sy_ += y;
+      sxx_ += x * x;
+      sxy_ += x * y;
+    }
+  }
+  [[nodiscard]] double value() const {
+    const double spread = n_ * sxx_ - sx_ * sx_;
+    return n_ > 10 && spread > n_ * n_ ? (n_ * sxy_ - sx_ * sy_) / spread : 0;
+  }
+
+ private:
+  double n_ = 0, sx_ = 0, sy_ = 0, sxx_ = 0, sxy_ = 0;
+};
+
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+class StudioReader {
+ public:
+  StudioReader(const GazeFile& file, const GazeReadOptions& options)
+      : options_(options),
+        table_(open_table(file)),
+        place_(place_of(file, table_.header_line)),
+        c_(find_columns(table_, options, place_)),
+        rows_(file, table_, c_.needed) {
+    raw_.source = file.path;
+    raw_.format = "tobii-studio";
+    raw_.clock = "recording, from its start";
+    raw_.pupil_unit = "mm";
+    const std::string& time = table_.headings[c_.time].text;
+    // EyeTrackerTimestamp is in microseconds.
+    const int stated = to_lower(time).find("eyetracker") == std::string::npos ? 6 : 3;
+    scale_ = declare_time(raw_, options, time, stated, Evidence::format, place_);
+  }
+
+  RawGaze read() {
+    const auto resolution = table_.find("RecordingResolution");
+    while (rows_.next()) {
+      rows_.check_length();
+      if (resolution && !raw_.recording_geometry) {
+        read_resolution(rows_.cell(*resolution));
+      }
+      read_row();
+    }
+    runs_.finish(raw_);
+    finish();
+    return std::move(raw_);
+  }
+
+ private:
+  void read_resolution(std::string_view text) {
+    const std::size_t cross = text.find('x');
+    const auto width = number_from(trim(text.substr(0, cross)));
+    const auto height = cross == std::string_view::npos ? std::nullopt : number_from(trim(text.substr(cross + 1)));
+    if (width && height && *width >= 1 && *height >= 1 && *width < 1e5 && *height < 1e5) {
+      raw_.recording_geometry =
+          DisplayGeometry{.width_px = static_cast<int>(*width), .height_px = static_cast<int>(*height)};
+    }
+  }
+
+  void read_row() {
+    std::string happened;
+    for (const std::size_t column : c_.events) {
+      const std::string_view text = rows_.cell(column);
+      happened += text.empty() ? "" : (happened.empty() ? "" : "; ") + std::string(text);
+    }
+    // Rows of events have no gaze and no validity, and no stamp of the tracker either.
+    const bool is_sample = !rows_.cell(c_.left_validity).empty() || !rows_.cell(c_.right_validity).empty() ||
+                           (!c_.left_validity && !c_.right_validity && happened.empty());
+    if (!is_sample && rows_.cell(c_.time).empty()) {
+      return;
+    }
+    const std::int64_t t_ns = rows_.time_ns(c_.time, scale_);
+    if (!happened.empty()) {
+      raw_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, happened, rows_.line()});
+    }
+    if (!is_sample) {
+      return;
+    }
+    if (c_.x && c_.y) {
+      add(t_ns, Eye::cyclopean, *c_.x, *c_.y, kNan, kNan);
+    }
+    if (c_.left_x && c_.left_y) {
+      add(t_ns, Eye::left, *c_.left_x, *c_.left_y, rows_.number(c_.left_validity), rows_.number(c_.left_pupil));
+      if (c_.left_x_mm && c_.left_y_mm) {
+        width_.add(rows_.number(options_.swap_xy ? *c_.left_y : *c_.left_x), rows_.number(*c_.left_x_mm));
+        height_.add(rows_.number(options_.swap_xy ? *c_.left_x : *c_.left_y), rows_.number(*c_.left_y_mm));
+        millimetres_.add(rows_.number(*c_.left_x), rows_.number(*c_.left_y), rows_.number(*c_.left_x_mm),
+                         -rows_.number(*c_.left_y_mm));
+      }
+    }
+    if (c_.right_x && c_.right_y) {
+      add(t_ns, Eye::right, *c_.right_x, *c_.right_y, rows_.number(c_.right_validity), rows_.number(c_.right_pupil));
+    }
+    for (const auto& column : {c_.left_distance, c_.right_distance}) {
+      if (const double distance = rows_.number(column); distance > 0) {
+        distances_mm_.push_back(distance);
+      }
+    }
+    read_eye_places();
+    read_label(t_ns);
+  }
+
+  // The middle of both eyes, from the bottom left corner of the display and before it.
+  void read_eye_places() {
+    Vec3d sum;
+    double eyes = 0;
+    for (const auto& columns : c_.eye_mm) {
+      const Vec3d at{rows_.number(columns[0]), rows_.number(columns[1]), rows_.number(columns[2])};
+      if (is_finite(at) && at.z > 0) {
+        sum += at;
+        ++eyes;
+      }
+    }
+    if (eyes == 2) {
+      eyes_x_mm_.push_back(0.5 * sum.x);
+      eyes_y_mm_.push_back(0.5 * sum.y);
+      eyes_z_mm_.push_back(0.5 * sum.z);
+    }
+  }
+
+  void add(std::int64_t t_ns, Eye eye, std::size_t x, std::size_t y, double validity, double pupil) {
+    RawSample sample;
+    sample.t_ns = t_ns;
+    sample.row = rows_.line();
+    sample.eye = eye;
+    sample.confidence = static_cast<float>(kNan);
+    sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);  // -1: none
+    sample.at.x = rows_.number(x);
+    sample.at.y = rows_.number(y);
+    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+      sample.at.x = sample.at.y = kNan;
+      sample.validity = GazeValidity::lost;
+    } else if (validity > kWorstValidity) {
+      sample.validity = validity >= 4 ? GazeValidity::lost : GazeValidity::low_confidence;
+    }
+    raw_.rows.push_back(sample);
+  }
+
+  void read_label(std::int64_t t_ns) {
+    const std::string_view type = rows_.cell(c_.event_type);
+    if (type == "Fixation") {
+      runs_.add(GazeEventType::fixation, Eye::cyclopean, std::string(rows_.cell(c_.fixation)), t_ns, rows_.line());
+    } else if (type == "Saccade") {
+      runs_.add(GazeEventType::saccade, Eye::cyclopean, std::string(rows_.cell(c_.saccade)), t_ns, rows_.line());
+    } else {
+      runs_.end();
+    }
+  }
+
+  void place_eyes(DisplayGeometry& g) {
+    if (!eyes_z_mm_.empty() && g.width_cm > 0) {
+      g.distance_cm = median_of(eyes_z_mm_) / 10;
+      g.eye_x_cm = median_of(eyes_x_mm_) / 10 - 0.5 * g.width_cm;
+      g.eye_y_cm = median_of(eyes_y_mm_) / 10 - 0.5 * g.height_cm;
+      add_note(raw_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
+               "median of EyePosLeftZ and EyePosRightZ (ADCSmm)");
+      add_note(raw_, "eye off the display's center", fmt::format("{:.1f}, {:.1f} cm", g.eye_x_cm, g.eye_y_cm),
+               Evidence::header, "right, up: medians of EyePos (ADCSmm)");
+    } else if (!distances_mm_.empty()) {
+      g.distance_cm = median_of(distances_mm_) / 10;
+      add_note(raw_, "distance", fmt::format("{:.1f} cm", g.distance_cm), Evidence::header,
+               "median of DistanceLeft and DistanceRight");
+    }
+  }
+
+  // Millimetres against pixels of the same points give the display's size; the eyes' place or distance is in every row.
+  void finish() {
+    if (raw_.recording_geometry) {
+      DisplayGeometry& g = *raw_.recording_geometry;
+      add_note(raw_, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::header,
+               "RecordingResolution");
+      const double width_cm = std::abs(width_.value()) * g.width_px / 10;
+      const double height_cm = std::abs(height_.value()) * g.height_px / 10;
+      if (width_cm > 5 && height_cm > 5) {
+        g.width_cm = width_cm;
+        g.height_cm = height_cm;
+        add_note(raw_, "display size", fmt::format("{:.1f} x {:.1f} cm", width_cm, height_cm), Evidence::header,
+                 "(ADCSmm) against (ADCSpx)");
+      }
+      place_eyes(g);
+    }
+    millimetres_.finish(raw_, "the left eye in millimetres (ADCSmm)", Eye::left);
+    declare_places(raw_,
+                   {PositionUnit::px, PositionOrigin::top_left, Evidence::header,
+                    c_.x ? "GazePointX (ADCSpx), GazePointY (ADCSpx)" : "GazePointLeftX (ADCSpx), ..."},
+                   place_);
+  }
+
+  const GazeReadOptions& options_;
+  DelimitedTable table_;
+  std::string place_;
+  StudioColumns c_;
+  TableRows rows_;
+  RawGaze raw_;
+  TimeScale scale_;
+  LabelRuns runs_;
+  Slope width_, height_;
+  WitnessTally millimetres_;
+  std::vector<double> distances_mm_, eyes_x_mm_, eyes_y_mm_, eyes_z_mm_;
+};
+
+}  // namespace
+
+double sniff_gaze_tobii_studio(const GazeFile& file) {
+  const std::string_view head = head_of(file);
+  const std::string_view line = head.substr(0, head.find('\n'));
+  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  if (!has("RecordingTimestamp")) {
+    return 0.0;
+  }
+  return has("StudioVersionRec") || has("(ADCSpx)") ? 0.99 : has("GazePoint") || has("ValidityLeft") ? 0.9 : 0.3;
+}
+
+RawGaze read_gaze_tobii_studio(const GazeFile& file, const GazeReadOptions& options) {
+  return StudioReader(file, options).read();
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// HTC Vive Pro Eye through SRanipal. There is no file format of the maker's, every laboratory writes its own columns
+// from the same structures; this is a preset of a column map for a common logger. Gaze vectors are SRanipal's, +x to
+// the wearer's left, +y up, +z forward; eye_valid is a mask of bits of which the second is the direction's; the head's
+// pose is Unity's, Euler angles in degrees. A frame counter tells rows that repeat the tracker's last sample.
+#include "gazelog/mapped_table.hpp"
+
+namespace gazetrace {
+namespace {
+
+GazeColumns preset() {
+  GazeColumns c;
+  c.time = "time(100ns)";
+  for (auto* const eye : {&c.left, &c.right}) {
+    const std::string side = eye == &c.left ? "L" : "R";
+    eye->x = "gaze_direct_" + side + ".x";
+    eye->y = "gaze_direct_" + side + ".y";
+    eye->z = "gaze_direct_" + side + ".z";
+    eye->validity = "eye_valid_" + side;
+    eye->openness = "openness_" + side;
+    eye->pupil = "pupil_diameter_" + side;
+    eye->origin_x = "gaze_origin_" + side + ".x";
+    eye->origin_y = "gaze_origin_" + side + ".y";
+    eye->origin_z = "gaze_origin_" + side + ".z";
+  }
+  c.valid_mask = 2;
+  c.frame = "frame";
+  c.head_x = "helmet_pos_x";
+  c.head_y = "helmet_pos_y";
+  c.head_z = "helmet_pos_z";
+  c.head_rotation_x = "helmet_rot_x";
+  c.head_rotation_y = "helmet_rot_y";
+  c.head_rotation_z = "helmet_rot_z";
+  c.axes = GazeAxes::sranipal;
+  c.head_axes = GazeAxes::unity;
+  return c;
+}
+
+}  // namespace
+
+double sniff_gaze_vive(const GazeFile& file) {
+  const std::string_view line = head_of(file).substr(0, file.text.find('\n'));
+  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
+  return has("gaze_direct_L.x") && has("eye_valid_L") ? has("helmet_rot_x") && has("time(100ns)") ? 0.97 : 0.5 : 0.0;
+}
+
+RawGaze read_gaze_vive(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw = read_preset(file, open_table(file), options, preset());
+  raw.declared.x_is_turned.emplace();  // some loggers turn it; the eyes' origins tell
+  return raw;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// LSL's XDF: the stream of type Gaze (Eyetracker, EyeTracking). Channels are told by their labels and, where given, by
+// the XDF gaze metadata (type ScreenX, DirectionX, eye left or right, unit); files without labels are refused, for
+// conventions differ. Times are doubles in the file itself.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <pugixml.hpp>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+#include "gazelog/units.hpp"
+#include "gazelog/xdf_file.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct Channel {
+  std::string label, unit, type;
+  Eye eye = Eye::cyclopean;
+};
+
+struct GazeChannels {
+  Eye eye = Eye::cyclopean;
+  std::array<std::optional<std::size_t>, 3> at;  // x, y or x, y, z
+  std::optional<std::size_t> confidence, pupil;
+  bool is_direction = false, is_scene_camera = false;
+};
+
+void read_header(XdfStream& stream) {
+  pugi::xml_document xml;
+  xml.load_buffer(stream.header.data(), stream.header.size());
+  const pugi::xml_node info = xml.child("info");
+  const unsigned channels = info.child("channel_count").text().as_uint();
+  stream.channels = channels < 100'000 ? channels : 0;
+  stream.channel_format = info.child("channel_format").text().as_string();
+  const double rate = number_from(trim(info.child("nominal_srate").text().as_string())).value_or(0);
+  stream.nominal_rate_hz = rate > 0 && rate < 1e6 ? rate : 0;
+}
+
+std::vector<Channel> channels_of(const XdfStream& stream) {
+  pugi::xml_document xml;
+  xml.load_buffer(stream.header.data(), stream.header.size());
+  std::vector<Channel> channels;
+  for (const pugi::xml_node node : xml.child("info").child("desc").child("channels").children("channel")) {
+    Channel channel{node.child("label").text().as_string(), node.child("unit").text().as_string(),
+                    letters_and_digits(node.child("type").text().as_string())};
+    const std::string eye = to_lower(node.child("eye").text().as_string());
+    const std::string label = to_lower(channel.label);
+    const auto says = [&](std::string_view side) { return eye == side || label.find(side) != std::string::npos; };
+    channel.eye = says("left") ? Eye::left : says("right") ? Eye::right : Eye::cyclopean;
+    channels.push_back(std::move(channel));
+  }
+  return channels;
+}
+
+bool is_gaze(const XdfStream& stream) {
+  pugi::xml_document xml;
+  xml.load_buffer(stream.header.data(), stream.header.size());
+  const std::string type = letters_and_digits(xml.child("info").child("type").text().as_string());
+  return type == "gaze" || type == "eyetracker" || type == "eyetracking";
+}
+
+std::string core_of(std::string_view label) {
+  std::string core = letters_and_digits(label);
+  for (const std::string_view side : {"left", "right", "eye", "both"}) {
+    if (const std::size_t at = core.find(side); at != std::string::npos) {
+      core.erase(at, side.size());
+    }
+  }
+  return core;
+}
+
+constexpr std::size_t kNoRole = 5;
+// 0 x, 1 y, 2 z; 3 confidence, 4 pupil.
+struct Role {
+  std::size_t index = kNoRole;
+  bool is_direction = false, is_scene_camera = false;
+};
+
+Role role_of(const Channel& channel) {
+  const std::string core = core_of(channel.label);
+  constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string axis(kAxes[i]);
+    if (channel.type == "direction" + axis || core == "direction" + axis || core == "gazedirection" + axis ||
+        core == "d" + axis) {
+      return Role{i, true, false};
+    }
+    if (i == 2) {
+      break;
+    }
+    if (core == "normpos" + axis) {
+      return Role{i, false, true};
+    }
+    for (const std::string_view stem : {"screen", "gaze", "", "gazepoint", "gazepointondisplayarea", "por", "pos"}) {
+      if (channel.type == "screen" + axis || core == std::string(stem) + axis) {
+        return Role{i, false, false};
+      }
+    }
+  }
+  if (core == "confidence" || channel.type == "confidence") {
+    return Role{3, false, false};
+  }
+  if (core == "pupil" || core == "pupilsize" || core == "pupildiameter" || core == "diameter") {
+    return Role{4, false, false};
+  }
+  return {};
+}
+
+std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const GazeReadOptions& options,
+                                     const std::string& path) {
+  std::array<GazeChannels, 3> by_eye;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    Channel channel = channels[c];
+    GazeChannels& gaze = by_eye[static_cast<std::size_t>(channel.eye)];
+    gaze.eye = channel.eye;
+    Role role = role_of(channel);
+    for (const auto& [declared, axis] :
+         {std::pair(&options.columns.x, 0U), std::pair(&options.columns.y, 1U), std::pair(&options.columns.z, 2U)}) {
+      if (!declared->empty()) {
+        if (*declared == channel.label) {
+          role = Role{axis, !options.columns.z.empty(), false};
+        } else if (role.index == axis) {
+          role = {};
+        }
+      }
+    }
+    if (role.index < 3 && !gaze.at[role.index]) {
+      gaze.at[role.index] = c;
+      gaze.is_direction = gaze.is_direction || role.is_direction;
+      gaze.is_scene_camera = gaze.is_scene_camera || role.is_scene_camera;
+    } else if (role.index == 3) {
+      gaze.confidence = c;
+    } else if (role.index == 4) {
+      gaze.pupil = c;
+    }
+  }
+  std::vector<GazeChannels> gazes;
+  for (const Eye eye : {Eye::cyclopean, Eye::left, Eye::right}) {
+    const GazeChannels& gaze = by_eye[static_cast<std::size_t>(eye)];
+    if (gaze.at[0] && gaze.at[1] && (!gaze.is_direction || gaze.at[2]) &&
+        (gazes.empty() || gazes.front().is_direction == gaze.is_direction)) {
+      gazes.push_back(gaze);
+    }
+  }
+  if (gazes.empty()) {
+    std::string labels;
+    for (const Channel& channel : channels) {
+      labels += (labels.empty() ? "" : ", ") + channel.label;
+    }
+    throw Error(ErrorKind::input, path,
+                labels.empty() ? "the gaze stream's channels have no labels"
+                               : fmt::format("no channels of gaze x and y among: {}", labels.substr(0, 300)),
+                "name them with --gaze-x-column and --gaze-y-column");
+  }
+  return gazes;
+}
+
+const XdfStream& gaze_stream(const std::vector<XdfStream>& streams, const std::string& path) {
+  const XdfStream* found = nullptr;
+  for (const XdfStream& stream : streams) {
+    if (is_gaze(stream) && stream.channel_format != "string" &&
+        (found == nullptr || stream.times_s.size() > found->times_s.size())) {
+      found = &stream;
+    }
+  }
+  if (found == nullptr) {
+    throw Error(ErrorKind::input, path,
+                fmt::format("none of its {} streams is of type Gaze, Eyetracker or EyeTracking", streams.size()));
+  }
+  return *found;
+}
+
+}  // namespace
+
+double sniff_gaze_xdf(const GazeFile& file) {
+  return file.text.starts_with("XDF:") ? 0.99 : 0.0;
+}
+
+RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
+  RawGaze raw;
+  raw.source = file.path;
+  raw.format = "xdf";
+  raw.clock = "LSL";
+  const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.warnings, read_header);
+  const XdfStream& stream = gaze_stream(streams, file.path);
+  const std::vector<Channel> channels = channels_of(stream);
+  if (channels.size() > stream.channels) {
+    throw Error(ErrorKind::input, file.path,
+                fmt::format("its header names {} channels and counts {}", channels.size(), stream.channels));
+  }
+  const std::vector<GazeChannels> gazes = find_gazes(channels, options, file.path);
+  const GazeChannels& first = gazes.front();
+  if (first.is_scene_camera) {
+    raw.way_out = "stream gaze on a surface, or look at it with --gaze-frame scene-camera";
+  }
+  raw.kind = first.is_direction      ? GazeKind::direction
+             : first.is_scene_camera ? GazeKind::scene_camera
+                                     : GazeKind::screen;
+  raw.nominal_rate_hz = stream.nominal_rate_hz;
+  raw.declared.time_exponent = {9, Evidence::format, "doubles in the file, on the recorder's clock"};
+  const double least = std::isnan(options.min_confidence) ? first.is_scene_camera ? 0.6 : 1e-9 : options.min_confidence;
+  const std::vector<double> times_s = synchronized_times_s(stream);
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const double* const values = stream.values.data() + i * stream.channels;
+    const double t_ns = times_s[i] * 1e9;
+    if (!(std::abs(t_ns) < 9e18)) {
+      throw Error(ErrorKind::input, file.path, fmt::format("time {} s of sample {} is no time", times_s[i], i + 1));
+    }
+    for (const GazeChannels& gaze : gazes) {
+      RawSample sample = missing_row(std::llround(t_ns), static_cast<std::int64_t>(i) + 1, gaze.eye);
+      const auto value = [&](const std::optional<std::size_t>& c) { return c ? values[*c] : kNan; };
+      if (raw.kind == GazeKind::direction) {
+        sample.at = {value(gaze.at[0]), value(gaze.at[1]), value(gaze.at[2])};
+        sample.validity = is_finite(sample.at) ? GazeValidity::ok : GazeValidity::lost;
+      } else {
+        sample.at.x = value(gaze.at[0]);
+        sample.at.y = value(gaze.at[1]);
+        sample.validity =
+            std::isfinite(sample.at.x) && std::isfinite(sample.at.y) ? GazeValidity::ok : GazeValidity::lost;
+        if (sample.validity == GazeValidity::lost) {
+          sample.at.x = sample.at.y = kNan;
+        }
+      }
+      sample.confidence = static_cast<float>(value(gaze.confidence));
+      sample.pupil = static_cast<float>(value(gaze.pupil));
+      if (sample.confidence < least && is_usable(sample.validity)) {
+        sample.validity = sample.confidence > 0 ? GazeValidity::low_confidence : GazeValidity::lost;
+      }
+      raw.rows.push_back(sample);
+    }
+  }
+  const std::string columns = channels[*first.at[0]].label + ", " + channels[*first.at[1]].label;
+  if (raw.kind == GazeKind::direction) {
+    declare_directions(raw, {columns, Evidence::header}, GazeAxes::gl, Evidence::format, file.path);
+    return raw;
+  }
+  PlaceSpace space{PositionUnit::fraction,
+                   first.is_scene_camera ? PositionOrigin::bottom_left : PositionOrigin::top_left, Evidence::header,
+                   columns};
+  const auto unit = position_unit_from(channels[*first.at[0]].unit);
+  if (unit) {
+    space.unit = *unit;
+    space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
+  } else if (!first.is_scene_camera) {
+    space.unit = PositionUnit::automatic;
+    space.origin = PositionOrigin::automatic;
+    space.evidence = Evidence::statistics;
+  }
+  declare_places(raw, space, file.path);
+  return raw;
+}
+
+}  // namespace gazetrace

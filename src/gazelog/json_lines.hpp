@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Logs of one JSON object a line, as Tobii's glasses write them.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/text.hpp"
+#include "gazelog/json.hpp"
+#include "gazelog/read_support.hpp"
+
+namespace gazetrace {
+
+// Three numbers at `path`, or NaN.
+inline Vec3d json_vector(const JsonLeaves& json, std::string_view path) {
+  const std::vector<double> values = json.numbers(path);
+  return values.size() == 3 ? Vec3d{values[0], values[1], values[2]} : Vec3d{kNan, kNan, kNan};
+}
+
+// `scaled_integer` of a number as it was written; empty where there is none.
+inline std::optional<std::int64_t> json_time_ns(const JsonLeaves& json, std::string_view path, int exponent,
+                                                const std::string& place) {
+  const JsonLeaf* const leaf = json.find(path);
+  if (leaf == nullptr || !leaf->is_number) {
+    return std::nullopt;
+  }
+  std::int64_t t_ns = 0;
+  if (scaled_integer(leaf->text, exponent, t_ns) != NumberStatus::ok) {
+    throw Error(ErrorKind::input, place, "time '" + leaf->text.substr(0, 40) + "' does not fit int64 nanoseconds");
+  }
+  return t_ns;
+}
+
+// Calls use(json, line number, place) for each line. A last line that was cut off is left out with a warning: that is
+// how a recording ends when the battery does.
+template <class Use>
+void for_each_json_line(const GazeFile& file, Warnings& warnings, const Use& use) {
+  LineReader lines(file.text);
+  for (std::string_view line; lines.next(line);) {
+    if (trim(line).empty()) {
+      continue;
+    }
+    const std::string place = place_of(file, lines.number());
+    std::optional<JsonLeaves> json;
+    try {
+      json.emplace(line, place);
+    } catch (const Error&) {
+      if (!lines.rest().empty() || file.text.ends_with('\n') || lines.number() == 1) {
+        throw;
+      }
+      warnings.push_back(place + ": the last line is cut off; left out");
+      return;
+    }
+    use(*json, lines.number(), place);
+  }
+}
+
+}  // namespace gazetrace

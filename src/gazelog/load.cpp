@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "core/text.hpp"
+#include "gazelog/decimal_comma.hpp"
+#include "gazelog/gaze_format.hpp"
+#include "gazelog/gzip.hpp"
+#include "gazelog/mending.hpp"
+#include "gazelog/read_support.hpp"
+#include "gazetrace/gaze_raw.hpp"
+
+namespace gazetrace {
+
+#define GAZE_FORMAT(name, ...)               \
+  double sniff_gaze_##name(const GazeFile&); \
+  RawGaze read_gaze_##name(const GazeFile&, const GazeReadOptions&);
+#include "gazelog/formats/formats.def"
+#undef GAZE_FORMAT
+
+namespace {
+
+const std::vector<GazeFormat>& formats() {
+  static const std::vector<GazeFormat> all{
+#define GAZE_FORMAT(name, text, proof, description) \
+  {text, FormatProof::proof, description, sniff_gaze_##name, read_gaze_##name},
+#include "gazelog/formats/formats.def"
+#undef GAZE_FORMAT
+  };
+  return all;
+}
+
+const GazeFormat& format_by_name(const std::string& name) {
+  std::vector<std::string> names;
+  for (const GazeFormat& format : formats()) {
+    if (format.name == name) {
+      return format;
+    }
+    names.push_back(format.name);
+  }
+  throw Error(ErrorKind::usage, "", unknown_name_message("gaze format", name, names));
+}
+
+struct Guess {
+  const GazeFormat* format;
+  double confidence;
+};
+
+// The surest first; of equals the one listed first.
+std::vector<Guess> sniff(const GazeFile& file) {
+  std::vector<Guess> guesses;
+  for (const GazeFormat& format : formats()) {
+    if (const double confidence = format.sniff(file); confidence > 0) {
+      guesses.push_back({&format, confidence});
+    }
+  }
+  std::stable_sort(guesses.begin(), guesses.end(),
+                   [](const Guess& a, const Guess& b) { return a.confidence > b.confidence; });
+  return guesses;
+}
+
+// A file of another format than the one that was named is told so.
+RawGaze read_named(const GazeFormat& format, const GazeFile& file, const GazeReadOptions& options) {
+  try {
+    return format.read(file, options);
+  } catch (const Error& error) {
+    const std::vector<Guess> guesses = sniff(file);
+    constexpr double kSure = 0.8;
+    if (error.kind() != ErrorKind::input || guesses.empty() || guesses.front().format == &format ||
+        guesses.front().confidence < kSure) {
+      throw;
+    }
+    throw Error(ErrorKind::input, "", error.what(), "it looks like --gaze-format " + guesses.front().format->name);
+  }
+}
+
+// A folder stands for the recording in it.
+std::string file_of(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  if (!fs::is_directory(path, code)) {
+    return path;
+  }
+  for (const char* const name : {"gazedata.gz", "livedata.json.gz", "gaze ps1.raw", "gaze_positions.csv", "gaze.csv"}) {
+    if (fs::exists(fs::path(path) / name, code)) {
+      return (fs::path(path) / name).string();
+    }
+  }
+  throw Error(ErrorKind::input, path, "is a folder without a recording of a known name", "name the log itself");
+}
+
+GazeFile open_file(const std::string& path) {
+  GazeFile file{file_of(path), {}};
+  std::string bytes = read_file_bytes(file.path);
+  if (is_gzip(bytes)) {
+    bytes = unpack_gzip(bytes, path);
+  }
+  // Records of numbers may begin like a byte-order mark.
+  file.text = file.path.ends_with(".raw") ? std::move(bytes) : utf8_text(std::move(bytes));
+  return file;
+}
+
+// Columns that decimal commas split, where the user says so or, where the log is only looked at, where they are seen.
+std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOptions& options, Mending mending) {
+  if (!options.decimal_comma && mending == Mending::none) {
+    return std::nullopt;
+  }
+  DecimalCommas commas = find_decimal_commas(file);
+  using Status = DecimalCommas::Status;
+  if (commas.status == Status::none) {
+    return std::nullopt;
+  }
+  if (commas.status == Status::ambiguous) {
+    throw Error(
+        ErrorKind::input, file.path,
+        "rows hold more cells than there are columns, as with decimal commas between commas, and cannot be told "
+        "apart for certain",
+        "export again with decimal points, or with tabs or semicolons between the columns");
+  }
+  file.fractions = std::move(commas.fractions);
+  if (options.decimal_comma) {
+    return std::nullopt;
+  }
+  const std::string problem = fmt::format(
+      "rows hold more cells than the {} columns: numbers have decimal commas, and commas separate the columns, too",
+      file.fractions.size());
+  return RawFault{"decimal-commas", file.path, problem, "give `gaze-decimal-comma`", "--gaze-decimal-comma", problem};
+}
+
+// Says so where the numbers of a table have decimal commas. The first rows decide.
+void add_decimal_mark(const GazeFile& file, RawGaze& raw) {
+  std::size_t commas = 0;
+  std::size_t points = 0;
+  std::vector<std::string_view> cells;
+  LineReader lines(head_of(file));
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty() || ((text.front() < '0' || text.front() > '9') && text.front() != '-')) {
+      continue;
+    }
+    const char separator = text.find('\t') != std::string_view::npos  ? '\t'
+                           : text.find(';') != std::string_view::npos ? ';'
+                                                                      : ' ';
+    split_cells(text, separator, cells);
+    for (const std::string_view cell : cells) {
+      const std::size_t mark = cell.find_first_of(",.");
+      if (mark != std::string_view::npos && cells.size() > 2 && number_from(trim(cell))) {
+        (cell[mark] == ',' ? commas : points) += 1;
+      }
+    }
+  }
+  if (!file.fractions.empty() || commas > 9 * points) {
+    add_note(raw, "decimal mark", "comma", Evidence::statistics,
+             file.fractions.empty() ? "understood" : "cells that it split are joined");
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(GazeValidity validity) {
+  switch (validity) {
+    case GazeValidity::ok:
+      return "ok";
+    case GazeValidity::low_confidence:
+      return "low_confidence";
+    case GazeValidity::blink:
+      return "blink";
+    case GazeValidity::lost:
+      return "lost";
+    case GazeValidity::off_screen:
+      return "off_screen";
+    case GazeValidity::interpolated:
+      return "interpolated";
+  }
+  return "lost";
+}
+
+std::string_view to_string(Eye eye) {
+  switch (eye) {
+    case Eye::left:
+      return "left";
+    case Eye::right:
+      return "right";
+    case Eye::cyclopean:
+      return "cyclopean";
+  }
+  return "cyclopean";
+}
+
+std::string_view to_string(GazeDevice device) {
+  return device == GazeDevice::desktop ? "desktop" : "head-mounted";
+}
+
+std::string_view to_string(GazeKind kind) {
+  switch (kind) {
+    case GazeKind::screen:
+      return "screen";
+    case GazeKind::direction:
+      return "direction";
+    case GazeKind::scene_camera:
+      return "scene-camera";
+  }
+  return "screen";
+}
+
+std::string_view to_string(Evidence evidence) {
+  switch (evidence) {
+    case Evidence::option:
+      return "option";
+    case Evidence::sidecar:
+      return "sidecar";
+    case Evidence::header:
+      return "header";
+    case Evidence::format:
+      return "format";
+    case Evidence::statistics:
+      return "statistics";
+  }
+  return "statistics";
+}
+
+std::string_view to_string(GazeEventType type) {
+  switch (type) {
+    case GazeEventType::fixation:
+      return "fixation";
+    case GazeEventType::saccade:
+      return "saccade";
+    case GazeEventType::blink:
+      return "blink";
+    case GazeEventType::message:
+      return "message";
+    case GazeEventType::segment:
+      return "segment";
+  }
+  return "message";
+}
+
+std::vector<GazeFormatInfo> gaze_formats() {
+  std::vector<GazeFormatInfo> infos;
+  for (const GazeFormat& format : formats()) {
+    infos.push_back({format.name, format.description, format.proof});
+  }
+  return infos;
+}
+
+std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
+  std::vector<GazeFormatGuess> guesses;
+  for (const Guess& guess : sniff(open_file(path))) {
+    guesses.push_back({guess.format->name, guess.confidence});
+  }
+  return guesses;
+}
+
+RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending) {
+  const GazeFormat* format = options.format.empty() ? nullptr : &format_by_name(options.format);
+  double confidence = 1;
+  GazeFile file = open_file(path);
+  if (file.text.empty() || trim(head_of(file)).empty()) {
+    throw Error(ErrorKind::input, path, "is empty", "give a gaze log with a header and at least one sample");
+  }
+  if (format == nullptr) {
+    const std::vector<Guess> guesses = sniff(file);
+    if (guesses.empty()) {
+      throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
+                  "give a CSV or TSV with a header, or name the format with --gaze-format");
+    }
+    format = guesses.front().format;
+    confidence = guesses.front().confidence;
+  }
+  const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
+  RawGaze raw = options.format.empty() ? format->read(file, options) : read_named(*format, file, options);
+  if (commas) {
+    raw.faults.push_back(*commas);
+  }
+  add_decimal_mark(file, raw);
+  raw.source = path;
+  raw.format = format->name;
+  raw.format_confidence = confidence;
+  return raw;
+}
+
+RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
+  return read_raw_gaze(path, options, Mending::none);
+}
+
+GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
+  const RawGaze raw = read_raw_gaze(path, options);
+  const Conventions conventions = conclude_conventions(raw, options);
+  if (!raw.faults.empty()) {
+    const RawFault& fault = raw.faults.front();
+    throw Error(ErrorKind::input, fault.place, fault.problem, fault.remedy);
+  }
+  return interpret(raw, conventions);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/mapped_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "gazelog/read_support.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kClosedOpenness = 0.1;
+
+// One row after another into samples of every source.
+class RowReader {
+ public:
+  RowReader(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan, const GazeColumns& columns,
+            ValidityStyle style, const TimeScale& time)
+      : plan_(plan),
+        columns_(columns),
+        style_(style),
+        validity_(columns, style),
+        rows_(file, table, plan.needed_cells()),
+        time_(time) {
+    for (const GazeSource& source : plan.sources) {
+      has_origins_ = has_origins_ || source.origin[0].has_value();
+    }
+    has_head_ = plan.head_position[0] && plan.head_rotation[0];
+  }
+
+  void read_all(RawGaze& raw) {
+    while (rows_.next()) {
+      rows_.check_length();
+      if (repeats_frame()) {
+        continue;
+      }
+      const std::int64_t t_ns = rows_.time_ns(plan_.time, time_);
+      EyeOrigins origins{{nan_, nan_, nan_}, {nan_, nan_, nan_}, t_ns};
+      for (const GazeSource& source : plan_.sources) {
+        raw.rows.push_back(read_source(source, t_ns, raw.kind, origins));
+      }
+      if (has_origins_) {
+        raw.origins.push_back(origins);
+      }
+      if (has_head_) {
+        read_head(t_ns, raw);
+      }
+    }
+    repeated_headers = rows_.repeated_headers;
+  }
+
+  [[nodiscard]] const ValidityReader& validity() const { return validity_; }
+  std::size_t repeated_headers = 0;
+  std::size_t repeated_frames = 0;
+  std::size_t zero_pairs = 0;  // exactly (0, 0) without a word on their validity
+
+ private:
+  bool repeats_frame() {
+    if (!plan_.frame) {
+      return false;
+    }
+    const std::string_view frame = rows_.cell(*plan_.frame);
+    const bool repeats = !frame.empty() && frame == last_frame_;
+    last_frame_ = frame;
+    repeated_frames += repeats ? 1 : 0;
+    return repeats;
+  }
+
+  RawSample read_source(const GazeSource& source, std::int64_t t_ns, GazeKind kind, EyeOrigins& origins) {
+    RawSample sample;
+    sample.row = rows_.line();
+    sample.t_ns = t_ns;
+    sample.eye = source.eye;
+    sample.confidence = static_cast<float>(rows_.number(source.confidence));
+    sample.pupil = static_cast<float>(rows_.number(source.pupil));
+    if (columns_.valid_mask != 0 && sample.pupil <= 0) {
+      sample.pupil = nan_;  // SDKs with bit masks write -1
+    }
+    if (plan_.eye && source.eye == Eye::cyclopean) {
+      const std::string_view text = rows_.cell(*plan_.eye);
+      const auto eye = eye_from(text);
+      if (!eye) {
+        rows_.fail(fmt::format("eye '{}' is not left, right or cyclopean", text),
+                   "mend the row, or leave the column out");
+      }
+      sample.eye = *eye;
+    }
+    if (source.validity) {
+      const std::string_view text = rows_.cell(*source.validity);
+      const auto validity = validity_.read(text);
+      if (!validity) {
+        rows_.fail(unknown_name_message("validity", text,
+                                        {"ok", "low_confidence", "blink", "lost", "off_screen", "interpolated"}),
+                   "");
+      }
+      sample.validity = *validity;
+    }
+    if (source.openness && rows_.number(*source.openness) <= kClosedOpenness) {
+      sample.validity = GazeValidity::blink;
+    }
+    read_position(source, kind, sample);
+    read_origin(source, sample.eye, origins);
+    return sample;
+  }
+
+  void read_position(const GazeSource& source, GazeKind kind, RawSample& sample) {
+    const double x = rows_.number(source.x);
+    const double y = rows_.number(source.y);
+    const double z = source.z ? rows_.number(*source.z) : 0.0;
+    // Loggers write what they do not know as zeros: (0, 0) without validity is missing, not the corner.
+    const bool said_bad = !is_usable(sample.validity) || sample.confidence == 0.0F;
+    const bool zero = x == 0 && y == 0 && z == 0;
+    const bool missing = std::isnan(x) || std::isnan(y) || std::isnan(z) ||
+                         (zero && ((said_bad && style_ == ValidityStyle::any) || kind == GazeKind::direction));
+    if (missing && is_usable(sample.validity)) {
+      sample.validity = GazeValidity::lost;
+    }
+    zero_pairs += zero && !missing && !source.validity ? 1 : 0;
+    if (kind == GazeKind::direction) {
+      sample.at = missing ? Vec3d{kNan, kNan, kNan} : Vec3d{x, y, z};
+    } else {
+      sample.at.x = missing ? kNan : x;
+      sample.at.y = missing ? kNan : y;
+    }
+  }
+
+  void read_origin(const GazeSource& source, Eye eye, EyeOrigins& origins) {
+    if (!source.origin[0] || eye == Eye::cyclopean) {
+      return;
+    }
+    const auto scale = columns_.origin_mm_per_unit;
+    Vec3f& origin = eye == Eye::left ? origins.left_mm : origins.right_mm;
+    origin = {static_cast<float>(scale * rows_.number(source.origin[0])),
+              static_cast<float>(scale * rows_.number(source.origin[1])),
+              static_cast<float>(scale * rows_.number(source.origin[2]))};
+  }
+
+  void read_head(std::int64_t t_ns, RawGaze& raw) {
+    const auto vector = [&](const auto& c) {
+      return Vec3d{rows_.number(c[0]), rows_.number(c[1]), rows_.number(c[2])};
+    };
+    const Vec3d position = vector(plan_.head_position) * columns_.head_m_per_unit;
+    const Vec3d rotation = vector(plan_.head_rotation);
+    const Quatd q = plan_.head_rotation[3]
+                        ? Quatd{rotation.x, rotation.y, rotation.z, rows_.number(*plan_.head_rotation[3])}
+                        : quaternion_from_unity_euler_deg(rotation);
+    raw.head.push_back(head_pose_from_axes(t_ns, position, q, columns_.head_axes));
+  }
+
+  static constexpr float nan_ = std::numeric_limits<float>::quiet_NaN();
+  const ColumnPlan& plan_;
+  const GazeColumns& columns_;
+  ValidityStyle style_;
+  ValidityReader validity_;
+  TableRows rows_;
+  TimeScale time_;
+  bool has_origins_ = false;
+  bool has_head_ = false;
+  std::string last_frame_;
+};
+
+int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& table, std::size_t column, RawGaze& raw) {
+  const std::string place = place_of(file, table.header_line);
+  std::vector<double> times;
+  TableRows rows(file, table, column + 1);
+  while (times.size() < 2000 && rows.next()) {
+    if (const auto value = number_from(rows.cell(column))) {
+      times.push_back(*value);
+    }
+  }
+  const auto exponent = guess_time_exponent(times);
+  const std::string& name = table.headings[column].text;
+  if (!exponent) {
+    throw Error(ErrorKind::input, place,
+                fmt::format("the unit of time column '{}' is not stated and cannot be guessed from its steps", name),
+                "give --gaze-time-unit, or write it into the header: t[ms]");
+  }
+  raw.warnings.push_back(fmt::format("{}: guessed from its steps that '{}' is in {}; state it with --gaze-time-unit",
+                                     place, name, time_unit_text(*exponent)));
+  return *exponent;
+}
+
+// .NET counts 100 ns from the year 1, which is beyond int64 nanoseconds: from 1970 then.
+TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan,
+                     const GazeColumns& columns, Evidence declared, RawGaze& raw) {
+  constexpr std::int64_t kTicksTo1970 = 621'355'968'000'000'000;
+  TimeScale scale{plan.time_exponent ? *plan.time_exponent : time_exponent_by_statistics(file, table, plan.time, raw),
+                  0};
+  const std::string& name = table.headings[plan.time].text;
+  TableRows rows(file, table, plan.time + 1);
+  std::int64_t first = 0;
+  if (scale.exponent == 2 && rows.next() && scaled_integer(rows.cell(plan.time), 0, first) == NumberStatus::ok &&
+      first > kTicksTo1970) {
+    scale.subtract = kTicksTo1970;
+    raw.clock = "computer clock, from 1970";
+  }
+  raw.declared.time_column = {name, columns.time.empty() ? Evidence::header : declared, {}};
+  const Evidence evidence = columns.time_unit != TimeUnit::automatic ? declared
+                            : plan.time_exponent                     ? Evidence::header
+                                                                     : Evidence::statistics;
+  raw.declared.time_exponent = {scale.exponent, evidence,
+                                scale.subtract == 0 ? "" : ".NET ticks; counted from 1970 here"};
+  return scale;
+}
+
+void add_row_warnings(RawGaze& raw, const RowReader& rows, const ColumnPlan& plan, const DelimitedTable& table) {
+  const std::size_t count = raw.rows.size();
+  if (rows.repeated_headers > 0) {
+    raw.warnings.push_back(
+        fmt::format("{}: the header is repeated {} times; skipped", raw.source, rows.repeated_headers));
+  }
+  if (rows.repeated_frames > 0) {
+    raw.warnings.push_back(fmt::format("{}: {} rows repeat the sample counter '{}' of the row before; dropped",
+                                       raw.source, rows.repeated_frames, table.headings[*plan.frame].text));
+  }
+  if (rows.zero_pairs * 20 > count) {
+    raw.warnings.push_back(
+        fmt::format("{}: {} of {} positions are exactly (0, 0): missing values written as zero? Name a validity column",
+                    raw.source, rows.zero_pairs, count));
+  }
+  const OptionalColumn& validity = plan.sources.front().validity;
+  const auto is_good = [](const RawSample& s) { return s.validity != GazeValidity::lost; };
+  if (validity && std::none_of(raw.rows.begin(), raw.rows.end(), is_good)) {
+    raw.warnings.push_back(
+        fmt::format("{}: no row is valid by column '{}', which holds: {}; say with "
+                    "--gaze-valid-values which of them are good",
+                    raw.source, table.headings[*validity].text, fmt::join(rows.validity().seen(), ", ")));
+  }
+}
+
+std::string position_columns(const ColumnPlan& plan, const DelimitedTable& table) {
+  std::string text;
+  for (const GazeSource& source : plan.sources) {
+    for (const OptionalColumn& column : {OptionalColumn(source.x), OptionalColumn(source.y), source.z}) {
+      text += column ? (text.empty() ? "" : ", ") + table.headings[*column].text : "";
+    }
+  }
+  return text;
+}
+
+void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& file, const DelimitedTable& table,
+                       const GazeColumns& columns, ValidityStyle style, Evidence declared) {
+  const std::string place = place_of(file, table.header_line);
+  const std::string names = position_columns(plan, table);
+  if (raw.kind == GazeKind::direction) {
+    const bool is_default = columns.axes == GazeAxes::automatic;
+    declare_directions(raw, {names, Evidence::header}, is_default ? GazeAxes::gl : columns.axes,
+                       is_default ? Evidence::format : declared, place);
+    raw.declared.unit.evidence = Evidence::header;
+    return;
+  }
+  // Fractions of gazetrace CSV count from the top left by definition; of other tables it is only likely.
+  const bool defined = style == ValidityStyle::names && plan.unit == PositionUnit::fraction;
+  const bool is_default = columns.origin == PositionOrigin::automatic;
+  declare_places(raw,
+                 {plan.unit,
+                  !is_default ? columns.origin
+                  : defined   ? PositionOrigin::top_left
+                              : PositionOrigin::automatic,
+                  plan.unit_evidence == Evidence::option ? declared : plan.unit_evidence, names,
+                  // A log that names the state of each sample has said so itself.
+                  style == ValidityStyle::names && plan.sources.front().validity.has_value(),
+                  is_default ? Evidence::format : declared},
+                 place);
+}
+
+}  // namespace
+
+RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
+                          ValidityStyle style, Evidence evidence) {
+  if (table.headings.empty()) {
+    throw Error(ErrorKind::input, file.path, "holds no sample",
+                "a gaze log needs a header and at least one row below it");
+  }
+  const std::string place = place_of(file, table.header_line);
+  if (table.headings.size() < 3) {
+    throw Error(ErrorKind::input, place,
+                fmt::format("'{}' is not a table of time and position", trim(table.header).substr(0, 60)),
+                "separate the cells by commas, semicolons or tabs");
+  }
+  if (!table.has_header && (columns.time.empty() || (columns.x.empty() && columns.left.x.empty()))) {
+    throw Error(ErrorKind::input, place,
+                fmt::format("there is no header, only {} columns of numbers", table.headings.size()),
+                "say by number which is which: --gaze-time-column 1 --gaze-x-column 2 --gaze-y-column 3");
+  }
+  const GazetracePreamble preamble = read_preamble(file, table);
+  const ColumnPlan plan = plan_columns(table, columns, place);
+  RawGaze raw;
+  raw.source = file.path;
+  raw.kind = plan.kind;
+  raw.clock = preamble.clock;
+  raw.recording_geometry = preamble.geometry;
+  raw.pixels_per_degree = preamble.pixels_per_degree;
+  if (preamble.is_scene_camera) {
+    raw.way_out = "--gaze-frame scene-camera looks at it";
+    raw.kind = GazeKind::scene_camera;
+  }
+  raw.pupil_unit = plan.pupil_unit;
+  raw.warnings = plan.warnings;
+  if (trim(table.body).empty()) {
+    throw Error(ErrorKind::input, file.path, "holds no sample", "a gaze log needs at least one row below its header");
+  }
+  const TimeScale time = time_scale(file, table, plan, columns, evidence, raw);
+  raw.rows.reserve((static_cast<std::size_t>(std::count(table.body.begin(), table.body.end(), '\n')) + 1) *
+                   plan.sources.size());
+  RowReader rows(file, table, plan, columns, style, time);
+  rows.read_all(raw);
+  declare_positions(raw, plan, file, table, columns, style, evidence);
+  add_row_warnings(raw, rows, plan, table);
+  return raw;
+}
+
+RawGaze read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+                    const GazeColumns& preset) {
+  return read_mapped_table(file, table, merge_gaze_columns(preset, options.columns), ValidityStyle::any,
+                           options.columns == GazeColumns{} ? Evidence::format : Evidence::option);
+}
+
+}  // namespace gazetrace

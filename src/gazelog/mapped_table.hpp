@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A table whose columns are declared or found by header: the generic format, gazetrace CSV, and presets.
+#pragma once
+
+#include "gazelog/columns.hpp"
+#include "gazelog/validity.hpp"
+
+namespace gazetrace {
+
+// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header; of gazetrace CSV also what
+// is no row: `# event TYPE EYE BEGIN_NS END_NS TEXT`, `# calibration EYE NS MEAN_DEG MAX_DEG`, `# head NS X Y Z QX QY
+// QZ QW`.
+struct GazetracePreamble {
+  std::optional<int> version;  // of `# gazetrace-gaze N`
+  std::string clock;
+  bool is_scene_camera = false;  // `# kind scene-camera`
+  std::optional<DisplayGeometry> geometry;
+  std::optional<Vec2d> pixels_per_degree;
+  double nominal_rate_hz = 0;        // `# rate_hz R`; 0: not stated
+  bool sample_age_unknown = false;   // `# sample_age unknown`
+  std::optional<Eye> eye;            // `# eye right`: that whose gaze the cyclopean rows are, or was taken without such
+  std::optional<GazeDevice> device;  // `# device desktop`, where it does not follow from the kind of gaze
+  std::vector<GazeEvent> events;
+  std::vector<GazeCalibration> calibrations;
+  std::vector<HeadPose> head;
+};
+// Error(input) for lines that say wrongly what they say.
+GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
+
+// Reads the rows, and declares what the header and the map say of them. `columns` replaces
+// `options.columns`: a preset merged with what the user declared; `evidence` is where the rest of it comes from.
+RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
+                          ValidityStyle style, Evidence evidence = Evidence::option);
+
+// A format that is a table with its own columns: `preset` under what the user declared.
+RawGaze read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
+                    const GazeColumns& preset);
+
+}  // namespace gazetrace

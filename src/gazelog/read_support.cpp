@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/read_support.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "gazelog/interpret.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+
+void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail) {
+  raw.notes.push_back({std::move(what), std::move(value), evidence, std::move(detail)});
+}
+
+TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
+                       Evidence evidence, const std::string& place) {
+  const auto given = time_exponent_of(options.columns.time_unit);
+  if (given && *given != stated) {
+    raw.warnings.push_back(fmt::format("{}: {} says that '{}' is in {}; --gaze-time-unit {} was given and is used",
+                                       place, evidence == Evidence::header ? "the header" : "the format", column,
+                                       time_unit_text(stated), time_unit_text(*given)));
+  }
+  raw.declared.time_column = {
+      std::string(column), options.columns.time.empty() ? Evidence::header : Evidence::option, {}};
+  raw.declared.time_exponent = {given.value_or(stated), given ? Evidence::option : evidence, {}};
+  return {raw.declared.time_exponent.value, 0};
+}
+
+std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
+                        const std::string& place) {
+  return options.columns.time.empty() ? own : declared_column(table, options.columns.time, place);
+}
+
+void declare_places(RawGaze& raw, const PlaceSpace& space, const std::string& place) {
+  Conventions& c = raw.declared;
+  c.form = PlaceForm::position;
+  c.position_columns = {space.columns, Evidence::header, {}};
+  c.unit = {space.unit, space.evidence, {}};
+  c.origin = {space.origin, space.origin_evidence.value_or(space.evidence), {}};
+  c.off_screen_is_told = space.validity_is_final;
+  raw.place = place;
+}
+
+void declare_directions(RawGaze& raw, Concluded<std::string> columns, GazeAxes axes, Evidence evidence,
+                        const std::string& place) {
+  Conventions& c = raw.declared;
+  c.form = PlaceForm::vector;
+  c.position_columns = std::move(columns);
+  c.unit = {PositionUnit::unit_vector, evidence, {}};
+  c.axes = {axes, evidence, {}};
+  raw.kind = GazeKind::direction;
+  raw.place = place;
+}
+
+void WitnessTally::add(double x, double y, double witness_x, double witness_y) {
+  const std::array<double, 4> value{x, y, witness_x, witness_y};
+  if (!std::isfinite(x + y + witness_x + witness_y)) {
+    return;
+  }
+  ++count_;
+  std::array<double, 4> before{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    before[i] = value[i] - mean_[i];
+    mean_[i] += before[i] / static_cast<double>(count_);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) {
+      product_[i][j] += before[i] * (value[j] - mean_[j]);
+    }
+  }
+}
+
+void WitnessTally::finish(RawGaze& raw, std::string what, std::optional<Eye> eye) const {
+  constexpr std::size_t kLeast = 5;
+  if (count_ < kLeast) {
+    return;
+  }
+  const auto correlation = [&](std::size_t i, std::size_t j) {
+    const double spread = std::sqrt(product_[i][i]) * std::sqrt(product_[j][j]);
+    return spread > 0 ? product_[i][j] / spread : kNan;
+  };
+  raw.witnesses.push_back(
+      {std::move(what), count_, correlation(0, 2), correlation(1, 3), correlation(0, 3), correlation(1, 2), eye});
+}
+
+Quatd quaternion_from_unity_euler_deg(const Vec3d& rotation) {
+  const auto about = [](double x, double y, double z, double angle_deg) {
+    const double half = 0.5 * angle_deg * kRadPerDeg;
+    return Quatd{x * std::sin(half), y * std::sin(half), z * std::sin(half), std::cos(half)};
+  };
+  return about(0, 1, 0, rotation.y) * about(1, 0, 0, rotation.x) * about(0, 0, 1, rotation.z);
+}
+
+HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Quatd& orientation, GazeAxes axes) {
+  const Quatd& q = orientation;
+  switch (axes) {
+    case GazeAxes::automatic:
+    case GazeAxes::gl:
+      return {t_ns, position_m, q};
+    case GazeAxes::unity:
+      // World and head are both mirrored by diag(1, 1, -1): rotations about x and y turn the other way.
+      return {t_ns, from_axes(position_m, axes), {-q.x, -q.y, q.z, q.w}};
+    case GazeAxes::sranipal:
+      // A turn by 180 degrees about y of world and head: rotations about x and z turn the other way.
+      return {t_ns, from_axes(position_m, axes), {-q.x, q.y, -q.z, q.w}};
+    case GazeAxes::cv:
+      return {t_ns, from_axes(position_m, axes), {q.x, -q.y, -q.z, q.w}};
+  }
+  return {t_ns, position_m, q};
+}
+
+void LabelRuns::add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row) {
+  if (!open_ || key_ != key || events_.back().type != type) {
+    events_.push_back({type, eye, t_ns, t_ns, std::string(), row});
+    key_ = key;
+    open_ = true;
+  }
+  events_.back().end_ns = t_ns;
+}
+
+void LabelRuns::end() {
+  open_ = false;
+}
+
+void LabelRuns::finish(RawGaze& raw) {
+  raw.events.insert(raw.events.end(), events_.begin(), events_.end());
+}
+
+RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye) {
+  RawSample sample;
+  sample.t_ns = t_ns;
+  sample.row = row;
+  sample.eye = eye;
+  sample.validity = GazeValidity::lost;
+  sample.confidence = sample.pupil = static_cast<float>(kNan);
+  sample.at = {kNan, kNan, kNan};
+  return sample;
+}
+
+}  // namespace gazetrace

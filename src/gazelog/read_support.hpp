@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What readers share. A reader fills rows as they stand in the file, and declares what the file says of its numbers;
+// what they mean in the end is concluded and interpreted elsewhere (conclude.cpp, interpret.cpp).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazelog/table.hpp"
+
+namespace gazetrace {
+
+// Something that the file says, in words for people.
+void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail = {});
+
+// Declares the column and the unit of the stamps: the unit that the user gave, else `stated`.
+TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
+                       Evidence evidence, const std::string& place);
+
+// The column of the stamps of a table: the one that the user named, else the format's own.
+std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
+                        const std::string& place);
+
+// How a format writes positions. Unit and origin may be automatic, where the file does not say them.
+struct PlaceSpace {
+  PositionUnit unit = PositionUnit::px;
+  PositionOrigin origin = PositionOrigin::top_left;
+  Evidence evidence = Evidence::format;
+  std::string columns;                                     // in words
+  bool validity_is_final = false;                          // off-screen is said by the log itself
+  std::optional<Evidence> origin_evidence = std::nullopt;  // where it is not that of the unit
+};
+// `place`: file:line where the log says so, for messages.
+void declare_places(RawGaze& raw, const PlaceSpace& space, const std::string& place);
+// Vectors in `axes`, which also hold for the eyes' origins.
+void declare_directions(RawGaze& raw, Concluded<std::string> columns, GazeAxes axes, Evidence evidence,
+                        const std::string& place);
+
+// A head's pose as written; `rotation` in degrees about x, y, z, applied in Unity's order z, x, y.
+Quatd quaternion_from_unity_euler_deg(const Vec3d& rotation);
+HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Quatd& orientation, GazeAxes axes);
+
+// Gathers the correlations of a GazeWitness; rows where any of the four is not finite are left out.
+class WitnessTally {
+ public:
+  void add(double x, double y, double witness_x, double witness_y);
+  // Adds the witness where there were enough rows.
+  // `eye`: whose gaze it tells of, where not of all rows'.
+  void finish(RawGaze& raw, std::string what, std::optional<Eye> eye = std::nullopt) const;
+
+ private:
+  std::size_t count_ = 0;
+  std::array<double, 4> mean_{};                    // x, y, witness x, witness y
+  std::array<std::array<double, 4>, 4> product_{};  // sums of products of differences from the means
+};
+
+// Runs of one label over the rows become events: "Fixation 12".
+class LabelRuns {
+ public:
+  void add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row);
+  void end();  // a row without a label
+  void finish(RawGaze& raw);
+
+ private:
+  std::vector<GazeEvent> events_;
+  std::string key_;
+  bool open_ = false;
+};
+
+// A row whose place is not known.
+RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye);
+
+}  // namespace gazetrace

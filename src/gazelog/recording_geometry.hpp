@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "gazetrace/gaze_raw.hpp"
+
+namespace gazetrace {
+
+// The display that converts positions: what the log states, overruled by what the user gave, with a warning where they
+// differ. What the user gave is the recording's geometry from then on: `c.recording_geometry`.
+std::optional<Concluded<DisplayGeometry>> conversion_display(const RawGaze& raw, const GazeReadOptions& options,
+                                                             Conventions& c);
+
+}  // namespace gazetrace

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+
+#include "core/text.hpp"
+#include "gazelog/units.hpp"
+
+namespace gazetrace {
+namespace {
+
+char choose_separator(std::string_view header) {
+  for (const char separator : {'\t', ';'}) {
+    if (header.find(separator) != std::string_view::npos) {
+      return separator;
+    }
+  }
+  return ',';
+}
+
+bool is_number_row(const std::vector<std::string_view>& cells) {
+  std::string buffer;
+  bool any = false;
+  for (const std::string_view cell : cells) {
+    const std::string_view text = cell_text(cell, buffer);
+    const bool number = number_from(text).has_value();
+    if (!number && !is_missing(text)) {
+      return false;
+    }
+    any = any || number;
+  }
+  return any;
+}
+
+// Only the first `count` cells are wanted; without quotes a cell ends at the next separator.
+void split_row(std::string_view line, const DelimitedTable& table, std::size_t count,
+               std::vector<std::string_view>& cells) {
+  if (table.has_quotes) {
+    split_cells(line, table.separator, cells);
+    return;
+  }
+  cells.clear();
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  const auto next_separator = [&](const char* from) {
+    const auto* const found = static_cast<const char*>(
+        from == end ? nullptr : std::memchr(from, table.separator, static_cast<std::size_t>(end - from)));
+    return found == nullptr ? end : found;
+  };
+  while (cells.size() < count) {
+    const char* stop = next_separator(at);
+    // A missing value stands in one cell even where numbers take two.
+    const bool joins = cells.size() < table.fractions.size() && table.fractions[cells.size()] && stop != end &&
+                       stop != at && stop[-1] >= '0' && stop[-1] <= '9';
+    if (joins) {
+      stop = next_separator(stop + 1);
+    }
+    cells.emplace_back(at, static_cast<std::size_t>(stop - at));
+    if (stop == end) {
+      return;
+    }
+    at = stop + 1;
+  }
+}
+
+bool is_row(std::string_view line) {
+  const std::string_view text = trim(line);
+  return !text.empty() && text.front() != '#';
+}
+
+std::optional<std::size_t> first_called(const std::vector<ColumnHeading>& headings, std::string_view name) {
+  const std::string wanted = letters_and_digits(name);
+  for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
+    for (std::size_t i = 0; i < headings.size(); ++i) {
+      if (letters_and_digits(headings[i].*part) == wanted) {
+        return i;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_known_unit(std::string_view text) {
+  return time_exponent(text).has_value() || position_unit_from(text).has_value();
+}
+
+}  // namespace
+
+std::string letters_and_digits(std::string_view text) {
+  std::string kept;
+  for (const char c : to_lower(text)) {
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) {
+      kept += c;
+    }
+  }
+  return kept;
+}
+
+ColumnHeading parse_heading(std::string_view cell) {
+  std::string buffer;
+  const std::string_view text = cell_text(cell, buffer);
+  ColumnHeading heading{std::string(text), std::string(text), ""};
+  for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')')}) {
+    const std::size_t at = text.rfind(open);
+    if (at != std::string_view::npos && at > 0 && text.back() == close) {
+      heading.name = trim(text.substr(0, at));
+      heading.unit = trim(text.substr(at + 1, text.size() - at - 2));
+      return heading;
+    }
+  }
+  // "x_px", "time_ms": only where the last part is a unit and no column of its own.
+  const std::size_t bar = text.rfind('_');
+  if (bar != std::string_view::npos && bar > 0 && is_known_unit(text.substr(bar + 1)) && text.substr(bar + 1) != "1") {
+    heading.name = text.substr(0, bar);
+    heading.unit = text.substr(bar + 1);
+  }
+  return heading;
+}
+
+bool is_missing(std::string_view text) {
+  if (text.empty() || text == "." || text == "-") {
+    return true;
+  }
+  if (text.size() > 9) {
+    return false;
+  }
+  const std::string lower = to_lower(text);
+  for (const std::string_view marker : {"n/a", "na", "nan", "-nan", "-nan(ind)", "nan(ind)", "none", "null"}) {
+    if (lower == marker) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string place_of(const GazeFile& file, std::int64_t line) {
+  return fmt::format("{}:{}", file.path, line);
+}
+
+void DelimitedTable::check_unique(std::size_t column) const {
+  const std::string wanted = letters_and_digits(headings[column].text);
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    if (i != column && !wanted.empty() && letters_and_digits(headings[i].text) == wanted) {
+      throw Error(
+          ErrorKind::input, place,
+          fmt::format("columns {} ('{}') and {} ('{}') have one name", std::min(column, i) + 1,
+                      headings[std::min(column, i)].text, std::max(column, i) + 1, headings[std::max(column, i)].text),
+          "rename the one that is not meant, or name columns by number, such as --gaze-x-column 2");
+    }
+  }
+}
+
+std::optional<std::size_t> DelimitedTable::find(std::string_view name) const {
+  const auto found = first_called(headings, name);
+  if (found) {
+    check_unique(*found);
+  }
+  return found;
+}
+
+std::optional<std::size_t> DelimitedTable::find_any(std::initializer_list<std::string_view> names) const {
+  for (const std::string_view name : names) {
+    if (const auto found = find(name)) {
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+bool DelimitedTable::has_all(std::initializer_list<std::string_view> names) const {
+  return std::all_of(names.begin(), names.end(),
+                     [&](std::string_view name) { return first_called(headings, name).has_value(); });
+}
+
+DelimitedTable open_table(const GazeFile& file) {
+  DelimitedTable table;
+  table.has_quotes = file.text.find('"') != std::string::npos;
+  LineReader lines(file.text);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty()) {
+      continue;
+    }
+    if (text.front() == '#') {
+      table.preamble.push_back({text, lines.number()});
+      continue;
+    }
+    table.separator = choose_separator(line);
+    std::vector<std::string_view> cells;
+    split_cells(line, table.separator, cells);
+    table.has_header = !is_number_row(cells);
+    table.header = line;
+    table.header_line = lines.number();
+    while (cells.size() > 1 && trim(cells.back()).empty()) {
+      cells.pop_back();  // trailing separators
+    }
+    for (const std::string_view cell : cells) {
+      table.headings.push_back(table.has_header ? parse_heading(cell) : ColumnHeading{});
+      if (!table.has_header) {
+        table.headings.back().text = table.headings.back().name = std::to_string(table.headings.size());
+      }
+    }
+    const char* const body = table.has_header ? lines.rest().data() : line.data();
+    table.body = std::string_view(body, static_cast<std::size_t>(file.text.data() + file.text.size() - body));
+    table.lines_above = table.has_header ? lines.number() : lines.number() - 1;
+    table.place = place_of(file, table.header_line);
+    table.fractions = file.fractions;
+    break;
+  }
+  return table;
+}
+
+DelimitedTable open_headerless(std::string_view text, char separator, const std::vector<std::string>& names) {
+  DelimitedTable table;
+  table.separator = separator;
+  table.body = text;
+  for (const std::string& name : names) {
+    table.headings.push_back({name, name, ""});
+  }
+  return table;
+}
+
+std::size_t declared_column(const DelimitedTable& table, const std::string& name, const std::string& place) {
+  const std::string wanted = to_lower(trim(name));
+  for (const auto part : {&ColumnHeading::text, &ColumnHeading::name}) {
+    for (std::size_t i = 0; i < table.headings.size(); ++i) {
+      if (to_lower(table.headings[i].*part) == wanted) {
+        table.check_unique(i);
+        return i;
+      }
+    }
+  }
+  std::size_t number = 0;
+  const auto [rest, status] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), number);
+  if (status == std::errc{} && rest == wanted.data() + wanted.size() && number >= 1 &&
+      number <= table.headings.size()) {
+    return number - 1;
+  }
+  std::vector<std::string> names;
+  for (const ColumnHeading& heading : table.headings) {
+    names.push_back(heading.text);
+  }
+  throw Error(ErrorKind::input, place, unknown_name_message("column", name, names));
+}
+
+std::string column_listing(const DelimitedTable& table) {
+  std::vector<std::string> texts;
+  texts.reserve(table.headings.size());
+  for (const ColumnHeading& heading : table.headings) {
+    texts.push_back(heading.text);
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+TableRows::TableRows(const GazeFile& file, const DelimitedTable& table, std::size_t needed)
+    : file_(file), table_(table), needed_(needed), rest_(table.body), line_(table.lines_above) {}
+
+bool TableRows::next() {
+  while (!rest_.empty()) {
+    const std::size_t end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++line_;
+    if (!line.empty() && line.back() == '\r') {
+      line.remove_suffix(1);
+    }
+    if (!is_row(line)) {
+      continue;
+    }
+    if (table_.has_header && line == table_.header) {
+      ++repeated_headers;
+      continue;
+    }
+    split_row(line, table_, needed_, cells_);
+    return true;
+  }
+  return false;
+}
+
+void TableRows::check_length() const {
+  if (is_short()) {
+    fail(fmt::format("the row has {} of the {} cells that reach to column '{}'", cells_.size(), needed_,
+                     table_.headings[std::min(needed_, table_.headings.size()) - 1].text),
+         "it is short or cut off; remove or mend it");
+  }
+}
+
+std::string_view TableRows::cell(std::size_t column) {
+  return column < cells_.size() ? cell_text(cells_[column], buffer_) : std::string_view();
+}
+
+double TableRows::number(std::size_t column) {
+  const std::string_view text = cell(column);
+  if (const auto value = number_from(text)) {
+    return *value;
+  }
+  if (!is_missing(text)) {
+    const std::string lower = to_lower(text);
+    if (lower != "inf" && lower != "-inf") {
+      fail(fmt::format("'{}' in column '{}' is not a number", text.substr(0, 60), table_.headings[column].text),
+           "write missing values as an empty cell or n/a");
+    }
+  }
+  return kNan;
+}
+
+std::int64_t TableRows::time_ns(std::size_t column, const TimeScale& scale) {
+  const std::string_view text = cell(column);
+  std::int64_t t_ns = 0;
+  NumberStatus status = NumberStatus::ok;
+  if (scale.subtract == 0) {
+    status = scaled_integer(text, scale.exponent, t_ns);
+  } else {
+    std::int64_t factor = 1;
+    for (int i = 0; i < scale.exponent; ++i) {
+      factor *= 10;
+    }
+    status = scaled_integer(text, 0, t_ns);
+    if (status == NumberStatus::ok &&
+        (__builtin_sub_overflow(t_ns, scale.subtract, &t_ns) || __builtin_mul_overflow(t_ns, factor, &t_ns))) {
+      status = NumberStatus::overflow;
+    }
+  }
+  if (status == NumberStatus::ok) {
+    return t_ns;
+  }
+  if (status == NumberStatus::overflow) {
+    fail(fmt::format("time '{}' in {} does not fit int64 nanoseconds", text.substr(0, 60),
+                     time_unit_text(scale.exponent)),
+         "check the unit of the time column");
+  }
+  if (is_missing(text)) {
+    fail("this row has no time", "remove the row, or give it a time");
+  }
+  fail(fmt::format("time '{}' is not a number", text.substr(0, 60)), "remove or mend the row");
+}
+
+void TableRows::fail(const std::string& problem, std::string_view remedy) const {
+  throw Error(ErrorKind::input, place_of(file_, line_), problem, remedy);
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Logs in rows and columns: `#` preamble, header, cells between commas, semicolons or tabs.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazelog/gaze_format.hpp"
+
+namespace gazetrace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// "gaze x [px]", "time (ms)", "x_px": name and unit; the text of the cell is kept for messages.
+struct ColumnHeading {
+  std::string text, name, unit;
+};
+ColumnHeading parse_heading(std::string_view cell);
+std::string letters_and_digits(std::string_view text);  // lower case, ASCII, nothing else
+
+// Empty cells, ".", "n/a", "NaN", "-nan(ind)", "None", ...
+bool is_missing(std::string_view text);
+
+struct PreambleLine {
+  std::string_view text;
+  std::int64_t line = 0;
+};
+
+struct DelimitedTable {
+  char separator = ',';
+  bool has_quotes = false;
+  std::vector<ColumnHeading> headings;  // numbered from 1 where the file has no header
+  bool has_header = false;
+  std::string_view header;  // its line
+  std::int64_t header_line = 0;
+  std::string_view body;         // from the first row
+  std::int64_t lines_above = 0;  // before the body
+  std::vector<PreambleLine> preamble;
+  std::vector<bool> fractions;  // as GazeFile's
+  std::string place;            // file:line of the header
+
+  // By the whole text or the name, blanks, punctuation and case aside. Error(input) where two columns are called so.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
+  [[nodiscard]] std::optional<std::size_t> find_any(std::initializer_list<std::string_view> names) const;
+  [[nodiscard]] bool has_all(std::initializer_list<std::string_view> names) const;
+  // Error(input) naming both where another column has the very name of `column`.
+  void check_unique(std::size_t column) const;
+};
+
+// A file without any row has no headings.
+DelimitedTable open_table(const GazeFile& file);
+// Without a header: all of the text is rows.
+DelimitedTable open_headerless(std::string_view text, char separator, const std::vector<std::string>& names);
+
+// A column that the user names: by its whole text, by its name without the unit, or by its number from 1. Error(input).
+std::size_t declared_column(const DelimitedTable& table, const std::string& name, const std::string& place);
+std::string column_listing(const DelimitedTable& table);
+
+// From written stamps to nanoseconds: (stamp - subtract) * 10^exponent, in integers.
+struct TimeScale {
+  int exponent = 0;
+  std::int64_t subtract = 0;  // in the unit of the stamps, which are whole numbers then
+};
+
+// Goes through the rows. Blank lines, comments and repeats of the header are passed over.
+class TableRows {
+ public:
+  // Rows must reach to `needed` cells; what lies behind is not split.
+  TableRows(const GazeFile& file, const DelimitedTable& table, std::size_t needed);
+
+  bool next();
+  [[nodiscard]] std::int64_t line() const { return line_; }
+  [[nodiscard]] bool is_short() const { return cells_.size() < needed_; }
+  // Error(input) for a row that is_short().
+  void check_length() const;
+  // Trimmed, without quotes; empty where the row is too short. Valid until the next call.
+  std::string_view cell(std::size_t column);
+  std::string_view cell(const std::optional<std::size_t>& column) { return column ? cell(*column) : ""; }
+  // NaN where missing. Error(input) for text that is no number.
+  double number(std::size_t column);
+  double number(const std::optional<std::size_t>& column) { return column ? number(*column) : kNan; }
+  std::int64_t time_ns(std::size_t column, const TimeScale& scale);
+  [[noreturn]] void fail(const std::string& problem, std::string_view remedy) const;
+
+  std::size_t repeated_headers = 0;
+
+ private:
+  const GazeFile& file_;
+  const DelimitedTable& table_;
+  std::size_t needed_;
+  std::string_view rest_;
+  std::int64_t line_;
+  std::vector<std::string_view> cells_;
+  std::string buffer_;
+};
+
+std::string place_of(const GazeFile& file, std::int64_t line);
+
+}  // namespace gazetrace

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazelog/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/statistics.hpp"
+#include "core/text.hpp"
+
+namespace gazetrace {
+
+std::optional<PositionUnit> position_unit_from(std::string_view text) {
+  static constexpr std::array<std::pair<std::string_view, PositionUnit>, 20> kSpellings{{
+      {"1", PositionUnit::fraction},
+      {"norm", PositionUnit::fraction},
+      {"normalized", PositionUnit::fraction},
+      {"normalised", PositionUnit::fraction},
+      {"fraction", PositionUnit::fraction},
+      {"px", PositionUnit::px},
+      {"pix", PositionUnit::px},
+      {"pixel", PositionUnit::px},
+      {"pixels", PositionUnit::px},
+      {"mm", PositionUnit::mm},
+      {"cm", PositionUnit::cm},
+      {"deg", PositionUnit::deg},
+      {"degree", PositionUnit::deg},
+      {"degrees", PositionUnit::deg},
+      {"dva", PositionUnit::deg},
+      {"degree of visual angle", PositionUnit::deg},
+      {"degrees of visual angle", PositionUnit::deg},
+      {"\xC2\xB0", PositionUnit::deg},
+      {"unit", PositionUnit::unit_vector},
+      {"unit vector", PositionUnit::unit_vector},
+  }};
+  const std::string lower = to_lower(trim(text));
+  for (const auto& [spelling, unit] : kSpellings) {
+    if (lower == spelling) {
+      return unit;
+    }
+  }
+  // Tobii: ADCSpx and DACS px are pixels of the display, ADCSmm millimetres on it.
+  if (lower == "adcspx" || lower == "dacspx" || lower == "dacs px") {
+    return PositionUnit::px;
+  }
+  return lower == "adcsmm" ? std::optional(PositionUnit::mm) : std::nullopt;
+}
+
+std::string_view to_string(PositionUnit unit) {
+  switch (unit) {
+    case PositionUnit::automatic:
+      return "auto";
+    case PositionUnit::fraction:
+      return "fraction";
+    case PositionUnit::px:
+      return "px";
+    case PositionUnit::mm:
+      return "mm";
+    case PositionUnit::cm:
+      return "cm";
+    case PositionUnit::deg:
+      return "deg";
+    case PositionUnit::unit_vector:
+      return "unit-vector";
+  }
+  return "auto";
+}
+
+std::string_view to_string(PositionOrigin origin) {
+  switch (origin) {
+    case PositionOrigin::automatic:
+      return "auto";
+    case PositionOrigin::top_left:
+      return "top-left";
+    case PositionOrigin::bottom_left:
+      return "bottom-left";
+    case PositionOrigin::center:
+      return "center";
+  }
+  return "auto";
+}
+
+std::string_view to_string(GazeAxes axes) {
+  switch (axes) {
+    case GazeAxes::automatic:
+      return "auto";
+    case GazeAxes::gl:
+      return "gl";
+    case GazeAxes::unity:
+      return "unity";
+    case GazeAxes::sranipal:
+      return "sranipal";
+    case GazeAxes::cv:
+      return "cv";
+  }
+  return "auto";
+}
+
+std::optional<int> time_exponent_of(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::automatic:
+      return std::nullopt;
+    case TimeUnit::ns:
+      return 0;
+    case TimeUnit::us:
+      return 3;
+    case TimeUnit::ms:
+      return 6;
+    case TimeUnit::s:
+      return 9;
+  }
+  return std::nullopt;
+}
+
+std::string time_unit_text(int exponent) {
+  switch (exponent) {
+    case 0:
+      return "ns";
+    case 2:
+      return "100 ns";
+    case 3:
+      return "us";
+    case 6:
+      return "ms";
+    case 9:
+      return "s";
+    default:
+      return fmt::format("10^{} ns", exponent);
+  }
+}
+
+std::optional<int> guess_time_exponent(const std::vector<double>& raw_times) {
+  std::vector<double> times = raw_times;
+  std::sort(times.begin(), times.end());  // of rows out of order the steps would be too long
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] != times[i - 1]) {  // rows of the other eye
+      steps.push_back(times[i] - times[i - 1]);
+    }
+  }
+  if (steps.empty()) {
+    return std::nullopt;
+  }
+  const double step = upper_median(steps);
+  if (step >= 1e-3 && step <= 0.05) {
+    return 9;
+  }
+  if (step >= 0.5 && step <= 40) {
+    return 6;
+  }
+  if (step >= 500 && step <= 40'000) {
+    return 3;
+  }
+  return step > 4e5 ? std::optional(0) : std::nullopt;
+}
+
+PositionStatistics measure_positions(const std::vector<RawSample>& samples) {
+  PositionStatistics s;
+  std::size_t normalized = 0;
+  std::size_t small = 0;
+  std::size_t negative = 0;
+  for (const RawSample& sample : samples) {
+    if (!is_usable(sample.validity)) {
+      continue;
+    }
+    ++s.count;
+    s.x = {std::min(s.x.low, sample.at.x), std::max(s.x.high, sample.at.x)};
+    s.y = {std::min(s.y.low, sample.at.y), std::max(s.y.high, sample.at.y)};
+    normalized += sample.at.x >= -0.2 && sample.at.x <= 1.2 && sample.at.y >= -0.2 && sample.at.y <= 1.2 ? 1 : 0;
+    small += std::abs(sample.at.x) < 90 && std::abs(sample.at.y) < 90 ? 1 : 0;
+    negative += sample.at.x < 0 || sample.at.y < 0 ? 1 : 0;
+  }
+  const auto share = [&](std::size_t n) {
+    return s.count > 0 ? static_cast<double>(n) / static_cast<double>(s.count) : 0;
+  };
+  s.share_normalized = share(normalized);
+  s.share_small = share(small);
+  s.share_negative = share(negative);
+  return s;
+}
+
+PositionUnit guess_position_unit(const std::vector<RawSample>& samples, std::string& evidence) {
+  const PositionStatistics s = measure_positions(samples);
+  evidence = s.count == 0 ? "no usable value"
+                          : fmt::format("x {:.4g} to {:.4g}, y {:.4g} to {:.4g}", s.x.low, s.x.high, s.y.low, s.y.high);
+  if (s.count == 0 || s.share_normalized >= 0.95) {
+    return PositionUnit::fraction;
+  }
+  const auto has_both_signs = [](const PositionStatistics::Range& range) { return range.low < 0 && range.high > 0; };
+  const bool both_signs = has_both_signs(s.x) || has_both_signs(s.y);
+  return s.share_small >= 0.95 && both_signs ? PositionUnit::deg : PositionUnit::px;
+}
+
+}  // namespace gazetrace
