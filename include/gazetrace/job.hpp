@@ -2,10 +2,15 @@
 // A job is what is asked of one run: its settings, and of each option that was given, by whom. It is a value; nothing
 // is loaded or checked against other files before resolve() (resolve.hpp).
 //
-// Order of precedence, from the strongest: options that were given by themselves on the command line, or by
-// set_option() in a program; options of a settings file; what a preset sets, wherever it was named; the default. The
-// order in which options are set does not matter between these; within one of them the later wins. What was replaced by
-// another value is kept in Job::decisions.
+// Order of precedence, from the strongest:
+//   1  an option that was given by itself: on the command line, or by set_option() in a program
+//   2  what a preset sets that was given so
+//   3  an option of a settings file
+//   4  what a preset sets that such a file names
+//   5  the default
+// Between these the order in which options are set does not matter; within one of them the later wins. Another preset
+// on the command line does not undo that of a file: what the file's preset sets and nothing stronger does still holds.
+// What was replaced by another value is kept in Job::decisions.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +26,7 @@
 namespace gazetrace {
 
 // Who gave an option its value, from the weakest to the strongest.
-enum class Origin : std::uint8_t { preset_of_file, preset, file, given };
+enum class Origin : std::uint8_t { preset_of_file, file, preset, given };
 
 struct OptionSource {
   Origin origin = Origin::given;

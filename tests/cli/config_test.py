@@ -52,6 +52,24 @@ class RoundTrip(harness.CliTest):
         self.assertIn("\noverwrite = true\n", text)
         self.assertIn("\noverwrite = false\n", self.print_config("--config", "job.toml", "--overwrite=false"))
 
+    def test_a_preset_on_the_command_line_stands_above_the_file_and_below_other_options(self):
+        self.write("job.toml", 'bounces = 5\nfilter = "tent"\n')
+        text = self.print_config("--config", "job.toml", "--preset", "paper", "--filter", "push-pull")
+        self.assertIn("\nbounces = 3\n", text)
+        self.assertIn('\nfilter = "push-pull"\n', text)
+        self.write("job.toml", 'bounces = 5\npreset = "paper"\n')
+        text = self.print_config("--config", "job.toml")
+        self.assertIn("\nbounces = 5\n", text)
+        self.assertIn('\nregion-shape = "disc"\n', text)
+
+    def test_what_was_replaced_is_told_and_recorded(self):
+        self.write("job.toml", 'scene = "box.gltf"\n\nbounces = 5\n')
+        said = self.run_ok("render", "--config", "job.toml", "--preset", "paper", "--size", "16x9", "--spp", "1", "--frames", "1",
+                           "-o", "out/f.exr").stderr
+        words = "preset paper from the command line replaces bounces = 5 of job.toml:3"
+        self.assertIn(words, said)
+        self.assertIn(words, (self.folder / "out" / "run.json").read_text())
+
     def test_only_frame_is_frames(self):
         self.assertIn("\nframes = 7\n", self.print_config("--only-frame", "7"))
 

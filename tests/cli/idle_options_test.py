@@ -42,6 +42,10 @@ class IdleOptions(harness.CliTest):
             (["--border-blend-deg", "2"], ["--falloff", "uniform"]),
             (["--region-samples", "4,4,4"], ["--falloff", "mar"]),
             (["--gaze-latency", "20ms"], []),
+            (["--falloff-mar-slope", "0.025"], []),
+            (["--falloff-eye", "left"], ["--falloff", "mar"]),
+            (["--exposure-key", "0.3"], []),
+            (["--exposure-smoothing", "1s"], ["--exposure", "1"]),
             (["--gaze-uncertainty"], ["--falloff", "uniform", "--gaze-accuracy", "1", "--gaze-precision", "0"]),
         ):
             with self.subTest(options=options, others=others):
@@ -56,6 +60,8 @@ class IdleOptions(harness.CliTest):
             ["--falloff", "mar", "--block-samples", "4", "--max-block", "4", "--density-floor", "0.1"],
             ["--border-blend-deg", "2", "--block-samples", "4"],
             ["--region-samples", "4,4,4"],
+            ["--falloff", "csf", "--falloff-eye", "left", "--falloff-luminance", "20"],
+            ["--exposure", "auto", "--exposure-key", "0.3", "--exposure-smoothing", "1s"],
             ["--preset", "paper", "--falloff", "mar"],  # a preset's settings are not the user's
         ):
             with self.subTest(options=options):

@@ -87,6 +87,49 @@ TEST(Job, TheCommandLineIsAboveAFileInWhateverOrder) {
   EXPECT_EQ(decisions_of(second), replaced);
 }
 
+// Every pair of neighbours in the order of precedence, set in both orders.
+TEST(Job, OrderOfPrecedence) {
+  // paper sets bounces = 3, reference sets spp = 1024, both set filter and accumulate.
+  const auto file = [](Job& job) { add_toml(job, "preset = \"paper\"\nspp = 7\nfilter = \"tent\"\n", "job.toml"); };
+  const auto preset = [](Job& job) { on_command_line(job, "preset", "reference"); };
+  const auto option = [](Job& job) { on_command_line(job, "accumulate", "running"); };
+  for (const bool reversed : {false, true}) {
+    Job job;
+    if (reversed) {
+      option(job);
+      preset(job);
+      file(job);
+    } else {
+      file(job);
+      preset(job);
+      option(job);
+    }
+    const auto origin = [&](const char* name) { return job.sources.at(name).origin; };
+    EXPECT_EQ(option_text(job, "accumulate"), "running");  // the command line above its preset
+    EXPECT_EQ(origin("accumulate"), Origin::given);
+    EXPECT_EQ(option_text(job, "spp"), "1024");  // the preset of the command line above the file
+    EXPECT_EQ(origin("spp"), Origin::preset);
+    EXPECT_EQ(option_text(job, "filter"), "none");
+    EXPECT_EQ(option_text(job, "region-shape"), "disc");  // the file's preset above the default
+    EXPECT_EQ(origin("region-shape"), Origin::preset_of_file);
+    EXPECT_FALSE(job.sources.contains("seed"));
+    EXPECT_EQ(option_text(job, "preset"), "reference");
+    EXPECT_THAT(decisions_of(job),
+                testing::IsSupersetOf({"preset reference from the command line replaces spp = 7 of job.toml:2",
+                                       "preset reference from the command line replaces filter = tent of job.toml:3",
+                                       "the command line replaces preset = paper of job.toml:1"}));
+  }
+}
+
+TEST(Job, AFileIsAboveItsPreset) {
+  for (const char* text : {"preset = \"paper\"\nbounces = 5\n", "bounces = 5\npreset = \"paper\"\n"}) {
+    const Job job = job_from_toml(text, "job.toml");
+    EXPECT_EQ(job.settings.trace.max_bounces, 5);
+    EXPECT_TRUE(job.is_given("bounces"));
+    EXPECT_FALSE(job.is_given("region-shape"));
+  }
+}
+
 TEST(Job, EqualValuesReplaceNothing) {
   Job job;
   add_toml(job, "gaze-max-age = \"0.25s\"\n", "job.toml");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 
 namespace gazetrace {
@@ -32,11 +33,13 @@ void add_color_options(JobSchema& schema) {
   schema
       .value("--exposure-key", at(&JobSettings::exposure, &ExposureSettings::key), "LUMINANCE", Touch::color,
              "Luminance that auto brings the log-average to")
-      .above(0);
+      .above(0)
+      .idle_when({without_automatic_exposure()});
   schema
       .value("--exposure-smoothing", &JobSettings::exposure_smoothing, "DURATION", Touch::color,
              "Time constant over video time; 0s: off")
-      .at_least(0);
+      .at_least(0)
+      .idle_when({without_automatic_exposure()});
   schema.include(color_config_schema(), &JobSettings::color);
   schema.value("--display", color(&ColorSettings::display), "NAME", Touch::color,
                "OpenColorIO display; default: the config's ('gazetrace list views')");

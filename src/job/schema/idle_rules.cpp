@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/schema/idle_rules.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace gazetrace {
 
 bool has_gaze_log(const JobSettings& job) {
@@ -30,14 +34,25 @@ JobIdleRule with_hard_regions() {
 }
 
 JobIdleRule without_regions() {
-  return {"with any other `falloff` than regions",
-          [](const JobSettings& job) { return job.foveation.falloff != "regions"; },
-          [](const JobSettings& job) { return "with `falloff` " + job.foveation.falloff; }};
+  return with_other_falloffs({"regions"});
 }
 
 JobIdleRule without_reproject() {
   return {"without `accumulate` reproject",
           [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::reproject; }};
+}
+
+JobIdleRule without_automatic_exposure() {
+  return {"without `exposure` auto",
+          [](const JobSettings& job) { return job.exposure.mode != ExposureMode::log_average; }};
+}
+
+JobIdleRule with_other_falloffs(const std::vector<std::string>& models) {
+  return {fmt::format("with any other `falloff` than {}", fmt::join(models, " or ")),
+          [models](const JobSettings& job) {
+            return std::find(models.begin(), models.end(), job.foveation.falloff) == models.end();
+          },
+          [](const JobSettings& job) { return "with `falloff` " + job.foveation.falloff; }};
 }
 
 }  // namespace gazetrace

@@ -2,6 +2,9 @@
 // When options of a job do nothing beside the others.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "gazetrace/job_schema.hpp"
 
 namespace gazetrace {
@@ -17,5 +20,8 @@ JobIdleRule with_uniform();
 JobIdleRule with_hard_regions();
 JobIdleRule without_regions();
 JobIdleRule without_reproject();
+JobIdleRule without_automatic_exposure();
+// With any fall-off but these.
+JobIdleRule with_other_falloffs(const std::vector<std::string>& models);
 
 }  // namespace gazetrace

@@ -89,36 +89,47 @@ void add_model_options(JobSchema& schema) {
   using P = FalloffParameters;
   schema.value("--falloff-normalisation", model(&P::normalization), choices<FalloffNormalization>(), Touch::sampling,
                "Models of a cut-off frequency: against what the display shows, or relative to the fovea");
-  schema.value("--falloff-ramp", model(&P::ramp), "DEG,DEG,DENSITY", Touch::sampling,
-               "linear, quadric: full up to the first eccentricity, the density from the second on");
+  schema
+      .value("--falloff-ramp", model(&P::ramp), "DEG,DEG,DENSITY", Touch::sampling,
+             "linear, quadric: full up to the first eccentricity, the density from the second on")
+      .idle_when({with_other_falloffs({"linear", "quadric"})});
   schema
       .value("--falloff-mar-slope", model(&P::mar_slope), "DEG", Touch::sampling,
              "mar: degrees a cycle for each degree of eccentricity; 0.022 to 0.0275")
-      .within(0, 180);
+      .within(0, 180)
+      .idle_when({with_other_falloffs({"mar"})});
   schema
       .value("--falloff-mar-foveal", model(&P::mar_foveal_deg), "DEG", Touch::sampling,
              "mar: degrees a cycle at the gaze")
-      .within(0, 180);
+      .within(0, 180)
+      .idle_when({with_other_falloffs({"mar"})});
   schema
       .value("--falloff-contrast", model(&P::contrast), "CONTRAST", Touch::sampling,
              "geisler-perry, csf: contrast of the details to be seen")
-      .above(0, 1);
+      .above(0, 1)
+      .idle_when({with_other_falloffs({"geisler-perry", "csf"})});
   schema
       .value("--falloff-luminance", model(&P::luminance_cd_m2), "CD/M2", Touch::sampling,
              "csf: luminance the eye is adapted to")
-      .above(0);
-  schema.value("--falloff-eye", model(&P::eye), choices<FalloffEye>(), Touch::sampling,
-               "retina, csf: whose visual field; both: the better of the two at each place");
+      .above(0)
+      .idle_when({with_other_falloffs({"csf"})});
+  schema
+      .value("--falloff-eye", model(&P::eye), choices<FalloffEye>(), Touch::sampling,
+             "retina, csf: whose visual field; both: the better of the two at each place")
+      .idle_when({with_other_falloffs({"retina", "csf"})});
   schema
       .value("--falloff-log-polar-sigma", model(&P::log_polar_sigma), "RATIO", Touch::sampling,
              "log-polar: side of the frame over the buffer's")
-      .above(0);
+      .above(0)
+      .idle_when({with_other_falloffs({"log-polar"})});
   schema
       .value("--falloff-log-polar-alpha", model(&P::log_polar_alpha), "EXPONENT", Touch::sampling,
              "log-polar: exponent of the kernel")
-      .above(0);
+      .above(0)
+      .idle_when({with_other_falloffs({"log-polar"})});
   schema.value("--falloff-table", model(&P::table), "FILE", Touch::sampling, "table: a CSV of ecc_deg,density")
-      .decides_by_file();
+      .decides_by_file()
+      .idle_when({with_other_falloffs({"table"})});
 }
 
 void add_term_options(JobSchema& schema) {
