@@ -25,8 +25,8 @@ struct EyeColumns {
   bool operator==(const EyeColumns&) const = default;
 };
 
-// What the user declared about columns of a CSV/TSV that does not say it itself. Empty names: found by header. Every
-// format that is a table takes time, x, y and z from here before its own.
+// What the user declares about the columns of a CSV or TSV that does not say it itself. A column whose name is empty
+// here is found by its header. Every format that is a table takes time, x, y and z from here before its own columns.
 struct GazeColumns {
   std::string time, x, y, z, validity, confidence, pupil, eye;
   EyeColumns left, right;
@@ -65,7 +65,7 @@ enum class GazeFrame { automatic, head, scene_camera };
 struct GazeReadOptions {
   std::string format;  // a name of `gaze_formats()`; empty: by sniffing
   GazeColumns columns;
-  // Converts px, mm and degrees to fractions; needed only for those.
+  // Converts pixels, lengths and degrees to fractions of the display. Logs that hold fractions do not need it.
   std::optional<DisplayGeometry> display;
   // Where the eye's perpendicular meets the display, as the user gave it; empty: `display`'s where that is not its
   // center, else what the log states.
@@ -78,21 +78,22 @@ struct GazeReadOptions {
   GazeFrame frame = GazeFrame::automatic;
   double min_confidence = std::numeric_limits<double>::quiet_NaN();  // NaN: the format's own (Pupil Core: 0.6)
   bool zero_is_missing = false;  // exactly (0, 0) is missing, whatever the validity says
-  // Places with exactly this in every coordinate, in the log's unit, are missing. Always so: coordinates of -32768 and
-  // of 1e7 and more.
+  // Places whose every coordinate is exactly this number, in the log's own unit, are missing. Coordinates of -32768,
+  // and of 1e7 and more, always stand for missing places.
   std::optional<double> missing_value;
   bool swap_xy = false;  // the log has its axes the wrong way round
   bool flip_x = false;   // left and right are exchanged: u becomes 1 - u, direction x becomes -x
   bool flip_y = false;   // top and bottom likewise
-  // Numbers are written with a decimal comma in a table that commas separate: cells are joined again. Where tabs or
-  // semicolons separate, decimal commas are understood without it.
+  // Numbers are written with a decimal comma although commas also separate the cells: the cells are joined again. Where
+  // tabs or semicolons separate the cells, decimal commas are understood without this.
   bool decimal_comma = false;
-  // For looking at a log only: where pixels need the size of a display that nobody states, a usual size that holds them
-  // is taken, with a warning and a fact marked statistics; degrees become directions.
+  // For looking at a log only. Where pixels need the size of a display that nobody states, a usual size that holds them
+  // is taken, with a warning and with `Evidence::statistics`; degrees become directions then.
   bool guess_display = false;
 };
 
-// What `stated` leaves open (pixels, size, distance and with it the place of the eye) is that of `by`.
+// Returns `stated`, completed by `by` where it leaves something open: the pixels, the size, or the distance together
+// with the eye's place.
 DisplayGeometry completed_geometry(DisplayGeometry stated, const DisplayGeometry& by);
 
 // How a format was tried.
@@ -111,9 +112,10 @@ struct GazeFormatGuess {
 };
 std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path);
 
-// Also gzip, and folders of recordings. Error(input) with file:line for a log without time, without samples, with
-// unordered or duplicated stamps (unless sorting was asked for; then the last of equal stamps is kept and a warning
-// counts them), with unknown columns or units, for gaze on a scene camera's picture.
+// Reads a log, also one that is packed by gzip, or the recording in a folder. Error(input) with file:line for a log
+// without times or without samples, for stamps that are out of order or repeated (unless sorting was asked for: then
+// the last row of equal stamps is kept, and a warning counts the others), for columns and units that are not known, and
+// for gaze on a scene camera's picture.
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
 
 }  // namespace gazetrace

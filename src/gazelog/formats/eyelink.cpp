@@ -310,7 +310,13 @@ class AscReader {
     sample.at = {number(column), number(column + 1), 0};
     const double pupil = number(column + 2);
     sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
+    // What the tracker says of its own sample is not believed where the user says that there is none.
+    const auto both_are = [&](double value) { return sample.at.x == value && sample.at.y == value; };
+    const bool is_mark =
+        (options_.zero_is_missing && both_are(0)) || (options_.missing_value && both_are(*options_.missing_value));
+    if (is_mark) {
+      sample.validity = GazeValidity::lost;
+    } else if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
       sample.at.x = sample.at.y = kNan;
       sample.validity = GazeValidity::lost;
     } else if (!flags.empty()) {
