@@ -535,8 +535,9 @@ void check_format(const Node& root) {
 }  // namespace
 
 std::string results_json(const Results& results) {
-  Json json{{"format", kFormat}};
+  Json json;
   Writer writer(json);
+  writer.field("format", std::string(kFormat));
   describe(writer, results);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
