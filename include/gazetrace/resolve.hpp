@@ -79,7 +79,8 @@ TracerOptions tracer_options(const JobSettings& job);
 void prepare_outputs(const ResolvedJob& resolved);
 
 // The record of a run that begins now, which says "running"; finish_run_record() says what became of it. It carries no
-// time of day of the gaze log unless the job keeps them. `command_line` may be empty.
+// time of day of the gaze log unless the job keeps them, but what the job itself says in `gaze-start` and
+// `gaze-anchor`. `command_line` may be empty.
 RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
                            const std::vector<std::string>& command_line = {});
 void finish_run_record(RunRecord& record, const SequenceResult& result, const FramePlan& plan, double wall_s);
@@ -89,8 +90,8 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan);
 
 // ---- parts of it, for commands that need no more
 
-// Pipeline settings from a job's. Error(usage) for patterns that do not fit. Without digests.
-PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames);
+// Pipeline settings from a job's. Without digests; patterns are not held against the number of frames.
+PipelineSettings pipeline_settings(const JobSettings& job);
 // Content hashes of all files that the job reads.
 std::map<std::string, std::string> digest_job_files(const JobSettings& job);
 // Sets the digests of `settings`: of what reaches into pixels (options, file contents, version), and of this with the

@@ -28,10 +28,12 @@ std::string joined(const std::vector<std::string>& values) {
 }
 
 // Called where `winner` and `loser` gave an option different values.
-void note_replaced(Job& job, const std::string& option, const OptionSource& winner, const OptionSource& loser,
+void note_replaced(Job& job, const Option& option, const OptionSource& winner, const OptionSource& loser,
                    const std::vector<std::string>& lost) {
-  job.decisions.emplace_back("replaced " + option, fmt::format("{} replaces {} = {} of {}", to_string(winner), option,
-                                                               joined(lost), to_string(loser)));
+  // Decisions are recorded, and a place on the log's clock may be a time of day.
+  const std::string value = option.is(Trait::clock) ? "" : " = " + joined(lost);
+  job.decisions.emplace_back("replaced " + option.name, fmt::format("{} replaces {}{} of {}", to_string(winner),
+                                                                    option.name, value, to_string(loser)));
 }
 
 void set_one(Job& job, const OptionOf<JobSettings>& option, const std::vector<std::string>& values,
@@ -41,14 +43,14 @@ void set_one(Job& job, const OptionOf<JobSettings>& option, const std::vector<st
     JobSettings weaker;
     option.assign(weaker, values, place);
     if (const std::vector<std::string> lost = option.values(weaker); lost != option.values(job.settings)) {
-      note_replaced(job, option.name, before->second, source, lost);
+      note_replaced(job, option, before->second, source, lost);
     }
     return;
   }
   const std::vector<std::string> lost = option.values(job.settings);
   option.assign(job.settings, values, place);
   if (before != job.sources.end() && before->second.origin < source.origin && option.values(job.settings) != lost) {
-    note_replaced(job, option.name, source, before->second, lost);
+    note_replaced(job, option, source, before->second, lost);
   }
   job.sources[option.name] = source;
 }

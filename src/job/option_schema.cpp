@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "gazetrace/error.hpp"
 
@@ -36,7 +37,7 @@ std::vector<std::string> touch_names(Touches touches) {
 bool OptionRange::holds(double value) const {
   const bool is_high = !least || (above ? value > *least : value >= *least);
   const bool is_low = !most || value <= *most;
-  return is_high && is_low;  // false for what is no number
+  return std::isfinite(value) && is_high && is_low;
 }
 
 std::string OptionRange::words() const {

@@ -149,7 +149,7 @@ void check_output_folders(const OutputSettings& output, const std::string& check
   }
 }
 
-PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std::int32_t>& frames) {
+PipelineSettings pipeline_settings(const JobSettings& job) {
   PipelineSettings settings;
   settings.foveation = job.foveation;
   settings.trace = job.trace;
@@ -166,7 +166,6 @@ PipelineSettings pipeline_settings(const JobSettings& job, const std::vector<std
   settings.fps = job.fps;
   settings.threads = job.threads;
   settings.is_part = job.part;
-  check_output_settings(settings.output, frames.size() > 1);
   return settings;
 }
 

@@ -217,7 +217,10 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
     resolved.decisions.emplace_back("filter", filter.name + ", because " + filter.reason);
   }
   const JobSettings& settings = resolved.job.settings;
-  resolved.pipeline = pipeline_settings(settings, resolved.frames);
+  resolved.pipeline = pipeline_settings(settings);
+  if (options.scope == ResolveScope::render) {
+    check_output_settings(resolved.pipeline.output, resolved.frames.size() > 1);
+  }
   resolved.pipeline.preroll = static_cast<std::int32_t>(resolved.plan.frames.size() - resolved.frames.size());
   if (options.scope != ResolveScope::plan) {
     resolved.input_digests = digest_job_files(settings);

@@ -27,7 +27,8 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = resolved.warnings;
   for (const auto& [name, text] : resolved.decisions) {
-    record.facts[name] = text;
+    std::string& fact = record.facts[name];  // several of one name: an option may be replaced twice
+    fact += (fact.empty() ? "" : "; ") + text;
   }
   record.facts["working_space"] = "linear Rec.709, D65";
   record.facts["view"] = color.description();

@@ -78,6 +78,10 @@ TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& 
     }
     return {};
   }
+  if (settings.history_digest.empty()) {
+    throw Error(ErrorKind::usage, "`resume-from`", "no digest tells a history of these settings from others",
+                "resolve the job, or set PipelineSettings::history_digest");
+  }
   TemporalHistory history = load_checkpoint(settings.resume_from, settings.history_digest);
   const std::int32_t last = history.passed.empty() ? 0 : history.passed.back();
   if (last >= first) {

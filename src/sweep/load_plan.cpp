@@ -124,7 +124,7 @@ class PlanMaker {
     for (const std::string& option : file_.varied) {
       test.settings.emplace_back(option, option_text(job, option, schema_));
     }
-    test.pipeline = pipeline_settings(job.settings, inputs.frames);
+    test.pipeline = pipeline_settings(job.settings);
     test.plan = std::move(inputs.plan);
     test.resolution_scale = setting.resolution_scale;
     for (const SweepFilePublished& other : file_.published) {
@@ -171,7 +171,7 @@ class PlanMaker {
       ResolvedJob inputs = with_place(job, schema_, scene.place,
                                       [&] { return resolve(job, planned_with(loaded ? loaded.get() : &empty_)); });
       reference.scene = index;
-      reference.pipeline = pipeline_settings(job.settings, frames);
+      reference.pipeline = pipeline_settings(job.settings);
       reference.plan = std::move(inputs.plan);
       reference.color = job.settings.color;
       jobs_.plan.references.push_back(std::move(reference));

@@ -131,7 +131,7 @@ std::string place_of_error(const Job& job, const JobSchema& schema, const std::s
                            const std::string& text) {
   if (text.starts_with('`')) {
     const auto found = job.sources.find(text.substr(1, text.find('`', 1) - 1));
-    return found == job.sources.end() ? otherwise : found->second.place;
+    return found == job.sources.end() || found->second.place.empty() ? otherwise : found->second.place;
   }
   std::string place = otherwise;
   for (const OptionOf<JobSettings>& option : schema.options()) {

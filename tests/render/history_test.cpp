@@ -230,6 +230,19 @@ TEST(Checkpoint, DamageAndOtherSettingsAreRefused) {
   EXPECT_THAT(message(), ::testing::HasSubstr("cannot be opened"));
 }
 
+// Without a digest nothing tells whose history it is: that is an error, and no match.
+TEST(Checkpoint, IsNotTakenUpWithoutADigest) {
+  const TemporaryFolder folder;
+  PipelineSettings settings = settings_of();
+  settings.history_digest.clear();
+  settings.resume_from = folder / "history.bin";
+  TemporalHistory history;
+  history.passed = {5};
+  save_checkpoint(settings.resume_from, history, settings.history_digest);
+  Warnings warnings;
+  EXPECT_THROW((void)starting_history(plan_of(6, 6), settings, warnings), Error);
+}
+
 TEST(Checkpoint, ARunMustBeginAfterIt) {
   const Scene scene = room();
   const TemporaryFolder folder;

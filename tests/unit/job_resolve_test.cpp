@@ -81,6 +81,15 @@ TEST_F(Resolve, SaysWhatItDecidedAndWhy) {
   EXPECT_FALSE(decisions.contains("filter"));
 }
 
+// How many frames there are is what a plan is asked for; only a run has to have a name for each.
+TEST_F(Resolve, APlanMayHaveMoreFramesThanItsOutputHasNames) {
+  set_option(job_, "output", folder_ / "one.exr");
+  Job job = job_;
+  job.settings.frames.reset();
+  EXPECT_GT(resolve(job, {.scope = ResolveScope::plan}).frames.size(), 1U);
+  EXPECT_THROW((void)resolve(job), Error);
+}
+
 TEST_F(Resolve, TheSameFilesUnderOtherNamesHaveTheSameDigests) {
   const std::string digest = resolve(job_).pipeline.settings_digest;
   EXPECT_FALSE(digest.empty());

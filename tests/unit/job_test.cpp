@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "gazetrace/job.hpp"
 #include "gazetrace/resolve.hpp"
 #include "support/temporary_folder.hpp"
@@ -128,6 +130,20 @@ TEST(Job, AFileIsAboveItsPreset) {
     EXPECT_TRUE(job.is_given("bounces"));
     EXPECT_FALSE(job.is_given("region-shape"));
   }
+}
+
+// Decisions are written into records, and a place on the log's clock may be a time of day.
+TEST(Job, WhatWasReplacedOfTheClockIsNamedWithoutItsValue) {
+  Job job;
+  add_toml(job, "gaze-start = \"1700000000s\"\n", "job.toml");
+  on_command_line(job, "gaze-start", "1700000001s");
+  EXPECT_THAT(decisions_of(job), testing::ElementsAre("the command line replaces gaze-start of job.toml:1"));
+}
+
+TEST(Job, AnInfiniteNumberIsInNoRange) {
+  Job job;
+  job.settings.trace.clamp_indirect = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(check_job(job), Error);
 }
 
 TEST(Job, EqualValuesReplaceNothing) {
