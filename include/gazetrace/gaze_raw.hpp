@@ -27,6 +27,12 @@ struct RawSample {
   std::int64_t row = 0;     // 1-based line (binary formats: record) in the source file
 };
 
+// From a row of the file on, the x and y of the display's top left corner.
+struct CornerFromRow {
+  std::size_t first_row = 0;  // an index into `RawGaze::rows`
+  Vec2d corner;
+};
+
 // Something that is wrong with the file itself, that was passed over, and that an option mends. `load_gaze_log` refuses
 // such a log.
 struct RawFault {
@@ -61,6 +67,9 @@ struct RawGaze {
 
   // What the format, the header, a sidecar or the named columns say of the numbers. `automatic`: nothing does.
   Conventions declared;
+  // Where the file moves the display's corner between its rows, in their order: before the first of these rows
+  // `Conventions::corner` holds. Empty: it holds for all rows.
+  std::vector<CornerFromRow> corners;
   std::string place;            // file:line where that stands, for messages
   std::string way_out;          // of gaze on a scene camera's picture: what could be read instead
   std::vector<GazeFact> notes;  // what else the file says, in words

@@ -26,6 +26,7 @@ void refuse_scene_camera(const RawGaze& raw, const GazeReadOptions& options) {
 std::vector<RawSample> rows_for_a_guess(const RawGaze& raw, const Conventions& c) {
   Conventions plain;
   plain.missing_value = c.missing_value;
+  plain.corner = c.corner;
   return measurable_rows(raw, plain);
 }
 

@@ -56,12 +56,14 @@ bool is_mark(const Vec3d& at, const Conventions& c) {
 }
 
 // x and y of a row of positions, in `c.unit`; NaN where they are a mark.
-Vec2d position_of(const RawSample& row, const Conventions& c, bool& is_missing) {
-  is_missing = is_mark(row.at, c) || (c.zero_is_missing && row.at.x == 0 && row.at.y == 0);
+Vec2d position_of(const RawSample& row, const Vec2d& corner, const Conventions& c, bool& is_missing) {
+  Vec2d at{row.at.x - corner.x, row.at.y - corner.y};
+  // As the file has it, or counted from the corner of the display.
+  const bool is_zero = (row.at.x == 0 && row.at.y == 0) || (at.x == 0 && at.y == 0);
+  is_missing = is_mark(row.at, c) || (c.zero_is_missing && is_zero);
   if (is_missing) {
     return {kNan, kNan};
   }
-  Vec2d at{row.at.x - c.corner.x, row.at.y - c.corner.y};
   if (c.swap_xy) {
     std::swap(at.x, at.y);
   }
@@ -125,10 +127,10 @@ GazeSample sample_of(const RawSample& row) {
 void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
   const ToFractions to_fractions(c, raw.place);
   const bool marks_off_screen = !c.off_screen_is_told && raw.kind == GazeKind::screen;
-  for (const RawSample& row : raw.rows) {
-    GazeSample sample = sample_of(row);
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    GazeSample sample = sample_of(raw.rows[i]);
     bool is_missing = false;
-    const Vec2d at = to_fractions(position_of(row, c, is_missing));
+    const Vec2d at = to_fractions(position_of(raw.rows[i], corner_of(raw, c, i), c, is_missing));
     if (is_missing) {
       lose(sample.validity);
     }
@@ -146,10 +148,10 @@ void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log)
 void interpret_degrees(const RawGaze& raw, const Conventions& c, GazeLog& log) {
   log.kind = GazeKind::direction;
   const double up = c.origin.value == PositionOrigin::top_left ? -1.0 : 1.0;
-  for (const RawSample& row : raw.rows) {
-    GazeSample sample = sample_of(row);
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    GazeSample sample = sample_of(raw.rows[i]);
     bool is_missing = false;
-    const Vec2d at = position_of(row, c, is_missing);
+    const Vec2d at = position_of(raw.rows[i], corner_of(raw, c, i), c, is_missing);
     const bool known = std::abs(at.x) < 90 && std::abs(at.y) < 90;
     sample.direction = known ? normalize(Vec3d{std::tan(at.x * kRadPerDeg), up * std::tan(at.y * kRadPerDeg), -1})
                              : Vec3d{kNan, kNan, kNan};
@@ -291,11 +293,18 @@ bool is_missing_marker(double coordinate) {
   return coordinate == kInt16Min || std::abs(coordinate) >= kLarge;
 }
 
+Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t row) {
+  const auto behind = std::upper_bound(raw.corners.begin(), raw.corners.end(), row,
+                                       [](std::size_t r, const CornerFromRow& c) { return r < c.first_row; });
+  return behind == raw.corners.begin() ? conventions.corner : (behind - 1)->corner;
+}
+
 std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions) {
   std::vector<RawSample> rows = raw.rows;
-  for (RawSample& row : rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    RawSample& row = rows[i];
     bool is_missing = false;
-    const Vec2d at = position_of(row, conventions, is_missing);
+    const Vec2d at = position_of(row, corner_of(raw, conventions, i), conventions, is_missing);
     row.at = {at.x, at.y, 0};
     if (is_missing) {
       lose(row.validity);

@@ -27,6 +27,29 @@ TEST_F(GazeFormats, EyeLinkAtTwoKilohertz) {
             100'500'000);
 }
 
+// The display of a block is the one that was stated before it: 612.5 - 100 = 512.5 and 434 - 50 = 384, of 1024 x 768.
+TEST_F(GazeFormats, EyeLinkWhoseCornerMovesBetweenBlocks) {
+  const auto block = [](const std::string& corners, int from, const std::string& rows) {
+    return "MSG\t" + std::to_string(from - 1) + " DISPLAY_COORDS " + corners + "\nSTART\t" + std::to_string(from) +
+           " \tLEFT\tSAMPLES\tEVENTS\nSAMPLES\tGAZE\tLEFT\tRATE\t1000.00\n" + rows + "END\t" +
+           std::to_string(from + 50) + " \tSAMPLES\tEVENTS\tRES\t 40\t 40\n";
+  };
+  const std::string text =
+      "** CONVERTED FROM a.edf using edfapi\n** EYELINK II 1\n" +
+      block("100 50 1123 817", 100, "100\t 612.5\t 434.0\t 900.0\t...\n101\t 99\t 50\t 900.0\t...\n") +
+      block("0 0 1023 767", 200, "200\t 612.5\t 434.0\t 900.0\t...\n201\t 0\t 0\t 900.0\t...\n");
+  const GazeLog log = read("a.asc", text);
+  ASSERT_EQ(log.samples.size(), 4U);
+  EXPECT_EQ(log.samples[0].u, 512.5 / 1024);
+  EXPECT_EQ(log.samples[0].v, 384.0 / 768);
+  EXPECT_EQ(log.samples[1].u, -1.0 / 1024);
+  EXPECT_EQ(log.samples[1].v, 0);
+  EXPECT_EQ(log.samples[1].validity, GazeValidity::off_screen);
+  EXPECT_EQ(log.samples[2].u, 612.5 / 1024);
+  EXPECT_EQ(log.samples[2].v, 434.0 / 768);
+  EXPECT_EQ(log.samples[3].validity, GazeValidity::ok);
+}
+
 TEST_F(GazeFormats, EyeLinkRemoteWithVelocityResolutionAndInput) {
   const GazeLog log =
       read("a.asc",
