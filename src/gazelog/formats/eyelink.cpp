@@ -261,7 +261,7 @@ class AscReader {
         std::partition_point(first, raw_.rows.end(), [&](const RawSample& sample) { return sample.t_ns <= end_ns; });
     for (auto sample = behind; sample != first && (sample - 1)->t_ns >= begin_ns; --sample) {
       const RawSample& s = *(sample - 1);
-      if (s.eye == eye && !std::isnan(s.at.x)) {
+      if (s.eye == eye && s.validity != GazeValidity::lost) {
         const Vec2d corner = corner_of(raw_, raw_.declared, static_cast<std::size_t>(sample - 1 - raw_.rows.begin()));
         x += s.at.x - corner.x;
         y += s.at.y - corner.y;
