@@ -70,6 +70,9 @@ struct RawGaze {
   // Where the file moves the display's corner between its rows, in their order: before the first of these rows
   // `Conventions::corner` holds. Empty: it holds for all rows.
   std::vector<CornerFromRow> corners;
+  // Degrees that become directions grow up, whatever the origin is that the columns, or a guess, have for them. Else
+  // they grow down where they count from the top left.
+  bool directions_grow_up = false;
   std::string place;            // file:line where that stands, for messages
   std::string way_out;          // of gaze on a scene camera's picture: what could be read instead
   std::vector<GazeFact> notes;  // what else the file says, in words

@@ -147,7 +147,7 @@ void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log)
 // Degrees from straight ahead, azimuth and elevation taken as independent, as on a flat display: (tan az, tan el, -1).
 void interpret_degrees(const RawGaze& raw, const Conventions& c, GazeLog& log) {
   log.kind = GazeKind::direction;
-  const double up = c.origin.value == PositionOrigin::top_left ? -1.0 : 1.0;
+  const double up = c.origin.value == PositionOrigin::top_left && !raw.directions_grow_up ? -1.0 : 1.0;
   for (std::size_t i = 0; i < raw.rows.size(); ++i) {
     GazeSample sample = sample_of(raw.rows[i]);
     bool is_missing = false;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
 #include "support/gaze_format_files.hpp"
@@ -60,6 +62,20 @@ TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
   EXPECT_EQ(interpret(raw, conventions).samples[0].u, 0.75);
   conventions.time_exponent.value = 3;
   EXPECT_EQ(interpret(raw, conventions).samples[3].t_ns, 50'000);
+}
+
+// Ten degrees are (0, sin 10, -cos 10): up in a table, whatever its columns count from, and down where the user says of
+// a log of another kind that it counts from the top left.
+TEST_F(GazeInterpret, WhichWayDegreesGrow) {
+  options_.frame = GazeFrame::head;
+  options_.columns.origin = PositionOrigin::top_left;
+  const double sine = std::sin(10 * kRadPerDeg);
+  const std::string table = files_.write("table.csv", "time[ms],x[deg],y[deg]\n0,0,10\n16,0,0\n33,0,10\n");
+  EXPECT_NEAR(load_gaze_log(table, options_).samples[0].direction.y, sine, 1e-15);
+  options_.columns.position_unit = PositionUnit::deg;
+  const std::string eyelink = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", "100\t 0\t 10\t 900.0\t...\n");
+  const GazeLog log = load_gaze_log(files_.write("a.asc", eyelink), options_);
+  EXPECT_NEAR(log.samples[0].direction.y, -sine, 1e-15);
 }
 
 TEST_F(GazeInterpret, EvidenceSaysWhoSaidIt) {
