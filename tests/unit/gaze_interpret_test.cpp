@@ -2,8 +2,11 @@
 // The steps between a file and a log: the numbers as they stand there, what is concluded of them, and the log of both.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
+#include <fstream>
+#include <thread>
 
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
@@ -46,6 +49,16 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   }
   EXPECT_EQ(steps.samples[0].u, 0.25);
   EXPECT_EQ(steps.samples[3].v, 0.75);
+}
+
+// A pipe can be read once only, also where what was read turns out to be of no use.
+TEST_F(GazeInterpret, APipeIsOpenedOnce) {
+  const std::string pipe = files_.path("pipe.csv");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << kPixels; });
+  options_.format = "generic";
+  EXPECT_THAT(refusal_of(pipe, options_), HasSubstr("the size in pixels of the display of the recording is not known"));
+  writer.join();
 }
 
 TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
