@@ -90,7 +90,7 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
 
 // The same raw gaze and the same conventions give the same log, bit by bit. Error(input) with file:line for a log
 // without samples, with unordered or repeated stamps (unless they are to be sorted), and for positions whose unit needs
-// a display that is not known; Error(usage) for an eye that the log does not have.
+// a display that is not known; Error(usage) for an eye that the log does not have, and for an automatic unit.
 GazeLog interpret(const RawGaze& raw, const Conventions& conventions);
 
 }  // namespace gazetrace

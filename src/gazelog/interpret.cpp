@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInt16Min = -32768;
 constexpr double kLarge = 1e7;
+__extension__ using Int128 = __int128;
 
 // Size of the display in the unit of the positions.
 Vec2d display_size(PositionUnit unit, const DisplayGeometry& d, const std::string& place) {
@@ -257,18 +259,28 @@ void turn_witnesses(GazeLog& log, const Conventions& c, bool other_way_up) {
   }
 }
 
+// t times ten to the power of `exponent`, halves rounded away from zero; what int64 cannot hold becomes its end.
+std::int64_t times_power_of_ten(std::int64_t t, int exponent) {
+  constexpr int kMostDigits = 19;  // of an int64: by a higher power nothing fits, and nothing but zero is left
+  if (exponent < -kMostDigits) {
+    return 0;
+  }
+  Int128 power = 1;
+  for (int i = 0; i < std::min(std::abs(exponent), kMostDigits); ++i) {
+    power *= 10;
+  }
+  const Int128 value = t;
+  const Int128 result = exponent >= 0 ? value * power : (value + (value < 0 ? -power / 2 : power / 2)) / power;
+  return static_cast<std::int64_t>(
+      std::clamp<Int128>(result, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()));
+}
+
 // Stamps were read under the declared unit; under another one they are counted anew.
 void recount_times(GazeLog& log, int declared_exponent, int exponent) {
   if (declared_exponent == exponent) {
     return;
   }
-  const double factor = std::pow(10.0, exponent - declared_exponent);
-  const auto recount = [&](std::int64_t& t_ns) {
-    const double value = static_cast<double>(t_ns) * factor;
-    t_ns = !(std::abs(value) < 9.2e18)
-               ? (value < 0 ? std::numeric_limits<std::int64_t>::min() : std::numeric_limits<std::int64_t>::max())
-               : std::llround(value);
-  };
+  const auto recount = [&](std::int64_t& t_ns) { t_ns = times_power_of_ten(t_ns, exponent - declared_exponent); };
   for (GazeSample& sample : log.samples) {
     recount(sample.t_ns);
   }
@@ -314,6 +326,10 @@ std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& co
 }
 
 GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
+  if (conventions.form == PlaceForm::position && conventions.unit.value == PositionUnit::automatic) {
+    throw Error(ErrorKind::usage, raw.place, "the unit of the positions is not settled",
+                "conclude the conventions of the log before it is interpreted, or state their unit");
+  }
   GazeLog log;
   log.kind = raw.kind;
   log.source = raw.source;

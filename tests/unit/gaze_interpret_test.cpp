@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <thread>
+#include <vector>
 
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
@@ -15,6 +17,7 @@
 namespace gazetrace {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class GazeInterpret : public GazeFormats {
@@ -49,6 +52,42 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   }
   EXPECT_EQ(steps.samples[0].u, 0.25);
   EXPECT_EQ(steps.samples[3].v, 0.75);
+}
+
+// Every digit of a stamp is kept: 1700000000123456789 is no double.
+TEST_F(GazeInterpret, StampsUnderAnotherUnit) {
+  options_.columns.position_unit = PositionUnit::fraction;
+  const RawGaze raw = read_raw("time[ns],x,y\n-15,0.5,0.5\n-14,0.5,0.5\n1700000000123456789,0.5,0.5\n");
+  Conventions conventions = conclude_conventions(raw, options_);
+  const auto stamps = [&](int exponent) {
+    conventions.time_exponent.value = exponent;
+    std::vector<std::int64_t> all;
+    for (const GazeSample& sample : interpret(raw, conventions).samples) {
+      all.push_back(sample.t_ns);
+    }
+    return all;
+  };
+  EXPECT_THAT(stamps(0), ElementsAre(-15, -14, 1'700'000'000'123'456'789));
+  EXPECT_THAT(stamps(6), ElementsAre(-15'000'000, -14'000'000, std::numeric_limits<std::int64_t>::max()));
+  RawGaze in_tenths = raw;
+  in_tenths.declared.time_exponent.value = 1;
+  conventions = conclude_conventions(in_tenths, options_);
+  conventions.time_exponent.value = 0;
+  const GazeLog log = interpret(in_tenths, conventions);
+  EXPECT_EQ(log.samples[0].t_ns, -2);  // halves are rounded away from zero
+  EXPECT_EQ(log.samples[1].t_ns, -1);
+  EXPECT_EQ(log.samples[2].t_ns, 170'000'000'012'345'679);
+}
+
+TEST_F(GazeInterpret, AUnitThatIsLeftOpenIsRefused) {
+  const RawGaze raw = read_raw("time[ms],x,y\n0,4,2\n16,9,5\n");
+  try {
+    interpret(raw, raw.declared);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_THAT(error.what(), HasSubstr("the unit of the positions is not settled"));
+  }
 }
 
 // A pipe can be read once only, also where what was read turns out to be of no use.
