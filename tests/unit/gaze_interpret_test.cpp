@@ -2,6 +2,13 @@
 // The steps between a file and a log: the numbers as they stand there, what is concluded of them, and the log of both.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <thread>
+#include <vector>
 
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
@@ -10,6 +17,7 @@
 namespace gazetrace {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class GazeInterpret : public GazeFormats {
@@ -46,6 +54,52 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   EXPECT_EQ(steps.samples[3].v, 0.75);
 }
 
+// Every digit of a stamp is kept: 1700000000123456789 is no double.
+TEST_F(GazeInterpret, StampsUnderAnotherUnit) {
+  options_.columns.position_unit = PositionUnit::fraction;
+  const RawGaze raw = read_raw("time[ns],x,y\n-15,0.5,0.5\n-14,0.5,0.5\n1700000000123456789,0.5,0.5\n");
+  Conventions conventions = conclude_conventions(raw, options_);
+  const auto stamps = [&](int exponent) {
+    conventions.time_exponent.value = exponent;
+    std::vector<std::int64_t> all;
+    for (const GazeSample& sample : interpret(raw, conventions).samples) {
+      all.push_back(sample.t_ns);
+    }
+    return all;
+  };
+  EXPECT_THAT(stamps(0), ElementsAre(-15, -14, 1'700'000'000'123'456'789));
+  EXPECT_THAT(stamps(6), ElementsAre(-15'000'000, -14'000'000, std::numeric_limits<std::int64_t>::max()));
+  RawGaze in_tenths = raw;
+  in_tenths.declared.time_exponent.value = 1;
+  conventions = conclude_conventions(in_tenths, options_);
+  conventions.time_exponent.value = 0;
+  const GazeLog log = interpret(in_tenths, conventions);
+  EXPECT_EQ(log.samples[0].t_ns, -2);  // halves are rounded away from zero
+  EXPECT_EQ(log.samples[1].t_ns, -1);
+  EXPECT_EQ(log.samples[2].t_ns, 170'000'000'012'345'679);
+}
+
+TEST_F(GazeInterpret, AUnitThatIsLeftOpenIsRefused) {
+  const RawGaze raw = read_raw("time[ms],x,y\n0,4,2\n16,9,5\n");
+  try {
+    interpret(raw, raw.declared);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_THAT(error.what(), HasSubstr("the unit of the positions is not settled"));
+  }
+}
+
+// A pipe can be read once only, also where what was read turns out to be of no use.
+TEST_F(GazeInterpret, APipeIsOpenedOnce) {
+  const std::string pipe = files_.path("pipe.csv");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << kPixels; });
+  options_.format = "generic";
+  EXPECT_THAT(refusal_of(pipe, options_), HasSubstr("the size in pixels of the display of the recording is not known"));
+  writer.join();
+}
+
 TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
   options_.display = DisplayGeometry{.width_px = 1920, .height_px = 1080};
   const RawGaze raw = read_raw(kPixels);
@@ -60,6 +114,20 @@ TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
   EXPECT_EQ(interpret(raw, conventions).samples[0].u, 0.75);
   conventions.time_exponent.value = 3;
   EXPECT_EQ(interpret(raw, conventions).samples[3].t_ns, 50'000);
+}
+
+// Ten degrees are (0, sin 10, -cos 10): up in a table, whatever its columns count from, and down where the user says of
+// a log of another kind that it counts from the top left.
+TEST_F(GazeInterpret, WhichWayDegreesGrow) {
+  options_.frame = GazeFrame::head;
+  options_.columns.origin = PositionOrigin::top_left;
+  const double sine = std::sin(10 * kRadPerDeg);
+  const std::string table = files_.write("table.csv", "time[ms],x[deg],y[deg]\n0,0,10\n16,0,0\n33,0,10\n");
+  EXPECT_NEAR(load_gaze_log(table, options_).samples[0].direction.y, sine, 1e-15);
+  options_.columns.position_unit = PositionUnit::deg;
+  const std::string eyelink = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", "100\t 0\t 10\t 900.0\t...\n");
+  const GazeLog log = load_gaze_log(files_.write("a.asc", eyelink), options_);
+  EXPECT_NEAR(log.samples[0].direction.y, -sine, 1e-15);
 }
 
 TEST_F(GazeInterpret, EvidenceSaysWhoSaidIt) {
