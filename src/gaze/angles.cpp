@@ -74,12 +74,12 @@ bool knows_angles(const GazeLog& log) {
 GazeDirections gaze_directions(const GazeLog& log, GazeSpace space) {
   if (log.kind == GazeKind::scene_camera) {
     throw Error(ErrorKind::input, log.source, "gaze on a scene camera's picture has no angles",
-                "use --gaze-frame head, or a log mapped to a surface");
+                "use `gaze-frame` head, or a log mapped to a surface");
   }
   const ScreenAngles screen(log);
   if (log.kind == GazeKind::screen && !screen.known()) {
     throw Error(ErrorKind::input, log.source, "gaze on a screen means no angle without the screen's size and distance",
-                "give --screen NAME, or --screen-px W,H --screen-cm W,H --screen-distance-cm D");
+                "give `screen` NAME, or `screen-px` W,H `screen-cm` W,H `screen-distance-cm` D");
   }
   if (space == GazeSpace::world && log.head.empty()) {
     throw Error(ErrorKind::input, log.source, "gaze in the world needs the head's pose, and the log has none",

@@ -38,7 +38,7 @@ ClockFit fit_clock(const std::vector<ClockAnchor>& anchors) {
   if (anchors.size() > 1) {
     fit.scale = square > 0 ? product / square : 0;
     if (!(fit.scale > 0) || !std::isfinite(fit.scale)) {
-      throw Error(ErrorKind::usage, "--gaze-anchor", "the anchors do not let both clocks go forward",
+      throw Error(ErrorKind::usage, "`gaze-anchor`", "the anchors do not let both clocks go forward",
                   "give anchors at different times, in the same order on both clocks");
     }
   }

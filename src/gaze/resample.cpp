@@ -16,7 +16,7 @@ __extension__ using Int128 = __int128;
 
 [[noreturn]] void beyond_int64() {
   throw Error(ErrorKind::usage, "", "a time of the gaze log would lie beyond int64 nanoseconds",
-              "check --gaze-start, --gaze-offset and --gaze-scale");
+              "check `gaze-start`, `gaze-offset` and `gaze-scale`");
 }
 
 Int128 floor_divide(Int128 a, Int128 b) {  // b > 0
@@ -281,7 +281,7 @@ class Resampler {
       why += fmt::format(", first usable row {} comes {} later", after->row, milliseconds(-age(*after)));
     }
     throw Error(ErrorKind::input, log_.source, fmt::format("no gaze at log time {} ns ({})", t_ns_, why),
-                "choose --gaze-missing hold, center or uniform, or render other frames");
+                "choose `gaze-missing` hold, center or uniform, or render other frames");
   }
 
   const std::vector<GazeSample>& samples_;
@@ -312,7 +312,7 @@ std::string_view to_string(GazeState state) {
 std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_video_ns) {
   if (!(mapping.scale > 0) || !std::isfinite(mapping.scale)) {
     throw Error(ErrorKind::usage, "", fmt::format("a clock scale of {} is not a positive number", mapping.scale),
-                "give --gaze-scale as video seconds per log second, near 1");
+                "give `gaze-scale` as video seconds per log second, near 1");
   }
   const std::int64_t event = mapping.event_ns.value_or(log.samples.empty() ? 0 : log.samples.front().t_ns);
   const Int128 t = event + divide_by_scale(Int128{t_video_ns} - mapping.offset_ns, mapping.scale);

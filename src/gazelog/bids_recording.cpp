@@ -116,7 +116,7 @@ int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::siz
     }
   }
   throw Error(ErrorKind::input, place, "the sidecar does not state the timestamp's Units",
-              "give --gaze-time-unit, or write \"timestamp\": {\"Units\": \"ms\"} into it");
+              "give `gaze-time-unit`, or write \"timestamp\": {\"Units\": \"ms\"} into it");
 }
 
 }  // namespace
@@ -141,8 +141,8 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
   std::vector<std::string> names = sidecars.texts("Columns");
   if (names.empty()) {
     throw Error(ErrorKind::input, file.path, "no sidecar names its Columns",
-                "put the ..._physio.json beside it, or name the columns: --gaze-format generic --gaze-time-column 1 "
-                "--gaze-x-column 2 --gaze-y-column 3");
+                "put the ..._physio.json beside it, or name the columns: `gaze-format` generic `gaze-time-column` 1 "
+                "`gaze-x-column` 2 `gaze-y-column` 3");
   }
   DelimitedTable table = open_headerless(file.text, '\t', names);
   BidsColumns c = find_columns(table, options, file.path);
@@ -259,7 +259,7 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
   if (given != PositionUnit::automatic && (!is_understood || unit->each != 1)) {
     evidence = Evidence::option;
     if (!x.empty()) {
-      raw.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; --gaze-unit {} was given and is used", path,
+      raw.warnings.push_back(fmt::format("{}: its Units of {} are '{}'; `gaze-unit` {} was given and is used", path,
                                          columns.x_name, x.substr(0, 40), to_string(given)));
     }
     return {given};
@@ -274,7 +274,7 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
               : x == y || y.empty() ? fmt::format("its Units of {} are '{}'", columns.x_name, x.substr(0, 40))
                                     : fmt::format("its Units are '{}' of {} and '{}' of {}", x.substr(0, 40),
                                                   columns.x_name, y.substr(0, 40), columns.y_name),
-              fmt::format("give --gaze-unit, or write \"{}\": {{\"Units\": \"pixel\"}} into it", columns.x_name));
+              fmt::format("give `gaze-unit`, or write \"{}\": {{\"Units\": \"pixel\"}} into it", columns.x_name));
 }
 
 }  // namespace gazetrace

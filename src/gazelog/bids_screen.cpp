@@ -68,8 +68,8 @@ PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions&
   }
   throw Error(ErrorKind::input, events.source(screen_key("ScreenOrigin")),
               fmt::format("its ScreenOrigin is '{}'", stated),
-              from_right ? "give --gaze-flip-x, which counts from the left what counts from the right"
-                         : "top left, bottom left and center can be read; else give --gaze-origin");
+              from_right ? "give `gaze-flip-x`, which counts from the left what counts from the right"
+                         : "top left, bottom left and center can be read; else give `gaze-origin`");
 }
 
 void read_bids_screen(const Sidecars& events, RawGaze& raw) {
@@ -105,7 +105,7 @@ void read_bids_screen(const Sidecars& events, RawGaze& raw) {
     if (point.size() == 3 && (point[0] != 0 || point[1] != 0)) {
       raw.warnings.push_back(fmt::format(
           "{}: of ScreenDistance [{}, {}, {}] only the last is used, for the distance; where the eye stands "
-          "beside the display's center can be given with --screen-eye-cm",
+          "beside the display's center can be given with `screen-eye-cm`",
           events.source(key("ScreenDistance")), point[0], point[1], point[2]));
     }
     add_note(raw, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);

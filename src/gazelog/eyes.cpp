@@ -346,7 +346,7 @@ std::optional<double> great_disparity_deg(const GazeLog& log, const AnglePlane& 
 void warn_of_disparity(GazeLog& log, double disparity_deg, Eye taken) {
   log.warnings.push_back(
       fmt::format("{}: the eyes differ vertically by {:.2f} deg in the median, as after a poor calibration; the {} eye "
-                  "is used, --gaze-eye mean takes the mean",
+                  "is used, `gaze-eye` mean takes the mean",
                   log.source, disparity_deg, to_string(taken)));
 }
 
@@ -374,7 +374,7 @@ void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane&
 
 [[noreturn]] void no_such_eye(const GazeLog& log, std::string_view eye) {
   throw Error(ErrorKind::usage, log.source, fmt::format("has no rows of the {} eye", eye),
-              "leave --gaze-eye out, or choose another");
+              "leave `gaze-eye` out, or choose another");
 }
 
 }  // namespace
@@ -410,8 +410,8 @@ void choose_eyes(GazeLog& log) {
     no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
   }
   if (choice == EyeChoice::dominant && !c.dominant_eye) {
-    throw Error(ErrorKind::usage, "--gaze-eye", "which eye is the dominant one is not known",
-                "give --gaze-dominant left or right");
+    throw Error(ErrorKind::usage, "`gaze-eye`", "which eye is the dominant one is not known",
+                "give `gaze-dominant` left or right");
   }
   const std::size_t kinds =
       static_cast<std::size_t>(std::count_if(rows.of_eye.begin(), rows.of_eye.end(), [](auto n) { return n > 0; }));

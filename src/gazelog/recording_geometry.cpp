@@ -78,7 +78,7 @@ void warn_about_unused(const RawGaze& raw, Conventions& c, const GazeReadOptions
   const Vec2d& stated = *raw.pixels_per_degree;
   c.warnings.push_back(fmt::format(
       "{}: not used: {} of the screen that {} given, because angles are taken from the log's {:.4g} x {:.4g} "
-      "pixels a degree; give --screen-cm and --screen-distance-cm both to overrule them",
+      "pixels a degree; give `screen-cm` and `screen-distance-cm` both to overrule them",
       raw.place, fmt::join(parts, " and "), parts.size() > 1 ? "were" : "was", stated.x, stated.y));
 }
 

@@ -149,7 +149,7 @@ void DelimitedTable::check_unique(std::size_t column) const {
           ErrorKind::input, place,
           fmt::format("columns {} ('{}') and {} ('{}') have one name", std::min(column, i) + 1,
                       headings[std::min(column, i)].text, std::max(column, i) + 1, headings[std::max(column, i)].text),
-          "rename the one that is not meant, or name columns by number, such as --gaze-x-column 2");
+          "rename the one that is not meant, or name columns by number, such as `gaze-x-column` 2");
     }
   }
 }

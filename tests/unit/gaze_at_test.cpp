@@ -161,7 +161,7 @@ TEST(GazeAt, Policies) {
     EXPECT_STREQ(
         error.what(),
         "log.csv: no gaze at log time 45000000 ns (lost at row 6, last usable row 4 is 25.0 ms old (limit 12.0 "
-        "ms)); choose --gaze-missing hold, center or uniform, or render other frames");
+        "ms)); choose `gaze-missing` hold, center or uniform, or render other frames");
   }
   try {
     gaze_at(log, m, -45 * kMs);
@@ -170,7 +170,7 @@ TEST(GazeAt, Policies) {
     EXPECT_STREQ(
         error.what(),
         "log.csv: no gaze at log time -45000000 ns (before the log's first row, first usable row 2 comes 45.0 ms "
-        "later); choose --gaze-missing hold, center or uniform, or render other frames");
+        "later); choose `gaze-missing` hold, center or uniform, or render other frames");
   }
 }
 

@@ -42,34 +42,34 @@ TEST(GazeErrors, EmptyLogs) {
 TEST(GazeErrors, Columns) {
   expect_errors({
       {"timeless.csv", "frame,x,y\n1,2,3\n",
-       "timeless.csv:1: no column for time is found; the columns are: frame, x, y; name it with --gaze-time-column"},
+       "timeless.csv:1: no column for time is found; the columns are: frame, x, y; name it with `gaze-time-column`"},
       {"no_x.csv", "# a\nt[ms],left,right\n1,2,3\n",
        "no_x.csv:2: no column for the horizontal position is found; the columns are: t[ms], left, right; name it with "
-       "--gaze-x-column"},
+       "`gaze-x-column`"},
       {"no_y.csv", "t[ms],x[px],right\n1,2,3\n",
        "no_y.csv:1: no column for the vertical position is found; the columns are: t[ms], x[px], right; name it with "
-       "--gaze-y-column"},
+       "`gaze-y-column`"},
       {"two.csv", "t[ms],u\n1,2\n",
        "two.csv:1: 't[ms],u' is not a table of time and position; separate the cells by commas, semicolons or tabs"},
       {"blanks.txt", "t u v\n1 2 3\n",
        "blanks.txt:1: 't u v' is not a table of time and position; separate the cells by commas, semicolons or tabs"},
       {"numbers.csv", "1,2,3\n2,3,4\n",
-       "numbers.csv:1: there is no header, only 3 columns of numbers; say by number which is which: --gaze-time-column "
+       "numbers.csv:1: there is no header, only 3 columns of numbers; say by number which is which: `gaze-time-column` "
        "1 "
-       "--gaze-x-column 2 --gaze-y-column 3"},
+       "`gaze-x-column` 2 `gaze-y-column` 3"},
       {"unit.csv", "t[ms],x[inch],y[inch]\n1,2,3\n",
-       "unit.csv:1: unknown unit 'inch' of column 'x[inch]'; use [1], [px], [mm], [cm] or [deg], or give --gaze-unit"},
+       "unit.csv:1: unknown unit 'inch' of column 'x[inch]'; use [1], [px], [mm], [cm] or [deg], or give `gaze-unit`"},
       {"mixed.csv", "t[ms],x[px],y[mm]\n1,2,3\n",
        "mixed.csv:1: columns 'x[px]' and 'y[mm]' are in different units; name two columns of one unit, or give "
-       "--gaze-unit"},
+       "`gaze-unit`"},
       {"hours.csv", "t[h],u,v\n1,2,3\n",
-       "hours.csv:1: unknown unit 'h' of time column 't[h]'; use [s], [ms], [us] or [ns], or give --gaze-time-unit"},
+       "hours.csv:1: unknown unit 'h' of time column 't[h]'; use [s], [ms], [us] or [ns], or give `gaze-time-unit`"},
       {"steps.csv", "time,u,v\n0,.5,.5\n100,.5,.5\n200,.5,.5\n",
        "steps.csv:1: the unit of time column 'time' is not stated and cannot be guessed from its steps; give "
-       "--gaze-time-unit, or write it into the header: t[ms]"},
+       "`gaze-time-unit`, or write it into the header: t[ms]"},
       {"one.csv", "time,u,v\n0,.5,.5\n",
        "one.csv:1: the unit of time column 'time' is not stated and cannot be guessed from its steps; give "
-       "--gaze-time-unit, or write it into the header: t[ms]"},
+       "`gaze-time-unit`, or write it into the header: t[ms]"},
   });
   GazeReadOptions options;
   options.columns.time = "timestmp";

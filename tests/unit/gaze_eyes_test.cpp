@@ -171,7 +171,7 @@ TEST_F(GazeEyes, PupilUnitAndOriginsSurviveWriting) {
 TEST_F(GazeEyes, WhatIsNotThereCannotBeChosen) {
   const std::string left_only = "t[ns],u[1],v[1],valid,eye\n0,0.7,0.5,ok,left\n";
   for (const auto& [eye, message] : {std::pair(EyeChoice::right, "has no rows of the right eye"),
-                                     std::pair(EyeChoice::dominant, "give --gaze-dominant left or right")}) {
+                                     std::pair(EyeChoice::dominant, "give `gaze-dominant` left or right")}) {
     try {
       read(left_only, eye);
       ADD_FAILURE() << message;

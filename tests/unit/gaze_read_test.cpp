@@ -155,8 +155,8 @@ TEST_F(GazeRead, FlagsContradictingTheHeaderWarnAndWin) {
   EXPECT_EQ(log.samples[0].u, 0.5);
   EXPECT_THAT(
       warnings(log),
-      ElementsAre("log.csv:1: the header says that 't[ms]' is in ms; --gaze-time-unit us was given and is used",
-                  "log.csv:1: the header says that 'x[px]' is in px; --gaze-unit fraction was given and is used"));
+      ElementsAre("log.csv:1: the header says that 't[ms]' is in ms; `gaze-time-unit` us was given and is used",
+                  "log.csv:1: the header says that 'x[px]' is in px; `gaze-unit` fraction was given and is used"));
 }
 
 TEST_F(GazeRead, UnitsFromStatisticsAreCalledGuesses) {
@@ -177,7 +177,7 @@ TEST_F(GazeRead, UnitsFromStatisticsAreCalledGuesses) {
     const GazeLog log = read(table(c.step, 1));
     EXPECT_EQ(log.samples[1].t_ns - log.samples[0].t_ns, c.step_ns);
     EXPECT_THAT(warnings(log)[0], fmt::format("log.csv:1: guessed from its steps that 'time' is in {}; state it with "
-                                              "--gaze-time-unit",
+                                              "`gaze-time-unit`",
                                               c.unit));
     EXPECT_THAT(warnings(log)[1], HasSubstr("that the positions are in fraction; state it with --gaze-unit"));
   }
@@ -241,7 +241,7 @@ TEST_F(GazeRead, ValidityColumns) {
   options.columns.valid_values.clear();
   EXPECT_THAT(
       warnings(read("val,u,v,time_ms\n0,.5,.5,0\n4,.5,.5,1\n", options))[0],
-      "log.csv: no row is valid by column 'val', which holds: 0, 4; say with --gaze-valid-values which of them are "
+      "log.csv: no row is valid by column 'val', which holds: 0, 4; say with `gaze-valid-values` which of them are "
       "good");
 }
 

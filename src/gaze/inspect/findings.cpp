@@ -295,11 +295,11 @@ class Doctor {
       add(FindingKind::note, "scene-camera",
           "the gaze lies on the picture of a camera on the head: it can be looked at and converted, but is no place on "
           "a display to render from",
-          "the format; where the log has directions, --gaze-frame head takes them; else map gaze onto the display");
+          "the format; where the log has directions, `gaze-frame` head takes them; else map gaze onto the display");
     }
     if (loss.usable == 0) {
       add(FindingKind::suspicion, "nothing-usable", "no sample is usable",
-          "check which column says what is valid: --gaze-validity-column, --gaze-valid-values");
+          "check which column says what is valid: `gaze-validity-column`, `gaze-valid-values`");
     } else if (share(loss.usable) < 0.5) {
       add(FindingKind::note, "lost", fmt::format("only {:.1f} % of the samples are usable", 100 * share(loss.usable)),
           "the log's own validity");
@@ -320,7 +320,7 @@ class Doctor {
                       report_.frozen.runs, static_cast<double>(report_.frozen.longest_ns) * 1e-6,
                       report_.frozen.longest_row),
           "data held while the eye was lost, or a logger that repeats; a validity column would tell "
-          "(--gaze-validity-column)");
+          "(`gaze-validity-column`)");
     }
     if (tells && report_.frozen.samples * 20 <= loss.usable && report_.frozen.longest_ns >= 1'000'000'000) {
       add(FindingKind::note, "frozen",
@@ -346,7 +346,7 @@ class Doctor {
       add(FindingKind::note, "display-unknown",
           "the display's size is not stated; a usual one was taken to look at the log, and what is beside it is not "
           "known",
-          "statistics: " + display->detail + "; reading for anything else needs --screen-px W,H");
+          "statistics: " + display->detail + "; reading for anything else needs `screen-px` W,H");
     }
   }
 

@@ -59,7 +59,7 @@ void write_log(const GazeInspection& r, Text& text) {
 void write_time(const GazeInspection& r, Text& text) {
   const GazeTiming& t = r.timing;
   if (r.is_wall_clock && t.first_ns == 0) {
-    text.line("time", "a clock that counts from 1970; stamps are not shown without --keep-ids");
+    text.line("time", "a clock that counts from 1970; stamps are not shown without `keep-ids`");
   } else {
     text.line("time", "{} ns to {} ns{}", t.first_ns, t.last_ns, r.clock.empty() ? "" : " (clock: " + r.clock + ")");
   }

@@ -48,8 +48,8 @@ std::vector<Point> find_points(const DelimitedTable& table, const std::string& p
     const bool fixations = table.find("FPOGX").has_value();
     throw Error(ErrorKind::input, place,
                 fixations ? "there is only FPOG, the mean of the fixation so far" : "there is no point of gaze (BPOGX)",
-                "export all gaze with BPOG, or read FPOGX and FPOGY by --gaze-format generic with "
-                "--gaze-x-column and --gaze-y-column");
+                "export all gaze with BPOG, or read FPOGX and FPOGY by `gaze-format` generic with "
+                "`gaze-x-column` and `gaze-y-column`");
   }
   return points;
 }
@@ -72,7 +72,7 @@ RawGaze read_by_ticks(const GazeFile& file, const GazeReadOptions& options, cons
   by_ticks.columns.time = ticks;
   RawGaze raw = read_gaze_gazepoint(file, by_ticks);
   raw.faults.push_back({"media", place_of(file, line), fmt::format("{} starts anew with another medium", time),
-                        fmt::format("use --gaze-time-column {}, which goes on, or export one medium a file", ticks),
+                        fmt::format("use `gaze-time-column` {}, which goes on, or export one medium a file", ticks),
                         "--gaze-time-column " + ticks,
                         fmt::format("line {}: TIME starts anew with another medium", line)});
   return raw;
@@ -93,7 +93,7 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   const auto seconds = column_starting(table, "TIME");
   const auto ticks = column_starting(table, "TIMETICK");
   if (!seconds && !ticks && options.columns.time.empty()) {
-    throw Error(ErrorKind::input, place, "there is no column TIME(...)", "name it with --gaze-time-column");
+    throw Error(ErrorKind::input, place, "there is no column TIME(...)", "name it with `gaze-time-column`");
   }
   RawGaze raw;
   raw.source = file.path;

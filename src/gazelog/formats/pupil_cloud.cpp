@@ -42,7 +42,7 @@ RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   const auto blink = table.find("blink id");
   const auto fixation = table.find("fixation id");
   RawGaze raw;
-  raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with --gaze-frame head";
+  raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with `gaze-frame` head";
   raw.source = file.path;
   raw.format = "pupil-cloud";
   raw.clock = "UTC, from 1970";

@@ -60,15 +60,15 @@ bool has_prefix(const DelimitedTable& table, std::string_view prefix) {
   if (has_prefix(table, "Gaze point X")) {
     throw Error(ErrorKind::input, place,
                 "its gaze points are in media coordinates (MCS), relative to what was shown, not to the display",
-                "export again with DACS columns, or name the columns with --gaze-x-column and --gaze-y-column and give "
-                "the size of the medium with --screen-px");
+                "export again with DACS columns, or name the columns with `gaze-x-column` and `gaze-y-column` and give "
+                "the size of the medium with `screen-px`");
   }
   const bool fixations = has_prefix(table, "Fixation point X") || has_prefix(table, "Mapped fixation X");
   throw Error(ErrorKind::input, place,
               fmt::format("this export has no gaze points (Gaze point X){}",
                           fixations ? ", only fixations, which leave out every saccade" : ""),
-              "export again with gaze points, or name the columns to read as places with --gaze-x-column and "
-              "--gaze-y-column and give their picture's size with --screen-px");
+              "export again with gaze points, or name the columns to read as places with `gaze-x-column` and "
+              "`gaze-y-column` and give their picture's size with `screen-px`");
 }
 
 LabColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
@@ -160,7 +160,7 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   if (!c.is_declared && is_of_glasses(file, table)) {
     raw.way_out =
         "export gaze mapped onto a snapshot, or read the glasses' own files (gazedata.gz) with "
-        "--gaze-frame head";
+        "`gaze-frame` head";
     raw.kind = GazeKind::scene_camera;
   }
   const bool unit_stated = !table.headings[c.time].unit.empty();

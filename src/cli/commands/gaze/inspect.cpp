@@ -54,7 +54,7 @@ int run_inspect(const InspectArguments& arguments) {
   if (!arguments.svg.empty()) {
     write_picture(arguments, gaze.log, inspection);
   }
-  print_result(arguments.json ? inspection_json(inspection) : inspection_text(inspection));
+  print_result(with_flags(arguments.json ? inspection_json(inspection) : inspection_text(inspection)));
   return exit_done;
 }
 
