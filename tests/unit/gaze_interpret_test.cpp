@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "gazetrace/gaze_inspect.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
 #include "support/gaze_format_files.hpp"
@@ -151,6 +152,10 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   GazeLog log;
   log.clock = "computer, 2022/09/19 13:34:49.156";
   log.warnings = {"started 13:34:49"};
+  log.conventions.warnings = {"guessed on 19.09.2022"};
+  log.order.first_backward_row = 7;
+  log.order.first_backward_ns = 1'700'000'000'000'000'000;
+  log.order.before_ns = 1'700'000'000'016'000'000;
   for (const std::int64_t t_ns : {1'700'000'000'000'000'000, 1'700'000'000'016'000'000}) {
     log.samples.emplace_back().t_ns = t_ns;
   }
@@ -160,6 +165,27 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   EXPECT_EQ(hidden.log.samples[1].t_ns, 16'000'000);
   EXPECT_EQ(hidden.log.clock, "computer, (date)");
   EXPECT_EQ(hidden.log.warnings[0], "started (date)");
+  EXPECT_EQ(hidden.log.conventions.warnings[0], "guessed on (date)");
+  EXPECT_EQ(hidden.log.order.first_backward_ns, 0);
+  EXPECT_EQ(hidden.log.order.before_ns, 16'000'000);
+  EXPECT_EQ(hidden.log.order.first_duplicate_ns, 0);  // there is none
+  log.order.first_duplicate_row = 9;
+  log.order.first_duplicate_ns = 1'700'000'000'016'000'000;
+  EXPECT_EQ(without_times_of_day(log).log.order.first_duplicate_ns, 16'000'000);
+  // What is reported of the log shows them only where times of day may be seen.
+  const GazeInspection shown = inspect_gaze(log, {.display = {}, .keep_ids = true});
+  EXPECT_EQ(shown.order.before_ns, 1'700'000'000'016'000'000);
+  const GazeOrder reported = inspect_gaze(log, {}).order;
+  EXPECT_EQ(reported.first_backward_ns, 0);
+  EXPECT_EQ(reported.before_ns, 0);
+  EXPECT_EQ(reported.first_duplicate_ns, 0);
+  EXPECT_EQ(reported.first_backward_row, 7);
+  // A copy keeps its stamps, but says no dates.
+  GazeLog copy = log;
+  leave_out_identities(copy);
+  EXPECT_EQ(copy.clock, "computer, (date)");
+  EXPECT_EQ(copy.warnings[0], "started (date)");
+  EXPECT_EQ(copy.conventions.warnings[0], "guessed on (date)");
   log.samples.front().t_ns = 5;
   EXPECT_FALSE(without_times_of_day(log).taken_off_ns);
 }
