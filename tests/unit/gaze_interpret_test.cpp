@@ -14,6 +14,7 @@
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
 #include "support/gaze_format_files.hpp"
+#include "support/gaze_log_text.hpp"
 
 namespace gazetrace {
 namespace {
@@ -46,13 +47,20 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   const RawGaze raw = read_raw(kPixels);
   const GazeLog steps = interpret(raw, conclude_conventions(raw, options_));
   const GazeLog loaded = load_gaze_log(files_.path("log.csv"), options_);
-  ASSERT_EQ(steps.samples.size(), loaded.samples.size());
-  for (std::size_t i = 0; i < steps.samples.size(); ++i) {
-    EXPECT_EQ(steps.samples[i].u, loaded.samples[i].u);
-    EXPECT_EQ(steps.samples[i].t_ns, loaded.samples[i].t_ns);
-  }
+  EXPECT_EQ(everything_of(steps), everything_of(loaded));
   EXPECT_EQ(steps.samples[0].u, 0.25);
   EXPECT_EQ(steps.samples[3].v, 0.75);
+  // Both eyes, events, a display, and warnings.
+  options_.columns.origin = PositionOrigin::bottom_left;
+  const std::string both = asc("SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t1000.00",
+                               "100\t 480.0\t 270.0\t 900.0\t 500.0\t 280.0\t 800.0\t.....\n"
+                               "101\t 481.0\t 270.0\t 900.0\t .\t .\t 0.0\t...CR\n"
+                               "EBLINK R 101\t101\t1\n");
+  const RawGaze raw_both = read_raw_gaze(files_.write("both.asc", both), options_);
+  const std::string text = everything_of(interpret(raw_both, conclude_conventions(raw_both, options_)));
+  EXPECT_EQ(text, everything_of(load_gaze_log(files_.path("both.asc"), options_)));
+  EXPECT_THAT(text, HasSubstr("--gaze-origin bottom-left was given and is used"));
+  EXPECT_THAT(text, HasSubstr("'diameter'"));
 }
 
 // Every digit of a stamp is kept: 1700000000123456789 is no double.
