@@ -10,9 +10,11 @@
 #include <thread>
 #include <vector>
 
+#include "gazetrace/gaze_inspect.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
 #include "support/gaze_format_files.hpp"
+#include "support/gaze_log_text.hpp"
 
 namespace gazetrace {
 namespace {
@@ -45,13 +47,20 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   const RawGaze raw = read_raw(kPixels);
   const GazeLog steps = interpret(raw, conclude_conventions(raw, options_));
   const GazeLog loaded = load_gaze_log(files_.path("log.csv"), options_);
-  ASSERT_EQ(steps.samples.size(), loaded.samples.size());
-  for (std::size_t i = 0; i < steps.samples.size(); ++i) {
-    EXPECT_EQ(steps.samples[i].u, loaded.samples[i].u);
-    EXPECT_EQ(steps.samples[i].t_ns, loaded.samples[i].t_ns);
-  }
+  EXPECT_EQ(everything_of(steps), everything_of(loaded));
   EXPECT_EQ(steps.samples[0].u, 0.25);
   EXPECT_EQ(steps.samples[3].v, 0.75);
+  // Both eyes, events, a display, and warnings.
+  options_.columns.origin = PositionOrigin::bottom_left;
+  const std::string both = asc("SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t1000.00",
+                               "100\t 480.0\t 270.0\t 900.0\t 500.0\t 280.0\t 800.0\t.....\n"
+                               "101\t 481.0\t 270.0\t 900.0\t .\t .\t 0.0\t...CR\n"
+                               "EBLINK R 101\t101\t1\n");
+  const RawGaze raw_both = read_raw_gaze(files_.write("both.asc", both), options_);
+  const std::string text = everything_of(interpret(raw_both, conclude_conventions(raw_both, options_)));
+  EXPECT_EQ(text, everything_of(load_gaze_log(files_.path("both.asc"), options_)));
+  EXPECT_THAT(text, HasSubstr("--gaze-origin bottom-left was given and is used"));
+  EXPECT_THAT(text, HasSubstr("'diameter'"));
 }
 
 // Every digit of a stamp is kept: 1700000000123456789 is no double.
@@ -151,6 +160,10 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   GazeLog log;
   log.clock = "computer, 2022/09/19 13:34:49.156";
   log.warnings = {"started 13:34:49"};
+  log.conventions.warnings = {"guessed on 19.09.2022"};
+  log.order.first_backward_row = 7;
+  log.order.first_backward_ns = 1'700'000'000'000'000'000;
+  log.order.before_ns = 1'700'000'000'016'000'000;
   for (const std::int64_t t_ns : {1'700'000'000'000'000'000, 1'700'000'000'016'000'000}) {
     log.samples.emplace_back().t_ns = t_ns;
   }
@@ -160,6 +173,27 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   EXPECT_EQ(hidden.log.samples[1].t_ns, 16'000'000);
   EXPECT_EQ(hidden.log.clock, "computer, (date)");
   EXPECT_EQ(hidden.log.warnings[0], "started (date)");
+  EXPECT_EQ(hidden.log.conventions.warnings[0], "guessed on (date)");
+  EXPECT_EQ(hidden.log.order.first_backward_ns, 0);
+  EXPECT_EQ(hidden.log.order.before_ns, 16'000'000);
+  EXPECT_EQ(hidden.log.order.first_duplicate_ns, 0);  // there is none
+  log.order.first_duplicate_row = 9;
+  log.order.first_duplicate_ns = 1'700'000'000'016'000'000;
+  EXPECT_EQ(without_times_of_day(log).log.order.first_duplicate_ns, 16'000'000);
+  // What is reported of the log shows them only where times of day may be seen.
+  const GazeInspection shown = inspect_gaze(log, {.display = {}, .keep_ids = true});
+  EXPECT_EQ(shown.order.before_ns, 1'700'000'000'016'000'000);
+  const GazeOrder reported = inspect_gaze(log, {}).order;
+  EXPECT_EQ(reported.first_backward_ns, 0);
+  EXPECT_EQ(reported.before_ns, 0);
+  EXPECT_EQ(reported.first_duplicate_ns, 0);
+  EXPECT_EQ(reported.first_backward_row, 7);
+  // A copy keeps its stamps, but says no dates.
+  GazeLog copy = log;
+  leave_out_identities(copy);
+  EXPECT_EQ(copy.clock, "computer, (date)");
+  EXPECT_EQ(copy.warnings[0], "started (date)");
+  EXPECT_EQ(copy.conventions.warnings[0], "guessed on (date)");
   log.samples.front().t_ns = 5;
   EXPECT_FALSE(without_times_of_day(log).taken_off_ns);
 }
