@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fixations, saccades and blinks in a gaze log, by published methods with their published defaults.
 //
-// Everything is measured in the geometry of the recording: as angles between directions from the eye, by atan2. For
-// logs of a head-mounted display these are directions in the head, or in the world where the head's pose is known; for
-// a screen they are directions to the display that was looked at while recording.
+// Everything is measured in the geometry of the recording, as angles between directions from the eye, computed by
+// atan2. For logs of a head-mounted display these are directions in the head, or in the world where the head's pose is
+// known. For a screen they are directions to the display that was looked at while recording.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,9 @@
 
 namespace gazetrace {
 
-// What an eye does at a time. pursuit is in the truth of synthetic logs only; no method here tells it apart.
-// unclassified: seen, but neither (fixations too short to be kept, implausible speeds).
+// What an eye does at a time. pursuit occurs in the truth of synthetic logs only, as no method here tells it apart.
+// unclassified: the eye was seen, but its movement is none of the others (fixations too short to be kept, implausible
+// speeds).
 enum class EyeMovement : std::uint8_t { fixation, saccade, pursuit, blink, lost, unclassified };
 std::string_view to_string(EyeMovement movement);
 
@@ -32,39 +33,41 @@ struct GazeDirections {
   std::vector<std::int64_t> t_ns;
   std::vector<Vec3d> direction;
 };
-// Error(input) for a screen log whose geometry says no angles (size and distance, or pixels per degree), for gaze on a
-// scene camera's picture, and for GazeSpace::world without a head pose.
+// Throws Error(input) for a screen log whose geometry gives no angles (it needs size and distance, or pixels per
+// degree), for gaze on a scene camera's picture, and for GazeSpace::world without a head pose.
 GazeDirections gaze_directions(const GazeLog& log, GazeSpace space = GazeSpace::head);
 bool knows_angles(const GazeLog& log);
-// Degrees per second at each sample: the angle between the directions at the ends of a window about it, over the time
-// between them. The window reaches half of `window_ns` to either side, and at least to the next sample; at the end of
-// a run it is one-sided. NaN without a neighbour. Olsen 2012, "velocity calculator". Linear time.
+// Degrees per second at each sample: the angle between the directions at the ends of a window around it, divided by the
+// time between them. The window reaches half of `window_ns` to either side, and at least to the next sample; at the end
+// of a run it is one-sided. NaN for a sample without a neighbour. Source: Olsen 2012, "velocity calculator". Takes
+// linear time.
 std::vector<double> angular_speed_deg_s(const GazeDirections& gaze, std::int64_t window_ns);
 
-// Thresholds of all methods; each uses those that its comment names.
+// Thresholds of all methods. The comment at each threshold names the methods that use it.
 struct EventSettings {
   std::string method = "ivt";  // a name of `event_methods()`: the algorithm
   GazeSpace space = GazeSpace::head;
   // ivt: a sample slower than this belongs to a fixation. Olsen 2012.
   double velocity_deg_s = 30;
-  std::int64_t velocity_window_ns = 20'000'000;  // ivt, and length of the smoothing of adaptive
-  // ivt: lost samples in a gap this short are bridged for the classification, unless a blink is in it. 0: not.
+  std::int64_t velocity_window_ns = 20'000'000;  // ivt: its window; adaptive: the length of its smoothing
+  // ivt: lost samples in a gap up to this length are bridged for the classification, unless a blink is in it. 0: never.
   std::int64_t max_gap_ns = 75'000'000;
-  // ivt: fixations no farther apart than both become one. 0 ns: not.
+  // ivt: fixations that are no farther apart than both of these become one. 0 ns: never.
   std::int64_t merge_gap_ns = 75'000'000;
   double merge_angle_deg = 0.5;
-  // All: shorter fixations are unclassified. n samples last n steps of the clock, as in Tobii Studio's exports; the
-  // window of idt is measured from its first to its last sample.
+  // All methods: shorter fixations are unclassified. n samples last n steps of the clock, as in Tobii Studio's exports;
+  // the window of idt is measured from its first to its last sample.
   std::int64_t min_fixation_ns = 60'000'000;
-  // idt: extent of azimuth plus extent of elevation. Salvucci & Goldberg 2000, eq. for D.
+  // idt: the most that extent of azimuth plus extent of elevation may be. Salvucci & Goldberg 2000, eq. for D.
   double dispersion_deg = 1.0;
-  // adaptive (Nystrom & Holmqvist 2010): where the peak threshold starts, what no eye can do, shortest saccade.
+  // adaptive (Nystrom & Holmqvist 2010): where the peak threshold starts, the speed and acceleration that no eye
+  // exceeds, and the shortest saccade.
   double start_velocity_deg_s = 100;
   double max_velocity_deg_s = 1000;
   double max_acceleration_deg_s2 = 100'000;
   std::int64_t min_saccade_ns = 10'000'000;
-  // All: a loss of this length that the log does not explain is taken for a blink (pymovements, after Nystrom et al.
-  // 2024). Both 0: only what the log calls a blink is one.
+  // All methods: a loss of this length that the log does not explain is taken for a blink (pymovements, after Nystrom
+  // et al. 2024). Both 0: only what the log calls a blink is one.
   std::int64_t min_blink_ns = 50'000'000, max_blink_ns = 500'000'000;
 };
 
@@ -80,47 +83,50 @@ struct EventPreset {
   EventSettings settings;
 };
 const std::vector<EventPreset>& event_presets();
-const EventPreset& event_preset(std::string_view name);  // Error(usage) with the known names
+const EventPreset& event_preset(std::string_view name);  // throws Error(usage) with the known names
 // "ivt" for gaze on a screen, "ivt-hmd" for directions with a head pose, "ivt-attention" for those without.
-// `device` is that of the recording where the user says so.
+// `device` is what the user says that the log was recorded on; empty where nothing was said.
 const EventPreset& default_event_preset(const GazeLog& log, std::optional<GazeDevice> device = std::nullopt);
-// Directions from a head are head-mounted, gaze on a screen is desktop, unless the log's reader knows better
-// (GazeBase).
+// Directions from a head count as head-mounted and gaze on a screen as desktop, unless the log's reader knows better
+// (as for GazeBase).
 GazeDevice recorded_device(const GazeLog& log);
 
 struct EyeEvent {
   EyeMovement movement = EyeMovement::unclassified;
   std::int64_t begin_ns = 0, end_ns = 0;  // of its first and last sample
   std::size_t first = 0, last = 0;        // their indices
-  // Mean direction of a fixation, NaN for others; on a screen also as fractions of the display.
+  // Mean direction of a fixation, NaN for other movements; for gaze on a screen also as fractions of the display.
   Vec3d direction{};
   double u = 0, v = 0;
-  // Of a saccade: angle between where it begins and where it lands, highest and mean speed, and the way it goes
-  // (degrees, 0 to the right, 90 up). Of a fixation: peak speed, and dispersion_deg, the root mean square of the angle
-  // to its mean. NaN where it does not apply.
+  // For a saccade: the angle between where it begins and where it lands, its highest and mean speed, and the direction
+  // of its course (degrees, 0 to the right, 90 up). For a fixation: the peak speed, and dispersion_deg, the root mean
+  // square of the angle to its mean direction. NaN where a value does not apply.
   double amplitude_deg = 0, peak_velocity_deg_s = 0, mean_velocity_deg_s = 0, angle_deg = 0, dispersion_deg = 0;
 };
 
 struct EyeEvents {
-  std::string preset;  // as given; empty: settings of one's own
+  std::string preset;  // its name; empty where settings were given instead
   EventSettings settings;
   std::vector<EyeMovement> labels;  // one for each sample
   std::vector<std::size_t> cuts;    // samples at which an event begins though the one before is of its kind; increasing
   std::vector<EyeEvent> events;     // runs of equal labels, in the order of time
-  // Of adaptive: the thresholds it came to. NaN for others.
+  // The thresholds that adaptive arrived at; NaN for other methods.
   double peak_threshold_deg_s = 0, onset_threshold_deg_s = 0;
 };
 
-// Linear time. Errors of gaze_directions; Error(usage) for an unknown method or constants out of range.
+// Takes linear time. Throws the errors of gaze_directions, and Error(usage) for an unknown method or constants that are
+// out of range.
 EyeEvents detect_events(const GazeLog& log, const EventSettings& settings);
-// Error(input) where the preset is for the other kind of device: `device` is that of the recording where the user says
-// so, else `recorded_device`.
+// Throws Error(input) where the preset is for the other kind of device. `device` is what the user says that the log was
+// recorded on; where it is empty, `recorded_device` decides.
 EyeEvents detect_events(const GazeLog& log, const EventPreset& preset, std::optional<GazeDevice> device = std::nullopt);
-// What the log itself says of the eye it has been read for (EyeLink's EFIX and ESACC, Tobii's columns, labels of
-// hand): same form, so that both can be held against each other. Without such events every sample is unclassified.
+// The events that the log itself states for the eye it has been read for (EyeLink's EFIX and ESACC, Tobii's columns,
+// labels set by hand), in the same form, so that both can be compared. Without such events every sample is
+// unclassified.
 EyeEvents events_of_log(const GazeLog& log);
 
-// Tab-separated, one event a row: movement, onset_ns, offset_ns, duration_ms, first_row, last_row, amplitude_deg, ...
+// Tab-separated values with one event in each row: movement, onset_ns, offset_ns, duration_ms, first_row, last_row,
+// amplitude_deg, ...
 std::string events_as_tsv(const EyeEvents& events, const GazeLog& log);
 std::string events_as_json(const EyeEvents& events, const GazeLog& log);
 

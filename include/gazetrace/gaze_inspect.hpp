@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log doctor: how good a gaze log is, what is suspicious in it, from what that was concluded, and which options
-// mend it. Nothing here changes a log.
+// The log doctor reports how good a gaze log is, what is suspicious in it, what evidence that rests on, and which
+// options mend it. Nothing here changes a log.
 #pragma once
 
 #include <array>
@@ -17,19 +17,20 @@
 
 namespace gazetrace {
 
-// Which samples can be used. Time without usable gaze goes from one usable sample to the next, less one median step.
+// How many samples can be used. The time of a loss is the time from one usable sample to the next, less one median
+// step.
 struct GazeLoss {
   std::size_t samples = 0, usable = 0;
   std::array<std::size_t, 6> by_validity{};       // in the order of GazeValidity
-  std::optional<double> left_share, right_share;  // of samples that each eye has usable; for binocular logs
+  std::optional<double> left_share, right_share;  // share of the samples usable for each eye; for binocular logs
   std::size_t blink_like = 0;  // losses of 50..500 ms, the window of pymovements after Nystrom (2024)
   double blink_like_median_ms = 0;
   std::size_t longer = 0;  // losses above 500 ms
   std::int64_t longest_ns = 0;
 };
 
-// The same position, bit by bit, over at least five samples and 100 ms: data held while the eye is lost, or a logger
-// that is faster than its tracker.
+// Runs in which the position stays the same, bit by bit, over at least five samples and 100 ms. They come from data
+// that are held while the eye is lost, or from a logger that is faster than its tracker.
 struct GazeFrozen {
   std::size_t runs = 0, samples = 0;
   std::int64_t longest_ns = 0;
@@ -37,16 +38,17 @@ struct GazeFrozen {
   double repeated_share = 0;     // usable samples that repeat the one before
 };
 
-// Noise within fixations, which for this purpose are stretches of at least 100 ms below 30 deg/s, velocity taken over
-// 20 ms; medians over the stretches. RMS of sample-to-sample distances, and the root of the summed variances of both
-// axes (Holmqvist et al. 2012). Where angles are unknown the picture counts as 40 degrees wide for the threshold alone,
-// and the values are in pixels or in shares of the picture.
+// Noise within fixations, which for this purpose are stretches of at least 100 ms below 30 deg/s, with the velocity
+// taken over 20 ms. The values are medians over the stretches: the RMS of the distances from sample to sample, and the
+// root of the summed variances of both axes (Holmqvist et al. 2012). Where angles are unknown the picture counts as 40
+// degrees wide for the threshold alone, and the values are in pixels or in fractions of the picture.
 struct GazePrecision {
   std::size_t fixations = 0;
   double rms_s2s = 0, sd = 0;
 };
 
-// Left minus right eye, right and up positive, in the unit of the report; spread: interquartile range / 1.349.
+// The position of the left eye's gaze minus that of the right eye, with right and up positive, in the unit of the
+// report. The spread is the interquartile range / 1.349.
 struct GazeDisparity {
   std::size_t pairs = 0;
   double horizontal = 0, vertical = 0;
@@ -54,7 +56,7 @@ struct GazeDisparity {
   double vertical_correlation = 0, horizontal_correlation = 0;  // of the two eyes' positions
 };
 
-// Whether an axis points the way that was assumed.
+// Whether an axis points in the direction that was assumed.
 enum class AxisVerdict : std::uint8_t { confirmed, flipped, undecided };
 std::string_view to_string(AxisVerdict verdict);
 struct GazeAxisTest {
@@ -63,9 +65,10 @@ struct GazeAxisTest {
   std::string evidence;
 };
 
-// The vestibulo-ocular reflex keeps gaze still in the world while the head turns, so the sign of an axis under which it
-// is steadier is the right one. Over stretches of 250 ms in which the head turns by 5 to 150 deg/s about that axis and
-// the eye makes no saccade: the share that is steadier as read, by a sign test, and the ratio of the speeds.
+// The vestibulo-ocular reflex keeps gaze still in the world while the head turns, so the right sign of an axis is the
+// one under which gaze is steadier in the world. The test looks at stretches of 250 ms in which the head turns by 5 to
+// 150 deg/s about that axis and the eye makes no saccade. The verdict rests on the share of stretches that are steadier
+// as read, by a sign test, and on the ratio of the speeds.
 struct VorTest {
   char axis = 'x';
   std::size_t stretches = 0, steadier_as_read = 0;
@@ -74,9 +77,9 @@ struct VorTest {
 };
 
 enum class FindingKind : std::uint8_t {
-  fault,      // certain: by what the file itself says
-  suspicion,  // by statistics; may be wrong
-  note,       // worth knowing, nothing to mend
+  fault,      // certain, because the file itself says so
+  suspicion,  // concluded from statistics, and may be wrong
+  note,       // worth knowing, but there is nothing to mend
 };
 std::string_view to_string(FindingKind kind);
 
@@ -87,11 +90,12 @@ struct GazeFinding {
              // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
   std::string what;
   std::string evidence;
-  std::string flag;  // the exact option that mends it; empty: none does
+  std::string flag;  // what to write on the command line to mend it, such as "--gaze-flip-y"; empty: no option does
 };
 
 struct GazeInspection {
-  // What the log says of itself; see GazeLog. Without what identifies a person unless it was to be kept.
+  // What the log says about itself, see GazeLog. Anything that identifies a person is left out unless the options keep
+  // it.
   std::string source, format, clock, pupil_unit;
   double format_confidence = 1;
   GazeKind kind = GazeKind::screen;
@@ -101,7 +105,7 @@ struct GazeInspection {
   std::array<std::size_t, 5> events{};  // in the order of GazeEventType
   std::size_t head_poses = 0;
   bool both_eyes = false;
-  bool is_wall_clock = false;  // stamps are times of day; first_ns and last_ns are 0 then unless they were to be kept
+  bool is_wall_clock = false;  // stamps are times of day; unless the options keep them, first_ns and last_ns are 0
   Warnings warnings;
 
   GazeOrder order;
@@ -116,34 +120,35 @@ struct GazeInspection {
   std::vector<GazeAxisTest> axes;
   std::vector<GazeFinding> findings;
   std::string verdict;             // one sentence
-  std::vector<std::string> flags;  // all that mend, in the order to give them
+  std::vector<std::string> flags;  // of all findings, in the order in which to give them
 };
 
-// Names, participants, serial numbers and times of day stay out unless `keep_ids`. `display` completes what the log
-// states of its display.
+// Names, participants, serial numbers and times of day are left out unless `keep_ids` is set. `display` completes what
+// the log states about its display.
 struct GazeInspectOptions {
   std::optional<DisplayGeometry> display;
   bool keep_ids = false;
 };
-// What can be told of a log alone.
+// What can be told from a log alone.
 GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& options);
 
-// A log with the numbers of its file, which an inspection can read again under other conventions.
+// A log together with the raw numbers of its file, which an inspection can interpret again under other conventions.
 struct GazeUnderInspection {
   RawGaze raw;
   Conventions conventions;
-  bool is_sorted_by_option = false;  // else rows that are out of order, or repeated, are findings
+  bool is_sorted_by_option = false;  // if false, rows that are out of order or repeated are findings
   GazeLog log;
 };
-// Broken logs are mended where an option can mend them, and what was wrong is a finding; gaze on a scene camera's
-// picture is taken; sizes that nobody states are guessed, as `GazeReadOptions::guess_display` says.
+// Broken logs are mended where an option can mend them, and what was wrong becomes a finding. Gaze on a scene camera's
+// picture is accepted. Display sizes that nobody states are guessed, as `GazeReadOptions::guess_display` says.
 GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read);
 GazeInspection inspect_gaze(const GazeUnderInspection& gaze, const GazeInspectOptions& options);
 
 std::string inspection_text(const GazeInspection& inspection);
 std::string inspection_json(const GazeInspection& inspection);
 
-// x and y over time with losses, gaps and events, and the scanpath over the display. Time counts from the first sample.
+// A picture of x and y over time with losses, gaps and events, and of the scanpath over the display. Time counts from
+// the first sample.
 struct GazePictureOptions {
   int width_px = 1200;
   std::string frame_image;  // .png or .jpg, put behind the scanpath; empty: none

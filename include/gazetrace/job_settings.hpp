@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be asked of a run, as typed values. resolve.hpp makes loaded and checked things of it.
+// All settings of a run, as typed values. resolve.hpp turns them into loaded and checked inputs.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace gazetrace {
 
-// Where the viewer's eye is.
+// The viewer's screen, and where the eye is in front of it.
 struct ScreenSettings {
   std::string name;
   std::optional<Vec2d> size_px, size_cm;
@@ -25,12 +25,12 @@ struct ScreenSettings {
 struct GazeFileSettings {
   std::string path;
   GazeReadOptions read;
-  std::string columns_file;  // a column map; what `read` says goes over it
+  std::string columns_file;  // a column map; what `read` says overrides it
   std::optional<double> min_confidence;
   bool sort = false;
 };
 
-// One run. In the order of the options, which job_schema.hpp describes.
+// The settings of one run, in the order of the options, which job_schema.hpp describes.
 struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::string preset;
 
@@ -72,7 +72,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::optional<DurationNs> gaze_start;
   DurationNs gaze_latency;
   bool keep_ids = false;
-  std::vector<std::string> gaze_process;  // of parse_gaze_step()
+  std::vector<std::string> gaze_process;  // texts for parse_gaze_step()
   std::vector<std::string> gaze_anchors;  // LOG=VIDEO
   bool gaze_uncertainty = false;
   std::optional<double> gaze_accuracy_deg, gaze_precision_deg;
@@ -92,7 +92,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   FoveationSettings foveation;
   TraceSettings trace;
   BvhQuality bvh = BvhQuality::high;
-  std::string filter = "auto";  // filter_of() says which
+  std::string filter = "auto";  // filter_of() says which filter that is
   std::optional<std::uint64_t> pass_through_samples;
   double enhance_contrast = 0;
   AccumulateSettings accumulate;

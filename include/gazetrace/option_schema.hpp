@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One definition for each option: what it is called, what it means, where its value lies in a structure of settings,
-// and what it touches. The command line, settings files, help, run records, digests, warnings and the reference page
-// are all made from these definitions.
+// One definition for each option: its name, its meaning, where its value lies in a structure of settings, and what it
+// touches. The command line, settings files, help, run records, digests, warnings and the reference page are all made
+// from these definitions.
 //
-// A schema is not bound to any settings: its accessors take them. So settings are plain values that can be copied, and
-// any number of them can exist at the same time.
+// A schema is not bound to any settings: its accessors take the settings as an argument. Settings are therefore plain
+// values that can be copied, and any number of them can exist at the same time.
 #pragma once
 
 #include <array>
@@ -20,28 +20,28 @@
 
 namespace gazetrace {
 
-// What of an option decides pixels.
+// Which part of an option affects pixels.
 enum class Decides : std::uint8_t {
   nothing,  // threads, names of outputs, progress
   text,     // its value
-  file,     // the content of the file that it names, or its text where it names no file
+  file,     // the content of the file that it names, or its value where it names no file
 };
 
-// flag: true or false; value: one value; list: one value of several parts, an array in a settings file; repeated: may
-// be given several times.
+// flag: true or false. value: one value. list: one value of several parts, which is an array in a settings file.
+// repeated: the option may be given several times.
 enum class OptionShape : std::uint8_t { flag, value, list, repeated };
 
-// What an option touches. A set, because some touch several things.
+// What an option touches. Touches is a set of these, because some options touch several things.
 enum class Touch : std::uint16_t {
-  scene = 1U << 0U,     // what is pictured: the scene's file and its animation
-  camera = 1U << 1U,    // from where it is pictured, lens and shutter included
+  scene = 1U << 0U,     // what is rendered: the scene's file and its animation
+  camera = 1U << 1U,    // from where it is rendered, lens and shutter included
   light = 1U << 2U,     // the environment
   gaze = 1U << 3U,      // where the viewer looked, and when
   screen = 1U << 4U,    // where the viewer sat
   frames = 1U << 5U,    // which pictures there are, and of what size
-  sampling = 1U << 6U,  // where samples go; a uniform frame does not heed it
+  sampling = 1U << 6U,  // how samples are distributed; a uniform frame ignores it
   tracing = 1U << 7U,   // how a path is traced
-  filter = 1U << 8U,    // how pixels are made of samples
+  filter = 1U << 8U,    // how pixels are reconstructed from samples
   history = 1U << 9U,   // what a frame takes from those before it
   color = 1U << 10U,    // exposure and view
   output = 1U << 11U,   // files
@@ -75,33 +75,33 @@ constexpr Touches operator|(Touch a, Touch b) {
 }
 std::vector<std::string> touch_names(Touches touches);  // "sampling", "filter"
 
-// What an option means where many settings are measured against one reference (sweep.hpp).
+// What an option means for a sweep, which measures many settings against one reference (sweep.hpp).
 enum class Trait : std::uint8_t {
-  trade_off,      // makes rendering cheaper and less true: a reference takes it from no row
-  needs_truth,    // a trade-off of which no value is right by itself: the reference must be told
-  own_seed,       // every row and every reference has its own
-  clock,          // decides when a camera that follows the head is where
-  gaze_source,    // decides whose gaze it is
-  one_run,        // means something to a single run only, such as the names of its files
-  always_stated,  // told in a paragraph on methods also where it is the default
+  trade_off,      // makes rendering cheaper and less accurate: a reference never takes its value from a row
+  needs_truth,    // a trade-off without a value that is right by itself: the plan must state that of the reference
+  own_seed,       // every row and every reference has its own value
+  clock,          // decides where a camera that follows the head is at a given time
+  gaze_source,    // decides whose gaze is used
+  one_run,        // has a meaning for a single run only, such as the names of its files
+  always_stated,  // stated in a paragraph on methods even where it has its default
 };
 
-// Bounds of a number, or of every part of a value of several numbers. The bounds themselves belong to the range, unless
-// `above` says that the lower one does not.
+// Bounds of a number, or of each number of a value with several. The bounds themselves belong to the range, except that
+// the lower one does not where `above` is set.
 struct OptionRange {
   std::optional<double> least, most;
   bool above = false;
-  std::string remedy;  // what to do outside; may be empty
+  std::string remedy;  // what to do about a value outside the range; may be empty
 
   [[nodiscard]] bool holds(double value) const;
   [[nodiscard]] std::string words() const;  // "0..1000", "above 0"
 };
 
-// What is known of an option without its settings.
+// What is known about an option without any settings.
 struct Option {
   std::string flags;  // "-o,--output"; without dashes: the command line takes it by its position
   std::string name;   // "output"
-  std::string group;  // a heading for people, which decides nothing
+  std::string group;  // a heading for people, which affects nothing else
   std::string unit;   // stands for the value in the help: "DEG", "a|b|c"
   std::string help;
   OptionShape shape = OptionShape::value;
@@ -109,10 +109,10 @@ struct Option {
   Touches touches;
   std::vector<Trait> traits;
   std::optional<OptionRange> range;
-  std::vector<std::string> needs;       // what has to be given as well, in words with settings in back quotes
-  std::vector<std::string> idle_words;  // when it does nothing, likewise
-  std::vector<std::string> defaults;    // its values in settings that nothing was done to; empty: not set
-  // Error(usage, place, ...) unless the option takes these values.
+  std::vector<std::string> needs;       // what has to be given with it, in words with settings in back quotes
+  std::vector<std::string> idle_words;  // when it has no effect, in the same kind of words
+  std::vector<std::string> defaults;    // its values in default settings; empty: not set
+  // Throws Error(usage, place, ...) unless the option takes these values.
   std::function<void(const std::vector<std::string>& values, const std::string& place)> check;
 
   [[nodiscard]] bool is(Trait trait) const;
@@ -121,22 +121,22 @@ using OptionList = std::vector<const Option*>;
 [[nodiscard]] const Option* find_option(const OptionList& options, const std::string& name);
 [[nodiscard]] std::vector<std::string> names_of(const OptionList& options);
 
-// When an option does nothing beside the others.
+// A condition under which an option has no effect because of the other settings.
 template <class S>
 struct IdleRule {
   std::string words;                               // for the reference page: "without gaze"
-  std::function<bool(const S&)> holds;             //
-  std::function<std::string(const S&)> said = {};  // as a warning says it, where that is not `words`
+  std::function<bool(const S&)> holds;             // whether the condition holds for these settings
+  std::function<std::string(const S&)> said = {};  // the words of a warning, where they differ from `words`
 };
 
 // An option of settings of the type S.
 template <class S>
 struct OptionOf : Option {
-  // Sets the value. Error(usage, place, ...) for values that the option does not take.
+  // Sets the value. Throws Error(usage, place, ...) for values that the option does not take.
   std::function<void(S& settings, const std::vector<std::string>& values, const std::string& place)> assign;
   // The present value in canonical form; empty: not set.
   std::function<std::vector<std::string>(const S& settings)> values;
-  // Its numbers, for the range.
+  // The numbers of its value, which are checked against the range.
   std::function<std::vector<double>(const S& settings)> numbers;
   std::vector<IdleRule<S>> idle;
 
@@ -177,7 +177,7 @@ struct OptionOf : Option {
   }
 };
 
-// The way from settings to a part of them: at(&JobSettings::foveation, &FoveationSettings::uniform_spp).
+// An accessor that leads from settings to a part of them: at(&JobSettings::foveation, &FoveationSettings::uniform_spp).
 template <class... Members>
 constexpr auto at(Members... members) {
   return [members...](auto& settings) -> auto& {
@@ -196,7 +196,7 @@ struct Bare<std::optional<T>> {
   using Type = T;
 };
 
-// Of several parts: an array in a settings file.
+// Whether a value has several parts, and is therefore an array in a settings file.
 template <class T>
 constexpr bool is_list() {
   return std::is_same_v<T, Vec2d> || std::is_same_v<T, Vec3d> || std::is_same_v<T, FrameRect> ||
@@ -281,7 +281,7 @@ class OptionSchema {
       return finish(std::move(option));
     }
   }
-  // For settings of which nobody asks what they touch.
+  // For settings outside of jobs, where it does not matter what an option touches.
   template <class Access>
   OptionOf<S>& flag(const std::string& flags, Access access, const std::string& help) {
     return value(flags, access, "", Touches(), help);
@@ -294,7 +294,7 @@ class OptionSchema {
   OptionOf<S>& repeated(const std::string& flags, Access access, const std::string& unit, const std::string& help) {
     return repeated(flags, access, unit, Touches(), help);
   }
-  // May be given several times; values are taken as they are.
+  // An option that may be given several times; its values are taken as they are.
   template <class Access>
   OptionOf<S>& repeated(const std::string& flags, Access access, const std::string& unit, Touches touches,
                         const std::string& help) {
@@ -314,7 +314,7 @@ class OptionSchema {
   // An option as it is, under its own heading.
   OptionOf<S>& add(OptionOf<S> option) { return finish(std::move(option)); }
 
-  // All options of a part of these settings, with their headings; returns the last of them.
+  // Adds all options of a part of these settings, with their headings; returns the last of them.
   template <class Part, class Access>
   OptionOf<S>& include(const OptionSchema<Part>& part, Access access) {
     if constexpr (std::is_member_object_pointer_v<Access>) {
@@ -391,7 +391,8 @@ class OptionSchema {
   std::vector<OptionOf<S>> options_;
 };
 
-// unknown_name_message() without the list of all that is known, where that would be a hundred: the nearest is enough.
+// unknown_name_message() without the list of all known names, for cases where that list would have a hundred entries:
+// it suggests the nearest one only.
 std::string unknown_among_many(const std::string& what, const std::string& given,
                                const std::vector<std::string>& known);
 
@@ -401,13 +402,13 @@ struct TomlSetting {
   std::vector<std::string> values;
   std::string place;  // path:line
 };
-// The settings of a TOML text, every value checked by its option. Error(input) with path:line for a syntax error, an
-// unknown key (with the nearest known one) or a value that its option does not take. `remedy` is what to do about an
-// unknown key. An empty array sets nothing.
+// The settings in a TOML text, with every value checked by its option. Throws Error(input) with path:line for a syntax
+// error, for an unknown key (naming the nearest known one) and for a value that its option does not take. `remedy` says
+// what to do about an unknown key. An empty array sets nothing.
 std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
                                             const std::string& remedy);
-// Every option with its value, its help as a comment; options that are not set stand in a comment. `values_of` gives an
-// option's values in canonical form.
+// Every option with its value, as TOML with the help as comments; options that are not set are commented out.
+// `values_of` returns an option's values in canonical form.
 std::string settings_as_toml(const OptionList& options,
                              const std::function<std::vector<std::string>(const Option&)>& values_of,
                              const std::string& title);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text <-> value for every type that an option of a job can have. format_value() is canonical: reading its text gives
-// the same value, and equal values give equal text, which is what settings files and digests are made of.
+// Conversion between text and value for every type that an option of a job can have. The text of format_value() is
+// canonical: reading it gives the same value, and equal values give equal text. Settings files and digests are made of
+// this text.
 #pragma once
 
 #include <array>
@@ -40,7 +41,7 @@ struct Aperture {
   double radius_m = 0;
 };
 
-// Every parser throws Error(usage, place, ...), place being the option or the line of a settings file.
+// Every parser throws Error(usage, place, ...), where place is the option or the line of a settings file.
 void parse_value(std::string_view text, const std::string& place, bool& value);
 void parse_value(std::string_view text, const std::string& place, int& value);
 void parse_value(std::string_view text, const std::string& place, std::uint32_t& value);
@@ -63,7 +64,7 @@ void parse_value(std::string_view text, const std::string& place, std::array<int
 void parse_value(std::string_view text, const std::string& place, std::array<double, 2>& value);
 void parse_value(std::string_view text, const std::string& place, std::vector<std::string>& value);  // a,b,c
 void parse_value(std::string_view text, const std::string& place, FalloffTable& value);  // a file, which it reads
-// "auto", "auto+0.5" or stops: sets mode and ev, leaves the rest.
+// "auto", "auto+0.5" or a number of stops. Sets mode and ev, and leaves the rest as it is.
 void parse_value(std::string_view text, const std::string& place, ExposureSettings& value);
 
 std::string format_value(bool value);

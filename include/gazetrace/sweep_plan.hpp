@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a sweep's plan as it is written, in TOML, to what is measured: every combination of scene, gaze and setting as a
-// loaded, checked and planned job. Nothing is rendered.
+// From a sweep's plan as it is written in TOML to what will be measured: every combination of scene, gaze and setting,
+// as a loaded, checked and planned job. Nothing is rendered.
 #pragma once
 
 #include <optional>
@@ -16,9 +16,9 @@ struct LoadedSweepPlan {
   Warnings warnings;
 };
 
-// `frames` and `threads`, where given, take the place of the plan's. What rows share with their reference and with the
-// uniform frames beside them follows from what their options touch, as `schema` says it. Error(usage, input) in one
-// line with the plan's line where one is to blame.
+// `frames` and `threads`, where given, replace those of the plan. What rows share with their reference and with the
+// uniform frames compared to them follows from what `schema` says that their options touch. Throws Error(usage, input)
+// whose message is one line and names the line of the plan that is at fault, where there is one.
 LoadedSweepPlan load_sweep_plan(const std::string& path, const std::optional<FrameList>& frames = {},
                                 const std::optional<int>& threads = {}, const JobSchema& schema = job_schema());
 

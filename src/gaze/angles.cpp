@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Poses at increasing times; asked for with increasing times too.
+// Poses at increasing times, which are also asked for at increasing times.
 class HeadWalker {
  public:
   explicit HeadWalker(const std::vector<HeadPose>& head) : head_(head) {}
@@ -40,7 +40,7 @@ class HeadWalker {
 Vec3d between_directions(const Vec3d& a, const Vec3d& b, double s) {
   const double angle = angle_between_rad(a, b);
   const double sine = std::sin(angle);
-  if (!(sine > 1e-9)) {  // the same direction; opposite ones have no way between
+  if (!(sine > 1e-9)) {  // the same direction, or opposite ones, which no single arc joins
     return s < 0.5 ? a : b;
   }
   return normalize(a * (std::sin((1.0 - s) * angle) / sine) + b * (std::sin(s * angle) / sine));

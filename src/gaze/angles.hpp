@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small angles about a direction: where means, extents and medians of directions are taken.
+// Small angles around a direction, in which means, extents and medians of directions are computed.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace gazetrace {
 
-// Axes about a direction: `right` level, `up` towards the world's +y. Straight up and down, where level has no meaning,
-// -z counts as up.
+// Axes around a direction: `right` is level and `up` points towards the world's +y. For directions straight up or down,
+// where level has no meaning, -z counts as up.
 struct TangentFrame {
   Vec3d right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
 
@@ -24,7 +24,7 @@ struct TangentFrame {
     up = cross(right, forward);
   }
 
-  // Azimuth to the right and elevation, radians.
+  // Azimuth (positive to the right) and elevation, in radians.
   [[nodiscard]] Vec2d angles(const Vec3d& direction) const {
     const double x = dot(direction, right);
     const double z = dot(direction, forward);
@@ -40,10 +40,10 @@ inline bool is_seen(const Vec3d& direction) {
   return !std::isnan(direction.x);
 }
 
-// Between two directions, s from 0 to 1, along the shorter arc.
+// The direction between two others along the shorter arc, with s from 0 to 1.
 Vec3d between_directions(const Vec3d& a, const Vec3d& b, double s);
 
-// The median step between neighbouring samples; 0 with fewer than two.
+// The median step between neighbouring samples; 0 for fewer than two samples.
 std::int64_t median_step_ns(const std::vector<std::int64_t>& t_ns);
 std::vector<std::int64_t> times_of(const GazeLog& log);
 

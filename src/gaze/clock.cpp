@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two clocks from events that both of them saw.
+// Fits the relation of two clocks to events that both of them saw.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ ClockFit fit_clock(const std::vector<ClockAnchor>& anchors) {
   if (anchors.empty()) {
     throw Error(ErrorKind::usage, "", "clocks cannot be fitted without an anchor");
   }
-  // Differences to the first anchor are small: doubles hold them, where they would not hold the times themselves.
+  // Differences to the first anchor are small enough for doubles, which could not hold the times themselves.
   const ClockAnchor& origin = anchors.front();
   const auto count = static_cast<double>(anchors.size());
   const auto since = [](std::int64_t t, std::int64_t begin) {

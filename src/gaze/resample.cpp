@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rows of a log a moment gets.
+// Chooses the rows of a log from which the gaze at a time is taken.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ Int128 floor_divide(Int128 a, Int128 b) {  // b > 0
   return quotient * b > a ? quotient - 1 : quotient;
 }
 
-// a / scale to the nearest integer, halves up. A double is an integer times a power of two, so the quotient is one of
-// integers; only scales far from any clock's (below 2^-8 or above 2^52) leave 128 bits.
+// a / scale to the nearest integer, halves up. A double is an integer times a power of two, so this is a quotient of
+// integers. Only scales far from those of any clock (below 2^-8 or above 2^52) exceed 128 bits.
 Int128 divide_by_scale(Int128 a, double scale) {
   if (scale == 1.0) {
     return a;
@@ -60,7 +60,7 @@ std::int64_t saturating_difference(std::int64_t a, std::int64_t b) {
 Vec3d slerp_directions(const Vec3d& a, const Vec3d& b, double s) {
   const double angle = angle_between_rad(a, b);
   const double sine = std::sin(angle);
-  if (!(sine > 1e-9)) {  // the same direction; opposite ones have no way between
+  if (!(sine > 1e-9)) {  // the same direction, or opposite ones, which no single arc joins
     return s < 0.5 ? a : b;
   }
   return normalize(a * (std::sin((1.0 - s) * angle) / sine) + b * (std::sin(s * angle) / sine));
@@ -112,7 +112,7 @@ class Resampler {
 
   [[nodiscard]] std::int64_t age(const GazeSample& sample) const { return saturating_difference(t_ns_, sample.t_ns); }
   [[nodiscard]] bool is_gap(std::int64_t age_ns) const {
-    // A log of one row is a gaze that never moves.
+    // A log of one row stands for a gaze that never moves.
     return samples_.size() > 1 &&
            (age_ns > mapping_.max_interpolation_gap_ns || age_ns < -mapping_.max_interpolation_gap_ns);
   }
@@ -129,7 +129,7 @@ class Resampler {
     result_.reason = std::move(reason);
   }
 
-  // Of the two rows about the time; true where nobody knows.
+  // Whether the eye is steady at both rows around the time; true where its movements are not known.
   [[nodiscard]] bool in_one_fixation() const {
     if (movements_ == nullptr || after_ >= movements_->size()) {
       return true;
@@ -156,7 +156,7 @@ class Resampler {
       return false;
     }
     if (!in_one_fixation()) {
-      // The gaze jumps half way between the two rows.
+      // The gaze jumps halfway between the two rows.
       const bool first = t_ns_ - a.t_ns <= b.t_ns - t_ns_;
       take(first ? a : b, GazeState::measured,
            fmt::format("linear: row {}, the nearer one: not within a fixation", first ? a.row : b.row));
@@ -174,8 +174,8 @@ class Resampler {
     return true;
   }
 
-  // Within the log a nearest row comes half a step later at most; before its first row no more than that is taken
-  // either.
+  // Within the log the nearest row is at most half a step later than the time. Before its first row no more than that
+  // is accepted either.
   [[nodiscard]] bool is_far_ahead(std::int64_t age_ns) const {
     return after_ == 0 && samples_.size() > 1 &&
            age_ns < -saturating_difference(samples_[1].t_ns, samples_[0].t_ns) / 2;
@@ -260,7 +260,7 @@ class Resampler {
       case NoGazePolicy::hold:
         if (before != nullptr) {
           take(*before, GazeState::held, fmt::format("no gaze ({}): held it", why));
-        } else if (after != nullptr) {  // a gaze that is yet to come steers nothing
+        } else if (after != nullptr) {  // gaze that is yet to come must not steer a frame
           result_.state = GazeState::center;
           result_.reason = fmt::format("no gaze ({}): nothing to hold yet, center", why);
         } else {
@@ -324,7 +324,7 @@ std::int64_t log_time_ns(const GazeLog& log, const GazeMapping& mapping, std::in
 
 std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_log_ns) {
   if (!(mapping.scale > 0) || !std::isfinite(mapping.scale)) {
-    return log_time_ns(log, mapping, 0);  // says so
+    return log_time_ns(log, mapping, 0);  // throws the error
   }
   const std::int64_t event = mapping.event_ns.value_or(log.samples.empty() ? 0 : log.samples.front().t_ns);
   const Int128 since = Int128{t_log_ns} - event;

@@ -13,7 +13,7 @@ bool is_table(const BidsName& name) {
   return name.extension == ".tsv" || name.extension == ".tsv.gz";
 }
 
-// By its own sidecar, not by one that it inherits.
+// Decided by the recording's own sidecar, not by one that it inherits.
 bool is_own(const std::string& path) {
   const BidsName name = parse_bids_name(path);
   const std::string sidecar = path.substr(0, path.size() - name.extension.size()) + ".json";
@@ -30,7 +30,7 @@ std::vector<BidsLeftover> bids_leftovers(const std::vector<std::string>& written
     return leftovers;
   }
   const std::vector<std::string> present = files_of_bids_name(parse_bids_name(written.front()));
-  std::vector<std::vector<std::string>> gaze;  // entities of the recordings that are read, or will be
+  std::vector<std::vector<std::string>> gaze;  // entities of the recordings that are read or will be
   for (const std::vector<std::string>* const paths : {&written, &present}) {
     for (const std::string& path : *paths) {
       const BidsName name = parse_bids_name(path);

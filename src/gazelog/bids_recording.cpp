@@ -79,7 +79,7 @@ void add_origin(RawGaze& raw, Eye eye, std::int64_t t_ns, const Vec3f& place_mm)
   raw.origins.push_back(origins);
 }
 
-// After so many seconds, digit by digit; never longer than can be counted, nor later than the last time there is.
+// The time after so many seconds, converted digit by digit and limited to what int64 nanoseconds can hold.
 std::int64_t end_of(std::int64_t begin_ns, std::string_view seconds) {
   std::int64_t length_ns = 0;
   const NumberStatus status = scaled_integer(trim(seconds), 9, length_ns);
@@ -92,7 +92,7 @@ std::int64_t end_of(std::int64_t begin_ns, std::string_view seconds) {
                                                                 : end_ns;
 }
 
-// Where no unit is stated: that in which the steps are what SamplingFrequency says.
+// Where no unit is stated, the unit in which the steps agree with SamplingFrequency.
 int exponent_by_rate(const GazeFile& file, const DelimitedTable& table, std::size_t time, double rate_hz,
                      const std::string& place) {
   std::vector<double> times;
@@ -249,7 +249,7 @@ StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns
                             const std::string& path, RawGaze& raw, Evidence& evidence) {
   std::string x = sidecars.text(columns.x_name + ".Units");
   if (x.empty()) {
-    x = sidecars.text("SampleCoordinateUnit");  // of drafts
+    x = sidecars.text("SampleCoordinateUnit");  // the name in drafts of the standard
   }
   const std::string y = sidecars.text(columns.y_name + ".Units");
   const auto unit = unit_from(x);

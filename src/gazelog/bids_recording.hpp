@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One BIDS recording: the table of an eye, what its sidecars say of it, and the events beside it.
+// One BIDS recording: the table of an eye, what its sidecars say about it, and the events beside it.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@ namespace gazetrace {
 struct BidsColumns {
   std::size_t time = 0, x = 0, y = 0;
   std::optional<std::size_t> pupil;
-  // Of recordings that gazetrace wrote: every bit of the places, and what the standard has no name for.
+  // For recordings that gazetrace wrote: columns that hold every bit of the places, and values for which the standard
+  // has no name.
   std::optional<std::size_t> z, validity, confidence, origin_x, origin_y, origin_z;
   bool is_fraction = false, is_direction = false;
   std::string x_name, y_name;
@@ -34,26 +35,27 @@ std::string read_bids_table(const std::string& path);
 
 Eye recorded_eye(const Sidecars& sidecars);
 
-// Samples and origins of one file into the raw, places as they stand there. Returns its columns.
+// Adds the samples and origins of one file to the raw gaze, with places as they stand in the file. Returns the file's
+// columns.
 BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, const GazeReadOptions& options,
                               RawGaze& raw);
 
-// Those of the ..._physioevents.tsv(.gz) beside the recording at `path`, where there is one.
+// Adds the events of the ..._physioevents.tsv(.gz) beside the recording at `path`, where there is one.
 void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& raw);
 
-// A unit, and how many of it a number of the file counts.
+// A unit, and how many of it one count of the file is.
 struct StatedUnit {
   PositionUnit unit = PositionUnit::px;
   double each = 1;
   bool operator==(const StatedUnit&) const = default;
 };
 
-// What the sidecar says of the positions' unit, or the user where it says nothing that is understood. `path`: of the
-// recording, for messages.
+// The unit of the positions that the sidecar states or, where it states none that is understood, the user. `path` is
+// that of the recording, for messages.
 StatedUnit stated_bids_unit(const Sidecars& sidecars, const BidsColumns& columns, const GazeReadOptions& options,
                             const std::string& path, RawGaze& raw, Evidence& evidence);
 
-// gaze-on-screen where none is stated.
+// The space of the positions; gaze-on-screen where none is stated.
 std::string bids_coordinate_system(const Sidecars& sidecars);
 
 }  // namespace gazetrace

@@ -28,14 +28,14 @@ std::string screen_key(std::string_view what) {
   return fmt::format("StimulusPresentation.{}", what);
 }
 
-// The same length as it was before it became metres, unless somebody mended the metres since.
+// The length exactly as it was before it was converted to metres, unless somebody has edited the metres since.
 double with_every_bit(double from_metres_cm, double cm) {
   return std::abs(cm - from_metres_cm) <= 1e-12 * from_metres_cm ? cm : from_metres_cm;
 }
 
 }  // namespace
 
-// ["top", "left"], in any order. None but these can be read.
+// ["top", "left"], in any order. No other origins can be read.
 PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions& options) {
   std::vector<std::string> words = events.texts(screen_key("ScreenOrigin"));
   if (words.empty()) {
@@ -61,7 +61,7 @@ PositionOrigin bids_screen_origin(const Sidecars& events, const GazeReadOptions&
   }
   const bool from_right = is("top", "right") || is("bottom", "right");
   if (options.columns.origin != PositionOrigin::automatic) {
-    return PositionOrigin::top_left;  // overruled
+    return PositionOrigin::top_left;  // the user's option overrules it
   }
   if (from_right && options.flip_x) {
     return is("top", "right") ? PositionOrigin::top_left : PositionOrigin::bottom_left;
@@ -90,7 +90,7 @@ void read_bids_screen(const Sidecars& events, RawGaze& raw) {
     add_note(raw, "display size", fmt::format("{}x{} px", g.width_px, g.height_px), Evidence::sidecar, place);
   }
   if (fits(size, 1e4)) {
-    // Metres; drafts had centimetres, and no screen is 5 m wide.
+    // Sizes are in metres. Drafts of the standard had centimetres, and no screen is 5 m wide.
     const double to_cm = size[0] > 5 ? 1 : 100;
     g.width_cm = size[0] * to_cm;
     g.height_cm = size[1] * to_cm;
@@ -110,7 +110,7 @@ void read_bids_screen(const Sidecars& events, RawGaze& raw) {
     }
     add_note(raw, "distance", fmt::format("{:.5g} cm", g.distance_cm), Evidence::sidecar, place);
   }
-  // gazetrace's own, from here.
+  // The keys from here on are gazetrace's own.
   if (const std::vector<double> cm = events.numbers(key("ScreenSizeCm")); cm.size() == 2) {
     g.width_cm = with_every_bit(g.width_cm, cm[0]);
     g.height_cm = with_every_bit(g.height_cm, cm[1]);

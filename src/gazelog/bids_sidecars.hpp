@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BIDS' inheritance: what holds for a file may stand in JSON files with fewer entities in their names, beside it or in
-// folders above it. The most specific one wins, key by key.
+// The inheritance of BIDS: the metadata of a file may stand in JSON files with fewer entities in their names, beside it
+// or in folders above it. For each key the most specific file wins.
 #pragma once
 
 #include <optional>
@@ -23,8 +23,8 @@ BidsName parse_bids_name(const std::string& path);
 
 class Sidecars {
  public:
-  // Those of `suffix` that apply to `name`, from its folder upwards to the data set's root. Error(input) for broken
-  // JSON.
+  // Reads the sidecars of `suffix` that apply to `name`, from its folder upwards to the data set's root. Throws
+  // Error(input) for broken JSON.
   Sidecars(const BidsName& name, std::string_view suffix);
 
   [[nodiscard]] std::string text(std::string_view path) const;
@@ -32,7 +32,7 @@ class Sidecars {
   [[nodiscard]] std::vector<double> numbers(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view path) const;
   [[nodiscard]] bool empty() const { return files_.empty(); }
-  [[nodiscard]] std::string source(std::string_view path) const;  // the file that says it
+  [[nodiscard]] std::string source(std::string_view path) const;  // the file that states it
 
  private:
   struct File {
@@ -43,17 +43,18 @@ class Sidecars {
   std::vector<File> files_;  // the most specific first
 };
 
-// Files in the folder of `name` with the same entities but for `recording`.
+// Files in the folder of `name` with the same entities except for `recording`.
 std::vector<std::string> files_of_bids_name(const BidsName& name);
-// The tables of them that have this suffix, without that of `name`.
+// Those of them that are tables with this suffix, without `name` itself.
 std::vector<std::string> sibling_recordings(const BidsName& name, std::string_view suffix);
 
-// Physiology is recorded in files of the same names. mislabeled: has positions, but its PhysioType is not eyetrack.
+// Other physiological signals are recorded in files with the same kind of name. mislabeled: the file has positions, but
+// its PhysioType is not eyetrack.
 enum class BidsSignal { gaze, mislabeled, other };
-// `x_column`: the column of positions where it has a name of its own.
+// `x_column` is the column of positions, where it has another name than that of the standard.
 BidsSignal recorded_signal(const Sidecars& sidecars, const std::string& x_column = {});
 
-// Our own key, in every JSON file that gazetrace writes.
+// A key of gazetrace's own, in every JSON file that gazetrace writes.
 inline constexpr const char* kBidsWriterKey = "WrittenBy";
 inline constexpr const char* kBidsWriter = "gazetrace";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Column maps as JSON, so that a laboratory describes its own table once.
+// Column maps as JSON, so that a laboratory needs to describe its own table only once.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ constexpr Names<PositionOrigin, 4> kOrigins{{{"auto", PositionOrigin::automatic}
                                              {"bottom-left", PositionOrigin::bottom_left},
                                              {"center", PositionOrigin::center}}};
 
-// Every member of a map by its name; saving, loading and merging walk over the same list.
+// Every member of a map by its name. Saving, loading and merging all walk over this list.
 template <class Columns, class Visitor>
 void visit(Columns& c, Visitor&& v) {
   v("time", c.time);
@@ -211,7 +211,7 @@ void save_gaze_columns(const GazeColumns& columns, const std::string& path) {
 GazeColumns merge_gaze_columns(const GazeColumns& base, const GazeColumns& over) {
   GazeColumns merged = base;
   const GazeColumns untouched;
-  // Three walks over the same list: what differs from the default is taken.
+  // Walks over three maps at once, and takes each member that differs from its default.
   std::vector<const void*> given;
   std::vector<const void*> defaults;
   visit(over, [&](const auto&, const auto& value) { given.push_back(&value); });

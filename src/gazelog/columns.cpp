@@ -148,7 +148,7 @@ void plan_time_unit(ColumnPlan& plan, const ColumnHeading& heading, const GazeCo
 
 PositionUnit unit_of(const ColumnHeading& heading, const GazeColumns& declared, const std::string& place) {
   if (heading.unit.empty()) {
-    // u and v are nothing but fractions; other names say nothing.
+    // u and v always mean fractions; other names tell nothing about the unit.
     return heading.name == "u" || heading.name == "v" ? PositionUnit::fraction : PositionUnit::automatic;
   }
   const auto unit = position_unit_from(heading.unit);

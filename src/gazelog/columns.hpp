@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which column of a table holds what, from its header text and from what the user or a preset declares.
+// Decides what each column of a table holds, from its header and from what the user or a preset declares.
 #pragma once
 
 #include <array>
@@ -15,9 +15,9 @@ namespace gazetrace {
 
 using OptionalColumn = std::optional<std::size_t>;
 
-// The columns of one gaze: of an eye, or of both together.
+// The columns of one gaze, which is that of one eye or of both together.
 struct GazeSource {
-  Eye eye = Eye::cyclopean;  // unless the table has a column of it
+  Eye eye = Eye::cyclopean;  // unless the table has a column for it
   std::size_t x = 0, y = 0;
   OptionalColumn z, validity, confidence, pupil, openness;
   std::array<OptionalColumn, 3> origin;
@@ -28,9 +28,9 @@ struct ColumnPlan {
   std::vector<GazeSource> sources;  // at least one
   OptionalColumn eye, frame;
   std::array<OptionalColumn, 3> head_position;
-  std::array<OptionalColumn, 4> head_rotation;  // without the last: Euler angles
+  std::array<OptionalColumn, 4> head_rotation;  // Euler angles where the last is missing
   GazeKind kind = GazeKind::screen;
-  std::optional<int> time_exponent;  // empty: by statistics
+  std::optional<int> time_exponent;  // empty: it is to be found by statistics
   PositionUnit unit = PositionUnit::automatic;
   Evidence unit_evidence = Evidence::header;
   std::string pupil_unit;
@@ -39,7 +39,7 @@ struct ColumnPlan {
   [[nodiscard]] std::size_t needed_cells() const;
 };
 
-// `place` is file:line of the header. Error(input) for columns that are not there and units that are unknown.
+// `place` is file:line of the header. Throws Error(input) for columns that do not exist and for unknown units.
 ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared, const std::string& place);
 
 }  // namespace gazetrace

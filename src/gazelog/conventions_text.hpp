@@ -7,8 +7,8 @@
 
 namespace gazetrace {
 
-// What was concluded from what, for people: of the time, what else the file says, of the places, and of the eye.
-// Nothing reads these words again.
+// The conclusions and their evidence in words for people: about the time, other facts of the file, the places, and the
+// eye. These words are never parsed again.
 std::vector<GazeFact> facts_in_words(const RawGaze& raw, const Conventions& conventions);
 
 }  // namespace gazetrace

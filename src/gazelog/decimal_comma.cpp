@@ -13,7 +13,7 @@ namespace gazetrace {
 namespace {
 
 constexpr std::size_t kMostRows = 200;
-constexpr std::size_t kMostColumns = 12;  // more readings than can be tried otherwise
+constexpr std::size_t kMostColumns = 12;  // with more there would be too many readings to try
 
 using Row = std::vector<std::string_view>;
 
@@ -67,7 +67,7 @@ RowsOfCells first_rows(const GazeFile& file) {
     for (std::string_view& cell : cells) {
       cell = trim(cell);
     }
-    // Rows with missing or named values say too little of where the cells belong.
+    // Rows with missing or named values tell too little about which cells belong together.
     if (std::all_of(cells.begin(), cells.end(), is_whole)) {
       found.rows.push_back(cells);
     }
@@ -101,8 +101,8 @@ std::optional<std::vector<double>> numbers_of(const Row& row, const std::vector<
   return at == row.size() ? std::optional(numbers) : std::nullopt;
 }
 
-// Sum over columns of the median step as a share of the column's range, and 1 more where the first column, nearly
-// always the time, goes back. Negative: the reading does not fit.
+// The sum over all columns of the median step as a fraction of the column's range, plus 1 where the first column, which
+// is nearly always the time, goes back. A negative value means that the reading does not fit.
 double roughness(const RowsOfCells& table, const std::vector<bool>& fractions) {
   std::vector<std::vector<double>> rows;
   for (const Row& row : table.rows) {
@@ -160,7 +160,7 @@ DecimalCommas find_decimal_commas(const GazeFile& file) {
       second = rough;
     }
   } while (std::next_permutation(fractions.begin(), fractions.end()));
-  // Clearly: half as rough as the next reading.
+  // A reading wins clearly if it is at most half as rough as the next one.
   if (best >= 0 && (second < 0 || best < 0.5 * second)) {
     result.status = DecimalCommas::Status::found;
   }

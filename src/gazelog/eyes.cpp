@@ -18,11 +18,11 @@ namespace gazetrace {
 namespace {
 
 constexpr double kMaxVerticalDisparityDeg = 0.5;
-constexpr double kOffsetTimeNs = 1e9;                 // of the running offset
-constexpr std::int64_t kShortAbsenceNs = 75'000'000;  // that which trackers bridge: Olsen 2012
+constexpr double kOffsetTimeNs = 1e9;                 // time constant of the running offset
+constexpr std::int64_t kShortAbsenceNs = 75'000'000;  // the gap that trackers bridge: Olsen 2012
 
-// Places of the eyes as two angles, azimuth and elevation in radians; where the geometry is not known, what the log
-// has.
+// Places of the eyes as two angles, azimuth and elevation in radians; where the geometry is not known, the coordinates
+// of the log itself.
 class AnglePlane {
  public:
   explicit AnglePlane(const GazeLog& log) : is_direction_(log.kind == GazeKind::direction), screen_(log) {}
@@ -60,7 +60,8 @@ bool sees_both(const BothEyes& eyes) {
   return is_usable(eyes.left.validity) && is_usable(eyes.right.validity);
 }
 
-// left minus right, smoothed over time; known before the first pair from the first ones, as the whole log is there.
+// Left minus right eye, smoothed over time. Before the first pair the value of the first pairs is used, which is
+// possible because the whole log is known.
 class RunningOffset {
  public:
   RunningOffset(const GazeLog& log, const AnglePlane& plane) {
@@ -76,7 +77,7 @@ class RunningOffset {
   void add(const Vec2d& difference, std::int64_t t_ns) {
     ++count_;
     const double passed = count_ > 1 ? static_cast<double>(t_ns) - static_cast<double>(last_ns_) : 0;
-    if (passed != passed_) {  // mostly one step of the tracker's clock
+    if (passed != passed_) {  // nearly always the same, one step of the tracker's clock
       passed_ = passed;
       forgotten_ = 1.0 - std::exp(-passed / kOffsetTimeNs);
     }
@@ -94,13 +95,14 @@ class RunningOffset {
   double passed_ = 0, forgotten_ = 0;
 };
 
-// left minus right while one eye is away for a short time: straight from the difference before to the one after, so
-// that the gaze jumps at neither end.
+// Left minus right eye while one eye is lost for a short time. It is interpolated linearly from the difference before
+// to the one after, so that the gaze jumps at neither end.
 class ShortAbsences {
  public:
   ShortAbsences(const GazeLog& log, const AnglePlane& plane) : log_(log), plane_(plane) {}
 
-  // At sample `i`, which sees one eye; to be asked in the order of time. Empty in long absences.
+  // The difference at sample `i`, at which only one eye is seen. It must be asked in the order of time, and is empty in
+  // long absences.
   [[nodiscard]] std::optional<Vec2d> difference(std::size_t i) {
     if (after_ <= i) {
       for (std::size_t k = after_; k < i; ++k) {
@@ -137,7 +139,7 @@ class ShortAbsences {
   const AnglePlane& plane_;
   std::size_t before_ = 0;  // the last pair before after_
   bool has_before_ = false;
-  std::size_t after_ = 0;  // the first pair behind the sample last asked for
+  std::size_t after_ = 0;  // the first pair after the sample that was asked for last
 };
 
 EyeGaze eye_gaze(const GazeSample& sample, GazeKind kind) {
@@ -171,7 +173,7 @@ void note_taken(GazeLog& log, TakenEye eye, Evidence evidence, bool is_alone = f
   log.conventions.eye_taken = {Conventions::Taken{eye, is_alone}, evidence, std::move(detail)};
 }
 
-// A time at which the log has no gaze of its own.
+// A time at which the log has no combined gaze of its own.
 GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, GazeKind kind) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   GazeSample sample;
@@ -194,7 +196,7 @@ struct Rows {
   [[nodiscard]] std::size_t own() const { return of_eye[static_cast<std::size_t>(Eye::cyclopean)]; }
 };
 
-// One sample a time, the log's own combined gaze where it has one, and the eyes beside it.
+// One sample for each time, which is the log's own combined gaze where it has one, with both eyes beside it.
 void group_rows(GazeLog& log) {
   std::vector<GazeSample>& samples = log.samples;
   std::size_t times = samples.empty() ? 0 : 1;
@@ -224,7 +226,7 @@ void group_rows(GazeLog& log) {
 
 struct EyeQuality {
   std::size_t usable = 0;
-  double step = 0;  // median of squared steps between neighbours
+  double step = 0;  // the median of the squared steps between neighbours
 };
 
 EyeQuality quality_of(const GazeLog& log, const AnglePlane& plane, EyeGaze BothEyes::*eye) {
@@ -259,7 +261,7 @@ Eye better_eye(const GazeLog& log, const AnglePlane& plane) {
   return left.step <= right.step ? Eye::left : Eye::right;
 }
 
-// Degrees; empty where angles are not known or the eyes are never seen together.
+// In degrees; empty where angles are not known or the eyes are never seen together.
 std::optional<double> median_vertical_disparity_deg(const GazeLog& log, const AnglePlane& plane) {
   if (!plane.knows_angles()) {
     return std::nullopt;
@@ -287,7 +289,7 @@ void take_mean(GazeSample& sample, const BothEyes& eyes, const Vec2d& left, cons
   take_eye(sample, eyes.left, kind);
   plane.place({0.5 * (left.x + right.x), 0.5 * (left.y + right.y)}, sample);
   if (kind != GazeKind::direction && eyes.left.validity != eyes.right.validity) {
-    // One eye beside the display and one on it: the mean decides.
+    // Where one eye is beside the display and one on it, the mean decides.
     const bool on_display = sample.u >= 0 && sample.u <= 1 && sample.v >= 0 && sample.v <= 1;
     sample.validity = on_display ? GazeValidity::ok : GazeValidity::off_screen;
   }
@@ -317,7 +319,7 @@ std::size_t join_eyes(GazeLog& log, const AnglePlane& plane, Eye preferred) {
       }
       continue;
     }
-    // With both lost: the one of which the log says more than that.
+    // With both eyes lost, the eye about which the log says more than that it is lost.
     const bool use_left =
         left || (!right && (eyes.left.validity != GazeValidity::lost || eyes.right.validity == GazeValidity::lost));
     const EyeGaze& used = use_left ? eyes.left : eyes.right;
@@ -357,7 +359,7 @@ void take_one_eye(GazeLog& log, Eye eye) {
   }
 }
 
-// What was chosen before the log was converted stays chosen.
+// The eye that was chosen before the log was converted stays chosen.
 void take_stated_eye(GazeLog& log, Eye eye, bool has_own_rows, const AnglePlane& plane) {
   if (has_own_rows) {  // the other eye stood in where it was lost, or they were processed
     for (GazeSample& sample : log.samples) {

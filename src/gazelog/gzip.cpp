@@ -11,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-// Ends the stream however the function is left.
+// Ends the stream on every way out of the function.
 class Inflater {
  public:
   Inflater() : good_(inflateInit2(&stream_, 15 + 16) == Z_OK) {}  // 16: with a gzip header
@@ -41,7 +41,7 @@ std::string unpack_gzip(std::string_view bytes, const std::string& path) {
   }
   z_stream& stream = inflater.stream();
   std::string text;
-  std::size_t used = 0;  // of the input
+  std::size_t used = 0;  // bytes of the input
   for (;;) {
     const std::size_t room = std::clamp(text.size() / 2, std::size_t{65536}, std::size_t{64} << 20U);
     const std::size_t filled = text.size();

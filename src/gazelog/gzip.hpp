@@ -7,11 +7,11 @@
 namespace gazetrace {
 
 bool is_gzip(std::string_view bytes);
-// All members of a gzip file. Error(input) at `path` for damaged or cut data, and for data that unpack to more than any
-// recording does (400 times their size and 16 MiB).
+// Unpacks all members of a gzip file. Throws Error(input) at `path` for damaged or cut data, and for data that unpack
+// to more than any recording does (400 times their size and 16 MiB).
 std::string unpack_gzip(std::string_view bytes, const std::string& path);
 
-// One member without name and time: the same text gives the same bytes.
+// Packs one member without name and time, so that the same text gives the same bytes.
 std::string pack_gzip(std::string_view text);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the numbers of a file to samples: the one place where a unit, an origin or an axis changes.
+// From the numbers of a file to samples. This is the only place where a unit, an origin or an axis changes.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace gazetrace {
 
-// -32768 and sizes from 1e7 on are no coordinate in any unit.
+// -32768 and magnitudes from 1e7 on are not a coordinate in any unit.
 bool is_missing_marker(double coordinate);
 
 // The file's x and y of the display's top left corner for the row of that index.
@@ -18,14 +18,14 @@ Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t 
 // the display's corner, and with the axes in their order. Guesses are made from these.
 std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions);
 
-// A sample for each row, in the order of the file, and what is told of them all: kind, geometry, origins, witnesses,
-// warnings. Rows are neither ordered nor joined, and nothing is refused but a unit that needs a display which is not
-// known.
+// Makes one sample of each row, in the order of the file, and adds what holds for all of them: kind, geometry, origins,
+// witnesses, warnings. Rows are neither sorted nor joined. The only thing that is rejected is a unit that needs a
+// display which is not known.
 GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions);
 
 Vec3d from_axes(const Vec3d& v, GazeAxes axes);
 
-// Keeps poses with increasing times and of unit length.
+// Keeps the poses whose times increase, and makes them of unit length.
 void finish_head(GazeLog& log);
 
 }  // namespace gazetrace

@@ -14,8 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Writes down each leaf with the path to it. The parser keeps no recursion, so deep nesting only makes long paths; they
-// are cut off at a depth no recording has.
+// Records each leaf with the path to it. The parser does not recurse, so deep nesting only makes long paths; they are
+// cut off at a depth that no recording has.
 class LeafCollector : public nlohmann::json_sax<Json> {
  public:
   explicit LeafCollector(std::vector<JsonLeaf>& leaves) : leaves_(leaves) {}

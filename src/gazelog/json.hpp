@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON as a flat list of leaves, with numbers as they were written: times go into integers digit by digit.
+// JSON as a flat list of leaves, with numbers as they were written, so that times can be converted to integers digit by
+// digit.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +14,18 @@ namespace gazetrace {
 
 struct JsonLeaf {
   std::string path;  // "data.eyeleft.gazedirection.2"
-  std::string text;  // of a string its content, of a number its digits; "true", "false", "null"; "{}" and "[]" if empty
+  std::string
+      text;  // the content of a string, the digits of a number, "true", "false", "null", or "{}" and "[]" if empty
   bool is_number = false;
 };
 
 class JsonLeaves {
  public:
-  // Error(input) at `place` for what is no JSON object.
+  // Throws Error(input) at `place` for a text that is not a JSON object.
   JsonLeaves(std::string_view json, const std::string& place);
 
   [[nodiscard]] const JsonLeaf* find(std::string_view path) const;  // the first one of this path
-  [[nodiscard]] bool has(std::string_view path) const;              // a leaf, or leaves below it
+  [[nodiscard]] bool has(std::string_view path) const;              // whether there is a leaf, or leaves below it
   [[nodiscard]] std::string text(std::string_view path) const;      // empty where there is none
   [[nodiscard]] std::optional<double> number(std::string_view path) const;
   // "path.0", "path.1", ... as far as they are numbers; NaN for null.
@@ -35,7 +37,7 @@ class JsonLeaves {
   std::vector<JsonLeaf> leaves_;
 };
 
-// An object from paths and texts, in this order; objects only.
+// Makes an object from paths and texts, in this order; it has no arrays.
 struct JsonValue {
   std::string path;
   std::string text;

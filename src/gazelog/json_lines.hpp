@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs of one JSON object a line, as Tobii's glasses write them.
+// Logs with one JSON object in each line, as Tobii's glasses write them.
 #pragma once
 
 #include <optional>
@@ -31,8 +31,8 @@ inline std::optional<std::int64_t> json_time_ns(const JsonLeaves& json, std::str
   return t_ns;
 }
 
-// Calls use(json, line number, place) for each line. A last line that was cut off is left out with a warning: that is
-// how a recording ends when the battery does.
+// Calls use(json, line number, place) for each line. A last line that was cut off is left out with a warning, because
+// recordings end like this when the battery is empty.
 template <class Use>
 void for_each_json_line(const GazeFile& file, Warnings& warnings, const Use& use) {
   LineReader lines(file.text);

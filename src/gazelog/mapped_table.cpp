@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kClosedOpenness = 0.1;
 
-// One row after another into samples of every source.
+// Makes samples of every source from one row after another.
 class RowReader {
  public:
   RowReader(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan, const GazeColumns& columns,
@@ -56,7 +56,7 @@ class RowReader {
   [[nodiscard]] const ValidityReader& validity() const { return validity_; }
   std::size_t repeated_headers = 0;
   std::size_t repeated_frames = 0;
-  std::size_t zero_pairs = 0;  // exactly (0, 0) without a word on their validity
+  std::size_t zero_pairs = 0;  // rows at exactly (0, 0) that state no validity
 
  private:
   bool repeats_frame() {
@@ -111,7 +111,7 @@ class RowReader {
     const double x = rows_.number(source.x);
     const double y = rows_.number(source.y);
     const double z = source.z ? rows_.number(*source.z) : 0.0;
-    // Loggers write what they do not know as zeros: (0, 0) without validity is missing, not the corner.
+    // Loggers write unknown values as zeros: (0, 0) without a validity is a missing value, not the corner.
     const bool said_bad = !is_usable(sample.validity) || sample.confidence == 0.0F;
     const bool zero = x == 0 && y == 0 && z == 0;
     const bool missing = std::isnan(x) || std::isnan(y) || std::isnan(z) ||
@@ -184,7 +184,7 @@ int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& tabl
   return *exponent;
 }
 
-// .NET counts 100 ns from the year 1, which is beyond int64 nanoseconds: from 1970 then.
+// .NET counts steps of 100 ns from the year 1, which exceeds int64 nanoseconds, so the stamps are counted from 1970.
 TimeScale time_scale(const GazeFile& file, const DelimitedTable& table, const ColumnPlan& plan,
                      const GazeColumns& columns, Evidence declared, RawGaze& raw) {
   constexpr std::int64_t kTicksTo1970 = 621'355'968'000'000'000;
@@ -262,7 +262,7 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
                   : defined   ? PositionOrigin::top_left
                               : PositionOrigin::automatic,
                   plan.unit_evidence == Evidence::option ? declared : plan.unit_evidence, names,
-                  // A log that names the state of each sample has said so itself.
+                  // A log that names the state of each sample has stated its validity itself.
                   style == ValidityStyle::names && plan.sources.front().validity.has_value(),
                   is_default ? Evidence::format : declared},
                  place);

@@ -7,11 +7,11 @@
 
 namespace gazetrace {
 
-// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header; of gazetrace CSV also what
-// is no row: `# event TYPE EYE BEGIN_NS END_NS TEXT`, `# calibration EYE NS MEAN_DEG MAX_DEG`, `# head NS X Y Z QX QY
-// QZ QW`.
+// `# display_px W H`, `# display_mm W H`, `# distance_mm D`, `# clock TEXT` above a header; in gazetrace CSV also what
+// is not a row: `# event TYPE EYE BEGIN_NS END_NS TEXT`, `# calibration EYE NS MEAN_DEG MAX_DEG`, `# head NS X Y Z QX
+// QY QZ QW`.
 struct GazetracePreamble {
-  std::optional<int> version;  // of `# gazetrace-gaze N`
+  std::optional<int> version;  // N of `# gazetrace-gaze N`
   std::string clock;
   bool is_scene_camera = false;  // `# kind scene-camera`
   std::optional<DisplayGeometry> geometry;
@@ -24,15 +24,15 @@ struct GazetracePreamble {
   std::vector<GazeCalibration> calibrations;
   std::vector<HeadPose> head;
 };
-// Error(input) for lines that say wrongly what they say.
+// Throws Error(input) for known lines with values that are wrong.
 GazetracePreamble read_preamble(const GazeFile& file, const DelimitedTable& table);
 
-// Reads the rows, and declares what the header and the map say of them. `columns` replaces
-// `options.columns`: a preset merged with what the user declared; `evidence` is where the rest of it comes from.
+// Reads the rows, and declares what the header and the map say about them. `columns` replaces `options.columns`; it is
+// a preset merged with what the user declared, and `evidence` says where the preset's part comes from.
 RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, const GazeColumns& columns,
                           ValidityStyle style, Evidence evidence = Evidence::option);
 
-// A format that is a table with its own columns: `preset` under what the user declared.
+// Reads a format that is a table with its own columns: what the user declared overrides `preset`.
 RawGaze read_preset(const GazeFile& file, const DelimitedTable& table, const GazeReadOptions& options,
                     const GazeColumns& preset);
 

@@ -7,8 +7,8 @@
 
 namespace gazetrace {
 
-// Whether decimal commas that split the cells of a table are joined again though nobody said that they are there. What
-// was mended is one of `RawGaze::faults`.
+// Whether numbers that decimal commas split into two cells are joined again even where nobody declared decimal commas.
+// Each mending is reported in `RawGaze::faults`.
 enum class Mending { none, decimal_commas };
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending);
 

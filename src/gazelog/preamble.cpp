@@ -13,7 +13,8 @@
 namespace gazetrace {
 namespace {
 
-// The words of a line that is no geometry, one after another; Error(input) naming the line where one is wrong.
+// Takes the words of a line that is not about geometry one after another. Throws Error(input) naming the line where one
+// is wrong.
 class Words {
  public:
   Words(std::string_view key, std::string_view rest, const std::string& place)
@@ -59,7 +60,7 @@ class Words {
   const std::string& place_;
 };
 
-// What gazetrace writes beside rows. Returns whether the line was of that.
+// Reads the lines that gazetrace writes besides rows. Returns whether the line was one of them.
 bool read_record(std::string_view key, std::string_view rest, const PreambleLine& line, const std::string& place,
                  GazetracePreamble& preamble) {
   Words words(key, rest, place);
@@ -120,7 +121,7 @@ void read_line(const PreambleLine& preamble_line, const std::string& place, Gaze
   while (!rest.empty() && (rest.front() == ':' || rest.front() == '=' || rest.front() == ' ' || rest.front() == '\t')) {
     rest.remove_prefix(1);
   }
-  // Other tables may have comments that begin with such a word.
+  // Other tables may have comments that begin with one of these words.
   if (preamble.version && read_record(key, rest, preamble_line, place, preamble)) {
     return;
   }

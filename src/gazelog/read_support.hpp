@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What readers share. A reader fills rows as they stand in the file, and declares what the file says of its numbers;
-// what they mean in the end is concluded and interpreted elsewhere (conclude.cpp, interpret.cpp).
+// What the readers share. A reader fills rows as they stand in the file, and declares what the file says about its
+// numbers. What the numbers mean is concluded and interpreted elsewhere (conclude.cpp, interpret.cpp).
 #pragma once
 
 #include <array>
@@ -13,29 +13,29 @@
 
 namespace gazetrace {
 
-// Something that the file says, in words for people.
+// Adds a fact that the file states, in words for people.
 void add_note(RawGaze& raw, std::string what, std::string value, Evidence evidence, std::string detail = {});
 
-// Declares the column and the unit of the stamps: the unit that the user gave, else `stated`.
+// Declares the column and the unit of the stamps: the unit that the user gave or, without one, `stated`.
 TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string_view column, int stated,
                        Evidence evidence, const std::string& place);
 
-// The column of the stamps of a table: the one that the user named, else the format's own.
+// The column of the stamps of a table: the column that the user named or, without one, the format's own.
 std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
                         const std::string& place);
 
-// How a format writes positions. Unit and origin may be automatic, where the file does not say them.
+// How a format writes positions. Unit and origin may be automatic where the file does not state them.
 struct PlaceSpace {
   PositionUnit unit = PositionUnit::px;
   PositionOrigin origin = PositionOrigin::top_left;
   Evidence evidence = Evidence::format;
   std::string columns;                                     // in words
-  bool validity_is_final = false;                          // off-screen is said by the log itself
-  std::optional<Evidence> origin_evidence = std::nullopt;  // where it is not that of the unit
+  bool validity_is_final = false;                          // the log itself says which samples are off-screen
+  std::optional<Evidence> origin_evidence = std::nullopt;  // where it differs from that of the unit
 };
 // `place`: file:line where the log says so, for messages.
 void declare_places(RawGaze& raw, const PlaceSpace& space, const std::string& place);
-// Vectors in `axes`, which also hold for the eyes' origins.
+// Declares vectors in `axes`, which also hold for the origins of the eyes.
 void declare_directions(RawGaze& raw, Concluded<std::string> columns, GazeAxes axes, Evidence evidence,
                         const std::string& place);
 
@@ -47,8 +47,8 @@ HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Q
 class WitnessTally {
  public:
   void add(double x, double y, double witness_x, double witness_y);
-  // Adds the witness where there were enough rows.
-  // `eye`: whose gaze it tells of, where not of all rows'.
+  // Adds the witness where there were enough rows. `eye` is the eye whose gaze it describes, where it does not describe
+  // that of all rows.
   void finish(RawGaze& raw, std::string what, std::optional<Eye> eye = std::nullopt) const;
 
  private:
@@ -57,11 +57,11 @@ class WitnessTally {
   std::array<std::array<double, 4>, 4> product_{};  // sums of products of differences from the means
 };
 
-// Runs of one label over the rows become events: "Fixation 12".
+// Makes events of the runs of rows with one label, such as "Fixation 12".
 class LabelRuns {
  public:
   void add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row);
-  void end();  // a row without a label
+  void end();  // ends the run, for a row without a label
   void finish(RawGaze& raw);
 
  private:
@@ -70,7 +70,7 @@ class LabelRuns {
   bool open_ = false;
 };
 
-// A row whose place is not known.
+// A row whose position is not known.
 RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye);
 
 }  // namespace gazetrace

@@ -38,7 +38,7 @@ void warn_about_size(const RawGaze& raw, Conventions& c, const DisplayGeometry& 
   }
 }
 
-// `used` has angles by what the user gave; the log may know them by its pixels per degree alone.
+// `used` gives angles by what the user stated; the log may give them by its pixels per degree alone.
 void warn_about_density(const RawGaze& raw, Conventions& c, const DisplayGeometry& used) {
   if (!raw.pixels_per_degree || !has_angles(used) || used.width_px <= 0 || used.height_px <= 0) {
     return;
@@ -54,8 +54,8 @@ void warn_about_density(const RawGaze& raw, Conventions& c, const DisplayGeometr
   }
 }
 
-// Size and distance are angles only together. Where the log has them by its pixels per degree, a part alone does
-// nothing.
+// Size and distance give angles only together. Where the log gives angles by its pixels per degree, one of the two
+// alone has no effect.
 void warn_about_unused(const RawGaze& raw, Conventions& c, const GazeReadOptions& options,
                        const DisplayGeometry& used) {
   if (!raw.pixels_per_degree || has_angles(used)) {
@@ -82,7 +82,8 @@ void warn_about_unused(const RawGaze& raw, Conventions& c, const GazeReadOptions
       raw.place, fmt::join(parts, " and "), parts.size() > 1 ? "were" : "was", stated.x, stated.y));
 }
 
-// The eye's place is a thing of its own: whoever gives another distance has not said that the eye is before the center.
+// The eye's position beside the center is independent of its distance: giving another distance does not say that the
+// eye is in front of the center.
 void place_eye(const RawGaze& raw, Conventions& c, const GazeReadOptions& options, const DisplayGeometry& stated,
                DisplayGeometry& used) {
   const Vec2d own{stated.eye_x_cm, stated.eye_y_cm};

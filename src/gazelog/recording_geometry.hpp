@@ -7,8 +7,8 @@
 
 namespace gazetrace {
 
-// The display that converts positions: what the log states, overruled by what the user gave, with a warning where they
-// differ. What the user gave is the recording's geometry from then on: `c.recording_geometry`.
+// The display by which positions are converted: what the log states, overruled by what the user gave, with a warning
+// where they differ. What the user gave becomes the geometry of the recording, `c.recording_geometry`.
 std::optional<Concluded<DisplayGeometry>> conversion_display(const RawGaze& raw, const GazeReadOptions& options,
                                                              Conventions& c);
 

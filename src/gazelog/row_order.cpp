@@ -70,7 +70,7 @@ void drop_duplicates(GazeLog& log, UnorderedPolicy policy) {
   GazeOrder& order = log.order;
   std::vector<GazeSample>& samples = log.samples;
   std::size_t kept = 0;
-  std::size_t group = 0;  // where the rows of the current time begin, among the kept
+  std::size_t group = 0;  // index of the first kept row of the current time
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (kept > 0 && samples[kept - 1].t_ns != samples[i].t_ns) {
       group = kept;

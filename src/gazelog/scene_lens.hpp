@@ -9,7 +9,8 @@ namespace gazetrace {
 
 SceneLens load_scene_lens(const std::string& path);  // scene_camera.json; Error(input)
 
-// Unit vector of a pixel, +x right, +y down, +z forward. Undistorted by fixed-point iteration, as OpenCV does it.
+// The unit vector of a pixel, with +x right, +y down, +z forward. It is undistorted by fixed-point iteration, as in
+// OpenCV.
 Vec3d ray_of(const SceneLens& lens, const Vec2d& pixel);
 
 }  // namespace gazetrace

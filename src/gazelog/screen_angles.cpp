@@ -22,7 +22,7 @@ ScreenAngles::ScreenAngles(const DisplayGeometry& screen, const std::optional<Ve
     eye_x_ = g.eye_x_cm / g.distance_cm;
     eye_y_ = g.eye_y_cm / g.distance_cm;
   } else if (pixels_per_degree && g.width_px > 0 && g.height_px > 0) {
-    // A screen with so many pixels a degree at its centre is (pixels per degree) / tan(1 deg) pixels away.
+    // A screen with this many pixels per degree at its centre is (pixels per degree) / tan(1 deg) pixels away.
     const double per_degree = std::tan(kRadPerDeg);
     width_ = g.width_px / pixels_per_degree->x * per_degree;
     height_ = g.height_px / pixels_per_degree->y * per_degree;

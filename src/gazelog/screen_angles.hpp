@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What gaze on the screen of a recording is as an angle: the one place where a place on a screen becomes a direction.
+// Gaze on the screen of a recording as an angle. This is the one place in the code where a place on a screen becomes a
+// direction.
 #pragma once
 
 #include <optional>
@@ -8,11 +9,11 @@
 
 namespace gazetrace {
 
-// How u, v of a screen become directions and angles from the eye, and back. They are known by the screen's size and
-// distance, or by its pixels and how many of them a degree at its centre has.
+// Converts u, v of a screen to directions and angles from the eye, and back. This needs the screen's size and distance,
+// or its size in pixels and the pixels per degree at its centre.
 class ScreenAngles {
  public:
-  ScreenAngles() = default;  // of a screen of which nothing is known
+  ScreenAngles() = default;  // for a screen about which nothing is known
   explicit ScreenAngles(const GazeLog& log);
   ScreenAngles(const DisplayGeometry& screen, const std::optional<Vec2d>& pixels_per_degree);
 
@@ -25,8 +26,8 @@ class ScreenAngles {
   // {NaN, NaN} for directions that never meet the screen.
   [[nodiscard]] Vec2d place(const Vec3d& direction) const;
 
-  // Azimuth to the right and elevation, in radians. By pixels per degree alone they are taken as even over the screen
-  // and count from its top left corner: good for differences.
+  // Azimuth (positive to the right) and elevation, in radians. Where only pixels per degree are known, the angles are
+  // taken as uniform over the screen and count from its top left corner, which is good enough for differences.
   [[nodiscard]] Vec2d angles(double u, double v) const;
   [[nodiscard]] Vec2d place_at(const Vec2d& angles) const;  // u, v
 
@@ -34,7 +35,7 @@ class ScreenAngles {
   double width_ = 0, height_ = 0, eye_x_ = 0, eye_y_ = 0;  // at distance 1
   bool has_size_ = false;
   DisplayGeometry screen_;
-  Vec2d degrees_;  // of the whole screen, where its size is not known
+  Vec2d degrees_;  // extent of the whole screen, where its size is not known
 };
 
 }  // namespace gazetrace

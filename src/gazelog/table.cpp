@@ -36,7 +36,7 @@ bool is_number_row(const std::vector<std::string_view>& cells) {
   return any;
 }
 
-// Only the first `count` cells are wanted; without quotes a cell ends at the next separator.
+// Only the first `count` cells are needed; outside of quotes a cell ends at the next separator.
 void split_row(std::string_view line, const DelimitedTable& table, std::size_t count,
                std::vector<std::string_view>& cells) {
   if (table.has_quotes) {
@@ -53,7 +53,7 @@ void split_row(std::string_view line, const DelimitedTable& table, std::size_t c
   };
   while (cells.size() < count) {
     const char* stop = next_separator(at);
-    // A missing value stands in one cell even where numbers take two.
+    // A missing value takes one cell even where numbers take two.
     const bool joins = cells.size() < table.fractions.size() && table.fractions[cells.size()] && stop != end &&
                        stop != at && stop[-1] >= '0' && stop[-1] <= '9';
     if (joins) {
@@ -112,7 +112,7 @@ ColumnHeading parse_heading(std::string_view cell) {
       return heading;
     }
   }
-  // "x_px", "time_ms": only where the last part is a unit and no column of its own.
+  // "x_px", "time_ms": only where the last part is a unit and not a column itself.
   const std::size_t bar = text.rfind('_');
   if (bar != std::string_view::npos && bar > 0 && is_known_unit(text.substr(bar + 1)) && text.substr(bar + 1) != "1") {
     heading.name = text.substr(0, bar);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs in rows and columns: `#` preamble, header, cells between commas, semicolons or tabs.
+// Logs in rows and columns: a preamble of `#` lines, a header, and cells between commas, semicolons or tabs.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct ColumnHeading {
   std::string text, name, unit;
 };
 ColumnHeading parse_heading(std::string_view cell);
-std::string letters_and_digits(std::string_view text);  // lower case, ASCII, nothing else
+std::string letters_and_digits(std::string_view text);  // in lower case, ASCII only, without anything else
 
 // Empty cells, ".", "n/a", "NaN", "-nan(ind)", "None", ...
 bool is_missing(std::string_view text);
@@ -41,20 +41,21 @@ struct DelimitedTable {
   std::string_view body;         // from the first row
   std::int64_t lines_above = 0;  // before the body
   std::vector<PreambleLine> preamble;
-  std::vector<bool> fractions;  // as GazeFile's
+  std::vector<bool> fractions;  // as in GazeFile
   std::string place;            // file:line of the header
 
-  // By the whole text or the name, blanks, punctuation and case aside. Error(input) where two columns are called so.
+  // Finds a column by its whole text or its name, ignoring blanks, punctuation and case. Throws Error(input) where two
+  // columns have that name.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
   [[nodiscard]] std::optional<std::size_t> find_any(std::initializer_list<std::string_view> names) const;
   [[nodiscard]] bool has_all(std::initializer_list<std::string_view> names) const;
-  // Error(input) naming both where another column has the very name of `column`.
+  // Throws Error(input) naming both columns where another column has exactly the name of `column`.
   void check_unique(std::size_t column) const;
 };
 
 // A file without any row has no headings.
 DelimitedTable open_table(const GazeFile& file);
-// Without a header: all of the text is rows.
+// A table without a header: all of the text is rows.
 DelimitedTable open_headerless(std::string_view text, char separator, const std::vector<std::string>& names);
 
 // A column that the user names: by its whole text, by its name without the unit, or by its number from 1. Error(input).
@@ -67,21 +68,21 @@ struct TimeScale {
   std::int64_t subtract = 0;  // in the unit of the stamps, which are whole numbers then
 };
 
-// Goes through the rows. Blank lines, comments and repeats of the header are passed over.
+// Goes through the rows. Blank lines, comments and repetitions of the header are skipped.
 class TableRows {
  public:
-  // Rows must reach to `needed` cells; what lies behind is not split.
+  // Rows must have `needed` cells; the text behind these is not split.
   TableRows(const GazeFile& file, const DelimitedTable& table, std::size_t needed);
 
   bool next();
   [[nodiscard]] std::int64_t line() const { return line_; }
   [[nodiscard]] bool is_short() const { return cells_.size() < needed_; }
-  // Error(input) for a row that is_short().
+  // Throws Error(input) for a row that is_short().
   void check_length() const;
   // Trimmed, without quotes; empty where the row is too short. Valid until the next call.
   std::string_view cell(std::size_t column);
   std::string_view cell(const std::optional<std::size_t>& column) { return column ? cell(*column) : ""; }
-  // NaN where missing. Error(input) for text that is no number.
+  // NaN where the value is missing. Throws Error(input) for text that is not a number.
   double number(std::size_t column);
   double number(const std::optional<std::size_t>& column) { return column ? number(*column) : kNan; }
   std::int64_t time_ns(std::size_t column, const TimeScale& scale);

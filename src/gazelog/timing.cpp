@@ -19,7 +19,7 @@ GazeTiming measure_timing(const GazeLog& log) {
   for (std::size_t i = 1; i < log.samples.size(); ++i) {
     steps.push_back(static_cast<double>(log.samples[i].t_ns) - static_cast<double>(log.samples[i - 1].t_ns));
   }
-  // Nanoseconds from 1970 do not fit a double: differences of integers do.
+  // Nanoseconds from 1970 do not fit into a double, but differences of the integers do.
   for (std::size_t i = 1; i < log.samples.size(); ++i) {
     std::int64_t step = 0;
     if (!__builtin_sub_overflow(log.samples[i].t_ns, log.samples[i - 1].t_ns, &step)) {

@@ -8,7 +8,7 @@ namespace gazetrace {
 // A step between neighbouring samples that is longer than this many median steps is a gap.
 inline constexpr double kGapInSteps = 3;
 
-// Of a log with at least one sample.
+// The timing of a log with at least one sample.
 GazeTiming measure_timing(const GazeLog& log);
 
 }  // namespace gazetrace

@@ -135,10 +135,10 @@ std::string time_unit_text(int exponent) {
 
 std::optional<int> guess_time_exponent(const std::vector<double>& raw_times) {
   std::vector<double> times = raw_times;
-  std::sort(times.begin(), times.end());  // of rows out of order the steps would be too long
+  std::sort(times.begin(), times.end());  // for rows out of order the steps would be too long
   std::vector<double> steps;
   for (std::size_t i = 1; i < times.size(); ++i) {
-    if (times[i] != times[i - 1]) {  // rows of the other eye
+    if (times[i] != times[i - 1]) {  // equal times are rows of the other eye
       steps.push_back(times[i] - times[i - 1]);
     }
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Units and origins of logs: from header text, from what the user declares, and last from statistics.
+// Units and origins of logs, from the text of headers, from what the user declares and, as a last resort, from
+// statistics.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +18,10 @@ std::optional<PositionUnit> position_unit_from(std::string_view text);  // "px",
 std::optional<int> time_exponent_of(TimeUnit unit);
 std::string time_unit_text(int exponent);
 
-// From the median step between raw stamps that differ; empty where the values fit no unit. Always a guess.
+// Guessed from the median step between raw stamps that differ; empty where the values fit no unit.
 std::optional<int> guess_time_exponent(const std::vector<double>& raw_times);
 
-// Of usable rows, x and y in one unit.
+// Statistics of usable rows, with x and y in one unit.
 struct PositionStatistics {
   struct Range {
     double low = std::numeric_limits<double>::infinity();
@@ -28,13 +29,13 @@ struct PositionStatistics {
   };
   Range x, y;
   double share_normalized = 0;  // both coordinates in [-0.2, 1.2]
-  double share_small = 0;       // both below 90 in size
+  double share_small = 0;       // both below 90 in magnitude
   double share_negative = 0;    // either coordinate below 0
   std::size_t count = 0;
 };
 PositionStatistics measure_positions(const std::vector<RawSample>& samples);
 
-// From the values of usable rows; `evidence` says what was seen. Always a guess.
+// Guessed from the values of usable rows; `evidence` receives what was seen.
 PositionUnit guess_position_unit(const std::vector<RawSample>& samples, std::string& evidence);
 
 }  // namespace gazetrace

@@ -29,7 +29,7 @@ ValidityReader::ValidityReader(const GazeColumns& columns, ValidityStyle style)
 }
 
 std::optional<GazeValidity> ValidityReader::read(std::string_view text) {
-  if (text != last_text_ || !has_last_) {  // mostly the same as in the row before
+  if (text != last_text_ || !has_last_) {  // nearly always the same as in the row before
     last_text_ = text;
     has_last_ = true;
     last_ = interpret(last_text_);

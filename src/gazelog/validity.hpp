@@ -10,15 +10,15 @@
 
 namespace gazetrace {
 
-enum class ValidityStyle { any, names };  // names: only those of GazeValidity, 0 and 1
+enum class ValidityStyle { any, names };  // names: only the names of GazeValidity, 0 and 1
 
 std::optional<GazeValidity> validity_by_name(std::string_view text);  // "ok", "low_confidence", "blink", ...
 
-// A column's texts as validities.
+// Reads the texts of a column as validities.
 class ValidityReader {
  public:
   ValidityReader(const GazeColumns& columns, ValidityStyle style);
-  // Empty: the text is no validity.
+  // Empty where the text is not a validity.
   std::optional<GazeValidity> read(std::string_view text);
   [[nodiscard]] const std::vector<std::string>& seen() const { return seen_; }
 

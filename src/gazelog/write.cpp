@@ -14,7 +14,7 @@
 namespace gazetrace {
 namespace {
 
-// Lengths are written in mm where dividing by ten gives the very same number back, else in cm.
+// Lengths are written in mm where dividing by ten gives exactly the same number back, else in cm.
 std::string geometry_line(std::string_view key, std::initializer_list<double> values_cm) {
   bool exact = true;
   for (const double value : values_cm) {
@@ -34,7 +34,7 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// Nor may a column's name be two.
+// A column's name must not become two words.
 std::string one_heading(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == ',' || c == '"' || c == '[' || c == ']'; }, ' ');
@@ -91,7 +91,7 @@ std::string pose_text(const HeadPose& pose, char separator) {
   return fmt::format("{1}{0}{2}{0}{3}{0}{4}{0}{5}{0}{6}{0}{7}", separator, p.x, p.y, p.z, q.x, q.y, q.z, q.w);
 }
 
-// The pose of each sample's time, or none; a log that repeats a sample may have poses at times of their own.
+// The pose at each sample's time, or none. A log that repeats a sample may also have poses at other times.
 struct PosesOfSamples {
   std::vector<const HeadPose*> of_sample;
   std::vector<const HeadPose*> others;
@@ -114,7 +114,7 @@ PosesOfSamples poses_of_samples(const GazeLog& log) {
   return poses;
 }
 
-// Shortest text that reads back as the same bits; nothing for what is unknown.
+// The shortest text that reads back as the same bits; empty for unknown values.
 template <class Number>
 void append_number(std::string& text, Number value) {
   text += ',';
@@ -123,7 +123,7 @@ void append_number(std::string& text, Number value) {
   }
 }
 
-// The eyes of a sample as rows of their own, between which reading joins again.
+// Writes the eyes of a sample as separate rows, which reading joins again.
 GazeSample eye_row(const GazeSample& sample, const EyeGaze& gaze, Eye eye, GazeKind kind) {
   GazeSample row = sample;
   row.eye = eye;
@@ -214,7 +214,7 @@ void write_gaze_csv(const GazeLog& log, const std::string& path) {
   for (std::size_t i = 0; i < log.samples.size(); ++i) {
     GazeSample sample = log.samples[i];
     const EyeOrigins* const origins = log.origins.empty() ? nullptr : &log.origins[i];
-    const HeadPose* const pose = poses.of_sample[i];  // once a time
+    const HeadPose* const pose = poses.of_sample[i];  // once for each time
     if (log.eyes.empty()) {
       rows.write(sample,
                  origins == nullptr         ? nullptr

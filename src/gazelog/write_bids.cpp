@@ -3,8 +3,8 @@
 // for the events of that eye, and ..._events.json with the screen.
 //
 // x and y are pixels, or degrees of azimuth and elevation for gaze in the head, as other programs expect them. Where
-// those do not give back every bit of what was read, columns of our own follow that do; so do validity, confidence and
-// the eye's place in the head, which the standard has no names for.
+// these do not give back every bit of what was read, columns of gazetrace's own follow that do. Other such columns hold
+// validity, confidence and the eye's position in the head, for which the standard has no names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// x with x / scale == value: the product or one of its neighbours, where there is one.
+// An x with x / scale == value: the product or one of its neighbouring numbers, where there is one.
 double inverse_of_division(double value, double scale) {
   const double product = value * scale;
   for (const double x : {product, std::nextafter(product, -HUGE_VAL), std::nextafter(product, HUGE_VAL)}) {
@@ -39,7 +39,7 @@ double inverse_of_division(double value, double scale) {
   return product;
 }
 
-// x with x * scale == value, likewise.
+// An x with x * scale == value, found in the same way.
 double inverse_of_product(double value, double scale) {
   const double quotient = value / scale;
   for (const double x : {quotient, std::nextafter(quotient, -HUGE_VAL), std::nextafter(quotient, HUGE_VAL)}) {
@@ -67,8 +67,8 @@ Row row_of(const GazeSample& sample, GazeKind kind) {
   return {sample.t_ns, {at, sample.confidence, sample.pupil, sample.validity}, {NAN, NAN, NAN}};
 }
 
-// The gaze of each eye, and what was made of both, unless one of them was taken as it is; or the one gaze there is, by
-// the eyes that its samples name.
+// The gaze of each eye, and the gaze that was made from both unless one eye was taken as it is; or the only gaze there
+// is, split by the eyes that its samples name.
 std::vector<Recording> recordings_of(const GazeLog& log) {
   const bool has_own_rows = !chosen_eye(log).is_alone;
   std::vector<Recording> all{{Eye::left, {}}, {Eye::right, {}}, {Eye::cyclopean, {}}};
@@ -102,7 +102,7 @@ void append(std::string& text, Number value) {
   }
 }
 
-// Of the display; 1 where nobody says, which makes fractions of pixels.
+// The size of the display in pixels; 1 where it is not known, so that the values are fractions instead of pixels.
 struct PixelScale {
   double width_px = 1, height_px = 1;
 };
@@ -187,15 +187,16 @@ class RecordingWriter {
               {"RecordedEye", to_string(recording_.eye)},
               {"SampleCoordinateSystem", is_direction ? "eye-in-head" : "gaze-on-screen"}};
     if (const ChosenEye chosen = chosen_eye(log_); chosen.eye) {
-      json["ChosenEye"] = to_string(*chosen.eye);  // our own: whose gaze stands for both
+      json["ChosenEye"] = to_string(*chosen.eye);  // a key of gazetrace's own: the eye whose gaze stands for both
     }
     if (log_.device) {
-      json["RecordedOn"] = to_string(*log_.device);  // our own: desktop or head-mounted
+      json["RecordedOn"] = to_string(*log_.device);  // a key of gazetrace's own: desktop or head-mounted
     }
     if (log_.sample_age_unknown) {
       json["SampleAge"] = "unknown";  // our own
     }
-    for (const GazeCalibration& c : log_.calibrations) {  // our own: ns, degrees, null where not stated
+    for (const GazeCalibration& c :
+         log_.calibrations) {  // a key of gazetrace's own: ns, degrees, null where not stated
       json["Calibrations"].push_back({{"Eye", to_string(c.eye)},
                                       {"Time", c.t_ns},
                                       {"MeanError", c.mean_error_deg},
@@ -242,7 +243,8 @@ class RecordingWriter {
 
  private:
   [[nodiscard]] double rate_hz() const {
-    // By the mean: steps of a frame log are of two or three lengths, and the median is one of them.
+    // The rate comes from the mean step, because the steps of a frame log have two or three lengths, and the median
+    // would be one of these.
     const double measured_hz = measure_timing(log_).mean_rate_hz;
     return log_.nominal_rate_hz > 0 ? log_.nominal_rate_hz : measured_hz > 0 ? measured_hz : 1;
   }
@@ -261,7 +263,8 @@ Json screen_json(const GazeLog& log) {
     if (g.width_px > 0 && g.height_px > 0) {
       screen["ScreenResolution"] = {g.width_px, g.height_px};
     }
-    // The standard's metres, and of our own the centimetres that metres do not give back to the last bit.
+    // Metres for the standard, and a key of gazetrace's own for centimetres that metres do not give back to the last
+    // bit.
     if (g.width_cm > 0 && g.height_cm > 0) {
       const double width_m = inverse_of_product(g.width_cm, 100);
       const double height_m = inverse_of_product(g.height_cm, 100);
@@ -296,8 +299,8 @@ std::string one_cell(std::string text) {
   return text.empty() ? "n/a" : text;
 }
 
-// Where an event goes: to the recording of its eye, else to that of the gaze, else to the first; messages and segments
-// are of no eye.
+// The recording that an event belongs to: that of its eye, else that of the gaze, else the first. Messages and segments
+// belong to no eye.
 Eye home_of(const GazeEvent& event, const std::vector<Recording>& recordings, const std::optional<Eye>& chosen) {
   const bool moves = event.type == GazeEventType::fixation || event.type == GazeEventType::saccade ||
                      event.type == GazeEventType::blink;
@@ -314,7 +317,7 @@ std::string events_table(const GazeLog& log, Eye eye, const std::vector<Recordin
     if (home_of(event, recordings, chosen) != eye) {
       continue;
     }
-    // Unsigned, as the longest does not fit the times' own type.
+    // Unsigned, because the longest duration does not fit into the type of the times.
     const std::uint64_t length_ns = event.end_ns > event.begin_ns ? static_cast<std::uint64_t>(event.end_ns) -
                                                                         static_cast<std::uint64_t>(event.begin_ns)
                                                                   : 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view kBoundary = "\x43\xA5\x46\xDC\xCB\xF5\x41\x0F\xB3\x0E\xD5\x46\x73\x83\xCB\xE4";
 enum : std::uint16_t { stream_header = 2, samples = 3, clock_offset = 4 };
 
-// Reads little-endian values off the front; every read says whether there was enough.
+// Reads little-endian values from the front; every read returns whether there were enough bytes.
 class Bytes {
  public:
   explicit Bytes(std::string_view rest) : rest_(rest) {}
@@ -35,7 +35,7 @@ class Bytes {
     rest_.remove_prefix(raw.size());
     return true;
   }
-  // A byte that says 1, 4 or 8, then a number of so many bytes.
+  // A byte with the value 1, 4 or 8, followed by a number of that many bytes.
   bool take_length(std::uint64_t& length) {
     std::uint8_t size = 0;
     if (!take(size)) {
@@ -105,7 +105,7 @@ bool read_samples(Bytes& bytes, XdfStream& stream) {
     if (!bytes.take(stamp_bytes)) {
       return false;
     }
-    // Without a stamp: the last one and a period.
+    // Without a stamp it is the last stamp plus one period.
     double time = stream.times_s.empty() ? 0 : stream.times_s.back();
     time += stream.nominal_rate_hz > 0 ? 1 / stream.nominal_rate_hz : 0;
     if (stamp_bytes == 8 && !bytes.take(time)) {
@@ -174,7 +174,7 @@ struct Line {
   [[nodiscard]] double value(double t) const { return offset + slope * (t - at); }
 };
 
-// Least squares, weighted again and again so that delayed exchanges count little (Huber, 1.345 robust deviations).
+// Iteratively reweighted least squares, so that delayed exchanges count little (Huber, 1.345 robust deviations).
 Line fit(const XdfClockOffset* begin, const XdfClockOffset* end) {
   const auto count = static_cast<std::size_t>(end - begin);
   std::vector<double> weights(count, 1.0);
@@ -226,7 +226,7 @@ void add_offsets(const XdfStream& stream, std::vector<double>& times_s) {
       continue;
     }
     const Line line = fit(stream.offsets.data() + begin, stream.offsets.data() + i);
-    // Samples up to half way to where the next clock begins.
+    // Samples up to halfway to where the next clock begins.
     const double until = ends ? 0 : 0.5 * (stream.offsets[i - 1].time_s + stream.offsets[i].time_s);
     const bool forwards = !ends && stream.offsets[i].time_s > stream.offsets[i - 1].time_s;
     double before = done < times_s.size() ? times_s[done] : 0;

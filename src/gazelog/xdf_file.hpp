@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chunks of an XDF file, taken apart into streams of numbers. The format: github.com/sccn/xdf, Specifications.
+// The chunks of an XDF file, separated into streams of numbers. Source of the format: github.com/sccn/xdf,
+// Specifications.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +23,18 @@ struct XdfStream {
   std::string channel_format;  // "float32", ...
   double nominal_rate_hz = 0;
   std::vector<double> times_s;  // on the sender's clock
-  std::vector<double> values;   // channels x samples, a sample after the other
+  std::vector<double> values;   // channels x samples, one sample after another
   std::vector<XdfClockOffset> offsets;
 };
 
 // `read_header` fills channels, channel_format and nominal_rate_hz from the XML. Streams of strings keep no values.
-// Damaged chunks are passed over to the next boundary, with a warning.
+// After a damaged chunk, reading goes on at the next boundary, with a warning.
 std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path, Warnings& warnings,
                                 void (*read_header)(XdfStream& stream));
 
-// Times on the common clock: offsets added through a robust linear fit, restarted where the clock was reset by more
-// than 5 s. Then, for streams of a nominal rate, evenly spaced between breaks of more than 1 s and 500 samples.
+// Puts the times on the common clock by adding offsets from a robust linear fit, which starts anew where the clock was
+// reset by more than 5 s. For streams with a nominal rate the times are then spaced evenly between breaks of more than
+// 1 s and 500 samples.
 std::vector<double> synchronized_times_s(const XdfStream& stream);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is the same for every method: who is lost and who blinks, and which constants are allowed.
+// What is the same for every method: which samples are lost or in a blink, and which constants are allowed.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a method of event detection is: one file in methods/, one line in methods.def.
+// A method of event detection is one file in methods/ and one line in methods.def.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace gazetrace {
 struct EventMethod {
   std::string name;
   std::string description;
-  // Labels the samples of `events.labels` that are unclassified, which are those with a direction; may also label lost
-  // ones in gaps that it bridges. `events.settings` holds the constants.
+  // Labels the samples that are unclassified in `events.labels`, which are those with a direction. It may also label
+  // lost samples in gaps that it bridges. `events.settings` holds the constants.
   void (*classify)(const GazeDirections& gaze, EyeEvents& events);
 };
 
@@ -27,7 +27,7 @@ std::vector<LabelRun> label_runs(const std::vector<EyeMovement>& labels, const s
 // Fixations shorter than EventSettings::min_fixation_ns become unclassified.
 void drop_short_fixations(const GazeDirections& gaze, EyeEvents& events);
 
-// Labels to events with their measures.
+// Makes events of the labels, and measures them.
 std::vector<EyeEvent> measure_events(const GazeLog& log, const GazeDirections& gaze, const EyeEvents& labelled);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events that a log brings along, in the form of detected ones.
+// The events that a log states itself, in the same form as detected ones.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -10,7 +10,8 @@
 namespace gazetrace {
 namespace {
 
-// The eye whose events are taken: that of the gaze; of a gaze of both eyes, the one that has more of them.
+// The eye whose events are taken: the eye of the gaze or, where the gaze was made from both eyes, the eye that has more
+// events.
 Eye eye_of_events(const GazeLog& log) {
   std::array<std::size_t, 3> count{};
   for (const GazeEvent& event : log.events) {
@@ -45,14 +46,14 @@ EyeEvents events_of_log(const GazeLog& log) {
     }
     const auto first = std::lower_bound(t_ns.begin(), t_ns.end(), event.begin_ns) - t_ns.begin();
     const auto end = std::upper_bound(t_ns.begin() + first, t_ns.end(), event.end_ns) - t_ns.begin();
-    // A blink looks like a saccade to a tracker: away, and back again.
+    // To a tracker a blink looks like a saccade away and back again.
     const bool blinks = std::find(events.labels.begin() + first, events.labels.begin() + end, EyeMovement::blink) !=
                         events.labels.begin() + end;
     if (event.type == GazeEventType::saccade && blinks) {
       continue;
     }
     for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
-      // Lost samples too: where a tracker bridged a gap, the event went on.
+      // Lost samples belong to it as well: where a tracker bridged a gap, the event went on.
       if (events.labels[i] == EyeMovement::unclassified || events.labels[i] == EyeMovement::lost) {
         events.labels[i] = event.type == GazeEventType::fixation ? EyeMovement::fixation : EyeMovement::saccade;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Labels to events: where a fixation was, how far and how fast a saccade went.
+// From labels to events: where a fixation was, and how far and how fast a saccade went.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -79,7 +79,7 @@ class Measures {
     event.peak_velocity_deg_s = peak_speed(event);
   }
 
-  // From the last place before it to the first one after it, where these are its neighbours.
+  // A saccade goes from the last place before it to the first place after it, where these are its direct neighbours.
   void measure_saccade(EyeEvent& event) const {
     std::size_t from = event.first;
     std::size_t to = event.last;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way the axes run: by second accounts of the gaze in the same file, by the vestibulo-ocular reflex, and by one
-// eye against the other.
+// Finds the directions of the axes from second accounts of the gaze in the same file, from the vestibulo-ocular reflex,
+// and from comparing one eye with the other.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kWitnessAgrees = 0.6;  // correlation from which a witness speaks
+constexpr double kWitnessAgrees = 0.6;  // correlation from which a witness counts
 constexpr std::size_t kFewestPairs = 50;
 
 class Axes {
  public:
   Axes(const GazeLog& log, GazeInspection& report) : log_(log), report_(report) {}
 
-  // Whether they are exchanged, or not to be tested.
+  // Whether the axes are exchanged, or cannot be tested.
   bool examine(bool unit_is_wrong) {
     for (const char axis : {'x', 'y'}) {
       report_.axes.push_back(
@@ -101,7 +101,7 @@ class Axes {
     }
   }
 
-  // The eye that alone was taken of two.
+  // The eye that was taken alone where the log has two.
   [[nodiscard]] std::optional<Eye> only_eye() const {
     const auto& taken = log_.conventions.eye_taken;
     if (!taken || !taken->value.is_alone) {
@@ -110,7 +110,7 @@ class Axes {
     return taken->value.eye == Conventions::TakenEye::left ? Eye::left : Eye::right;
   }
 
-  // Of one eye alone, the witnesses of that eye speak where it has some.
+  // For the gaze of one eye alone, the witnesses of that eye count, where it has any.
   [[nodiscard]] bool is_of_this_gaze(const GazeWitness& witness) const {
     const std::optional<Eye> only = only_eye();
     if (!only || witness.eye == only) {
@@ -129,7 +129,7 @@ class Axes {
     }
     return axis == 'x' ? report_.disparity->horizontal_correlation : report_.disparity->vertical_correlation;
   }
-  // By their positions, or, where gaze hardly moves along the axis, by what the witnesses of each say.
+  // Decided by their positions or, where gaze hardly moves along the axis, by the witnesses of each eye.
   [[nodiscard]] bool eyes_oppose(char axis) const {
     if (!both_eyes_are_in_use()) {
       return false;
@@ -148,7 +148,7 @@ class Axes {
                                            : AxisVerdict::flipped;
   }
 
-  // The witness of one eye that speaks of an axis; null: none does.
+  // The witness of one eye that tells about an axis; null: there is none.
   [[nodiscard]] const GazeWitness* eye_witness(Eye eye, char axis) const {
     const auto found = std::find_if(log_.witnesses.begin(), log_.witnesses.end(), [&](const GazeWitness& w) {
       return w.eye == eye && verdict_of(along(w, axis)) != AxisVerdict::undecided;
@@ -160,8 +160,8 @@ class Axes {
     return witness == nullptr ? AxisVerdict::undecided : verdict_of(along(*witness, axis));
   }
 
-  // With both eyes in use, a witness of one speaks for the other only where that one goes the same way. One of no
-  // stated eye may hold the values of one eye alone.
+  // With both eyes in use, a witness of one eye counts for the other only where both move the same way. A witness that
+  // states no eye may hold the values of one eye alone.
   [[nodiscard]] bool speaks_for_gaze(char axis) const {
     if (!both_eyes_are_in_use() || correlation_of_eyes(axis) > kWitnessAgrees) {
       return true;
@@ -169,7 +169,8 @@ class Axes {
     return !eyes_oppose(axis) && eye_verdict(Eye::left, axis) == eye_verdict(Eye::right, axis);
   }
 
-  // One eye's witness speaks, and neither a witness of the other eye nor its positions say that it goes along.
+  // There is a witness of one eye, but neither a witness nor the positions of the other eye show that it moves the same
+  // way.
   void one_eye_told() {
     for (const char axis : {'x', 'y'}) {
       GazeAxisTest& test = report_.axes[axis == 'x' ? 0 : 1];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From measurements to what is wrong, why that is thought, and the option that mends it. What only statistics say is a
-// suspicion; where nothing in the log speaks for or against, the answer is undecided.
+// From measurements to what is wrong, the evidence for it, and the option that mends it. A finding that rests on
+// statistics alone is a suspicion. Where nothing in the log speaks for or against, the answer is undecided.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class Doctor {
       }
     }
     if (usable_.size() > kMostLookedAt) {
-      // Every n-th of the whole log.
+      // Every n-th sample of the whole log, where it is usable.
       usable_.clear();
       const std::size_t stride = log.samples.size() / kMostLookedAt + 1;
       for (std::size_t i = 0; i < log.samples.size(); i += stride) {
@@ -61,7 +61,7 @@ class Doctor {
   void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string flag = {}) {
     report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(flag)});
   }
-  // What else the file would be: the same numbers under other conventions, in a few words.
+  // What the file would be if its numbers were interpreted under other conventions, in a few words.
   template <class Change>
   [[nodiscard]] std::string read_otherwise(const Change& change) const {
     if (whole_ == nullptr) {
@@ -72,7 +72,7 @@ class Doctor {
     try {
       return fmt::format("; as read, {}; read so, {}", state_of(log_), state_of(interpret(whole_->raw, other)));
     } catch (const Error&) {
-      return {};  // needs what nobody knows, as the size of the display
+      return {};  // it needs something that is not known, such as the size of the display
     }
   }
   static std::string state_of(const GazeLog& log) {
@@ -107,7 +107,7 @@ class Doctor {
       return;
     }
     const bool repeats = order.duplicates > 0 && order.identical_duplicates * 10 >= order.duplicates * 9;
-    // A repeated block goes back in time as well: one finding is enough.
+    // A repeated block of rows goes back in time as well, and one finding for both is enough.
     const std::string problem = order.backward_steps > 0
                                     ? fmt::format("line {}: {}", order.first_backward_row, unordered_problem(order))
                                     : fmt::format("line {}: {}", order.first_duplicate_row, duplicate_problem(order));
@@ -154,7 +154,7 @@ class Doctor {
       return;
     }
     const double nominal = log_.nominal_rate_hz;
-    // Decimal powers between what is read and what is meant.
+    // Powers of ten between the unit that was read and the unit that is meant.
     for (const int shift : {3, 6, 9, -3, -6, -9}) {
       const double meant = rate * std::pow(10.0, -shift);
       const std::string flag = time_unit_flag(shift);
@@ -199,7 +199,8 @@ class Doctor {
     return doubt.has_value();
   }
 
-  // Of the display or the scene camera's picture; by a guess where the log was looked at with one.
+  // The size of the display or of the scene camera's picture; it is a guess where the log was inspected with a guessed
+  // size.
   [[nodiscard]] Vec2d picture_px() const {
     const DisplayGeometry given = options_.display.value_or(DisplayGeometry{});
     if (given.width_px > 0) {
@@ -224,7 +225,8 @@ class Doctor {
     if (whole_->conventions.missing_value == 0 || zeros < 3 || zeros * 2000 < log_.order.rows) {
       return;
     }
-    // Straight ahead in degrees is a place like any other: only zeros that come and go by a jump are none.
+    // In degrees, straight ahead is a place like any other: zeros are missing values only where gaze comes and goes by
+    // jumps.
     if (log_.conventions.origin.value == PositionOrigin::center && zeros * 200 < log_.order.rows) {
       return;
     }
@@ -256,7 +258,7 @@ class Doctor {
         option_takes_it ? fmt::format("--gaze-missing-value {}", x) : "");
   }
 
-  // More than a display's height but never its width.
+  // Positions that exceed the display's height but never its width suggest exchanged axes.
   void swapped_by_extent() {
     const Vec2d size = picture_px();
     if (log_.kind != GazeKind::screen || log_.conventions.unit.value != PositionUnit::px || !(size.x > 1.2 * size.y) ||
@@ -313,7 +315,7 @@ class Doctor {
     const bool are_marks = std::any_of(report_.findings.begin(), report_.findings.end(), [](const GazeFinding& f) {
       return f.code == "zero-missing" || f.code == "missing-value";
     });
-    const bool tells = !are_marks && !log_.sample_age_unknown;  // marks stand still, too, and are told already
+    const bool tells = !are_marks && !log_.sample_age_unknown;  // marks stand still as well, and are reported already
     if (tells && report_.frozen.samples * 20 > loss.usable && report_.frozen.runs > 0) {
       add(FindingKind::suspicion, "frozen",
           fmt::format("positions stand still bit by bit in {} runs, the longest of {:.0f} ms in line {}",
@@ -350,7 +352,7 @@ class Doctor {
     }
   }
 
-  // A flipped axis without a second account of the gaze is nothing that could have been found.
+  // A flipped axis cannot be found without a second account of the gaze.
   [[nodiscard]] std::string untested_axes() const {
     std::string names;
     for (const GazeAxisTest& test : report_.axes) {
@@ -389,7 +391,7 @@ class Doctor {
   const GazeUnderInspection* whole_;
   const GazeInspectOptions& options_;
   GazeInspection& report_;
-  std::vector<const GazeSample*> usable_;  // of a long log, a part
+  std::vector<const GazeSample*> usable_;  // only a part of them where the log is long
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of an inspection; each file beside this one holds one or two of them.
+// The parts of an inspection; each file in this folder holds one or two of them.
 #pragma once
 
 #include <string_view>
@@ -10,14 +10,14 @@
 
 namespace gazetrace {
 
-// Gaze as two coordinates, right and up: degrees where the geometry is known or the log has directions, else pixels of
-// the display, else shares of the picture's width.
+// Gaze as two coordinates, positive to the right and up. They are degrees where the geometry is known or the log has
+// directions, else pixels of the display, else fractions of the picture's width.
 class GazePlane {
  public:
   GazePlane(const GazeLog& log, const std::optional<DisplayGeometry>& given);
 
   [[nodiscard]] const std::string& unit() const { return unit_; }
-  // What 30 deg/s is in the unit; a guess where angles are unknown.
+  // The speed of 30 deg/s in this unit; a guess where angles are unknown.
   [[nodiscard]] double units_per_degree() const { return units_per_degree_; }
   [[nodiscard]] Vec2d at(const Vec3d& place) const;  // (u, v, 0) or a direction
   [[nodiscard]] Vec2d of(const GazeSample& sample) const {
@@ -38,15 +38,16 @@ std::optional<GazePrecision> measure_precision(const GazeLog& log, const GazePla
 std::optional<GazeDisparity> measure_disparity(const GazeLog& log, const GazePlane& plane);
 std::vector<VorTest> test_vor(const GazeLog& log);
 
-// Which way the axes run, into `inspection`, with what is wrong of it. Returns whether they are exchanged, or could not
-// be looked at because `unit_is_wrong`.
+// Writes the directions of the axes, and the findings about them, into `inspection`. Returns whether the axes are
+// exchanged, or could not be tested because `unit_is_wrong`.
 bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspection);
 
-// Empty: 90 % of the positions can well be in the unit, and count from the origin, under which they were read.
-// `display` is what is known of the display or the scene camera's picture.
+// Empty where 90 % of the positions fit the unit and the origin under which they were read. `display` is what is known
+// about the display or the scene camera's picture.
 std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, const DisplayGeometry& display);
 
-// Fills axes, findings, verdict and flags from the rest of the inspection. `whole`: the log's file, or null.
+// Fills axes, findings, verdict and flags from the rest of the inspection. `whole` is the log with the numbers of its
+// file, or null.
 void find_what_is_wrong(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
                         GazeInspection& inspection);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An inspection as a picture: x and y over time, below them what the log says of each moment, and the scanpath. Long
+// An inspection as a picture: x and y over time, below them what the log says about each moment, and the scanpath. Long
 // logs are thinned to the extremes of every column of pixels, so that no excursion is lost.
 #include <fmt/format.h>
 
@@ -65,7 +65,7 @@ Track make_track(const GazeLog& log, const GazeInspection& inspection) {
   for (std::vector<double>* const values : {&track.s, &track.x, &track.y}) {
     values->reserve(log.samples.size());
   }
-  const std::size_t stride = log.samples.size() / 200'000 + 1;  // of what decides how far the axes reach
+  const std::size_t stride = log.samples.size() / 200'000 + 1;  // of the samples that decide the range of the axes
   for (const GazeSample& sample : log.samples) {
     Vec2d at{std::nan(""), std::nan("")};
     if (is_usable(sample.validity)) {
@@ -106,7 +106,7 @@ Track make_track(const GazeLog& log, const GazeInspection& inspection) {
   return track;
 }
 
-// Per column of pixels the first, lowest, highest and last value, joined; a break at losses and gaps.
+// For each column of pixels the first, lowest, highest and last value, joined by lines; losses and gaps interrupt them.
 std::string trace_path(const Track& track, const std::vector<double>& values, const Axis& time, const Axis& value,
                        double gap_s) {
   std::string path;
@@ -115,7 +115,7 @@ std::string trace_path(const Track& track, const std::vector<double>& values, co
   double low = 0;
   double high = 0;
   double last = 0;
-  bool open = false;     // a run goes on
+  bool open = false;     // a run has begun
   bool started = false;  // its first point is written
   const auto point = [&](double x, double y) {
     fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", started ? "L" : "M", x, y);
@@ -144,7 +144,7 @@ std::string trace_path(const Track& track, const std::vector<double>& values, co
       }
     }
     before_s = track.s[i];
-    // Half pixels are enough for print.
+    // A resolution of half pixels is enough for print.
     const double at = std::floor(2 * time.at(track.s[i])) / 2;
     if (open && at == column) {
       low = std::min(low, values[i]);
@@ -367,7 +367,7 @@ void draw_scanpath(Svg& svg, const GazeLog& log, const Track& track, const Axis&
           top + height / 2, track.y_label);
 }
 
-// Words broken at `most` characters.
+// Breaks the text between words into lines of at most `most` characters.
 std::vector<std::string> wrapped(const std::string& text, std::size_t most) {
   std::vector<std::string> lines(1);
   std::size_t at = 0;
@@ -459,10 +459,11 @@ std::string inspection_svg(const GazeLog& log, const GazeInspection& inspection,
            (time.begin + time.end) / 2, y_trace.end + 36);
   double top = draw_events(body, log, time, y_trace.end + 48) + 22;
 
-  // The scanpath takes the left part, in the proportions of what it shows.
+  // The scanpath takes the left part, with the aspect ratio of what it shows.
   const double span_x = track.x_high - track.x_low;
   const double span_y = std::abs(track.y_bottom - track.y_top);
-  const double shape = track.frame_width == 1 && track.frame_height == 1 ? 16.0 / 9 : 1;  // fractions: a usual display
+  const double shape =
+      track.frame_width == 1 && track.frame_height == 1 ? 16.0 / 9 : 1;  // fractions: the aspect of a usual display
   double scan_width = 0.52 * width;
   double scan_height = scan_width * span_y / (span_x * shape);
   if (scan_height > 460) {

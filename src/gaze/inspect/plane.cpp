@@ -24,7 +24,7 @@ GazePlane::GazePlane(const GazeLog& log, const std::optional<DisplayGeometry>& g
       g.height_cm = stated->height_cm;
     }
     g.distance_cm = g.distance_cm > 0 ? g.distance_cm : stated->distance_cm;
-    if (g.eye_x_cm == 0 && g.eye_y_cm == 0) {  // reading has given the log what was given of the eye
+    if (g.eye_x_cm == 0 && g.eye_y_cm == 0) {  // what was given about the eye is already in the log
       g.eye_x_cm = stated->eye_x_cm;
       g.eye_y_cm = stated->eye_y_cm;
     }

@@ -19,21 +19,22 @@ namespace {
 
 constexpr double kJump = 0.1;  // of the display, or of a unit vector, in any axis
 constexpr std::size_t kFewestRows = 3;
-constexpr std::size_t kFewestRowsInLog = 2000;  // one of so many
+constexpr std::size_t kFewestRowsInLog = 2000;  // one row in so many
 constexpr std::size_t kFewestVisits = 3;
 
-// Where gaze may well be, a mark must be written oftener, and no other place like it.
-constexpr std::size_t kFewestRowsInLogWhereGazeIs = 100;  // one of so many
+// In places where gaze may well be, a mark must occur more often, and no other place may occur as often.
+constexpr std::size_t kFewestRowsInLogWhereGazeIs = 100;  // one row in so many
 constexpr std::size_t kFewestVisitsWhereGazeIs = 10;
 constexpr std::size_t kMarkOverNext = 4;
 
 struct Visits {
   Vec3d raw;
-  bool is_beside = false;  // the display
+  bool is_beside = false;  // beside the display
   std::size_t rows = 0;
-  // Of each eye: rows of a chosen eye may be there twice. A loss between is no end of a visit, as a value may be held.
+  // Counted for each eye, as the rows of a chosen eye may be there twice. A loss in between does not end a visit, as a
+  // value may be held.
   std::array<std::size_t, 3> times{};
-  std::size_t moves = 0, jumps = 0;  // to it and away from it
+  std::size_t moves = 0, jumps = 0;  // towards it and away from it
 
   [[nodiscard]] bool look_like_a_mark(std::size_t rows_in_log) const;
 };
@@ -57,13 +58,13 @@ bool is_often(std::size_t rows, std::size_t rows_in_log) {
   return rows >= kFewestRows && rows * kFewestRowsInLog >= rows_in_log;
 }
 
-// Steps within a fixation are small: a place that gaze fixates is hardly ever come to by jumps.
+// Steps within a fixation are small, so that gaze hardly ever reaches a place that it fixates by jumps.
 bool Visits::look_like_a_mark(std::size_t rows_in_log) const {
   const std::size_t most_times = *std::max_element(times.begin(), times.end());
   if (is_beside) {
     return is_often(rows, rows_in_log) && most_times >= kFewestVisits && moves > 0 && jumps * 10 >= moves * 9;
   }
-  // From fixations near the mark the steps to it are short.
+  // Where gaze fixates near the mark, the steps to it are short.
   return rows * kFewestRowsInLogWhereGazeIs >= rows_in_log && most_times >= kFewestVisitsWhereGazeIs && moves > 0 &&
          jumps * 2 >= moves;
 }
@@ -76,7 +77,8 @@ struct FrequentPlace {
 
 // At most a few thousand places, whatever the log's length.
 std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, bool has_three) {
-  // A log has nearly as many places as rows. Counting them by a hash first leaves few to be told apart.
+  // A log has nearly as many places as rows. Counting them by a hash first leaves only a few that must be compared
+  // exactly.
   constexpr int kHashBits = 18;
   const auto hash = [](const Vec3d& at) {
     const auto x = std::bit_cast<std::uint64_t>(at.x);
@@ -107,13 +109,14 @@ std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, b
   return frequent;
 }
 
-// A place that gaze comes to again and again, and from elsewhere by a jump: beside the display rarely, else in a
-// hundredth of the rows and at no other place alike. `log` has a sample for each row, in the order of the rows.
+// A place that gaze reaches again and again, and by jumps from elsewhere. Beside the display a few such rows are
+// enough; elsewhere the place must hold a hundredth of the rows, and no other place may be like it. `log` has a sample
+// for each row, in the order of the rows.
 std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<FrequentPlace>& frequent) {
   std::map<Place, Visits> places;
   for (const FrequentPlace& place : frequent) {
     const Vec3d at = place_of(log.samples[place.sample], log.kind);
-    const bool is_zero = place.raw.x == 0 && place.raw.y == 0 && place.raw.z == 0;  // are counted by themselves
+    const bool is_zero = place.raw.x == 0 && place.raw.y == 0 && place.raw.z == 0;  // zeros are counted separately
     if (is_known(at) && !is_zero) {
       const bool is_beside = log.kind != GazeKind::direction && !(at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1);
       places.try_emplace(key_of(at), Visits{.raw = place.raw, .is_beside = is_beside});
@@ -124,10 +127,10 @@ std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<Fr
   }
   struct Last {
     std::optional<Vec3d> at;
-    Visits* visits = nullptr;  // of its place, where it is one of those looked at
+    Visits* visits = nullptr;  // to the row's place, where that is one of the candidates
   };
   std::array<Last, 3> last_of_eye;
-  std::array<const Visits*, 3> was_at{};  // the same, losses left out
+  std::array<const Visits*, 3> was_at{};  // the same, with losses left out
   for (const GazeSample& sample : log.samples) {
     const auto eye = static_cast<std::size_t>(sample.eye);
     Last& last = last_of_eye[eye];
@@ -171,7 +174,7 @@ std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<Fr
       next_within_rows = std::max(next_within_rows, next->rows);
     }
   }
-  // Gaze without noise, as of a mouse or a model, is at many places exactly and leaves them by jumps.
+  // Gaze without noise, such as that of a mouse or a model, repeats many places exactly and leaves them by jumps.
   if (within != nullptr && next_within_rows * kMarkOverNext > within->rows) {
     within = nullptr;
   }
@@ -185,7 +188,7 @@ std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Con
   const bool has_three = conventions.form == PlaceForm::vector;
   const std::vector<FrequentPlace> frequent = frequent_places(raw.rows, has_three);
   const std::optional<RecurringPlace> mark = find_mark(interpret_rows(raw, conventions), frequent);
-  // Of directions only those that loggers write: three times one number, and straight ahead.
+  // Of directions, only those that loggers write as marks count: three times the same number, and straight ahead.
   const bool is_plain =
       mark && ((mark->raw.x == mark->raw.y && mark->raw.y == mark->raw.z) || (mark->raw.x == 0 && mark->raw.y == 0));
   return mark && (!has_three || is_plain) ? mark : std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that loggers write for a place that they do not know.
+// Finds the numbers that loggers write in place of a position that they do not know.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace gazetrace {
 
-// A place that is left and come back to by jumps alone, over and over: no eye does that.
+// A place that gaze leaves and returns to by jumps alone, over and over, which no eye does.
 struct RecurringPlace {
   Vec3d raw;             // in the file's unit; z only of vectors
-  std::size_t rows = 0;  // that count as good
+  std::size_t rows = 0;  // the rows at this place that count as good
 };
 
-// The one with most rows: beside the display one that is come to rarely, else one with a hundredth of the rows.
+// The place with the most rows. Beside the display a few rows are enough; elsewhere it takes a hundredth of the rows.
 std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Conventions& conventions);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An inspection for programs. Durations and stamps are nanoseconds; what is not known is left out or null.
+// An inspection for programs. Durations and stamps are nanoseconds; values that are not known are left out or null.
 #include <cmath>
 #include <nlohmann/json.hpp>
 

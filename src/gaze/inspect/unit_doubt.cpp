@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the positions of a file can be in the unit, and count from the origin, under which they were read. Where they
-// cannot, they are read again under the convention that fits.
+// Tests whether the positions of a file can be in the unit and count from the origin under which they were read. Where
+// they cannot, they are interpreted again under the convention that fits.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 namespace gazetrace {
 namespace {
 
-// 90 % of the values of usable rows.
+// The range of the middle 90 % of the values of usable rows.
 struct Extent {
   double low = 0, median = 0, high = 0;
 };
-// Empty of a few.
+// Empty where there are only a few rows.
 std::optional<Extent> extent_of(const std::vector<RawSample>& rows, double Vec3d::*coordinate) {
   std::vector<double> values;
   values.reserve(rows.size());
@@ -42,7 +42,7 @@ bool is_known(const Vec2d& size) {
 
 // A unit, and perhaps an origin, that would fit better, and the option that says so.
 struct BetterUnit {
-  std::string_view name;  // of the unit, in the plural
+  std::string_view name;  // name of the unit, in the plural
   PositionUnit unit = PositionUnit::automatic;
   std::string flag;
   PositionOrigin origin = PositionOrigin::top_left;
@@ -53,7 +53,7 @@ struct Positions {
   double most = 0, spread = 0;
 };
 
-// Degrees, and lengths on a display that is known.
+// Tests degrees, and lengths on a display whose size is known.
 std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionUnit stated, PositionOrigin origin,
                                                    const DisplayGeometry& display) {
   const auto& [x, y, most, spread] = p;
@@ -71,8 +71,8 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   const auto far = [](const Extent& e, double most_of_it, bool both_ways) {
     return e.high > 1.5 * most_of_it && (both_ways ? e.low < -1.5 * most_of_it : e.median > most_of_it);
   };
-  // No eye turns by a right angle, and no gaze is beside the display for most of the time. Medians, because the ends
-  // may be marks of missing values.
+  // No eye turns by a right angle, and no gaze lies beside the display for most of the time. Medians are used because
+  // the extremes may be marks of missing values.
   const auto turns_too_far = [](const Extent& e) { return std::abs(e.median) > 90 || (e.low < -90 && e.high > 90); };
   const bool is_wrong =
       is_deg ? turns_too_far(x) || turns_too_far(y)
@@ -101,7 +101,7 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   return is_deg ? std::optional(BetterUnit{"something else", PositionUnit::automatic, ""}) : std::nullopt;
 }
 
-// Pixels and fractions.
+// Tests pixels and fractions.
 std::optional<BetterUnit> doubt_places(const Positions& p, PositionUnit unit, double width) {
   const auto& [x, y, most, spread] = p;
   const bool both_signs = (x.low < 0 && x.high > 0) || (y.low < 0 && y.high > 0);
@@ -142,7 +142,7 @@ std::string_view plural_of(PositionUnit unit) {
   }
 }
 
-// How much of the log lies on the display, or can be used, when it is read under other conventions.
+// How much of the log lies on the display, or can be used, when it is interpreted under other conventions.
 std::string read_so(const GazeUnderInspection& gaze, const Conventions& conventions) {
   try {
     const GazeLog log = interpret(gaze.raw, conventions);
@@ -153,7 +153,7 @@ std::string read_so(const GazeUnderInspection& gaze, const Conventions& conventi
                        100 * static_cast<double>(usable) / static_cast<double>(log.samples.size()),
                        log.kind == GazeKind::screen ? "lie on the display" : "are usable");
   } catch (const Error&) {
-    return {};  // it would need what nobody knows, as the size of the display
+    return {};  // it would need something that is not known, such as the size of the display
   }
 }
 
@@ -187,7 +187,7 @@ std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, 
   if (is_place) {
     better = doubt_places(p, unit, size.x);
   } else if (raw.kind == GazeKind::screen) {
-    // Degrees count from straight ahead, whatever else the log's positions count from.
+    // Degrees count from straight ahead, whatever the origin of the log's positions is.
     better = doubt_angles_and_lengths(p, unit, unit == PositionUnit::deg ? raw.declared.origin.value : c.origin.value,
                                       display);
   }

@@ -10,7 +10,7 @@ namespace gazetrace {
 namespace {
 
 constexpr std::int64_t kStretchNs = 250'000'000;
-constexpr std::int64_t kSpanNs = 50'000'000;  // over which speeds are taken: noise of single samples is too large
+constexpr std::int64_t kSpanNs = 50'000'000;  // the span of each speed, as single samples are too noisy
 constexpr double kLeastHeadDegPerS = 5, kMostHeadDegPerS = 150;
 constexpr std::size_t kLeastStretches = 8;
 constexpr double kMostChance = 0.01;  // of the sign test, two-sided
@@ -71,7 +71,7 @@ double world_speed(const Seen& a, const Seen& b, char flipped) {
   return angle * kDegPerRad / (static_cast<double>(b.t_ns - a.t_ns) * 1e-9);
 }
 
-// Two-sided chance that a fair coin deviates as far from the half.
+// The two-sided probability that a fair coin deviates from one half at least as far.
 double sign_test(std::size_t heads, std::size_t n) {
   const std::size_t few = std::min(heads, n - heads);
   double chance = 0;
@@ -132,7 +132,7 @@ std::vector<VorTest> test_vor(const GazeLog& log) {
       while (ahead < seen.size() && seen[ahead].t_ns - seen[i].t_ns < kSpanNs) {
         ++ahead;
       }
-      // Across a loss nothing is known.
+      // Nothing is known across a loss.
       if (ahead == seen.size() || seen[ahead].t_ns - seen[i].t_ns > 2 * kSpanNs) {
         continue;
       }
@@ -147,7 +147,7 @@ std::vector<VorTest> test_vor(const GazeLog& log) {
     if (s.yaw.size() < 5) {
       continue;
     }
-    // Medians: a saccade within the stretch takes less than half of it.
+    // Medians are used because a saccade within the stretch takes less than half of it.
     const double yaw = std::abs(lower_quantile(s.yaw, 0.5));
     const double pitch = std::abs(lower_quantile(s.pitch, 0.5));
     const double as_read = lower_quantile(s.as_read, 0.5);

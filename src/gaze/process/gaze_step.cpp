@@ -49,7 +49,7 @@ void set_direction(GazeSample& sample, GazeKind kind, const ScreenAngles& screen
   if (is_finite(Vec3d{at.x, at.y, 0})) {
     set_place(sample, kind, {at.x, at.y, 0});
   } else {
-    sample.validity = GazeValidity::lost;  // turned away from the screen altogether
+    sample.validity = GazeValidity::lost;  // the gaze is turned away from the screen altogether
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a step of processing is: one file in steps/, one line in steps.def; and what several of them need.
+// A step of processing is one file in steps/ and one line in steps.def. This header also declares what several steps
+// need.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +19,17 @@ struct GazeStepEntry {
   std::string (*apply)(GazeLog& log, const GazeStep& step);
 };
 
-// Neighbouring usable samples [first, end) no farther apart than three median steps: what a filter may run over.
-// Filters never see blinks and losses, and never reach over them.
+// A run of usable samples [first, end) whose neighbours are no farther apart than three median steps. Filters work
+// within such runs, so that they never see blinks and losses and never reach across them.
 struct FilterRun {
   std::size_t first = 0, end = 0;
 };
 std::vector<FilterRun> filter_runs(const GazeLog& log);
 
-// Places as vectors that may be added and weighted: (u, v, 0), or the direction.
+// The places of samples as vectors that can be added and weighted: (u, v, 0), or the direction.
 Vec3d place_of(const GazeSample& sample, GazeKind kind);
-// Back again: a direction is made of unit length, and a place on a screen says whether it is on it.
+// Sets the place from such a vector: a direction is normalized, and a place on a screen gets the validity of being on
+// it or not.
 void set_place(GazeSample& sample, GazeKind kind, const Vec3d& place);
 void set_direction(GazeSample& sample, GazeKind kind, const ScreenAngles& screen, const Vec3d& direction);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of steps, their text form, and running them one after another.
+// The list of steps, their form as text, and applying them one after another.
 #include "gaze/process/gaze_step.hpp"
 
 #include <fmt/format.h>

@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// What is drawn for what.
+// The purposes for which random numbers are drawn.
 enum Stream : std::uint64_t { kDurations, kTargets, kBlinks, kPursuits, kDrift, kNoise, kLoss };
 
-// The eye goes from one direction to another, or stays.
+// A movement of the eye from one direction to another, or a rest.
 struct Phase {
   EyeMovement movement;
-  std::int64_t begin_ns, end_ns;  // end excluded
+  std::int64_t begin_ns, end_ns;  // the end is excluded
   Vec3d from, to;
 };
 
@@ -130,7 +130,7 @@ class Scanpath {
   std::vector<Phase> phases_;
 };
 
-// Slow sinusoids of unequal rates: no step, no end, the same root mean square everywhere.
+// Slow sinusoids of different rates, which have no step and no end and the same root mean square everywhere.
 class Drift {
  public:
   Drift(std::uint64_t seed, double rms_deg) : rms_(rms_deg * kRadPerDeg) {
@@ -265,7 +265,7 @@ SynthGaze synthesize_gaze(const SynthSettings& settings) {
     }
     log.samples.push_back(sample);
     synth.truth.labels.push_back(label);
-    // Events are those of the eye: losses do not cut them.
+    // Events are those of the eye itself, so losses do not split them.
     if (phase_of_event != at) {
       phase_of_event = at;
       synth.truth.events.push_back(true_event(phase, log.samples.size() - 1, log.samples));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // WEKA ARFF as GazeCom has it: `%@METADATA width_px 1280.0` and so on, @ATTRIBUTE time, x, y, confidence, @DATA, rows.
-// Time in microseconds, places in pixels from the top left; confidence 0 is a lost sample.
+// Time is in microseconds and places are in pixels from the top left; a sample with confidence 0 is lost.
 #include <fmt/format.h>
 
 #include <algorithm>

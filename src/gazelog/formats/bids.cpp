@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// BIDS 1.11 eye tracking: ..._recording-<label>_physio.tsv(.gz) without a header line; names, units and rate from the
-// sidecars, which inherit; the screen from the events' sidecar; one file an eye, so the other eye's file beside it is
-// read with it. Drafts are accepted with a note: _eyetrack.tsv, eye1_x_coordinate, sizes in centimetres, a header line.
+// BIDS 1.11 eye tracking: a ..._recording-<label>_physio.tsv(.gz) without a header line. Names, units and rate come
+// from the sidecars, which inherit, and the screen comes from the sidecar of the events. There is one file for each
+// eye, so that the file of the other eye beside it is read as well. Drafts of the standard are accepted with a note:
+// _eyetrack.tsv, eye1_x_coordinate, sizes in centimetres, a header line.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-// One log has one unit and one space: Error(input) where the recording at `path` states others than the first one.
+// A log has one unit and one space. Throws Error(input) where the recording at `path` states others than the first one.
 void check_alike(const BidsColumns& columns, const Sidecars& sidecars, const BidsColumns& its, const Sidecars& other,
                  const GazeReadOptions& options, const std::string& path, RawGaze& raw) {
   const auto refuse = [&](const std::string& problem, const char* more = "") {
@@ -39,7 +40,7 @@ void check_alike(const BidsColumns& columns, const Sidecars& sidecars, const Bid
     return;
   }
   Evidence evidence = Evidence::format;
-  RawGaze unsaid;  // the first recording's warnings are said where it is finished
+  RawGaze unsaid;  // the warnings of the first recording are given where it is finished
   if (stated_bids_unit(other, its, options, path, raw, evidence) !=
           stated_bids_unit(sidecars, columns, options, raw.source, unsaid, evidence) &&
       options.columns.position_unit == PositionUnit::automatic) {
@@ -87,7 +88,7 @@ void join_other_eyes(const BidsName& name, const Sidecars& sidecars, const BidsC
   }
 }
 
-// What gazetrace wrote that the standard has no names for.
+// Values that gazetrace wrote and for which the standard has no names.
 void read_own_keys(const Sidecars& sidecars, RawGaze& raw) {
   if (const std::string chosen = sidecars.text("ChosenEye"); chosen == "left" || chosen == "right") {
     raw.stated_eye = chosen == "left" ? Eye::left : Eye::right;

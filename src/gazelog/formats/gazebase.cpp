@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // GazeBase and GazeBaseVR: `n` in milliseconds, gaze x, y in degrees from straight ahead, right and up, `val` 0 where
-// valid, from a desktop EyeLink; GazeBaseVR has lx, ly, rx, ry of each eye, from a headset. Angles are angles: they
-// become directions, and no display is needed.
+// valid, from a desktop EyeLink; GazeBaseVR has lx, ly, rx, ry of each eye, from a headset. The angles become
+// directions, for which no display is needed.
 #include "gazelog/mapped_table.hpp"
 #include "gazelog/read_support.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gazepoint Analysis, `User N_all_gaze.csv`: TIME(date) in seconds from the start of the recording or of each medium,
-// TIMETICK(f=10000000) at the frequency its name holds; BPOG, the best point of gaze, and LPOG, RPOG of each eye as
-// fractions of the screen from the top left, with a validity of 0 or 1. A lost point keeps its last value. FPOG is the
-// running mean of a fixation and smooths what BPOG has. Every line ends in a comma.
+// TIMETICK(f=10000000) in ticks of the frequency that its name states. BPOG, the best point of gaze, and LPOG and RPOG
+// of each eye are fractions of the screen from the top left, with a validity of 0 or 1. A lost point keeps its last
+// value. FPOG is the running mean of a fixation, which is smoother than BPOG. Every line ends with a comma.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,8 +64,8 @@ std::optional<int> tick_exponent(const ColumnHeading& heading) {
   return 9 - static_cast<int>(digits.size() - 1);
 }
 
-// A log whose TIME starts anew, read by the ticks of the computer, which go on. That is another time than the one that
-// was asked for, so that it is told as a fault.
+// Reads a log whose TIME starts anew by the ticks of the computer, which go on. That is another time than the one that
+// was asked for, so it is reported as a fault.
 RawGaze read_by_ticks(const GazeFile& file, const GazeReadOptions& options, const std::string& time,
                       const std::string& ticks, std::int64_t line) {
   GazeReadOptions by_ticks = options;
@@ -108,7 +108,7 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   const auto media = table.find("MEDIA_ID");
   const auto fixation = table.find("FPOGID");
   const auto fixation_valid = table.find("FPOGV");
-  // The date in the header is the wall clock of the start: it goes nowhere.
+  // The date in the header is the wall clock of the start, and is not kept.
   const TimeScale scale = declare_time(raw, options,
                                        is_tick                       ? "TIMETICK"
                                        : seconds && time == *seconds ? "TIME"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// gazetrace CSV. Preamble `# gazetrace-gaze 1` with `# display_px W H`, `# display_mm W H`, `# distance_mm D` and
-// `# clock TEXT`; header with units, `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`, with a head's pose
-// `hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw` (position and quaternion; empty in rows without one). What is no row stands in
-// the preamble, see mapped_table.hpp.
+// gazetrace CSV. Preamble `# gazetrace-gaze 1` with `# display_px W H`, `# display_mm W H`, `# distance_mm D` and `#
+// clock TEXT`; header with units, `t[ns],u[1],v[1],valid,eye,...` or `t[ns],dx,dy,dz,...`, with a head's pose
+// `hx[m],hy[m],hz[m],hqx,hqy,hqz,hqw` (position and quaternion; empty in rows without one). Everything that is not a
+// row stands in the preamble, see mapped_table.hpp.
 #include <fmt/format.h>
 
 #include "gazelog/mapped_table.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any CSV or TSV with a column of time and two or three of position; what the header does not say, the user declares.
+// Any CSV or TSV with a column of time and two or three of position; the user declares what the header does not say.
 #include "core/text.hpp"
 #include "gazelog/mapped_table.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pupil Labs Neon's own recording: `gaze ps1.raw`, little-endian float32 pairs in pixels of the 1600 x 1200 scene
-// camera from the top left; `gaze ps1.time`, uint64 nanoseconds from 1970, one each; `worn ps1.raw`, a byte each.
-// Directions need the lens: scene_camera.json beside them, as Pupil Cloud gives it.
+// camera from the top left; `gaze ps1.time`, one uint64 for each pair, in nanoseconds from 1970; `worn ps1.raw`, one
+// byte for each pair. Directions need the lens: scene_camera.json beside them, as Pupil Cloud gives it.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses after OpenXR, as loggers write them: time, gaze_orientation_x .. w (a quaternion xyzw; gaze looks along its -z)
-// and, where logged, head_position_x .. and head_orientation_x .. w, flags, the sample's own time. +x right, +y up, -z
-// forward. Gaze is in the VIEW space unless a column `space` says otherwise; then the head's pose of the same row
-// brings it there.
+// Poses as OpenXR defines them and loggers write them: time, gaze_orientation_x .. w (a quaternion xyzw; gaze looks
+// along its -z) and, where logged, head_position_x .. and head_orientation_x .. w, flags, the sample's own time. +x
+// right, +y up, -z forward. Gaze is in the VIEW space unless a column `space` says otherwise; in that case the head's
+// pose of the same row transforms it there.
 #include <fmt/format.h>
 
 #include <array>
@@ -132,7 +132,7 @@ RawGaze read_gaze_openxr(const GazeFile& file, const GazeReadOptions& options) {
       const auto p = values(rows, c.head_position);
       raw.head.push_back(head_pose_from_axes(t_ns, {p[0], p[1], p[2]}, head, options.columns.head_axes));
     }
-    // Runtimes that cannot interpolate clamp: the same sample again. 0 is an unknown time.
+    // Runtimes that cannot interpolate clamp the time, which gives the same sample again. 0 is an unknown time.
     const std::string_view sample_time = rows.cell(c.sample_time);
     if (!sample_time.empty() && sample_time != "0" && sample_time == last_sample_time) {
       ++repeats;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pico Neo 3 Pro Eye, a Unity logger's table: `Timeline` in seconds, `Combine Eye Gaze Vector. x` and so on in the
-// head's frame, (0, 0, 0) where lost, the head's pose in Unity's axes. It writes a row a frame, whatever the tracker
-// had by then, so the age of a sample is unknown. `Foveated Gaze Direction` is another direction and is left alone.
+// Pico Neo 3 Pro Eye, as a table of a Unity logger: `Timeline` in seconds, `Combine Eye Gaze Vector. x` and so on in
+// the head's frame, (0, 0, 0) where lost, the head's pose in Unity's axes. It writes one row in each frame, with the
+// newest sample of the tracker, so the age of a sample is unknown. `Foveated Gaze Direction` is another direction and
+// is not read.
 #include "gazelog/mapped_table.hpp"
 
 namespace gazetrace {

@@ -18,7 +18,7 @@ double sniff_gaze_pupil_cloud(const GazeFile& file) {
   const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
   // A no-break space may stand before the unit.
   const bool places = has("gaze x") && has("[px]") && has("timestamp") && has("[ns]");
-  // Places alone could be anybody's.
+  // Places alone could be of any format.
   return !places ? 0.0 : has("recording id") ? 0.99 : has("worn") || has("azimuth") ? 0.8 : 0.1;
 }
 

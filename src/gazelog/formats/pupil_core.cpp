@@ -2,7 +2,7 @@
 // Pupil Core gaze_positions.csv, from Pupil Player's raw data exporter. gaze_timestamp is in seconds of Pupil's clock;
 // norm_pos_x and _y are fractions of the scene camera's picture from the bottom left; gaze_normal0 and 1 are the eyes'
 // directions and eye_center their places (mm), +x right, +y down, +z forward. Bad samples have a low confidence and
-// wild places; rows of one eye leave the cells of the other empty.
+// erratic places; rows of one eye leave the cells of the other eye empty.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tobii Pro Glasses 2 livedata.json(.gz): one JSON object a line. `ts` is microseconds of the device's clock, `gidx`
-// joins the lines of one gaze sample: gd, the direction of each eye; pc, where it is; pd, its pupil; gp, the place on
-// the scene video, with s = 0 where valid. Lines of several samples interleave and are not in the order of time. Axes:
-// +x to the wearer's left, +y up, +z forward, mm.
+// Tobii Pro Glasses 2 livedata.json(.gz): one JSON object in each line. `ts` is microseconds of the device's clock,
+// `gidx` joins the lines of one gaze sample: gd, the direction of each eye; pc, where it is; pd, its pupil; gp, the
+// place on the scene video, with s = 0 where valid. Lines of several samples interleave and are not in the order of
+// time. Axes: +x to the wearer's left, +y up, +z forward, mm.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tobii Pro Glasses 3 gazedata(.gz): one JSON object a line, `timestamp` in seconds from the start of the recording,
-// `data` with gaze2d (fractions of the scene video from the top left) and for each eye gazeorigin (mm), gazedirection
-// and pupildiameter (mm). A lost sample has no data, a lost eye an empty object. Axes: +x to the wearer's left, +y up,
-// +z forward.
+// Tobii Pro Glasses 3 gazedata(.gz): one JSON object in each line, `timestamp` in seconds from the start of the
+// recording, `data` with gaze2d (fractions of the scene video from the top left) and for each eye gazeorigin (mm),
+// gazedirection and pupildiameter (mm). A lost sample has no data, and a lost eye has an empty object. Axes: +x to the
+// wearer's left, +y up, +z forward.
 #include <fmt/format.h>
 
 #include "gazelog/json_lines.hpp"

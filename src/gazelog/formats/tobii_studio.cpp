@@ -15,14 +15,14 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kWorstValidity = 1;  // 0 and 1: this eye was found, and it is the right one
+constexpr double kWorstValidity = 1;  // with 0 and 1 this eye was found, and it is certain which eye it is
 
 struct StudioColumns {
   std::size_t time = 0;
   std::optional<std::size_t> x, y, left_x, left_y, right_x, right_y, left_validity, right_validity, left_pupil,
       right_pupil, left_distance, right_distance, left_x_mm, left_y_mm, event_type, fixation, saccade;
   std::array<std::array<std::optional<std::size_t>, 3>, 2> eye_mm;  // places of the left and right eye
-  std::vector<std::size_t> events;                                  // texts of what happened
+  std::vector<std::size_t> events;                                  // columns with the texts of events
   std::size_t needed = 0;
 };
 
@@ -73,7 +73,7 @@ StudioColumns find_columns(const DelimitedTable& table, const GazeReadOptions& o
   return c;
 }
 
-// Least squares of y over x.
+// A line through y over x by least squares.
 class Slope {
  public:
   void add(double x, double y) {
@@ -180,7 +180,8 @@ class StudioReader {
     read_label(t_ns);
   }
 
-  // The middle of both eyes, from the bottom left corner of the display and before it.
+  // The middle between both eyes, measured from the bottom left corner of the display, and from the display to the
+  // front.
   void read_eye_places() {
     Vec3d sum;
     double eyes = 0;
@@ -243,7 +244,8 @@ class StudioReader {
     }
   }
 
-  // Millimetres against pixels of the same points give the display's size; the eyes' place or distance is in every row.
+  // Millimetres and pixels of the same points give the display's size; the place or distance of the eyes is in every
+  // row.
   void finish() {
     if (raw_.recording_geometry) {
       DisplayGeometry& g = *raw_.recording_geometry;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Varjo Base CSV: raw_timestamp in nanoseconds, gaze_forward_x and so on in the view's frame with +z forward
-// (left-handed), left_ and right_ of each eye, origins in metres. status 2 is valid gaze; of an eye 2 is compensated
-// and 3 tracked. Windows writes what is missing as -nan(ind).
+// (left-handed), left_ and right_ of each eye, origins in metres. A status of 2 means valid gaze; for a single eye 2
+// means compensated and 3 tracked. Windows writes missing values as -nan(ind).
 #include "gazelog/mapped_table.hpp"
 
 namespace gazetrace {

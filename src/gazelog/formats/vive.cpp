@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// HTC Vive Pro Eye through SRanipal. There is no file format of the maker's, every laboratory writes its own columns
-// from the same structures; this is a preset of a column map for a common logger. Gaze vectors are SRanipal's, +x to
-// the wearer's left, +y up, +z forward; eye_valid is a mask of bits of which the second is the direction's; the head's
-// pose is Unity's, Euler angles in degrees. A frame counter tells rows that repeat the tracker's last sample.
+// HTC Vive Pro Eye through SRanipal. The maker defines no file format, and every laboratory writes its own columns from
+// the same structures; this is a preset of a column map for a common logger. Gaze vectors are SRanipal's, +x to the
+// wearer's left, +y up, +z forward; eye_valid is a mask of bits of which the second is the direction's; the head's pose
+// is Unity's, Euler angles in degrees. A frame counter tells rows that repeat the tracker's last sample.
 #include "gazelog/mapped_table.hpp"
 
 namespace gazetrace {
@@ -46,7 +46,7 @@ double sniff_gaze_vive(const GazeFile& file) {
 
 RawGaze read_gaze_vive(const GazeFile& file, const GazeReadOptions& options) {
   RawGaze raw = read_preset(file, open_table(file), options, preset());
-  raw.declared.x_is_turned.emplace();  // some loggers turn it; the eyes' origins tell
+  raw.declared.x_is_turned.emplace();  // some loggers turn it, which the eyes' origins show
   return raw;
 }
 

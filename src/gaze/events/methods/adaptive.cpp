@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Velocity thresholds that come from the noise of the data.
-// Nystrom & Holmqvist, "An adaptive algorithm for fixation, saccade, and glissade detection in eyetracking data", 2010.
+// Velocity thresholds that are derived from the noise of the data. Nystrom & Holmqvist, "An adaptive algorithm for
+// fixation, saccade, and glissade detection in eyetracking data", 2010.
 //
 //   velocity, acceleration   Savitzky-Golay of order 2 over twice the shortest saccade (20 ms), and at least 3 samples
 //   noise                    faster than 1000 deg/s or 100 000 deg/s^2: left out, with its flanks down to twice the
@@ -10,8 +10,8 @@
 //   offset                   on from the peak to a local minimum below 0.7 onset + 0.3 (mean + 3 SD of the 40 ms before
 //                            the onset)
 //
-// Left out: glissades. What follows a saccade is a fixation here, or a saccade where it exceeds PT. On the unit sphere
-// speed is the length of the direction's derivative.
+// Left out: glissades. Here, what follows a saccade is a fixation, or another saccade where it exceeds PT. On the unit
+// sphere, speed is the length of the direction's derivative.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -61,7 +61,7 @@ Motion motion_of(const GazeDirections& gaze, const std::vector<LabelRun>& runs, 
       if (step_s > 0) {
         motion.speed[i] = length(first) / (k2 * step_s) * kDegPerRad;
         const Vec3d curve = (second - (k2 / count) * sum) * (2 / (k4 - k2 * k2 / count));
-        // The part along the direction is that of going round a sphere, not of going faster.
+        // The part of the acceleration along the direction comes from moving on a sphere, and not from moving faster.
         const Vec3d along = gaze.direction[i] * dot(curve, gaze.direction[i]);
         motion.acceleration[i] = length(curve - along) / (step_s * step_s) * kDegPerRad;
       }
@@ -79,7 +79,7 @@ double median_of_known(std::vector<double> values) {
   return upper_median(values);
 }
 
-// What no eye does, and its flanks, loses its speed.
+// Removes the speeds that no eye can reach, together with the flanks of these peaks.
 void remove_noise(Motion& motion, const EventSettings& settings) {
   const double quiet = 2 * median_of_known(motion.speed);
   std::vector<double>& speed = motion.speed;
@@ -153,7 +153,7 @@ void find_saccades(const GazeDirections& gaze, const std::vector<double>& speed,
     }
     const MeanAndSpread local = statistics(speed, window, begin, thresholds.peak);
     const double local_threshold = local.mean + 3 * local.sd;
-    // A window that is still within another movement says nothing of the noise.
+    // A window that still lies within another movement says nothing about the noise.
     const double offset = local_threshold > 0 && local_threshold < thresholds.peak
                               ? 0.7 * thresholds.onset + 0.3 * local_threshold
                               : thresholds.onset;

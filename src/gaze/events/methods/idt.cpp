@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // I-DT: a window of the shortest fixation's length slides until the gaze stays within D in it, and then grows as long
-// as it does; D = (max x - min x) + (max y - min y). What is seen outside such windows counts as saccade.
+// as it does; D = (max x - min x) + (max y - min y). Gaze that was seen outside such windows counts as saccade.
 // Salvucci & Goldberg, "Identifying fixations and saccades in eye-tracking protocols", 2000.
 //
-// x and y are azimuth and elevation about the window's beginning, so that D means the same everywhere, also in the
-// world of a head-mounted display. Extents of a sliding window come from queues of candidates, in linear time.
+// x and y are azimuth and elevation around the window's first direction, so that D means the same everywhere, also in
+// the world of a head-mounted display. The extents of a sliding window come from queues of candidates, in linear time.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -15,7 +15,8 @@
 namespace gazetrace {
 namespace {
 
-// Largest value in a window whose ends only move forward: values that a later, larger one outlives are forgotten.
+// The largest value in a window whose ends only move forward. Values are dropped when a later one is larger, as that
+// one stays in the window longer.
 class SlidingMaximum {
  public:
   void clear() {
@@ -62,7 +63,7 @@ class Window {
   }
   void pop() {
     ++begin_;
-    // Angles are true near the frame's own direction, which is all that small extents need.
+    // The angles are accurate near the frame's own direction, which is enough for small extents.
     if (begin_ < end_ && angle_between_rad(frame_.forward, direction_[begin_]) > 5 * kRadPerDeg) {
       center();
       return;
@@ -81,7 +82,7 @@ class Window {
     }
     return sum * kDegPerRad;
   }
-  // What it would be with the next sample.
+  // What the dispersion would be with the next sample.
   [[nodiscard]] double dispersion_with_next_deg() const {
     const Vec2d a = frame_.angles(direction_[end_]);
     return (std::max(extremes_[0].value(), a.x) + std::max(extremes_[1].value(), -a.x) +
@@ -146,7 +147,7 @@ void classify_idt(const GazeDirections& gaze, EyeEvents& events) {
       std::fill(labels.begin() + static_cast<std::ptrdiff_t>(begin),
                 labels.begin() + static_cast<std::ptrdiff_t>(window.end()), EyeMovement::fixation);
       begin = window.end();
-      events.cuts.push_back(begin);  // where the next fixation may begin at once
+      events.cuts.push_back(begin);  // the next fixation may begin directly here
       if (begin < end) {
         window.start(begin);
       }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// I-VT: slower than a threshold is a fixation, faster a saccade.
-// Olsen, "The Tobii I-VT fixation filter", 2012: gap fill-in (linear), velocity over a window, classification, merging
-// of adjacent fixations by time and by the angle between their centres, discarding of short ones. The classification
-// is Salvucci & Goldberg 2000. Left out: the eye selection and the noise reduction of that filter, which
-// here are a matter of reading (--gaze-eye) and of processing.
+// I-VT: slower than a threshold is a fixation, faster a saccade. Olsen, "The Tobii I-VT fixation filter", 2012: gap
+// fill-in (linear), velocity over a window, classification, merging of adjacent fixations by time and by the angle
+// between their centres, discarding of short ones. The classification is Salvucci & Goldberg 2000. The eye selection
+// and the noise reduction of that filter are left out here, because reading (`gaze-eye`) and processing do them.
 #include <cstddef>
 
 #include "gaze/angles.hpp"
@@ -12,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-// Lost samples between seen ones at most `max_gap_ns` apart lie on the way between.
+// Lost samples between two seen samples that are at most `max_gap_ns` apart are interpolated between these.
 GazeDirections bridged(const GazeDirections& gaze, const EyeEvents& events) {
   GazeDirections filled = gaze;
   const std::size_t count = gaze.t_ns.size();
@@ -46,7 +45,7 @@ struct Fixation {
   Vec3d sum;
 };
 
-// One pass over neighbours; says whether any became one.
+// One pass over neighbouring fixations; returns whether any two were merged.
 bool merge_neighbours(const GazeDirections& gaze, EyeEvents& events) {
   const EventSettings& settings = events.settings;
   bool merged = false;
@@ -54,7 +53,7 @@ bool merge_neighbours(const GazeDirections& gaze, EyeEvents& events) {
   bool has_before = false;
   for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
     if (run.movement != EyeMovement::fixation) {
-      // What was lost is no pause between two parts of a fixation.
+      // Lost samples do not count as a pause between two parts of a fixation.
       has_before = has_before && run.movement == EyeMovement::saccade;
       continue;
     }
@@ -87,7 +86,7 @@ void classify_ivt(const GazeDirections& gaze, EyeEvents& events) {
       events.labels[i] = speed[i] < events.settings.velocity_deg_s ? EyeMovement::fixation : EyeMovement::saccade;
     }
   }
-  // A fixation that has grown may reach the next: until nothing is left to merge.
+  // A fixation that has grown may reach the next one, so passes are repeated until there is nothing left to merge.
   while (events.settings.merge_gap_ns > 0 && merge_neighbours(filled, events)) {
   }
   drop_short_fixations(gaze, events);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Butterworth low-pass in second-order sections s^2 + 2 sin(pi (2k+1) / 2N) s + 1 by the bilinear transform with the
-// cut-off kept, run forward and backward: no phase, gain 1 / (1 + (tan(pi f T) / tan(pi fc T))^2N), a half at the
-// cut-off. Runs are continued at both ends by their point reflection, and sections begin in the steady state.
+// Butterworth low-pass in second-order sections s^2 + 2 sin(pi (2k+1) / 2N) s + 1 by the bilinear transform that keeps
+// the cut-off, run forward and backward. The result has no phase shift and the gain 1 / (1 + (tan(pi f T) / tan(pi fc
+// T))^2N), which is one half at the cut-off. Runs are continued at both ends by their point reflection, and sections
+// begin in the steady state.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ std::vector<Section> low_pass(int order, double cutoff_hz, double rate_hz) {
 
 void run_forward(const std::vector<Section>& sections, std::vector<Vec3d>& x) {
   for (const Section& s : sections) {
-    // Transposed direct form II, as if the first value had always been there.
+    // Transposed direct form II, which starts as if the first value had been there forever.
     Vec3d z2 = (s.b2 - s.a2) * x.front();
     Vec3d z1 = (1 - s.b0) * x.front();
     for (Vec3d& value : x) {

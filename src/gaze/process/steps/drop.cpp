@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loss of data: a sample is lost when a number that depends on the seed and its time is below the share.
+// Loss of data: a sample is lost when a random number that depends on the seed and the sample's time is below the
+// share.
 #include <fmt/format.h>
 
 #include "gaze/counter_random.hpp"

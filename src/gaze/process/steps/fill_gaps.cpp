@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lost samples between two usable ones get places on the straight way between them (on a screen in u and v, else along
-// the arc), where the gap is no longer than `max` from sample to sample (75 ms: Olsen 2012), the log calls nothing in
-// it a blink or a saccade, and the gaze before and after it is within `angle`: what has moved farther has made a
-// saccade in the gap, and is not interpolated across.
+// Lost samples between two usable ones are interpolated linearly between them (on a screen in u and v, else along the
+// arc). This is done where the gap is no longer than `max` from sample to sample (75 ms: Olsen 2012), the log calls
+// nothing in it a blink or a saccade, and the gaze before and after it is within `angle`. Gaze that moved farther has
+// made a saccade in the gap, which must not be interpolated across.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class NamedEvents {
     std::sort(events_.begin(), events_.end(),
               [](const GazeEvent* a, const GazeEvent* b) { return a->begin_ns < b->begin_ns; });
   }
-  // Asked with increasing times.
+  // To be asked with increasing times.
   [[nodiscard]] const GazeEvent* within(std::int64_t begin_ns, std::int64_t end_ns) {
     while (at_ < events_.size() && events_[at_]->end_ns <= begin_ns) {
       ++at_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The median of an odd window of samples in each of two coordinates: u and v, or azimuth and elevation about the
-// window's middle. At the ends of a run the window shrinks to both sides alike.
+// The median of an odd window of samples in each of two coordinates: u and v, or azimuth and elevation around the
+// window's middle. At the ends of a run the window shrinks by the same amount on both sides.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::string apply_median(GazeLog& log, const GazeStep& step) {
       }
       const Vec2d at{upper_median(x), upper_median(y)};
       if (log.kind == GazeKind::direction) {
-        // A window's middle that is the median stays the very same.
+        // If the window's middle is the median, it keeps exactly its value.
         if (at.x != 0 || at.y != 0) {
           log.samples[i].direction = frame.direction(at);
         }

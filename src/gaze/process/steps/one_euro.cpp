@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 1 euro filter over directions in degrees, which makes beta a number per degree a second. Its default of 0.3 is
-// 0.007 per pixel a second, as is usual with mice, on a display of about 40 pixels a degree.
+// The 1 euro filter over directions in degrees, so that beta is a number per degree per second. On a display of about
+// 40 pixels per degree its default of 0.3 is 0.007 per pixel per second, as is usual for mice.
 #include <fmt/format.h>
 
 #include <algorithm>

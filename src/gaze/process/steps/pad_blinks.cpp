@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lid covers part of the pupil before and after a tracker loses it, which moves the gaze that it reports. Blinks
-// are what the log calls so, and losses of 50 to 500 ms.
+// are those that the log names, and losses of 50 to 500 ms.
 #include <fmt/format.h>
 
 #include "gaze/events/absence.hpp"
@@ -24,7 +24,7 @@ std::string apply_pad_blinks(GazeLog& log, const GazeStep& step) {
       ++padded;
     }
   };
-  std::size_t done = 0;  // samples before it are looked at
+  std::size_t done = 0;  // all samples before it have been handled
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] != EyeMovement::blink) {
       continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A polynomial fitted by least squares to the samples of a window, taken at its middle (Savitzky & Golay 1964). The fit
-// is over the samples' own times, so that uneven steps do no harm. Near the ends of a run the first and last whole
-// window serves, taken off its middle: polynomials up to the order stay what they are everywhere.
+// A polynomial fitted by least squares to the samples of a window, evaluated at its middle (Savitzky & Golay 1964). The
+// fit uses the samples' own times, so that uneven steps do no harm. Near the ends of a run the first or last whole
+// window is used and evaluated away from its middle, so that polynomials up to the order stay unchanged everywhere.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostTerms = 6;
 
-// c0 of the polynomial of `terms` coefficients in (t - at) that fits best.
+// The coefficient c0 of the best fitting polynomial with `terms` coefficients in (t - at).
 Vec3d value_at(const std::vector<GazeSample>& samples, GazeKind kind, std::size_t first, std::size_t end,
                std::int64_t at_ns, double scale_ns, std::size_t terms) {
   std::array<double, 2 * kMostTerms> moments{};
@@ -32,7 +32,7 @@ Vec3d value_at(const std::vector<GazeSample>& samples, GazeKind kind, std::size_
       power *= tau;
     }
   }
-  // Cholesky-free elimination of the symmetric, positive system; small and well scaled.
+  // Plain elimination is enough for this symmetric, positive system, which is small and well scaled.
   std::array<std::array<double, kMostTerms>, kMostTerms> a{};
   for (std::size_t r = 0; r < terms; ++r) {
     for (std::size_t c = 0; c < terms; ++c) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What perfect prediction of saccades would give: while one lasts, the gaze is already where it lands. Only a program
-// that has the whole log can do so; results made with it say what could be won at most. Saccades are those of the
-// recording's default method (gaze_events.hpp).
+// Perfect prediction of saccades: while a saccade lasts, the gaze is already where it will land. Only a program that
+// has the whole log can do this; results made with it show the most that prediction could gain. Saccades are those of
+// the recording's default method (gaze_events.hpp).
 #include <fmt/format.h>
 
 #include "gaze/process/gaze_step.hpp"
@@ -16,7 +16,7 @@ std::string apply_snap_to_landing(GazeLog& log, const GazeStep& /*step*/) {
     const std::size_t landing = event.last + 1;
     if (event.movement != EyeMovement::saccade || landing >= log.samples.size() ||
         events.labels[landing] != EyeMovement::fixation || !is_usable(log.samples[landing].validity)) {
-      continue;  // where it lands was not seen
+      continue;  // where it lands is not known
     }
     ++snapped;
     for (std::size_t i = event.first; i <= event.last; ++i) {
