@@ -22,7 +22,7 @@ GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions);
 
 Vec3d from_axes(const Vec3d& v, GazeAxes axes);
 
-// Keeps the poses whose times increase, and makes them of unit length.
+// Sorts the head's poses by time, keeps the valid ones, one for each time, and makes their rotations of unit length.
 void finish_head(GazeLog& log);
 
 }  // namespace gazetrace
