@@ -26,13 +26,13 @@ struct LogWithoutTimesOfDay {
   // What was taken off every stamp; empty where the stamps are no times of day and stay as they are.
   std::optional<std::int64_t> taken_off_ns;
 };
-// The log with its stamps counted from the first sample where they are times of day, and without dates in its clock's
-// description and its warnings. Its messages and events keep their words.
+// The log with its stamps counted from the first sample where they are times of day, those of rows out of order, too,
+// and without dates in its clock's description and its warnings. Its messages and events keep their words.
 LogWithoutTimesOfDay without_times_of_day(GazeLog log);
 
 // For copies of a log, whose stamps stay, because other programs hold them against recordings of the same clock: takes
-// dates out of what is said of the clock, and leaves out the messages of the experiment, into which participants,
-// serial numbers and dates are written. Returns what to tell of that.
+// dates out of what is said of the clock and out of the warnings, and leaves out the messages of the experiment, into
+// which participants, serial numbers and dates are written. Returns what to tell of that.
 Warnings leave_out_identities(GazeLog& log);
 
 }  // namespace gazetrace

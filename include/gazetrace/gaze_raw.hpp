@@ -27,6 +27,12 @@ struct RawSample {
   std::int64_t row = 0;     // 1-based line (binary formats: record) in the source file
 };
 
+// From a row of the file on, the x and y of the display's top left corner.
+struct CornerFromRow {
+  std::size_t first_row = 0;  // an index into `RawGaze::rows`
+  Vec2d corner;
+};
+
 // Something that is wrong with the file itself, that was passed over, and that an option mends. `load_gaze_log` refuses
 // such a log.
 struct RawFault {
@@ -61,6 +67,12 @@ struct RawGaze {
 
   // What the format, the header, a sidecar or the named columns say of the numbers. `automatic`: nothing does.
   Conventions declared;
+  // Where the file moves the display's corner between its rows, in their order: before the first of these rows
+  // `Conventions::corner` holds. Empty: it holds for all rows.
+  std::vector<CornerFromRow> corners;
+  // Degrees that become directions grow up, whatever the origin is that the columns, or a guess, have for them. Else
+  // they grow down where they count from the top left.
+  bool directions_grow_up = false;
   std::string place;            // file:line where that stands, for messages
   std::string way_out;          // of gaze on a scene camera's picture: what could be read instead
   std::vector<GazeFact> notes;  // what else the file says, in words
@@ -78,7 +90,7 @@ Conventions conclude_conventions(const RawGaze& raw, const GazeReadOptions& opti
 
 // The same raw gaze and the same conventions give the same log, bit by bit. Error(input) with file:line for a log
 // without samples, with unordered or repeated stamps (unless they are to be sorted), and for positions whose unit needs
-// a display that is not known; Error(usage) for an eye that the log does not have.
+// a display that is not known; Error(usage) for an eye that the log does not have, and for an automatic unit.
 GazeLog interpret(const RawGaze& raw, const Conventions& conventions);
 
 }  // namespace gazetrace

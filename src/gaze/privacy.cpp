@@ -7,6 +7,19 @@
 #include <utility>
 
 namespace gazetrace {
+namespace {
+
+// What a log says in words of its clock, and of what had to be guessed or mended.
+void take_dates_out(GazeLog& log) {
+  log.clock = without_dates(log.clock);
+  for (Warnings* const warnings : {&log.warnings, &log.conventions.warnings}) {
+    for (std::string& warning : *warnings) {
+      warning = without_dates(warning);
+    }
+  }
+}
+
+}  // namespace
 
 std::string without_dates(const std::string& text) {
   // 2022/09/19, 19.09.2022, 2022-09-19T13:34:49.156, 13:34:49.156
@@ -44,15 +57,19 @@ std::int64_t count_from_first_sample(GazeLog& log) {
   for (GazeCalibration& calibration : log.calibrations) {
     shift(calibration.t_ns);
   }
+  if (log.order.first_backward_row != 0) {
+    shift(log.order.first_backward_ns);
+    shift(log.order.before_ns);
+  }
+  if (log.order.first_duplicate_row != 0) {
+    shift(log.order.first_duplicate_ns);
+  }
   return first;
 }
 
 LogWithoutTimesOfDay without_times_of_day(GazeLog log) {
   LogWithoutTimesOfDay result{std::move(log), std::nullopt};
-  result.log.clock = without_dates(result.log.clock);
-  for (std::string& warning : result.log.warnings) {
-    warning = without_dates(warning);
-  }
+  take_dates_out(result.log);
   if (is_wall_clock(result.log)) {
     result.taken_off_ns = count_from_first_sample(result.log);
   }
@@ -60,7 +77,7 @@ LogWithoutTimesOfDay without_times_of_day(GazeLog log) {
 }
 
 Warnings leave_out_identities(GazeLog& log) {
-  log.clock = without_dates(log.clock);
+  take_dates_out(log);
   const std::size_t left_out =
       std::erase_if(log.events, [](const GazeEvent& event) { return event.type == GazeEventType::message; });
   if (left_out == 0) {

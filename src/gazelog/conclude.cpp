@@ -26,6 +26,7 @@ void refuse_scene_camera(const RawGaze& raw, const GazeReadOptions& options) {
 std::vector<RawSample> rows_for_a_guess(const RawGaze& raw, const Conventions& c) {
   Conventions plain;
   plain.missing_value = c.missing_value;
+  plain.corner = c.corner;
   return measurable_rows(raw, plain);
 }
 
@@ -50,8 +51,10 @@ void conclude_unit(const RawGaze& raw, const GazeReadOptions& options, Conventio
 void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Conventions& c) {
   const PositionOrigin given = options.columns.origin;
   if (given != PositionOrigin::automatic && given != c.origin.value) {
-    c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; --gaze-origin {} was given and is used",
-                                     raw.place, raw.format, to_string(c.origin.value), to_string(given)));
+    if (c.origin.value != PositionOrigin::automatic) {
+      c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; --gaze-origin {} was given and is used",
+                                       raw.place, raw.format, to_string(c.origin.value), to_string(given)));
+    }
     c.origin = {given, Evidence::option, {}};
   }
   if (c.origin.value != PositionOrigin::automatic) {

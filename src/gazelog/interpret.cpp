@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInt16Min = -32768;
 constexpr double kLarge = 1e7;
+__extension__ using Int128 = __int128;
 
 // Size of the display in the unit of the positions.
 Vec2d display_size(PositionUnit unit, const DisplayGeometry& d, const std::string& place) {
@@ -56,12 +58,14 @@ bool is_mark(const Vec3d& at, const Conventions& c) {
 }
 
 // x and y of a row of positions, in `c.unit`; NaN where they are a mark.
-Vec2d position_of(const RawSample& row, const Conventions& c, bool& is_missing) {
-  is_missing = is_mark(row.at, c) || (c.zero_is_missing && row.at.x == 0 && row.at.y == 0);
+Vec2d position_of(const RawSample& row, const Vec2d& corner, const Conventions& c, bool& is_missing) {
+  Vec2d at{row.at.x - corner.x, row.at.y - corner.y};
+  // As the file has it, or counted from the corner of the display.
+  const bool is_zero = (row.at.x == 0 && row.at.y == 0) || (at.x == 0 && at.y == 0);
+  is_missing = is_mark(row.at, c) || (c.zero_is_missing && is_zero);
   if (is_missing) {
     return {kNan, kNan};
   }
-  Vec2d at{row.at.x - c.corner.x, row.at.y - c.corner.y};
   if (c.swap_xy) {
     std::swap(at.x, at.y);
   }
@@ -125,10 +129,10 @@ GazeSample sample_of(const RawSample& row) {
 void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
   const ToFractions to_fractions(c, raw.place);
   const bool marks_off_screen = !c.off_screen_is_told && raw.kind == GazeKind::screen;
-  for (const RawSample& row : raw.rows) {
-    GazeSample sample = sample_of(row);
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    GazeSample sample = sample_of(raw.rows[i]);
     bool is_missing = false;
-    const Vec2d at = to_fractions(position_of(row, c, is_missing));
+    const Vec2d at = to_fractions(position_of(raw.rows[i], corner_of(raw, c, i), c, is_missing));
     if (is_missing) {
       lose(sample.validity);
     }
@@ -145,11 +149,11 @@ void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log)
 // Degrees from straight ahead, azimuth and elevation taken as independent, as on a flat display: (tan az, tan el, -1).
 void interpret_degrees(const RawGaze& raw, const Conventions& c, GazeLog& log) {
   log.kind = GazeKind::direction;
-  const double up = c.origin.value == PositionOrigin::top_left ? -1.0 : 1.0;
-  for (const RawSample& row : raw.rows) {
-    GazeSample sample = sample_of(row);
+  const double up = c.origin.value == PositionOrigin::top_left && !raw.directions_grow_up ? -1.0 : 1.0;
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    GazeSample sample = sample_of(raw.rows[i]);
     bool is_missing = false;
-    const Vec2d at = position_of(row, c, is_missing);
+    const Vec2d at = position_of(raw.rows[i], corner_of(raw, c, i), c, is_missing);
     const bool known = std::abs(at.x) < 90 && std::abs(at.y) < 90;
     sample.direction = known ? normalize(Vec3d{std::tan(at.x * kRadPerDeg), up * std::tan(at.y * kRadPerDeg), -1})
                              : Vec3d{kNan, kNan, kNan};
@@ -255,18 +259,28 @@ void turn_witnesses(GazeLog& log, const Conventions& c, bool other_way_up) {
   }
 }
 
+// t times ten to the power of `exponent`, halves rounded away from zero; what int64 cannot hold becomes its end.
+std::int64_t times_power_of_ten(std::int64_t t, int exponent) {
+  constexpr int kMostDigits = 19;  // of an int64: by a higher power nothing fits, and nothing but zero is left
+  if (exponent < -kMostDigits) {
+    return 0;
+  }
+  Int128 power = 1;
+  for (int i = 0; i < std::min(std::abs(exponent), kMostDigits); ++i) {
+    power *= 10;
+  }
+  const Int128 value = t;
+  const Int128 result = exponent >= 0 ? value * power : (value + (value < 0 ? -power / 2 : power / 2)) / power;
+  return static_cast<std::int64_t>(
+      std::clamp<Int128>(result, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()));
+}
+
 // Stamps were read under the declared unit; under another one they are counted anew.
 void recount_times(GazeLog& log, int declared_exponent, int exponent) {
   if (declared_exponent == exponent) {
     return;
   }
-  const double factor = std::pow(10.0, exponent - declared_exponent);
-  const auto recount = [&](std::int64_t& t_ns) {
-    const double value = static_cast<double>(t_ns) * factor;
-    t_ns = !(std::abs(value) < 9.2e18)
-               ? (value < 0 ? std::numeric_limits<std::int64_t>::min() : std::numeric_limits<std::int64_t>::max())
-               : std::llround(value);
-  };
+  const auto recount = [&](std::int64_t& t_ns) { t_ns = times_power_of_ten(t_ns, exponent - declared_exponent); };
   for (GazeSample& sample : log.samples) {
     recount(sample.t_ns);
   }
@@ -291,11 +305,18 @@ bool is_missing_marker(double coordinate) {
   return coordinate == kInt16Min || std::abs(coordinate) >= kLarge;
 }
 
+Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t row) {
+  const auto behind = std::upper_bound(raw.corners.begin(), raw.corners.end(), row,
+                                       [](std::size_t r, const CornerFromRow& c) { return r < c.first_row; });
+  return behind == raw.corners.begin() ? conventions.corner : (behind - 1)->corner;
+}
+
 std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions) {
   std::vector<RawSample> rows = raw.rows;
-  for (RawSample& row : rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    RawSample& row = rows[i];
     bool is_missing = false;
-    const Vec2d at = position_of(row, conventions, is_missing);
+    const Vec2d at = position_of(row, corner_of(raw, conventions, i), conventions, is_missing);
     row.at = {at.x, at.y, 0};
     if (is_missing) {
       lose(row.validity);
@@ -305,6 +326,10 @@ std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& co
 }
 
 GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
+  if (conventions.form == PlaceForm::position && conventions.unit.value == PositionUnit::automatic) {
+    throw Error(ErrorKind::usage, raw.place, "the unit of the positions is not settled",
+                "conclude the conventions of the log before it is interpreted, or state their unit");
+  }
   GazeLog log;
   log.kind = raw.kind;
   log.source = raw.source;

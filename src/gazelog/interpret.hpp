@@ -11,6 +11,9 @@ namespace gazetrace {
 // -32768 and magnitudes from 1e7 on are not a coordinate in any unit.
 bool is_missing_marker(double coordinate);
 
+// The file's x and y of the display's top left corner for the row of that index.
+Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t row);
+
 // The rows of a log of positions, with x and y in `conventions.unit`, without the marks of missing values, counted from
 // the display's corner, and with the axes in their order. Guesses are made from these rows.
 std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions);

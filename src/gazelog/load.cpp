@@ -187,6 +187,16 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
   return raw;
 }
 
+// Files may be pipes, which can be read once: all that can go wrong with the text goes wrong in `act`.
+template <class Act>
+auto with_file(const std::string& path, const GazeReadOptions& options, const Act& act) {
+  if (!options.format.empty()) {
+    format_by_name(options.format);  // a name that is not known is refused before anything is read
+  }
+  GazeFile file = open_file(path);
+  return with_a_hint_of_the_format(options.format, file, [&] { return act(file); });
+}
+
 }  // namespace
 
 std::string_view to_string(GazeValidity validity) {
@@ -284,8 +294,7 @@ std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
 }
 
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options, Mending mending) {
-  GazeFile file = open_file(path);
-  return with_a_hint_of_the_format(options.format, file, [&] { return read_opened(file, path, options, mending); });
+  return with_file(path, options, [&](GazeFile& file) { return read_opened(file, path, options, mending); });
 }
 
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
@@ -293,24 +302,18 @@ RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options) {
 }
 
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
-  const RawGaze raw = read_raw_gaze(path, options);
-  const auto make_log = [&] {
+  return with_file(path, options, [&](GazeFile& file) {
+    const RawGaze raw = read_opened(file, path, options, Mending::none);
+    if (options.format.empty()) {
+      file = {};  // no hint can be needed: the text is given back before samples are made of the rows
+    }
     const Conventions conventions = conclude_conventions(raw, options);
     if (!raw.faults.empty()) {
       const RawFault& fault = raw.faults.front();
       throw Error(ErrorKind::input, fault.place, fault.problem, fault.remedy);
     }
     return interpret(raw, conventions);
-  };
-  if (options.format.empty()) {
-    return make_log();
-  }
-  try {
-    return make_log();
-  } catch (const Error&) {
-    const GazeFile file = open_file(path);
-    return with_a_hint_of_the_format(options.format, file, make_log);
-  }
+  });
 }
 
 }  // namespace gazetrace

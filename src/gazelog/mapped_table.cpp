@@ -266,6 +266,7 @@ void declare_positions(RawGaze& raw, const ColumnPlan& plan, const GazeFile& fil
                   style == ValidityStyle::names && plan.sources.front().validity.has_value(),
                   is_default ? Evidence::format : declared},
                  place);
+  raw.directions_grow_up = true;
 }
 
 }  // namespace

@@ -60,16 +60,19 @@ class XdfBytes {
   std::string bytes = "XDF:";
 };
 
-XdfBytes xdf_with_header() {
+XdfBytes xdf_with_header(const std::string& unit = "<unit>normalized</unit>") {
   XdfBytes xdf;
   xdf.chunk(1, "<?xml version=\"1.0\"?><info><version>1.0</version></info>");
-  xdf.chunk(2,
-            XdfBytes::pack(std::uint32_t{7}) +
-                "<?xml version=\"1.0\"?><info><name>t</name><type>Gaze</type><channel_count>3</channel_count>"
-                "<nominal_srate>100</nominal_srate><channel_format>float32</channel_format><desc><channels>"
-                "<channel><label>Screen_X</label><eye>both</eye><type>ScreenX</type><unit>normalized</unit></channel>"
-                "<channel><label>Screen_Y</label><eye>both</eye><type>ScreenY</type><unit>normalized</unit></channel>"
-                "<channel><label>Confidence</label></channel></channels></desc></info>");
+  xdf.chunk(2, XdfBytes::pack(std::uint32_t{7}) +
+                   "<?xml version=\"1.0\"?><info><name>t</name><type>Gaze</type><channel_count>3</channel_count>"
+                   "<nominal_srate>100</nominal_srate><channel_format>float32</channel_format><desc><channels>"
+                   "<channel><label>Screen_X</label><eye>both</eye><type>ScreenX</type>" +
+                   unit +
+                   "</channel>"
+                   "<channel><label>Screen_Y</label><eye>both</eye><type>ScreenY</type>" +
+                   unit +
+                   "</channel>"
+                   "<channel><label>Confidence</label></channel></channels></desc></info>");
   return xdf;
 }
 
@@ -122,6 +125,40 @@ TEST_F(GazeFormats, XdfOnTheRecordersClock) {
   EXPECT_NEAR(static_cast<double>(log.samples[39].t_ns), 1005'894'284'293.0, 1.5);
   EXPECT_EQ(log.samples[4].u, 0.25 + 4.0 / 256);
   EXPECT_EQ(log.samples[5].validity, GazeValidity::lost);
+}
+
+// Twenty samples a hundredth of a second apart, without a word on their unit; every tenth is (x, y) of `tenth`.
+std::string xdf_without_unit(const Vec2f& most, const Vec2f& tenth) {
+  XdfBytes xdf = xdf_with_header("");
+  std::string samples = XdfBytes::pack(std::uint32_t{7}) + XdfBytes::length(20);
+  for (int i = 0; i < 20; ++i) {
+    const Vec2f& at = i % 10 == 9 ? tenth : most;
+    samples += XdfBytes::pack(std::uint8_t{8}, 1000 + i * 0.01) + XdfBytes::pack(at.x, at.y, 1.0F);
+  }
+  xdf.chunk(3, samples);
+  return xdf.bytes;
+}
+
+TEST_F(GazeFormats, XdfWithoutAUnit) {
+  const GazeLog fractions = read("a.xdf", xdf_without_unit({0.25F, 0.5F}, {0.75F, 0.5F}));
+  EXPECT_EQ(fractions.samples[0].u, 0.25);
+  EXPECT_THAT(fractions.warnings.at(0), HasSubstr("that the positions are in fraction"));
+  EXPECT_EQ(fractions.conventions.origin.value, PositionOrigin::top_left);
+  // Marks of missing values count in the guess.
+  GazeReadOptions options;
+  options.display =
+      DisplayGeometry{.width_px = 1000, .height_px = 500, .width_cm = 50, .height_cm = 25, .distance_cm = 50};
+  const GazeLog marks = read("b.xdf", xdf_without_unit({0.25F, 0.5F}, {-32768, -32768}), options);
+  EXPECT_THAT(marks.warnings.at(0), HasSubstr("that the positions are in px"));
+  EXPECT_EQ(marks.samples[0].v, 0.5 / 500);
+  EXPECT_EQ(marks.samples[9].validity, GazeValidity::lost);
+  // Degrees count from the center, which somebody has to say.
+  const std::string degrees = xdf_without_unit({-10, 5}, {10, 0});
+  EXPECT_THAT(refusal("c.xdf", degrees, options), HasSubstr("positions in degrees cannot count from the top-left"));
+  options.columns.origin = PositionOrigin::center;
+  const GazeLog said = read("c.xdf", degrees, options);
+  EXPECT_THAT(said.warnings.at(1), HasSubstr("count from the top-left; --gaze-origin center was given and is used"));
+  EXPECT_NEAR(said.samples[9].u, 0.5 + std::tan(10 * kRadPerDeg), 1e-12);
 }
 
 // Expected times are pyxdf 1.17.5's of the same bytes, to 1 ns.

@@ -27,6 +27,63 @@ TEST_F(GazeFormats, EyeLinkAtTwoKilohertz) {
             100'500'000);
 }
 
+// The display of a block is the one that was stated before it: 612.5 - 100 = 512.5 and 434 - 50 = 384, of 1024 x 768.
+TEST_F(GazeFormats, EyeLinkWhoseCornerMovesBetweenBlocks) {
+  const auto block = [](const std::string& corners, int from, const std::string& rows) {
+    return "MSG\t" + std::to_string(from - 1) + " DISPLAY_COORDS " + corners + "\nSTART\t" + std::to_string(from) +
+           " \tLEFT\tSAMPLES\tEVENTS\nSAMPLES\tGAZE\tLEFT\tRATE\t1000.00\n" + rows + "END\t" +
+           std::to_string(from + 50) + " \tSAMPLES\tEVENTS\tRES\t 40\t 40\n";
+  };
+  const std::string text =
+      "** CONVERTED FROM a.edf using edfapi\n** EYELINK II 1\n" +
+      block("100 50 1123 817", 100, "100\t 612.5\t 434.0\t 900.0\t...\n101\t 99\t 50\t 900.0\t...\n") +
+      block("0 0 1023 767", 200, "200\t 612.5\t 434.0\t 900.0\t...\n201\t 0\t 0\t 900.0\t...\n");
+  const GazeLog log = read("a.asc", text);
+  ASSERT_EQ(log.samples.size(), 4U);
+  EXPECT_EQ(log.samples[0].u, 512.5 / 1024);
+  EXPECT_EQ(log.samples[0].v, 384.0 / 768);
+  EXPECT_EQ(log.samples[1].u, -1.0 / 1024);
+  EXPECT_EQ(log.samples[1].v, 0);
+  EXPECT_EQ(log.samples[1].validity, GazeValidity::off_screen);
+  EXPECT_EQ(log.samples[2].u, 612.5 / 1024);
+  EXPECT_EQ(log.samples[2].v, 434.0 / 768);
+  EXPECT_EQ(log.samples[3].validity, GazeValidity::ok);
+}
+
+// Rows that the user calls missing are lost, also where the tracker has flags of its own for them, and no part of the
+// means that are held against the tracker's: without them both agree exactly.
+TEST_F(GazeFormats, EyeLinkRowsThatAreCalledMissing) {
+  std::string rows;
+  for (int fixation = 0; fixation < 5; ++fixation) {
+    const int x = 400 + 100 * fixation;
+    const int y = fixation % 2 == 0 ? 300 : 600;
+    const int t = 100 + 10 * fixation;
+    rows += fmt::format("{}\t {}\t {}\t 900.0\t...\n{}\t {}\t {}\t 900.0\t...\n", t, x - 5, y, t + 1, x + 5, y);
+    rows += fixation == 3 ? fmt::format("{}\t 0\t 0\t 900.0\t.CR\n", t + 2) : "";
+    rows += fmt::format("EFIX L   {}\t{}\t3\t  {}.0\t  {}.0\t    900\n", t, t + 2, x, y);
+  }
+  const std::string text = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", rows);
+  GazeReadOptions options;
+  const GazeLog as_written = read("a.asc", text, options);
+  ASSERT_EQ(as_written.samples.size(), 11U);
+  EXPECT_EQ(as_written.samples[8].validity, GazeValidity::low_confidence);
+  ASSERT_EQ(as_written.witnesses.size(), 1U);
+  EXPECT_LT(as_written.witnesses[0].xx, 0.9);
+  const auto expect_lost = [&] {
+    const GazeLog log = read("a.asc", text, options);
+    EXPECT_EQ(log.samples[8].validity, GazeValidity::lost);
+    EXPECT_TRUE(std::isnan(log.samples[8].u));
+    ASSERT_EQ(log.witnesses.size(), 1U);
+    EXPECT_NEAR(log.witnesses[0].xx, 1, 1e-12);
+    EXPECT_NEAR(log.witnesses[0].yy, 1, 1e-12);
+  };
+  options.zero_is_missing = true;
+  expect_lost();
+  options.zero_is_missing = false;
+  options.missing_value = 0;
+  expect_lost();
+}
+
 TEST_F(GazeFormats, EyeLinkRemoteWithVelocityResolutionAndInput) {
   const GazeLog log =
       read("a.asc",

@@ -2,14 +2,24 @@
 // The steps between a file and a log: the numbers as they stand there, what is concluded of them, and the log of both.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "gazetrace/gaze_inspect.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_raw.hpp"
 #include "support/gaze_format_files.hpp"
+#include "support/gaze_log_text.hpp"
 
 namespace gazetrace {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 class GazeInterpret : public GazeFormats {
@@ -37,13 +47,66 @@ TEST_F(GazeInterpret, LoadingIsTheThreeStepsInTurn) {
   const RawGaze raw = read_raw(kPixels);
   const GazeLog steps = interpret(raw, conclude_conventions(raw, options_));
   const GazeLog loaded = load_gaze_log(files_.path("log.csv"), options_);
-  ASSERT_EQ(steps.samples.size(), loaded.samples.size());
-  for (std::size_t i = 0; i < steps.samples.size(); ++i) {
-    EXPECT_EQ(steps.samples[i].u, loaded.samples[i].u);
-    EXPECT_EQ(steps.samples[i].t_ns, loaded.samples[i].t_ns);
-  }
+  EXPECT_EQ(everything_of(steps), everything_of(loaded));
   EXPECT_EQ(steps.samples[0].u, 0.25);
   EXPECT_EQ(steps.samples[3].v, 0.75);
+  // Both eyes, events, a display, and warnings.
+  options_.columns.origin = PositionOrigin::bottom_left;
+  const std::string both = asc("SAMPLES\tGAZE\tLEFT\tRIGHT\tRATE\t1000.00",
+                               "100\t 480.0\t 270.0\t 900.0\t 500.0\t 280.0\t 800.0\t.....\n"
+                               "101\t 481.0\t 270.0\t 900.0\t .\t .\t 0.0\t...CR\n"
+                               "EBLINK R 101\t101\t1\n");
+  const RawGaze raw_both = read_raw_gaze(files_.write("both.asc", both), options_);
+  const std::string text = everything_of(interpret(raw_both, conclude_conventions(raw_both, options_)));
+  EXPECT_EQ(text, everything_of(load_gaze_log(files_.path("both.asc"), options_)));
+  EXPECT_THAT(text, HasSubstr("--gaze-origin bottom-left was given and is used"));
+  EXPECT_THAT(text, HasSubstr("'diameter'"));
+}
+
+// Every digit of a stamp is kept: 1700000000123456789 is no double.
+TEST_F(GazeInterpret, StampsUnderAnotherUnit) {
+  options_.columns.position_unit = PositionUnit::fraction;
+  const RawGaze raw = read_raw("time[ns],x,y\n-15,0.5,0.5\n-14,0.5,0.5\n1700000000123456789,0.5,0.5\n");
+  Conventions conventions = conclude_conventions(raw, options_);
+  const auto stamps = [&](int exponent) {
+    conventions.time_exponent.value = exponent;
+    std::vector<std::int64_t> all;
+    for (const GazeSample& sample : interpret(raw, conventions).samples) {
+      all.push_back(sample.t_ns);
+    }
+    return all;
+  };
+  EXPECT_THAT(stamps(0), ElementsAre(-15, -14, 1'700'000'000'123'456'789));
+  EXPECT_THAT(stamps(6), ElementsAre(-15'000'000, -14'000'000, std::numeric_limits<std::int64_t>::max()));
+  RawGaze in_tenths = raw;
+  in_tenths.declared.time_exponent.value = 1;
+  conventions = conclude_conventions(in_tenths, options_);
+  conventions.time_exponent.value = 0;
+  const GazeLog log = interpret(in_tenths, conventions);
+  EXPECT_EQ(log.samples[0].t_ns, -2);  // halves are rounded away from zero
+  EXPECT_EQ(log.samples[1].t_ns, -1);
+  EXPECT_EQ(log.samples[2].t_ns, 170'000'000'012'345'679);
+}
+
+TEST_F(GazeInterpret, AUnitThatIsLeftOpenIsRefused) {
+  const RawGaze raw = read_raw("time[ms],x,y\n0,4,2\n16,9,5\n");
+  try {
+    interpret(raw, raw.declared);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_THAT(error.what(), HasSubstr("the unit of the positions is not settled"));
+  }
+}
+
+// A pipe can be read once only, also where what was read turns out to be of no use.
+TEST_F(GazeInterpret, APipeIsOpenedOnce) {
+  const std::string pipe = files_.path("pipe.csv");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { std::ofstream(pipe) << kPixels; });
+  options_.format = "generic";
+  EXPECT_THAT(refusal_of(pipe, options_), HasSubstr("the size in pixels of the display of the recording is not known"));
+  writer.join();
 }
 
 TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
@@ -60,6 +123,20 @@ TEST_F(GazeInterpret, TheSameNumbersUnderOtherConventions) {
   EXPECT_EQ(interpret(raw, conventions).samples[0].u, 0.75);
   conventions.time_exponent.value = 3;
   EXPECT_EQ(interpret(raw, conventions).samples[3].t_ns, 50'000);
+}
+
+// Ten degrees are (0, sin 10, -cos 10): up in a table, whatever its columns count from, and down where the user says of
+// a log of another kind that it counts from the top left.
+TEST_F(GazeInterpret, WhichWayDegreesGrow) {
+  options_.frame = GazeFrame::head;
+  options_.columns.origin = PositionOrigin::top_left;
+  const double sine = std::sin(10 * kRadPerDeg);
+  const std::string table = files_.write("table.csv", "time[ms],x[deg],y[deg]\n0,0,10\n16,0,0\n33,0,10\n");
+  EXPECT_NEAR(load_gaze_log(table, options_).samples[0].direction.y, sine, 1e-15);
+  options_.columns.position_unit = PositionUnit::deg;
+  const std::string eyelink = asc("SAMPLES\tGAZE\tLEFT\tRATE\t1000.00", "100\t 0\t 10\t 900.0\t...\n");
+  const GazeLog log = load_gaze_log(files_.write("a.asc", eyelink), options_);
+  EXPECT_NEAR(log.samples[0].direction.y, -sine, 1e-15);
 }
 
 TEST_F(GazeInterpret, EvidenceSaysWhoSaidIt) {
@@ -83,6 +160,10 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   GazeLog log;
   log.clock = "computer, 2022/09/19 13:34:49.156";
   log.warnings = {"started 13:34:49"};
+  log.conventions.warnings = {"guessed on 19.09.2022"};
+  log.order.first_backward_row = 7;
+  log.order.first_backward_ns = 1'700'000'000'000'000'000;
+  log.order.before_ns = 1'700'000'000'016'000'000;
   for (const std::int64_t t_ns : {1'700'000'000'000'000'000, 1'700'000'000'016'000'000}) {
     log.samples.emplace_back().t_ns = t_ns;
   }
@@ -92,6 +173,27 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   EXPECT_EQ(hidden.log.samples[1].t_ns, 16'000'000);
   EXPECT_EQ(hidden.log.clock, "computer, (date)");
   EXPECT_EQ(hidden.log.warnings[0], "started (date)");
+  EXPECT_EQ(hidden.log.conventions.warnings[0], "guessed on (date)");
+  EXPECT_EQ(hidden.log.order.first_backward_ns, 0);
+  EXPECT_EQ(hidden.log.order.before_ns, 16'000'000);
+  EXPECT_EQ(hidden.log.order.first_duplicate_ns, 0);  // there is none
+  log.order.first_duplicate_row = 9;
+  log.order.first_duplicate_ns = 1'700'000'000'016'000'000;
+  EXPECT_EQ(without_times_of_day(log).log.order.first_duplicate_ns, 16'000'000);
+  // What is reported of the log shows them only where times of day may be seen.
+  const GazeInspection shown = inspect_gaze(log, {.display = {}, .keep_ids = true});
+  EXPECT_EQ(shown.order.before_ns, 1'700'000'000'016'000'000);
+  const GazeOrder reported = inspect_gaze(log, {}).order;
+  EXPECT_EQ(reported.first_backward_ns, 0);
+  EXPECT_EQ(reported.before_ns, 0);
+  EXPECT_EQ(reported.first_duplicate_ns, 0);
+  EXPECT_EQ(reported.first_backward_row, 7);
+  // A copy keeps its stamps, but says no dates.
+  GazeLog copy = log;
+  leave_out_identities(copy);
+  EXPECT_EQ(copy.clock, "computer, (date)");
+  EXPECT_EQ(copy.warnings[0], "started (date)");
+  EXPECT_EQ(copy.conventions.warnings[0], "guessed on (date)");
   log.samples.front().t_ns = 5;
   EXPECT_FALSE(without_times_of_day(log).taken_off_ns);
 }

@@ -86,7 +86,9 @@ TEST_F(Resolve, APlanMayHaveMoreFramesThanItsOutputHasNames) {
   set_option(job_, "output", folder_ / "one.exr");
   Job job = job_;
   job.settings.frames.reset();
-  EXPECT_GT(resolve(job, {.scope = ResolveScope::plan}).frames.size(), 1U);
+  ResolveOptions plan;
+  plan.scope = ResolveScope::plan;
+  EXPECT_GT(resolve(job, plan).frames.size(), 1U);
   EXPECT_THROW((void)resolve(job), Error);
 }
 

@@ -177,7 +177,7 @@ TEST(Results, TheKeysOfVersionOne) {
 }
 
 // The results that are written hold something under every key, so that a key that is not read is found by the texts.
-TEST(Results, EveryKeyOfTheFileIsRead) {
+TEST(Results, ResultsWithEverythingHoldSomethingUnderEveryKey) {
   const ordered_json json = ordered_json::parse(results_json(results_with_everything()));
   const ordered_json blank = ordered_json::parse(results_json(Results()));
   for (const auto& [key, value] : json.items()) {

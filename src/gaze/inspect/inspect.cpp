@@ -93,6 +93,7 @@ GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, con
   find_what_is_wrong(log, whole, options, report);
   if (report.is_wall_clock && !options.keep_ids) {
     report.timing.first_ns = report.timing.last_ns = 0;
+    report.order.first_backward_ns = report.order.before_ns = report.order.first_duplicate_ns = 0;
     for (GazeFinding& finding : report.findings) {
       static const std::regex kStamp(R"(\b\d{18,19}\b)");
       finding.what = std::regex_replace(finding.what, kStamp, "(stamp)");

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "gazelog/interpret.hpp"
 #include "gazelog/read_support.hpp"
 
 namespace gazetrace {
@@ -185,11 +186,20 @@ class AscReader {
       return;
     }
     coordinates_are_gaze_ = is_gaze;
-    left_px_ = corners[0];
-    top_px_ = corners[1];
+    move_corner({corners[0], corners[1]});
     raw_.recording_geometry = DisplayGeometry{.width_px = static_cast<int>(std::lround(width)),
                                               .height_px = static_cast<int>(std::lround(height))};
     coordinates_ = fmt::format("{} {} {} {} {}", word(2), word(3), word(4), word(5), word(6));
+  }
+
+  // A corner holds for the rows below the line that states it.
+  void move_corner(const Vec2d& corner) {
+    const std::size_t next_row = raw_.rows.size();
+    if (next_row == 0) {
+      raw_.declared.corner = corner;
+    } else if (!(corner == corner_of(raw_, raw_.declared, next_row))) {
+      raw_.corners.push_back({next_row, corner});
+    }
   }
 
   // !CAL VALIDATION HV13 LR LEFT  GOOD ERROR 0.35 avg. 0.48 max  OFFSET 0.18 deg. -6.4,-0.9 pix.
@@ -251,15 +261,17 @@ class AscReader {
         std::partition_point(first, raw_.rows.end(), [&](const RawSample& sample) { return sample.t_ns <= end_ns; });
     for (auto sample = behind; sample != first && (sample - 1)->t_ns >= begin_ns; --sample) {
       const RawSample& s = *(sample - 1);
-      if (s.eye == eye && !std::isnan(s.at.x)) {
-        x += s.at.x;
-        y += s.at.y;
+      if (s.eye == eye && s.validity != GazeValidity::lost) {
+        const Vec2d corner = corner_of(raw_, raw_.declared, static_cast<std::size_t>(sample - 1 - raw_.rows.begin()));
+        x += s.at.x - corner.x;
+        y += s.at.y - corner.y;
         ++count;
       }
     }
     compared = static_cast<std::size_t>(behind - raw_.rows.begin());
     if (count > 0) {
-      const Vec2d mean{number(column), number(column + 1)};
+      const Vec2d corner = corner_of(raw_, raw_.declared, raw_.rows.size());
+      const Vec2d mean{number(column) - corner.x, number(column + 1) - corner.y};
       fixations_.add(x / count, y / count, mean.x, mean.y);
       fixations_of_eye_[eye == Eye::right ? 1 : 0].add(x / count, y / count, mean.x, mean.y);
     }
@@ -398,7 +410,6 @@ class AscReader {
       fixations_of_eye_[1].finish(raw_, "the right eye's fixations' means (EFIX R)", Eye::right);
     }
     declare_places(raw_, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "SAMPLES GAZE"}, file_.path);
-    raw_.declared.corner = {left_px_, top_px_};
   }
 
   const GazeFile& file_;
@@ -412,7 +423,6 @@ class AscReader {
   std::int64_t block_start_ = 0;
   bool in_block_ = false;
   bool coordinates_are_gaze_ = false;
-  double left_px_ = 0, top_px_ = 0;
   std::string coordinates_;
   std::vector<Vec2d> resolutions_;
   std::array<std::vector<Span>, 2> blinks_, saccades_;

@@ -246,9 +246,14 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
     space.unit = *unit;
     space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
   } else if (!first.is_scene_camera) {
-    space.unit = PositionUnit::automatic;
-    space.origin = PositionOrigin::automatic;
+    // Of all that the stream holds: what stands for missing values counts.
+    std::string evidence;
+    space.unit = guess_position_unit(raw.rows, evidence);
     space.evidence = Evidence::statistics;
+    raw.directions_grow_up = options.columns.origin != PositionOrigin::top_left;  // that origin is a guess, too
+    raw.warnings.push_back(
+        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with --gaze-unit",
+                    file.path, evidence, to_string(space.unit)));
   }
   declare_places(raw, space, file.path);
   return raw;
