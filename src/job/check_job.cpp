@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can be said of a job's settings alone.
+// The checks that need only the settings of a job.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ void check_registry_name(const char* option, const char* what, const std::string
   }
 }
 
-// So many screens away the eye looks along the screen, and squares of pixels are still numbers.
+// This many screens away the eye looks along the screen, and squares of pixel coordinates are still finite.
 constexpr double kMaxGazeScreens = 1000;
 
 void check_ranges(const JobSettings& job, const JobSchema& schema) {
@@ -131,7 +131,7 @@ void check_job(const Job& whole, const JobSchema& schema) {
                 fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
                 "give fractions of the screen, 0..1 on it");
   }
-  gaze_steps_of(job.gaze_process);  // names and values of the steps
+  gaze_steps_of(job.gaze_process);  // checks names and values of the steps
   if (job.only_pixel && (job.only_pixel->x >= job.size.width || job.only_pixel->y >= job.size.height)) {
     throw Error(
         ErrorKind::usage, "`only-pixel`",
@@ -154,7 +154,7 @@ FilterChoice filter_of(const JobSettings& job) {
   if (job.filter != "auto") {
     return {job.filter, {}};
   }
-  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;  // without any all frames are uniform
+  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;  // without any gaze all frames are uniform
   return choose_filter({.foveated = has_gaze && job.foveation.falloff != "uniform",
                         .blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs(),
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames there are, where the job does not say it.
+// Chooses the frames where the job does not state them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-// More than four days at 24 a second: a wrong unit, not a wish.
+// More than four days at 24 frames a second, which is surely a wrong unit.
 constexpr double kMostFrames = 1e7;
 
 std::int64_t frames_until(double end_ns, const JobSettings& job) {
@@ -40,7 +40,7 @@ std::int64_t last_motion_ns(const Scene* scene) {
 
 }  // namespace
 
-// As long as the camera's path; without one, the gaze log; without one, the scene's bodies.
+// As long as the camera's path or, without one, the gaze log or, without one, the motion of the scene.
 std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
                                         std::int64_t taken_off_ns, const Scene* scene, std::string& decision) {
   if (job.frames) {
@@ -70,7 +70,7 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   return frames;
 }
 
-// Up to `count` frames before the first, as far apart as the first two; none before frame 1.
+// Up to `count` frames before the first one, as far apart as the first two frames are; there are none before frame 1.
 std::vector<std::int32_t> frames_before(const std::vector<std::int32_t>& frames, std::int32_t count) {
   const std::int64_t step = frames.size() > 1 ? std::int64_t{frames[1]} - frames[0] : 1;
   std::vector<std::int32_t> before;

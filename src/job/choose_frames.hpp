@@ -9,11 +9,11 @@
 
 namespace gazetrace {
 
-// Those that the job names; else as many as the camera's path is long; without one, the gaze log; without one, the
-// scene's animation. `decision` says which.
+// The frames that the job names; otherwise as many as the camera's path lasts or, without one, the gaze log or, without
+// one, the scene's animation. `decision` receives in words which of these it was.
 std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
                                         std::int64_t taken_off_ns, const Scene* scene, std::string& decision);
-// Up to `count` frames before the first, as far apart as the first two; none before frame 1.
+// Up to `count` frames before the first one, as far apart as the first two frames are; there are none before frame 1.
 std::vector<std::int32_t> frames_before(const std::vector<std::int32_t>& frames, std::int32_t count);
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The digests that say whether a finished frame is still the one that is wanted.
+// The digests that tell whether a finished frame is still the one that is wanted.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -37,7 +37,7 @@ std::vector<std::string> existing(const std::vector<std::string>& paths) {
 
 std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   const fs::path camera_path(job.camera_path);
-  // COLMAP's lenses stand beside its pictures.
+  // COLMAP keeps the lenses in a file beside that of its pictures.
   const fs::path lenses = camera_path.filename() == "images.txt" ? camera_path.parent_path() / "cameras.txt" : "";
   std::vector<std::string> files = existing({job.environment, job.camera_path, lenses.string(), job.gaze.path,
                                              job.gaze.columns_file, job.screen.name, job.recording_screen,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How gaze enters a run: its clock, what is done to it, and how far it is to be trusted.
+// How gaze enters a run: its clock, its processing, and its uncertainty.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace gazetrace {
 namespace {
 
-// A gaze that never moves is a log of one sample that never grows old.
+// Gaze that never moves is a log of one sample that never becomes too old.
 GazeLog fixed_gaze(const Vec2d& at) {
   GazeLog log;
   log.source = "`gaze-at`";
@@ -25,7 +25,7 @@ GazeLog fixed_gaze(const Vec2d& at) {
   return log;
 }
 
-// `screen` is where the pictures are watched; of the recording it says only what nobody else does.
+// `screen` is the screen on which the pictures are viewed; it describes the recording only where nothing else does.
 GazeLog read_job_gaze(const JobSettings& job) {
   GazeReadOptions options = read_options(job.gaze, {});
   options.fallback_display = screen_geometry(job.screen);
@@ -51,7 +51,7 @@ ClockAnchor parse_anchor(const std::string& text, const GazeLog& log, std::int64
     parse_value(place, kAnchor, time);
     time.ns -= taken_off_ns;
   } catch (const Error&) {
-    time.ns = time_of_message(log, place);  // not a time: a message
+    time.ns = time_of_message(log, place);  // it is not a time but a message
   }
   return {time.ns, video.ns};
 }

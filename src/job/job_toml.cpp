@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings files: TOML, a key for each option.
+// Settings files, which are TOML with a key for each option.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 namespace gazetrace {
 namespace {
 
-// A number stands bare only when reading it gives the very same text back.
+// A number is written without quotes only when reading it gives exactly the same text back.
 bool is_bare_number(const std::string& text) {
   std::int64_t whole = 0;
   const char* end = text.data() + text.size();

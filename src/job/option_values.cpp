@@ -77,7 +77,7 @@ constexpr std::string_view kDuration = "a duration with its unit, such as 50ms, 
 struct DurationUnit {
   std::string_view name;
   std::int64_t ns;
-  int digits;  // decimals that still are whole nanoseconds
+  int digits;  // the number of decimals that are still whole nanoseconds
 };
 constexpr std::array<DurationUnit, 4> kDurationUnits = {
     {{"ns", 1, 0}, {"us", 1'000, 3}, {"ms", 1'000'000, 6}, {"s", 1'000'000'000, 9}}};
@@ -111,7 +111,7 @@ void parse_value(std::string_view text, const std::string& /*place*/, std::strin
   value = text;
 }
 
-// Exact: digits are counted, never multiplied in floating point.
+// The conversion is exact: digits are counted, and never multiplied in floating point.
 void parse_value(std::string_view text, const std::string& place, DurationNs& value) {
   std::string_view rest = text;
   const bool negative = rest.starts_with('-');
@@ -295,7 +295,7 @@ std::string format_value(std::uint64_t value) {
   return std::to_string(value);
 }
 
-// The shortest text that reads back as the same number; minus zero is zero.
+// The shortest text that reads back as the same number; minus zero is written as zero.
 std::string format_value(double value) {
   return fmt::format("{}", value == 0 ? 0.0 : value);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that a run writes: their names, their folders, and what must not be in their place.
+// The files that a run writes: their names, their folders, and what must not be in their place.
 #include "job/outputs.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Stops at the first folder above that exists, so that a mistyped place is said before a scene is loaded.
+// Stops at the first parent folder that exists, so that a mistyped path is reported before a scene is loaded.
 void check_folder(const fs::path& folder) {
   fs::path existing = fs::absolute(folder).lexically_normal();
   std::error_code ignored;
@@ -37,7 +37,7 @@ void check_folder(const fs::path& folder) {
   }
 }
 
-// Permissions lie on network and read-only file systems: only a file that was made proves anything.
+// Permissions are not reliable on network and read-only file systems: only creating a file proves anything.
 void prove_writable(const fs::path& folder) {
   std::error_code code;
   fs::create_directories(folder, code);
@@ -66,12 +66,12 @@ std::set<fs::path> output_folders(const OutputSettings& output, const std::strin
   return folders;
 }
 
-// No output may take the place of another or of what is read.
+// No output may replace another output or a file that is read.
 void check_names_differ(const PipelineSettings& settings, std::vector<std::string> outputs,
                         std::map<std::string, std::string> inputs) {
   if (!settings.checkpoint.empty()) {
     outputs.push_back(settings.checkpoint);
-    inputs.erase(settings.resume_from);  // one file may hand the history on from run to run
+    inputs.erase(settings.resume_from);  // the same file may carry the history from run to run
   }
   std::error_code ignored;
   for (const std::string& output : outputs) {
@@ -93,7 +93,7 @@ void check_names_differ(const PipelineSettings& settings, std::vector<std::strin
   }
 }
 
-// What --resume will go on from, read before anything is rendered or written.
+// The history from which a resumed run continues, read before anything is rendered or written.
 void check_earlier_run(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
   const std::vector<std::string> files = output_files(settings, frames);
   if (files.size() < 2) {

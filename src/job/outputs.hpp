@@ -5,10 +5,10 @@
 
 namespace gazetrace {
 
-// Error(usage) where two patterns are of one kind.
+// Throws Error(usage) where two patterns are of the same kind.
 OutputSettings output_settings(const JobSettings& job);
-// Error(input) where files cannot be made in the folders of the outputs or of the checkpoint, as far as that can be
-// told without making any.
+// Throws Error(input) where files cannot be created in the folders of the outputs or of the checkpoint, as far as that
+// can be told without creating any.
 void check_output_folders(const OutputSettings& output, const std::string& checkpoint);
 
 }  // namespace gazetrace

@@ -9,7 +9,7 @@ namespace gazetrace {
 
 // The option that names a preset.
 inline constexpr const char* kPresetOption = "preset";
-// Error(usage, place, ...) with the known names.
+// Throws Error(usage, place, ...) with the known names.
 const Preset& preset_by_name(const std::string& name, const std::string& place);
 
 }  // namespace gazetrace

@@ -19,8 +19,7 @@ void append(Warnings& to, const Warnings& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-// With the size that the log's pixels per degree mean where it does not state one: only its ratio to the distance
-// matters.
+// Where the log states no size, the size follows from its pixels per degree, as only the ratio to the distance matters.
 DisplayGeometry recording_display(const GazeLog& log, Decisions& decisions) {
   const DisplayGeometry& stated = *log.recording_geometry;
   const bool no_angles = !(stated.width_cm > 0) || !(stated.height_cm > 0) || !(stated.distance_cm > 0);
@@ -73,7 +72,8 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   return settings;
 }
 
-// Of first hits, which filters with guides see through a pinhole in the middle of the frame's time.
+// The blur that is lost because filters with guides take the first hits through a pinhole in the middle of the frame's
+// time, in words; empty where there is none.
 std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
   if (!Reconstruction({job.filter, {}}).needs().guides) {
     return {};
@@ -158,7 +158,7 @@ void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scen
   }
 }
 
-// What is quick to read comes first: a wrong name must not cost the loading of a scene.
+// Inputs that are quick to read come first, so that a wrong name is found before a scene is loaded.
 void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
   std::int64_t taken_off_ns = 0;
@@ -166,7 +166,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   {
     Decisions unused;
-    plan_settings(job, {1}, log, taken_off_ns, unused);  // only to fail early
+    plan_settings(job, {1}, log, taken_off_ns, unused);  // only to find errors early
   }
   CameraPath camera;
   std::string decision;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run says of itself.
+// The record of a run, in which it describes itself.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = resolved.warnings;
   for (const auto& [name, text] : resolved.decisions) {
-    std::string& fact = record.facts[name];  // several of one name: an option may be replaced twice
+    std::string& fact = record.facts[name];  // there may be several of one name, as an option may be replaced twice
     fact += (fact.empty() ? "" : "; ") + text;
   }
   record.facts["working_space"] = "linear Rec.709, D65";

@@ -27,8 +27,8 @@ Projection perspective(const JobSettings& job) {
   return projection;
 }
 
-// A view of everything, for files without a camera: from in front, a little to the right and above, with the bounding
-// sphere inside the narrower angle.
+// A view of the whole scene for files without a camera: from the front, a little to the right and above, with the
+// bounding sphere inside the narrower angle of view.
 CameraPath framing_camera(const JobSettings& job, const Scene& scene) {
   const SceneSummary summary = summarize(scene);
   Vec3d center{0, 0, 0};
@@ -84,7 +84,7 @@ CameraPath still_camera(const JobSettings& job) {
   return static_camera(look_at(*job.eye, *job.target, job.up), perspective(job));
 }
 
-// The head's poses on the clock of the video, as the gaze is mapped.
+// The head's poses on the clock of the video, mapped in the same way as the gaze.
 CameraPath head_camera(const GazeLog& log, std::int64_t taken_off_ns, const JobSettings& job) {
   if (log.head.empty()) {
     throw Error(ErrorKind::input, log.source, "has no head pose for `camera-from-gaze`",
@@ -164,7 +164,7 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
   return camera;
 }
 
-// Beyond these a float's squares end; no camera comes near.
+// Beyond these limits the squares of floats overflow; no camera comes near them.
 constexpr double kLeastFocus_m = 1e-6, kMostFocus_m = 1e9;
 constexpr double kMostRadius_m = 1e6;
 

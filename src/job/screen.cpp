@@ -78,7 +78,7 @@ std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen) {
   const auto negative = [](double value) { return !(value >= 0) || !std::isfinite(value); };
   if (geometry.width_px < 0 || geometry.height_px < 0 || negative(geometry.width_cm) || negative(geometry.height_cm) ||
       negative(geometry.distance_cm)) {
-    check_display(geometry);  // says which
+    check_display(geometry);  // the error names the value
   }
   return geometry;
 }

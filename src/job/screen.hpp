@@ -7,7 +7,7 @@
 
 namespace gazetrace {
 
-// By its name, or from a .json file. Error(usage, `option`, ...) with the known names.
+// A screen by its name, or from a .json file. Throws Error(usage, `option`, ...) with the known names.
 DisplayGeometry known_screen(const std::string& name, const std::string& option);
 
 }  // namespace gazetrace

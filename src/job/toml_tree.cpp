@@ -37,7 +37,7 @@ TomlNode tree_of(const toml::node& node) {
     std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [position, key] : order) {
       tree.members.emplace_back(key, tree_of(*table->get(key)));
-      // A value's own line may be that of a bracket below: people look for the key.
+      // The line of a value may be that of a bracket further down, but people look for the key.
       tree.members.back().second.line = static_cast<int>(position.line);
     }
   } else {

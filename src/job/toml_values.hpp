@@ -9,7 +9,8 @@
 
 namespace gazetrace {
 
-// The values that an option takes from a node, as the command line would carry them. Error(input) with path:line.
+// The values that an option takes from a node, as they would be written on the command line. Throws Error(input) with
+// path:line.
 std::vector<std::string> toml_values(const TomlNode& node, const Option& option, const std::string& path);
 
 }  // namespace gazetrace

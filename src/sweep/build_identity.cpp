@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which build runs, and on what: measurements of two never mix.
+// Identifies the build that runs and the machine, so that measurements of different ones are never mixed.
 #include <fmt/format.h>
 
 #include <cstdint>

@@ -123,7 +123,7 @@ std::vector<ResultControl> controls_of(const std::vector<std::string>& metrics, 
     if (right == nullptr) {
       continue;
     }
-    // Metrics that do not take the gaze know of it only through the weighting of their map.
+    // Metrics that do not take the gaze depend on it only through the weighting of their map.
     for (const std::string& metric : metrics) {
       const std::string part = needs_gaze(metric) ? "whole" : "weighted";
       if (!parts_by_run(*right, metric, part).empty()) {
@@ -234,7 +234,8 @@ void complete_row(const std::vector<ResultReference>& references, MeasuredRow& r
   }
 }
 
-// What the references say of each gaze, where they agree: clips of another length or picture look at other things.
+// What the references state about each gaze, where they agree, because clips of another length or size show other
+// things.
 template <class T>
 std::map<std::string, T> agreed(const std::vector<ResultReference>& references, T ResultFloor::*member) {
   std::map<std::string, T> values;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the results state of a sweep that is known before anything is measured.
+// What the results state about a sweep before anything is measured.
 #include <algorithm>
 #include <cmath>
 

@@ -42,7 +42,7 @@ class PlanMaker {
   }
 
  private:
-  // Content digests, read once for each set of files.
+  // Digests of contents, computed once for each set of files.
   const std::map<std::string, std::string>& files_of(const Job& job) {
     std::string names;
     for (const OptionOf<JobSettings>& option : schema_.options()) {
@@ -77,7 +77,7 @@ class PlanMaker {
       }
     }
     const Job job = shared_job(request_, scene);
-    // One scene stays as it is; several take turns in memory.
+    // A single scene stays in memory; several take turns.
     const std::shared_ptr<const Scene> kept = file_.scenes.size() == 1 ? loaded : nullptr;
     jobs_.plan.scenes.push_back({scene.name, options_text(scene.options),
                                  [job, kept, place = scene.place, schema = schema_] {
@@ -90,7 +90,7 @@ class PlanMaker {
     ResolveOptions options;
     options.scope = ResolveScope::plan;
     options.loaded = scene;
-    options.tell_idle = false;  // a setting that does nothing in some rows is what a grid is for
+    options.tell_idle = false;  // in a grid it is normal that a setting has no effect in some rows
     return options;
   }
 
@@ -180,7 +180,7 @@ class PlanMaker {
     return reference.key;
   }
 
-  // Everything that fails without loading anything large.
+  // Every check that needs nothing large to be loaded.
   void check(const Job& job) const {
     check_job(job, schema_);
     const ColorPipeline color(job.settings.color);
@@ -190,7 +190,7 @@ class PlanMaker {
     }
   }
 
-  // Once for all tests that look the same to the metrics.
+  // Checked once for all tests that look the same to the metrics.
   void check_metrics(const SweepTest& test) {
     const FrameRequest& first = test.plan.frames.front();
     const std::string what = fmt::format("{}x{} {} {}/{} {} {} {}", first.width_px, first.height_px, first.view.step_x,
@@ -208,7 +208,7 @@ class PlanMaker {
     }
   }
 
-  // Every setting that reaches into pixels and has one value in all rows.
+  // Every setting that affects pixels and has one value in all rows.
   void state_settings() {
     std::vector<Job> jobs;
     for (const SweepFileScene& scene : file_.scenes) {
@@ -242,7 +242,7 @@ class PlanMaker {
   const SweepRequest request_;
   const SweepFile& file_;
   const JobSchema& schema_;
-  const Scene empty_;  // where the camera stands elsewhere
+  const Scene empty_;  // used where the camera does not come from the scene
   LoadedSweepPlan jobs_;
   std::vector<SweepTestPlace> tests_;
   std::set<std::string> checked_;  // by check_metrics()

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kScale = "resolution-scale";
 constexpr std::array kTables{"title",   "common",    "scene",     "gaze",   "grid",
                              "setting", "published", "reference", "measure"};
-// What decides the scene and its tree, and may therefore not differ between two rows of one.
+// Options that decide the scene and its tree, and may therefore not differ between two rows of one scene.
 bool is_of_scene(const Option& option) {
   return option.touches.has(Touch::scene) || option.touches.has(Touch::light) || option.touches.has(Touch::speed);
 }
@@ -53,7 +53,7 @@ class RenderOptions {
     }
     return *option;
   }
-  // The names of those that say whose gaze it is.
+  // The names of those that decide whose gaze is used.
   [[nodiscard]] std::vector<std::string> gaze_sources() const {
     std::vector<std::string> names;
     for (const Option* option : options_) {
@@ -87,7 +87,7 @@ class RenderOptions {
   OptionList options_;
 };
 
-// Keys of one's own, as options: [measure], [reference].
+// The tables with keys of their own, as options: [measure], [reference].
 template <class S>
 void read_table(const OptionSchema<S>& schema, const TomlNode& node, S& settings, SweepFile& file) {
   const std::string& path = file.path;
@@ -366,7 +366,7 @@ void read_measure(const TomlNode& root, SweepFile& file) {
   schema.repeated("--quality", &M::quality, "METRIC=VALUE", "");
   schema.value("--pictures", &M::pictures, "png|exr|both|none", "");
   schema.value("--efficiency-spp", &M::efficiency_spp, "SPP", "");
-  // What scores depend on, under the same names as in `compare`.
+  // The settings on which scores depend, under the same names as in `compare`.
   schema.include(metric_schema(), &M::compare);
   if (const TomlNode* node = root.find("measure")) {
     read_table(schema, checked_kind(*node, TomlNode::Kind::table, file.path, "'measure' is a table; write [measure]"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sweep's plan as it is written: TOML, every value checked by itself, every message with its line.
+// A sweep's plan as it is written in TOML, with every value checked on its own and the line in every message.
 #pragma once
 
 #include <algorithm>
@@ -35,13 +35,13 @@ struct SweepFileScene {
 using SweepFileGaze = SweepFileScene;
 
 struct SweepFileSetting {
-  std::string label;  // of a [[setting]]; empty: made of the options
+  std::string label;  // of a [[setting]]; if empty, it is made from the options
   std::string place;
   std::vector<Assignment> options;
   double resolution_scale = 1;
 };
 
-// What was printed elsewhere for a scene and a setting of this label.
+// Values that were published elsewhere for a scene and a setting of this label.
 struct SweepFilePublished {
   std::string scene, setting, source, place;
   double speed_up = 0;
@@ -79,7 +79,7 @@ struct SweepFile {
   std::vector<std::string> varied;            // options that settings give
 };
 
-// Error(input) in one line for whatever can be known from the file alone.
+// Throws Error(input) with a message of one line for every error that can be found from the file alone.
 SweepFile read_sweep_file(const std::string& path, const JobSchema& schema);
 // The line of a key of [reference] or [measure]; where it is not given, the file.
 std::string place_of(const SweepFile& file, const std::string& key);

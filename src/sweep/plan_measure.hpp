@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// [measure] of a sweep's plan as the library takes it.
+// [measure] of a sweep's plan, as settings of the library.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace gazetrace {
 
-// `threads`, where given, are those of the metrics; else all. Error(input) with the plan's line for rates and levels of
-// quality that are none.
+// `threads`, where given, is the number of threads for the metrics; otherwise they use all. Throws Error(input) with
+// the plan's line for texts that are not rates or levels of quality.
 SweepMeasure sweep_measure(const SweepFile& file, const std::optional<int>& threads);
 
 }  // namespace gazetrace

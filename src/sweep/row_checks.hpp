@@ -19,7 +19,7 @@ struct SweepTestPlace {
 
 // `tests` are those before it.
 void check_new(const std::vector<SweepTest>& tests, const SweepTest& test, const std::string& place);
-// Rows of one gaze share their reference's floor, and what they show: it must be one gaze.
+// Rows of one gaze share the floor of their reference and what they show, so it must be the same gaze.
 void check_gaze(const std::vector<SweepTest>& tests, const SweepTest& test, const std::string& place);
 // No row shares a seed with a reference.
 void check_seeds(const SweepFile& file, const std::vector<SweepTestPlace>& tests);

@@ -12,13 +12,13 @@
 namespace gazetrace {
 namespace {
 
-// What a uniform frame does not see. A preset, which is not only of sampling, is among it: its effective values are
-// taken one by one.
+// Options that do not affect a uniform frame. The preset is among them, although it sets more than the sampling,
+// because its effective values are taken one by one.
 bool is_of_sampling_or_gaze(const Option& option) {
   return option.touches.has(Touch::sampling) || option.touches.has(Touch::gaze);
 }
 
-// What becomes of samples after they were traced. A reference has neither a filter nor a history.
+// Options about samples after they were traced. A reference has neither a filter nor a history.
 bool is_after_sampling(const Option& option) {
   return option.touches.has(Touch::filter) || option.touches.has(Touch::history);
 }
@@ -33,7 +33,7 @@ void assign(Job& job, const std::vector<Assignment>& options, const JobSchema& s
   }
 }
 
-// The effective values of another job, those of its presets among them.
+// The effective values of another job, including those that its presets set.
 void take(Job& job, const Job& other, const JobSchema& schema, const std::function<bool(const Option&)>& wanted) {
   for (const OptionOf<JobSettings>& option : schema.options()) {
     const std::vector<std::string> values = option.values(other.settings);
@@ -78,7 +78,7 @@ Job test_job(const SweepRequest& request, const SweepFileScene& scene, const Swe
     assign(job, gaze->options, request.schema);
   }
   assign(job, setting.options, request.schema);
-  // Its baselines go through the same one.
+  // The row's baselines use the same one.
   job.settings.filter = filter_of(job.settings).name;
   return job;
 }

@@ -12,7 +12,7 @@
 
 namespace gazetrace {
 
-// A plan, and what the command line puts in place of its frames and threads.
+// A plan, and the frames and threads that the command line gives instead of the plan's.
 struct SweepRequest {
   const SweepFile& file;
   const std::optional<FrameList>& frames;
@@ -20,27 +20,29 @@ struct SweepRequest {
   const JobSchema& schema;
 };
 
-// [common] and a scene's own.
+// The options of [common] and of the scene.
 Job shared_job(const SweepRequest& request, const SweepFileScene& scene);
-// These with the gaze (nullptr: none) and the setting of a row.
+// These options with those of the gaze (nullptr: none) and of the setting of a row.
 Job test_job(const SweepRequest& request, const SweepFileScene& scene, const SweepFileGaze* gaze,
              const SweepFileSetting& setting);
-// What of the row decides what is pictured, what is true by [common] and the scene, then [reference]. Error(input)
-// where rows differ in what the reference would have to know.
+// The job of a reference: the options of the row that decide what is rendered, then those of [common] and the scene
+// that decide accuracy, then [reference]. Throws Error(input) where rows differ in a value that the reference would
+// need.
 Job reference_job(const SweepRequest& request, const SweepFileScene& scene, const Job& test,
                   const SweepFileSetting& setting);
-// What uniform frames beside a test share with it.
+// The job of the uniform frames that a test is compared to: the options of the test that matter to them.
 Job uniform_job(const Job& test, const JobSchema& schema);
-// Whether the gaze means anything to them, too.
+// Whether the gaze matters to them as well.
 bool uses_gaze_otherwise(const Job& test);
-// Whether an option means anything to them.
+// Whether an option matters to them.
 bool uniform_sees(const Option& option, const Job& test);
 
-// The plan's line that an error's text is about: of the option that it names, or of the file; else `otherwise`.
+// The plan's line that the text of an error is about: that of the option that it names, or of the file; otherwise
+// `otherwise`.
 std::string place_of_error(const Job& job, const JobSchema& schema, const std::string& otherwise,
                            const std::string& text);
 
-// Runs a check, and puts the plan's line before what it complains of.
+// Runs a check, and puts the plan's line before the message of its error.
 template <class Check>
 auto with_place(const Job& job, const JobSchema& schema, const std::string& otherwise, const Check& check) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured, before anything is concluded from it: single renderings of the frames of a row.
+// Measurements before anything is concluded from them: single renderings of the frames of a row.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When options of a job do nothing beside the others.
+// When options of a job have no effect because of the others.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ JobIdleRule with_hard_regions();
 JobIdleRule without_regions();
 JobIdleRule without_reproject();
 JobIdleRule without_automatic_exposure();
-// With any fall-off but these.
+// With any fall-off except these.
 JobIdleRule with_other_falloffs(const std::vector<std::string>& models);
 
 }  // namespace gazetrace

@@ -7,11 +7,11 @@
 namespace gazetrace {
 namespace {
 
-// What the presets set.
+// What the options touch that presets set.
 constexpr Touches kOfPresets =
     Touch::sampling | Touch::tracing | Touch::filter | Touch::history | Touch::color | Touch::output;
 
-// set_option() sets what the preset is made of.
+// set_option() also sets the options that the preset consists of.
 void add_preset_option(JobSchema& schema) {
   schema.group("Presets");
   OptionOf<JobSettings>& option = schema.value(

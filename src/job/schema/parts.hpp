@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts that the schema of a job is put together from, in this order.
+// The parts of the schema of a job, in this order.
 #pragma once
 
 #include "gazetrace/job_schema.hpp"
 
 namespace gazetrace {
 
-// Beyond this no picture has a meaning, and 2^stops times a bright light still fits a float.
+// Larger values make no sense for any picture; within this range 2^stops times a bright light still fits into a float.
 inline constexpr double kMaxStops = 64;
 
 void add_scene_options(JobSchema& schema);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where samples go. The ranges that are told here are checked by check_foveation(), whose messages say more.
+// How samples are distributed. The ranges that are stated here are checked by check_foveation(), whose messages say
+// more.
 #include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 

@@ -22,7 +22,7 @@ OptionSchema<ScreenSettings> screen_schema() {
   return schema;
 }
 
-// Only what is rendered is watched on another screen than it was recorded on.
+// Only rendered pictures are viewed on another screen than the one of the recording.
 void add_screen_options(JobSchema& schema) {
   schema.include(screen_schema(), &JobSettings::screen);
   schema.value("--recording-screen", &JobSettings::recording_screen, "NAME|FILE", Touch::screen,
