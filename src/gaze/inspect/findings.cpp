@@ -9,6 +9,7 @@
 
 #include "gaze/inspect/inspect.hpp"
 #include "gaze/inspect/recurring_place.hpp"
+#include "gazelog/interpret.hpp"
 #include "gazelog/row_order.hpp"
 #include "gazelog/units.hpp"
 
@@ -219,9 +220,11 @@ class Doctor {
       return;
     }
     const std::vector<RawSample>& rows = whole_->raw.rows;
-    const auto zeros = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const RawSample& row) {
-      return row.at.x == 0 && row.at.y == 0 && is_usable(row.validity);
-    }));
+    std::size_t zeros = 0;  // counted from the corner of the display
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Vec2d corner = corner_of(whole_->raw, whole_->conventions, i);
+      zeros += rows[i].at.x == corner.x && rows[i].at.y == corner.y && is_usable(rows[i].validity) ? 1 : 0;
+    }
     if (whole_->conventions.missing_value == 0 || zeros < 3 || zeros * 2000 < log_.order.rows) {
       return;
     }
