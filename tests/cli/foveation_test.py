@@ -171,12 +171,13 @@ class Foveation(harness.CliTest):
             frame = json.loads(self.run_ok("plan", "--counts", "--preset", name, *paper).stdout)[0]
             self.assertEqual([region["pixels"] for region in frame["regions"]], pixels)
 
-    def test_presets_lie_below_other_options(self):
+    def test_presets_lie_below_the_options_of_their_own_place(self):
         self.assertEqual(config(self.print_config("--preset", "paper", "--bounces", "7"))["bounces"], "7")
         self.assertEqual(config(self.print_config("--bounces", "7", "--preset", "paper"))["bounces"], "7")
         self.write("job.toml", "bounces = 5\nangle-reading = \"eccentricity\"\n")
         both = config(self.print_config("--config", "job.toml", "--preset", "paper"))
-        self.assertEqual((both["bounces"], both["angle-reading"], both["region-shape"]), ("5", "eccentricity", "disc"))
+        # A preset on the command line stands above the file.
+        self.assertEqual((both["bounces"], both["angle-reading"], both["region-shape"]), ("3", "full-angle", "disc"))
         self.write("job.toml", "bounces = 5\npreset = \"paper\"\nview = \"raw\"\n")
         within = config(self.print_config("--config", "job.toml"))
         self.assertEqual((within["bounces"], within["view"], within["region-shape"]), ("5", "raw", "disc"))
