@@ -73,7 +73,7 @@ RawGaze read_by_ticks(const GazeFile& file, const GazeReadOptions& options, cons
   RawGaze raw = read_gaze_gazepoint(file, by_ticks);
   raw.faults.push_back({"media", place_of(file, line), fmt::format("{} starts anew with another medium", time),
                         fmt::format("use `gaze-time-column` {}, which goes on, or export one medium a file", ticks),
-                        "--gaze-time-column " + ticks,
+                        "`gaze-time-column` " + ticks,
                         fmt::format("line {}: TIME starts anew with another medium", line)});
   return raw;
 }
