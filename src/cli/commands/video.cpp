@@ -36,10 +36,6 @@ struct VideoArguments {
   bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
 };
 
-std::string path_of(const std::string& pattern, std::int32_t frame) {
-  return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
-}
-
 DisplayImage display_image_of(const ImageRgb& code) {
   DisplayImage image{code.width_px, code.height_px, 8, {}};
   image.bytes.reserve(3 * code.pixels.size());
@@ -119,12 +115,12 @@ class FrameMaker {
 
   DisplayImage make(std::int32_t frame) {
     const CompareJob& job = arguments_.job;
-    const std::string left_path = path_of(job.reference, frame);
+    const std::string left_path = picture_path(job.reference, frame);
     const ComparedPicture left = read_compared_picture(left_path);
     is_linear_ = left.is_linear;
     const double ev = left.facts.exposure_ev.value_or(0);
     DisplayImage image = shown(left, ev);
-    const std::string right_path = path_of(job.test, frame);
+    const std::string right_path = picture_path(job.test, frame);
     const FrameFacts right_facts = job.test == job.reference ? left.facts : read_frame_facts(right_path);
     const ComparedGaze gaze =
         compared_gaze(job, inputs_, left.facts, right_facts, frame, image.width_px, image.height_px);
