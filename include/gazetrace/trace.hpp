@@ -147,7 +147,7 @@ class PassThrough {
  public:
   // `samples`: so many are enough; 0: no number is. Empty: as many as the fovea has, where that is at least 8 and below
   // 16, and otherwise 16, since below 8 samples smoothing is worth more than a fovea as it was traced. In a uniform
-  // frame there is no fovea, and no number is enough: whoever asks for such a filter there wants all of it smoothed.
+  // frame there is no fovea, and no number is enough: a filter that was asked for there smooths all of the frame.
   // Keeps a reference to `map`, which must outlive it.
   PassThrough(const SamplingMap& map, const std::optional<std::uint64_t>& samples);
 

@@ -50,9 +50,6 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   settings.width_px = job.size.width;
   settings.height_px = job.size.height;
   settings.display = screen_geometry(job.screen);
-  if (settings.display && (log == nullptr || log->kind == GazeKind::direction)) {
-    check_display(*settings.display);
-  }
   if (settings.display) {
     decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
   } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {
@@ -62,14 +59,17 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   if (job.frame_rect) {
     settings.frame_rect = *job.frame_rect;
   }
-  if (log != nullptr && log->kind == GazeKind::screen) {
-    if (!settings.display) {
-      throw Error(ErrorKind::input, log->source, "gaze on a screen needs the screen's size and distance",
-                  "give `screen` NAME, or `screen-px`, `screen-cm` and `screen-distance-cm`");
-    }
+  return settings;
+}
+
+void check_screen(const PlanSettings& settings, const GazeLog* log) {
+  if (log != nullptr && log->kind == GazeKind::screen && !settings.display) {
+    throw Error(ErrorKind::input, log->source, "gaze on a screen needs the screen's size and distance",
+                "give `screen` NAME, or `screen-px`, `screen-cm` and `screen-distance-cm`");
+  }
+  if (settings.display) {
     check_display(*settings.display);
   }
-  return settings;
 }
 
 // The blur that is lost because filters with guides take the first hits through a pinhole in the middle of the frame's
@@ -158,6 +158,17 @@ void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scen
   }
 }
 
+void load_viewing(ResolvedJob& resolved) {
+  const JobSettings& job = resolved.job.settings;
+  std::int64_t taken_off_ns = 0;
+  resolved.gaze = gaze_of_job(job, taken_off_ns);
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  resolved.plan_settings = plan_settings(job, {}, log, taken_off_ns, resolved.decisions);
+  if (log != nullptr) {
+    append(resolved.warnings, log->warnings);
+  }
+}
+
 // Inputs that are quick to read come first, so that a wrong name is found before a scene is loaded.
 void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
@@ -166,7 +177,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   {
     Decisions unused;
-    plan_settings(job, {1}, log, taken_off_ns, unused);  // only to find errors early
+    check_screen(plan_settings(job, {1}, log, taken_off_ns, unused), log);
   }
   CameraPath camera;
   std::string decision;
@@ -203,10 +214,14 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
 }  // namespace
 
 ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
-  check_job(job);
   ResolvedJob resolved;
   resolved.job = job;
   resolved.decisions = job.decisions;
+  if (options.scope == ResolveScope::viewing) {
+    load_viewing(resolved);
+    return resolved;
+  }
+  check_job(job);
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(job);
   }

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/contrast_prepass.hpp"
+#include "pipeline/first_look.hpp"
 #include "pipeline/frame_stages.hpp"
 
 namespace gazetrace {
@@ -28,8 +28,8 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   ImageGray contrast;
   if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
     foveation = less_first_look(foveation, request);
-    ContrastPrepass first_look = timed(times.trace_ms, [&] {
-      return trace_contrast(scene, request, settings_.trace, settings_.foveation.contrast_strength);
+    FirstLook first_look = timed(times.trace_ms, [&] {
+      return trace_first_look(scene, request, settings_.trace, settings_.foveation.contrast_strength);
     });
     contrast = std::move(first_look.multiplier);
     context.contrast = &contrast;

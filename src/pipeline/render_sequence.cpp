@@ -3,7 +3,6 @@
 // history and the timing log outlive a frame.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "core/stopwatch.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "output/aovs.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
@@ -20,13 +20,9 @@
 namespace gazetrace {
 namespace {
 
-// What a sequence traces in every frame: what its files show of first hits is summed over the samples.
 FrameSettings frame_settings(const PipelineSettings& settings) {
   FrameSettings frame = settings;
-  const std::vector<std::string>& aovs = settings.output.exr.aovs;
-  frame.trace.guides = frame.trace.guides || std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
-                         return aov == "albedo" || aov == "normal" || aov == "depth";
-                       });
+  frame.trace.guides = frame.trace.guides || show_first_hits(settings.output.exr.aovs);
   return frame;
 }
 

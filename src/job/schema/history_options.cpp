@@ -53,7 +53,7 @@ void add_checkpoint_options(JobSchema& schema) {
       .need(kNeedsHistory);
   schema
       .value("--checkpoint-every", &JobSettings::checkpoint_every, "N", Touch::history | Touch::output,
-             "Also after every N frames; 0: only at the end")
+             "Writes the checkpoint after every N frames as well; 0: only at the end")
       .decides_nothing()
       .with(Trait::one_run)
       .within(0, 1e9)
