@@ -197,7 +197,12 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
   const PassThrough pass_through(map, context.settings.pass_through_samples);
   SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
                        context.camera->is_perspective());
+  HalfSums halves;
   const auto finish_site = [&](std::size_t site) {
+    if (!out.half_difference.empty()) {
+      out.half_difference[site] = halves.difference();
+    }
+    halves = {};
     if (surfaces) {
       const std::size_t before = tile.surfaces.size();
       sorter.finish_site(tile.surfaces);
@@ -205,7 +210,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
     }
   };
   SampleList list(map, range.first, range.count, context.settings.seed, frame,
-                  context.settings.samples.value_or(kAllSamples));
+                  context.settings.samples.value_or(kAllSamples), context.settings.halves);
   SiteSum sum;
   std::uint32_t current = range.first;
   std::vector<std::uint64_t> in_region(map.regions.size());
@@ -228,7 +233,9 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
       ++in_region[map.sites[current].region];
       ++sum.light.count;
       const auto report = [&](const char* what) {
-        keep_first(tile.bad, {frame, work.samples.pixel_x[i], work.samples.pixel_y[i], work.samples.sample[i], what});
+        const std::uint32_t sample =
+            context.settings.halves ? 2 * work.samples.sample[i] + work.samples.half[i] : work.samples.sample[i];
+        keep_first(tile.bad, {frame, work.samples.pixel_x[i], work.samples.pixel_y[i], sample, what});
       };
       if (work.radiance.rejected[i] != 0) {
         report("rejected ray");
@@ -245,8 +252,9 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         continue;
       }
       add_light({r, g, b}, sum.light);
+      halves.add(luminance(to_double(Vec3f{r, g, b})), work.samples.half[i]);
       if (surfaces && pass_through.needs_filtering(current)) {
-        sorter.add(work.surfaces, i, {r, g, b});
+        sorter.add(work.surfaces, i, {r, g, b}, work.samples.half[i]);
       }
     }
     const std::int64_t spent_ns = thread_cpu_ns() - begin_ns;
@@ -300,6 +308,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   out.sum_square_luminance.resize(map.sites.size());
   out.count.resize(map.sites.size());
   out.guides.resize(settings.guides ? map.sites.size() : 0);
+  out.half_difference.resize(settings.halves ? map.sites.size() : 0);
   out.unrounded.sites.resize(settings.samples ? map.sites.size() : 0);
   out.unrounded.guides.resize(settings.samples && settings.guides ? map.sites.size() : 0);
   out.first_surface.resize(settings.surfaces ? map.sites.size() + 1 : 0);

@@ -35,10 +35,11 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
     const int count = std::min(left, kBatchSize - filled);
     const auto size = static_cast<float>(block);
     const auto pixel_count = static_cast<float>(site.pixels);
+    const bool odd_site = ((site.block_x ^ site.block_y) & 1) != 0;
     for (int k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(filled + k);
-      const std::uint32_t index = sample_ + static_cast<std::uint32_t>(k);
-      const Vec2f u = sample_2d(key, index, dimension_of(PathDimension::pixel));
+      const SamplePoint point = sample_point(key, sample_ + static_cast<std::uint32_t>(k), halves_, odd_site);
+      const Vec2f u = sample_2d(point.key, point.index, dimension_of(PathDimension::pixel));
       int px = first_x;
       int py = first_y;
       Vec2f inside = u;
@@ -60,8 +61,9 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
       }
       const Vec2f offset = filter.offset(inside.x, inside.y);
       out.site[i] = site_;
-      out.sample[i] = index;
-      out.key[i] = key;
+      out.sample[i] = point.index;
+      out.half[i] = point.half;
+      out.key[i] = point.key;
       out.x[i] = (static_cast<float>(px) - half_width) + (0.5F + offset.x);
       out.y[i] = (static_cast<float>(py) - half_height) + (0.5F + offset.y);
       out.pixel_x[i] = static_cast<std::uint16_t>(px);

@@ -21,14 +21,15 @@ inline constexpr SampleRange kAllSamples{0, std::numeric_limits<std::uint32_t>::
 class SampleList {
  public:
   SampleList(const SamplingMap& map, std::uint32_t first_site, std::uint32_t site_count, std::uint64_t seed,
-             std::int32_t frame, const SampleRange& range = kAllSamples)
+             std::int32_t frame, const SampleRange& range = kAllSamples, bool halves = false)
       : map_(&map),
         site_(first_site),
         end_(first_site + site_count),
         range_(range),
         sample_(range.begin),
         seed_(seed),
-        frame_(frame) {}
+        frame_(frame),
+        halves_(halves) {}
 
   // Fills in up to kBatchSize samples and returns their number, which is 0 at the end.
   int next(const PixelFilterSampler& filter, SampleBatch& out);
@@ -40,6 +41,7 @@ class SampleList {
   std::uint32_t sample_;
   std::uint64_t seed_;
   std::int32_t frame_;
+  bool halves_;  // as TraceSettings::halves
   std::vector<PixelIndex> pixels_;
 };
 

@@ -43,6 +43,25 @@ constexpr SampleKey make_sample_key(std::uint64_t seed, std::int32_t frame, std:
   return {hash_combine(hash_combine(seed, static_cast<std::uint32_t>(frame)), place)};
 }
 
+// The point of a site's sequence that a sample takes.
+struct SamplePoint {
+  SampleKey key;
+  std::uint32_t index = 0;
+  std::uint8_t half = 0;
+};
+
+// Which point sample number `sample` of a site takes. With `halves`, its samples belong to two sequences in turn. Which
+// of them comes first alternates between neighbouring sites (`odd_site`), so that sites of a single sample are in both.
+[[gnu::always_inline]] inline constexpr SamplePoint sample_point(SampleKey key, std::uint32_t sample, bool halves,
+                                                                 bool odd_site) noexcept {
+  if (!halves) {
+    return {key, sample, 0};
+  }
+  const std::uint32_t half = (sample + (odd_site ? 1U : 0U)) & 1U;
+  return {half == 0 ? key : SampleKey{hash64(key.value + 0x68616c66ULL)}, sample >> 1U,
+          static_cast<std::uint8_t>(half)};
+}
+
 namespace sampler_detail {
 
 [[gnu::always_inline]] inline constexpr std::uint32_t reverse_bits(std::uint32_t x) noexcept {
