@@ -93,7 +93,7 @@ struct ErrorComponent {
 // the finite difference (curve(Y + s) - curve(Y - s)) / 2 of their own standard deviation s, so that what a view or a
 // display clips is not counted as visible.
 struct DisplayCurve {
-  // cd/m2 at the scene luminances 0, and 2^(kLeastLog2 + i / kStepsPerStop); linear in log2 between them, constant
+  // cd/m2 at the scene luminances 0, and 2^(kLeastLog2 + i / kStepsPerStop); linear between them, constant
   // above.
   static constexpr int kLeastLog2 = -20, kMostLog2 = 20, kStepsPerStop = 8;
   double black_cd_m2 = 0;
