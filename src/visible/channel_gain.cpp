@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include "gazetrace/error.hpp"
@@ -45,8 +46,12 @@ ChannelGains channel_gains(double frames_per_second, double correlation, std::op
     return {};
   }
   const TemporalFilters filters = temporal_filters(frames_per_second);
+  const auto standing = [](const std::vector<double>& weights) {
+    return std::fabs(std::accumulate(weights.begin(), weights.end(), 0.0));
+  };
   return {{variance_gain(filters.sustained, correlation, frames_before),
-           variance_gain(filters.transient, correlation, frames_before)}};
+           variance_gain(filters.transient, correlation, frames_before)},
+          {standing(filters.sustained), standing(filters.transient)}};
 }
 
 }  // namespace gazetrace
