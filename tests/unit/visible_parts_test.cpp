@@ -2,16 +2,19 @@
 // The parts of the model of visible error against sums over random numbers.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
 #include "gazetrace/color.hpp"
 #include "metrics/band_sensitivity.hpp"
 #include "metrics/masking.hpp"
+#include "metrics/pyramid.hpp"
 #include "metrics/temporal_channels.hpp"
 #include "support/visible_noise.hpp"
 #include "visible/channel_gain.hpp"
 #include "visible/masked_moment.hpp"
+#include "visible/pyramid_rows.hpp"
 #include "visible/variance_pyramid.hpp"
 
 namespace gazetrace {
@@ -88,6 +91,48 @@ TEST(ChannelGain, IsTheVarianceOfFilteredNoise) {
   EXPECT_NEAR(first.variance[0], 1, 1e-12);
   EXPECT_NEAR(first.variance[1], first.standing[1] * first.standing[1], 1e-12);
   EXPECT_EQ(channel_gains(24, 0, 100).variance, channel_gains(24, 0, {}).variance);
+}
+
+// At every place of small pictures, with borders of both parities: the variance over many pictures of noise.
+TEST(PyramidRows, AreTheVariancesOfNoise) {
+  for (const auto& [width, height, block] : {std::array{22, 13, 1}, std::array{13, 22, 1}, std::array{16, 16, 3}}) {
+    constexpr std::size_t kLevels = 3;
+    constexpr int kRuns = 4000;
+    const std::vector<LevelRows> columns = pyramid_rows(height, kLevels);
+    std::vector<bool> odd_rule;
+    for (const LevelRows& level : columns) {
+      odd_rule.push_back(level.level.size() % 2 == 1);
+    }
+    const std::vector<LevelRows> rows = pyramid_rows(width, kLevels, odd_rule);
+    std::array<ImageGray, kLevels> sum;
+    for (int run = 0; run < kRuns; ++run) {
+      ImageGray level = block_noise(width, height, block, static_cast<unsigned>(run));
+      for (ImageGray& of_level : sum) {
+        const ImageGray coarse = halved(level, true, 1);
+        const ImageGray blurred = doubled(coarse, level.width_px, level.height_px, 1);
+        if (of_level.empty()) {
+          of_level = ImageGray(level.width_px, level.height_px);
+        }
+        for (std::size_t i = 0; i < level.pixels.size(); ++i) {
+          const float value = level.pixels[i] - blurred.pixels[i];
+          of_level.pixels[i] += value * value / kRuns;
+        }
+        level = coarse;
+      }
+    }
+    for (std::size_t b = 0; b < kLevels; ++b) {
+      const NoiseSums along_x = noise_sums(rows[b], block);
+      const NoiseSums along_y = noise_sums(columns[b], block);
+      for (int y = 0; y < sum[b].height_px; ++y) {
+        for (int x = 0; x < sum[b].width_px; ++x) {
+          const float expected =
+              noise_variance(along_x, along_y, static_cast<std::size_t>(x), static_cast<std::size_t>(y));
+          EXPECT_NEAR(sum[b](x, y), expected, 5 * std::sqrt(2.0 / kRuns) * static_cast<double>(expected))
+              << width << "x" << height << " band " << b << " at " << x << "," << y;
+        }
+      }
+    }
+  }
 }
 
 TEST(VariancePyramid, KeepsAnEvenVariance) {
