@@ -39,7 +39,7 @@ class ModelGain(harness.CliTest):
 
     def test_text(self):
         text = self.run_ok("plan", "--model-gain", *NARROW, "--gaze-at", "0.5,0.5").stdout
-        for words in ("white noise", "below 4 cycles a degree", "below 2 cycles a degree", "times", "left out", "no bound"):
+        for words in ("white noise", "below 4 cycles a degree", "below 2 cycles a degree", "times", "Content and masking are left out"):
             self.assertIn(words, text)
 
     def test_refusals(self):
