@@ -61,8 +61,8 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
   };
   const auto reprojected = [&](Frame frame) {
     return timed(times.temporal_ms, [&] {
-      const EarlierView earlier{history.camera.value_or(request.camera),
-                                history.camera ? history.t_video_ns : request.t_video_ns};
+      const OtherView earlier{history.camera.value_or(request.camera),
+                              history.camera ? history.t_video_ns : request.t_video_ns};
       const SurfaceMotion motion =
           scene.surface_motion(request.camera, traced.map.width_px, traced.map.height_px, earlier);
       return reproject(std::move(frame), traced.map, motion, request, settings_.accumulate, history, settings_.threads);
