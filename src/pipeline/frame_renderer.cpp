@@ -45,6 +45,10 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
 }
 
 RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history) const {
+  if (settings_.accumulate.mode == AccumulateMode::two_sided) {
+    throw Error(ErrorKind::usage, "`accumulate`", "two-sided reads the frames around a frame, and here is one alone",
+                "reconstruct them and join them, or call render_sequence()");
+  }
   TracedFrame traced = trace(request);
   const PosedScene scene = tracer_->at(shutter_of(request));
   RenderedFrame rendered;
@@ -88,7 +92,7 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
 }
 
 bool uses_history(const FrameSettings& settings) {
-  return settings.accumulate.mode != AccumulateMode::off ||
+  return settings.accumulate.mode == AccumulateMode::running || settings.accumulate.mode == AccumulateMode::reproject ||
          (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
 }
 
