@@ -152,7 +152,7 @@ TEST(ZOrder, EveryAlignedSquareIsANet) {
 // that share the sequence.
 TEST(ZOrder, EverySampleIsUniformAndDimensionsAreIndependent) {
   const SamplingMap map = foveated_map(64, 48, false);
-  constexpr std::uint32_t kSeeds = 20000;
+  constexpr std::uint32_t kSeeds = 50000;
   constexpr std::size_t kSide = 12;
   struct Pair {
     const char* name;
@@ -198,9 +198,9 @@ TEST(ZOrder, EverySampleIsUniformAndDimensionsAreIndependent) {
   };
   std::vector<std::vector<double>> observed(pairs.size(), std::vector<double>(kSide * kSide));
   const ZOrder z_order(map);
+  const PixelFilterSampler filter(PixelFilter::box);
+  const auto batch = std::make_unique<SampleBatch>();
   const auto points_of = [&](std::uint64_t seed, std::int32_t frame) {
-    const PixelFilterSampler filter(PixelFilter::box);
-    static const auto batch = std::make_unique<SampleBatch>();
     std::vector<SamplePoint> points;
     for (const std::size_t site : {map.sites.size() / 2, map.sites.size() / 3, map.sites.size() - 2}) {
       SampleList list(map, static_cast<std::uint32_t>(site), 1, seed, frame, kAllSamples, &z_order);
