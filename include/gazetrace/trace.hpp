@@ -21,6 +21,12 @@ namespace gazetrace {
 
 enum class LightSampling : std::uint8_t { mis, light_only, bsdf_only };
 enum class PixelFilter : std::uint8_t { box, blackman_harris };
+// How the random numbers of pixels are related. scrambled: every site has a sequence of its own (Owen-scrambled Sobol
+// points), so that errors are white noise over the picture. z_order: all sites share one such sequence for every pair
+// of dimensions, along a Z-curve over the picture (Ahmed and Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo
+// Sampling Error via Hierarchical Ordering of Pixels", ACM TOG 39(6), 2020), so that errors of neighbours cancel in
+// their mean. In both every sample by itself is uniform, and frames are independent of each other.
+enum class SamplePattern : std::uint8_t { scrambled, z_order };
 enum class BvhQuality : std::uint8_t { high, medium };
 
 struct TraceSettings {
@@ -45,6 +51,7 @@ struct TraceSettings {
   // root mean square difference of 12 % per pixel).
   double pixel_cone = 0;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
+  SamplePattern sample_pattern = SamplePattern::scrambled;
   std::uint64_t seed = 0;
   bool guides = false;    // collect albedo, normal and depth of the first hit
   bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
@@ -226,9 +233,9 @@ class PosedScene {
   // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
 
-  // What the pixels' centres see in this pose, and where that was in an earlier view.
+  // What the pixels' centres see in this pose, and where that is in another view, earlier or later.
   [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
-                                             const EarlierView& earlier) const;
+                                             const OtherView& other) const;
 
  private:
   friend class PathTracer;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -120,6 +121,29 @@ std::string sampling_without_gaze(const FoveationSettings& foveation) {
   return rate + " everywhere: there is no gaze";
 }
 
+// For accumulation from both sides: the frames that those of the plan read beside each other. They exist from frame 1
+// on and as far as the camera's path goes, whether or not they are rendered, so that a frame is the same in every run.
+void add_frames_around(const JobSettings& job, const CameraPath& camera, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  PlanSettings settings = resolved.plan_settings;
+  const std::set<std::int32_t> asked(settings.frames.begin(), settings.frames.end());
+  std::set<std::int32_t> all = asked;
+  for (const std::int32_t frame : asked) {
+    for (std::int32_t apart = -job.accumulate.window; apart <= job.accumulate.window; ++apart) {
+      if (has_frame(camera, settings, std::int64_t{frame} + apart)) {
+        all.insert(frame + apart);
+      }
+    }
+  }
+  settings.frames.assign(all.begin(), all.end());
+  // What the eye did since the frame before is asked of neighbours, so that it is that of this plan.
+  FramePlan whole = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
+  resolved.plan.frames.clear();
+  for (FrameRequest& request : whole.frames) {
+    (asked.contains(request.frame) ? resolved.plan.frames : resolved.plan.around).push_back(std::move(request));
+  }
+}
+
 void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
@@ -138,6 +162,9 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   }
   resolved.plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
   resolved.plan_settings = std::move(settings);
+  if (job.accumulate.mode == AccumulateMode::two_sided && job.accumulate.window > 0) {
+    add_frames_around(job, camera, resolved);
+  }
   if (resolved.plan.ages && !job.gaze_at) {
     resolved.decisions.emplace_back("effective gaze age", gaze_ages_text(*resolved.plan.ages));
   }

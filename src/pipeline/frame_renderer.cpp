@@ -45,6 +45,10 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
 }
 
 RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history) const {
+  if (settings_.accumulate.mode == AccumulateMode::two_sided) {
+    throw Error(ErrorKind::usage, "`accumulate`", "two-sided reads the frames around a frame, and here is one alone",
+                "reconstruct them and join them, or call render_sequence()");
+  }
   TracedFrame traced = trace(request);
   const PosedScene scene = tracer_->at(shutter_of(request));
   RenderedFrame rendered;
@@ -61,8 +65,8 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
   };
   const auto reprojected = [&](Frame frame) {
     return timed(times.temporal_ms, [&] {
-      const EarlierView earlier{history.camera.value_or(request.camera),
-                                history.camera ? history.t_video_ns : request.t_video_ns};
+      const OtherView earlier{history.camera.value_or(request.camera),
+                              history.camera ? history.t_video_ns : request.t_video_ns};
       const SurfaceMotion motion =
           scene.surface_motion(request.camera, traced.map.width_px, traced.map.height_px, earlier);
       return reproject(std::move(frame), traced.map, motion, request, settings_.accumulate, history, settings_.threads);
@@ -88,7 +92,7 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
 }
 
 bool uses_history(const FrameSettings& settings) {
-  return settings.accumulate.mode != AccumulateMode::off ||
+  return settings.accumulate.mode == AccumulateMode::running || settings.accumulate.mode == AccumulateMode::reproject ||
          (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
 }
 

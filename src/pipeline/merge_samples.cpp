@@ -111,6 +111,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (uses_history(settings)) {
     return "frames depend on those before them";
   }
+  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+    return "frames read those around them";
+  }
   const Reconstruction reconstruction(settings.reconstruction);
   if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind
     return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);

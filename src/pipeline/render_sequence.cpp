@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "gazetrace/pipeline.hpp"
 #include "output/aovs.hpp"
 #include "pipeline/frame_files.hpp"
+#include "pipeline/frame_window.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
@@ -100,6 +102,10 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                TemporalHistory history) {
   SequenceResult result;
   const FrameRenderer renderer(tracer, frame_settings(settings));
+  std::optional<FrameWindow> window;
+  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+    window.emplace(renderer, plan);
+  }
   const std::string timing_path = timing_path_of(plan, settings);
   const ResumePlan resume = plan_resume(plan, settings, timing_path, history);
   result.warnings = resume.warnings;
@@ -120,7 +126,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       if (settings.trace.samples) {
         render_samples(renderer, request, settings, row, result);
       } else {
-        const RenderedFrame rendered = renderer.render(request, history);
+        const RenderedFrame rendered = window ? window->render(request, history) : renderer.render(request, history);
         count_samples(rendered.samples, rendered.first_look, rendered.map, row, result);
         add_times(rendered.times, row);
         row.exposure_ev = rendered.exposure_ev;

@@ -18,6 +18,7 @@
 #include "trace/samples/sample_list.hpp"
 #include "trace/samples/sample_sums.hpp"
 #include "trace/samples/surface_sums.hpp"
+#include "trace/samples/z_order.hpp"
 
 namespace gazetrace {
 namespace {
@@ -185,13 +186,13 @@ struct PathTracer::Impl {
   bool is_posed = true;
 
   void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
-                   const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
-                   SparseFrame& out) const;
+                   const SamplingMap& map, const ZOrder* z_order, const SiteRange& range, Workspace& work,
+                   TileResult& tile, SparseFrame& out) const;
 };
 
 void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter,
-                                   std::int32_t frame, const SamplingMap& map, const SiteRange& range, Workspace& work,
-                                   TileResult& tile, SparseFrame& out) const {
+                                   std::int32_t frame, const SamplingMap& map, const ZOrder* z_order,
+                                   const SiteRange& range, Workspace& work, TileResult& tile, SparseFrame& out) const {
   tile.regions.resize(map.regions.size());
   const bool surfaces = context.settings.surfaces;
   const PassThrough pass_through(map, context.settings.pass_through_samples);
@@ -210,7 +211,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
     }
   };
   SampleList list(map, range.first, range.count, context.settings.seed, frame,
-                  context.settings.samples.value_or(kAllSamples), context.settings.halves);
+                  context.settings.samples.value_or(kAllSamples), z_order, context.settings.halves);
   SiteSum sum;
   std::uint32_t current = range.first;
   std::vector<std::uint64_t> in_region(map.regions.size());
@@ -233,9 +234,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
       ++in_region[map.sites[current].region];
       ++sum.light.count;
       const auto report = [&](const char* what) {
-        const std::uint32_t sample =
-            context.settings.halves ? 2 * work.samples.sample[i] + work.samples.half[i] : work.samples.sample[i];
-        keep_first(tile.bad, {frame, work.samples.pixel_x[i], work.samples.pixel_y[i], sample, what});
+        keep_first(tile.bad, {frame, work.samples.pixel_x[i], work.samples.pixel_y[i], work.samples.sample[i], what});
       };
       if (work.radiance.rejected[i] != 0) {
         report("rejected ray");
@@ -325,13 +324,18 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   }
   std::vector<TileResult> results(ranges.size());
   WorkspacePool pool;
+  std::optional<ZOrder> z_order;
+  if (settings.sample_pattern == SamplePattern::z_order) {
+    z_order.emplace(map);
+  }
   const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
   parallel_for(ranges.size(), tracer_->options.threads, [&](std::size_t i) {
     const FlushDenormals flush;
     auto work = pool.take();
-    tracer_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
+    tracer_->trace_sites(context, kernel, filter, frame, map, z_order ? &*z_order : nullptr, ranges[i], *work,
+                         results[i], out);
     pool.give(std::move(work));
   });
 
@@ -364,9 +368,9 @@ Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, con
 }
 
 SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int height_px,
-                                         const EarlierView& earlier) const {
+                                         const OtherView& other) const {
   tracer_->pose(times_);
-  return trace_surface_motion(*tracer_->scene, tracer_->render_scene, camera, width_px, height_px, earlier,
+  return trace_surface_motion(*tracer_->scene, tracer_->render_scene, camera, width_px, height_px, other,
                               tracer_->options.threads);
 }
 

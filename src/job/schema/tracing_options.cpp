@@ -76,6 +76,12 @@ void add_tracing_options(JobSchema& schema) {
   add_path_options(schema);
   add_texture_options(schema);
   schema
+      .value("--sample-pattern", trace(&TraceSettings::sample_pattern), choices<SamplePattern>(), Touch::sampling,
+             "Random numbers of neighbouring pixels: independent (scrambled), or shared along a Z-curve, so that their "
+             "errors cancel over larger places (z-order)")
+      .with(Trait::trade_off)
+      .with(Trait::always_stated);
+  schema
       .value("--seed", trace(&TraceSettings::seed), "N", Touch::tracing,
              "Same seed, same pictures, for any number of threads")
       .with(Trait::own_seed)
