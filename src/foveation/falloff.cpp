@@ -5,15 +5,31 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 namespace gazetrace {
+namespace {
+
+bool follows_picture(const std::string& falloff) {
+  return falloff == "map";
+}
+
+}  // namespace
 
 std::vector<FalloffInfo> falloffs() {
   return {
-#define FALLOFF(file, name, description) {name, description},
+#define FALLOFF(file, name, description) {name, description, follows_picture(name)},
 #include "foveation/falloffs.def"
 #undef FALLOFF
   };
+}
+
+bool follows_picture(const FoveationSettings& settings) {
+  return follows_picture(settings.falloff);
+}
+
+bool works_without_gaze(const FoveationSettings& settings) {
+  return settings.falloff == "uniform" || follows_picture(settings);
 }
 
 Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {

@@ -26,6 +26,11 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;
   ImageGray contrast;
+  ImageGray density;
+  if (foveation.falloff == "map") {
+    density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
+    context.density = &density;
+  }
   if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
     foveation = less_first_look(foveation, request);
     ContrastPrepass first_look = timed(times.trace_ms, [&] {
@@ -82,6 +87,7 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
   rendered.map = std::move(traced.map);
   rendered.samples = std::move(traced.sparse.stats);
   rendered.first_look = std::move(traced.first_look);
+  rendered.prediction = traced.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
   return rendered;

@@ -145,8 +145,7 @@ std::string needs_all_samples(const PipelineSettings& settings) {
 MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
                           const PipelineSettings& settings) {
   const auto map_of = [&](const FrameRequest& request) {
-    return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render,
-                             map_context(request, settings.trace.seed, settings.threads));
+    return planned_sampling_map(settings.foveation, request, settings.trace.seed, settings.threads);
   };
   std::vector<std::vector<FramePart>> found;
   std::vector<TimingRow> rows;

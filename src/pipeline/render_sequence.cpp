@@ -127,6 +127,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         const RenderedFrame rendered = renderer.render(request, history);
         count_samples(rendered.samples, rendered.first_look, rendered.map, row, result);
         add_times(rendered.times, row);
+        add_prediction(rendered.prediction, row);
         row.exposure_ev = rendered.exposure_ev;
         if (observer.frame_ready) {
           observer.frame_ready(request, rendered.frame, rendered.exposure_ev);

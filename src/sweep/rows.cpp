@@ -208,8 +208,8 @@ double planned_spp(const PlannedRow& row) {
   double samples = 0;
   double pixels = 0;
   for (const FrameRequest& request : row.plan.frames) {
-    const SamplingMap map = make_sampling_map(row.pipeline.foveation, request.view, request.gaze_direction_render,
-                                              map_context(request, row.pipeline.trace.seed, row.pipeline.threads));
+    const SamplingMap map =
+        planned_sampling_map(row.pipeline.foveation, request, row.pipeline.trace.seed, row.pipeline.threads);
     samples += static_cast<double>(map.samples());
     pixels += static_cast<double>(request.width_px) * request.height_px;
   }

@@ -35,8 +35,7 @@ struct FrameCounts {
 
 FrameCounts count_samples(const FrameRequest& request, const JobSettings& job) {
   const FoveationSettings& settings = job.foveation;
-  const SamplingMap map = make_sampling_map(settings, request.view, request.gaze_direction_render,
-                                            map_context(request, job.trace.seed, job.threads));
+  const SamplingMap map = planned_sampling_map(settings, request, job.trace.seed, job.threads);
   FrameCounts counts;
   counts.frame = request.frame;
   counts.regions = map.regions;

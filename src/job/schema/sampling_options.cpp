@@ -72,18 +72,18 @@ void add_budget_options(JobSchema& schema) {
       .value("--block-samples", foveation(&F::block_samples), "SAMPLES", Touch::sampling,
              "Density models: the smallest block is taken that expects so many samples")
       .within(1, 65536)
-      .idle_when({without_gaze(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
       .value("--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
              "Density models: largest side of a block, pixels")
       .within(1, 16)
-      .idle_when({without_gaze(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
       .value("--density-floor", foveation(&F::density_floor), "DENSITY", Touch::sampling,
              "Density models: the least part of the full rate that a place gets; blended regions go below 1/512 where "
              "their own rates do")
       .above(0, 1)
-      .idle_when({without_gaze(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_hard_regions(), with_uniform()});
 }
 
 void add_model_options(JobSchema& schema) {
@@ -131,6 +131,13 @@ void add_model_options(JobSchema& schema) {
   schema.value("--falloff-table", model(&P::table), "FILE", Touch::sampling, "table: a CSV of ecc_deg,density")
       .decides_by_file()
       .idle_when({with_other_falloffs({"table"})});
+  schema
+      .value(
+          "--density-map", foveation(&FoveationSettings::density_map), "FILE", Touch::sampling,
+          "map: an EXR of samples a pixel, or of relative rates where there is a budget; of any size, stretched over "
+          "the frame. With #### in its name, one for each frame")
+      .decides_by_file()
+      .idle_when({with_other_falloffs({"map"})});
 }
 
 void add_term_options(JobSchema& schema) {
@@ -158,7 +165,7 @@ void add_term_options(JobSchema& schema) {
 void add_sampling_options(JobSchema& schema) {
   schema.group("Where the samples go");
   JobIdleRule without_any_gaze = without_gaze();
-  without_any_gaze.holds = [](const JobSettings& job) { return !has_gaze(job) && job.foveation.falloff != "uniform"; };
+  without_any_gaze.holds = [](const JobSettings& job) { return !has_gaze(job) && !works_without_gaze(job.foveation); };
   schema
       .value("--falloff", foveation(&FoveationSettings::falloff), "NAME", Touch::sampling,
              "How sampling falls off with eccentricity ('gazetrace list falloffs')")
