@@ -56,6 +56,9 @@ struct FovVideoVdpGeometry {
   [[nodiscard]] double magnification(const Vec2d& direction_deg) const;
 };
 FovVideoVdpGeometry fovvideovdp_geometry(const DisplayGeometry& display);
+// A display of the frame's own pixels, size and position, at a distance of 1 m: what the metric needs where a frame
+// covers a part of its display, since it takes a picture to fill it.
+FovVideoVdpGeometry fovvideovdp_geometry(const PlanarView& view);
 FovVideoVdpGeometry geometry_from_diagonal(int width_px, int height_px, double diagonal_inches, double distance_m);
 FovVideoVdpGeometry geometry_from_horizontal_fov(int width_px, int height_px, double fov_deg, double distance_m = 3);
 FovVideoVdpGeometry geometry_from_diagonal_fov(int width_px, int height_px, double fov_deg, double distance_m = 3);

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numeric>
+#include <functional>
 
 #include "core/fast_math.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
-#include "metrics/contrast_sensitivity.hpp"
+#include "metrics/band_sensitivity.hpp"
 #include "metrics/masking.hpp"
 #include "metrics/pyramid.hpp"
 #include "metrics/temporal_channels.hpp"
@@ -21,13 +21,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr float kSensitivityCorrection = 16.2596F / 20;  // log10
-constexpr float kLog2Of10 = 3.32192809F;
-constexpr float kLeastBackground = 0.1F;
 constexpr float kMostContrast = 1000;
-constexpr double kPoolSpace = 1.52134;
-constexpr double kPoolChannels = 0.666092;
-constexpr double kTransientWeight = 0.25;
 constexpr double kJodScale = 0.0161713;
 constexpr double kLog10JodExponent = -0.2280;
 
@@ -40,44 +34,11 @@ struct LuminancePair {
   ImageGray reference, test;
 };
 
-// The directions of a band's columns and rows, and log2 of the band's frequency at each pixel.
-struct BandGeometry {
-  std::vector<float> azimuth_deg, elevation_deg;
-  ImageGray log2_rho;  // empty where the metric is not foveated: the frequency of the centre holds everywhere
-  float log2_rho_centre = 0;
-};
-
-BandGeometry band_geometry(const FovVideoVdpSettings& settings, double rho_cpd, int width_px, int height_px) {
-  BandGeometry band;
-  band.log2_rho_centre = static_cast<float>(std::log2(rho_cpd));
-  for (int x = 0; x < width_px; ++x) {
-    band.azimuth_deg.push_back(
-        static_cast<float>(settings.geometry.view_direction_deg(x + 0.5, 0, width_px, height_px).x));
-  }
-  for (int y = 0; y < height_px; ++y) {
-    band.elevation_deg.push_back(
-        static_cast<float>(settings.geometry.view_direction_deg(0, y + 0.5, width_px, height_px).y));
-  }
-  if (settings.foveated) {
-    band.log2_rho = ImageGray(width_px, height_px);
-    parallel_for(static_cast<std::size_t>(height_px), settings.threads, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < width_px; ++x) {
-        const Vec2d direction{static_cast<double>(band.azimuth_deg[static_cast<std::size_t>(x)]),
-                              static_cast<double>(band.elevation_deg[row])};
-        band.log2_rho(x, y) = static_cast<float>(std::log2(rho_cpd * settings.geometry.magnification(direction)));
-      }
-    });
-  }
-  return band;
-}
-
 // Buffers of a row: background, sensitivities by which contrasts are multiplied, and results.
 struct RowBuffers {
   std::vector<float> scratch, background, sensitivity_sustained, sensitivity_transient, blurred, difference;
   void resize(std::size_t width) {
-    for (std::vector<float>* row :
-         {&background, &sensitivity_sustained, &sensitivity_transient, &blurred, &difference}) {
+    for (std::vector<float>* row : {&background, &blurred, &difference}) {
       row->resize(width);
     }
   }
@@ -140,7 +101,6 @@ double fovvideovdp_jod(double q) {
 struct FovVideoVdp::Impl {
   FovVideoVdpSettings settings;
   int width_px, height_px;
-  const SensitivityTable& table = SensitivityTable::get();
   TemporalFilters filters;  // empty for stills
   std::vector<double> frequencies_cpd;
   std::vector<BandGeometry> bands;
@@ -159,7 +119,7 @@ struct FovVideoVdp::Impl {
     int w = width;
     int h = height;
     for (const double frequency : frequencies_cpd) {
-      bands.push_back(band_geometry(settings, frequency, w, h));
+      bands.push_back(band_geometry(settings.geometry, settings.foveated, frequency, w, h, settings.threads));
       w = (w + 1) / 2;
       h = (h + 1) / 2;
     }
@@ -212,25 +172,6 @@ struct FovVideoVdp::Impl {
             filtered(filters.transient, &LuminancePair::reference), filtered(filters.transient, &LuminancePair::test)};
   }
 
-  void row_sensitivity(const BandGeometry& band, const Vec2f& gaze_deg, int y, RowBuffers& row) const {
-    const float dy = band.elevation_deg[static_cast<std::size_t>(y)] - gaze_deg.y;
-    for (std::size_t x = 0; x < row.background.size(); ++x) {
-      SensitivityTable::Query query{band.log2_rho_centre, log2_fast(row.background[x]), 0};
-      if (settings.foveated) {
-        const float dx = band.azimuth_deg[x] - gaze_deg.x;
-        query.log2_rho = band.log2_rho(static_cast<int>(x), y);
-        query.sqrt_eccentricity = std::sqrt(std::sqrt(dx * dx + dy * dy));
-      }
-      const std::array<float, 2> log2_s = table.log2_sensitivity(query);
-      row.sensitivity_sustained[x] = log2_s[0] + kSensitivityCorrection * kLog2Of10;
-      row.sensitivity_transient[x] = log2_s[1] + kSensitivityCorrection * kLog2Of10;
-    }
-    for (std::size_t x = 0; x < row.background.size(); ++x) {
-      row.sensitivity_sustained[x] = exp2_fast(row.sensitivity_sustained[x]);
-      row.sensitivity_transient[x] = exp2_fast(row.sensitivity_transient[x]);
-    }
-  }
-
   struct BandResult {
     double sustained = 0, transient = 0;
     ImageGray map;  // difference, pooled over channels; empty unless asked for
@@ -242,7 +183,8 @@ struct FovVideoVdp::Impl {
     const int width = planes.reference_sustained.width_px;
     const int height = planes.reference_sustained.height_px;
     const bool has_transient = !planes.reference_transient.empty();
-    const float gain = b == 0 ? 1.0F : 2.0F;
+    const float gain = band_contrast_gain(b);
+    const std::optional<Vec2f> gaze = settings.foveated ? std::optional(gaze_deg) : std::nullopt;
     BandResult result;
     if (want_map) {
       result.map = ImageGray(width, height);
@@ -258,7 +200,7 @@ struct FovVideoVdp::Impl {
       for (std::size_t x = 0; x < row.blurred.size(); ++x) {
         row.background[x] = std::max(row.blurred[x], kLeastBackground);
       }
-      row_sensitivity(bands[b], gaze_deg, y, row);
+      band_sensitivity(bands[b], gaze, y, row.background, row.sensitivity_sustained, row.sensitivity_transient);
       const std::size_t from = planes.reference_sustained.index(0, y);
       const auto channel = [&](const ImageGray& ref, const ImageGray& ref_coarse, const ImageGray& tst,
                                const ImageGray& tst_coarse, const std::vector<float>& sensitivity, float q) {
@@ -345,9 +287,7 @@ struct FovVideoVdp::Impl {
       maps.push_back(std::move(band.map));
       planes = std::move(coarse);
     }
-    const double sustained = std::accumulate(frame.sustained.begin(), frame.sustained.end(), 0.0);
-    const double transient = kTransientWeight * std::accumulate(frame.transient.begin(), frame.transient.end(), 0.0);
-    frame.q = std::pow(std::pow(sustained, kPoolChannels) + std::pow(transient, kPoolChannels), 1 / kPoolChannels);
+    frame.q = pooled_over_bands(frame.sustained, frame.transient);
     if (want_map) {
       frame.map = collapsed(std::move(maps));
     }

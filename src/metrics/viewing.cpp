@@ -98,6 +98,25 @@ FovVideoVdpGeometry fovvideovdp_geometry(const DisplayGeometry& display) {
           kMetrePerCentimetre * -display.eye_y_cm};
 }
 
+FovVideoVdpGeometry fovvideovdp_geometry(const PlanarView& view) {
+  // How far the middle lies off the perpendicular from the eye, from one border and half the size. A rounding error
+  // becomes exactly 0, so that a centered picture scores bit for bit as in the geometry of the metric's authors.
+  const auto middle_m = [](double border_m, double half_m) {
+    constexpr double kRounding = 1e-9;
+    const double middle = border_m + half_m;
+    return std::fabs(middle) < kRounding * std::fabs(half_m) ? 0 : middle;
+  };
+  const double width_m = view.step_x * view.width_px;
+  const double height_m = view.step_y * view.height_px;
+  return {view.width_px,
+          view.height_px,
+          width_m,
+          height_m,
+          1,
+          middle_m(view.left, width_m / 2),
+          middle_m(view.top, -height_m / 2)};
+}
+
 FovVideoVdpGeometry geometry_from_diagonal(int width_px, int height_px, double diagonal_inches, double distance_m) {
   const double aspect = static_cast<double>(width_px) / height_px;
   const double height_m = diagonal_inches * kMetrePerInch / std::sqrt(1 + aspect * aspect);

@@ -23,7 +23,7 @@ const std::vector<std::vector<std::string>> kLayers = {
     {"display", "camera", "material", "gazelog", "gaze"},
     {"scene", "plan", "foveation"},
     {"trace"},
-    {"reconstruct", "temporal", "color", "output", "metrics"},
+    {"reconstruct", "temporal", "color", "output", "metrics", "visible"},
     {"pipeline", "compare", "results"},
     {"job"},
     {"sweep", "report", "video"},
@@ -49,6 +49,8 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
     {"color", "temporal"},        // smoothed exposure is history
     {"output", "color"},          // writes display images
     {"output", "reconstruct"},    // writes frames
+    {"visible", "metrics"},       // predicts what a metric will measure
+    {"visible", "color"},         // through the view that the picture is shown with
 };
 
 // The public headers of each module.
@@ -68,6 +70,7 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"color", {"color"}},
     {"output", {"output"}},
     {"metrics", {"metrics", "fovvideovdp", "flicker"}},
+    {"visible", {"visible_error", "model_gain"}},
     {"pipeline", {"pipeline", "frame_renderer"}},
     {"compare", {"compare"}},
     {"results", {"results"}},

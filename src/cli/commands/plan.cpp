@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/model_gain_text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/resolve.hpp"
@@ -18,6 +19,7 @@ struct PlanArguments {
   Job job;
   std::string save_camera;
   bool counts = false;
+  bool model_gain = false;
   bool json = false;
 };
 
@@ -94,7 +96,8 @@ std::string counts_as_json(const std::vector<FrameCounts>& frames, std::uint32_t
 int run_plan(const PlanArguments& arguments) {
   const JobSettings& job = arguments.job.settings;
   check_job(arguments.job);
-  if (job.scene.empty() && job.camera_path.empty() && !job.camera_from_gaze && !job.eye && !arguments.counts) {
+  if (job.scene.empty() && job.camera_path.empty() && !job.camera_from_gaze && !job.eye && !arguments.counts &&
+      !arguments.model_gain) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
   }
@@ -112,6 +115,12 @@ int run_plan(const PlanArguments& arguments) {
   if (arguments.counts && job.foveation.contrast_strength > 0) {
     throw Error(ErrorKind::usage, "`contrast-strength`", "counts that follow the picture are known once it is rendered",
                 "leave it out, or render and read timing.csv");
+  }
+  if (arguments.model_gain) {
+    const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
+    const GainOfPlan gain = gain_of_plan(resolved.plan, fps, job.threads);
+    print_result(arguments.json ? gain_as_json(gain) : gain_as_text(gain));
+    return exit_done;
   }
   if (!arguments.counts) {
     print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));
@@ -134,6 +143,10 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--counts", arguments->counts,
                "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");
+  app.add_flag("--model-gain", arguments->model_gain,
+               "What eccentricity alone can save on this screen with this gaze, in samples at equal visible error, by "
+               "FovVideoVDP's model; content and masking are left out; needs no scene")
+      ->excludes("--counts");
   app.add_option(
          "--save-camera", arguments->save_camera,
          "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM, whose "

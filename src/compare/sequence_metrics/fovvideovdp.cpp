@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // FovVideoVDP of luminance. The metric itself is in metrics/fovvideovdp.cpp.
-#include <cmath>
-
 #include "compare/sequence_metric.hpp"
 #include "gazetrace/error.hpp"
 
@@ -27,25 +25,11 @@ class FovVideoVdpOfFrames : public SequenceMetric {
   FovVideoVdp metric_;
 };
 
-// How far the middle lies off the perpendicular from the eye, from one border and half the size. A rounding error
-// becomes exactly 0, so that a centered picture scores bit for bit as in the geometry of the metric's authors.
-double middle_m(double border_m, double half_m) {
-  constexpr double kRounding = 1e-9;
-  const double middle = border_m + half_m;
-  return std::fabs(middle) < kRounding * std::fabs(half_m) ? 0 : middle;
-}
-
 }  // namespace
 
 std::unique_ptr<SequenceMetric> make_fovvideovdp(const ComparisonSettings& settings, int width_px, int height_px) {
-  // The metric assumes that a picture fills its display, so it gets a display of the picture's own pixels, size and
-  // position, at a distance of 1 m.
-  const PlanarView& view = *settings.view;
-  const double width_m = view.step_x * width_px;
-  const double height_m = view.step_y * height_px;
   FovVideoVdpSettings metric;
-  metric.geometry = {
-      width_px, height_px, width_m, height_m, 1, middle_m(view.left, width_m / 2), middle_m(view.top, -height_m / 2)};
+  metric.geometry = fovvideovdp_geometry(*settings.view);
   metric.frames_per_second = settings.frames_per_second;
   metric.original_border = settings.original_border;
   metric.threads = settings.metric.threads;

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/model_gain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+#include "metrics/band_sensitivity.hpp"
+#include "visible/channel_gain.hpp"
+#include "visible/gaze_angles.hpp"
+#include "visible/masked_moment.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kP = kVisiblePooling;
+
+// s^p of the header times E|z|^p, of one band and channel: the sustained bands first, then the transient ones.
+struct BandPowers {
+  std::size_t sustained_bands = 0;
+  std::vector<std::vector<double>> at;  // [band and channel][pixel of the raster]
+};
+
+// Sensitivities change slowly over the field, so one raster serves all bands.
+int raster_cell_px(const PlanarView& view) {
+  constexpr int kMostSide = 160;
+  int cell = 1;
+  while (std::max(view.width_px, view.height_px) / cell > kMostSide) {
+    cell *= 2;
+  }
+  return cell;
+}
+
+BandPowers band_powers(const ModelGainSettings& settings, const Vec3d& gaze_direction, const ErrorSpectrum& spectrum,
+                       int width, int height) {
+  const PlanarView& view = settings.view;
+  const FovVideoVdpGeometry geometry = fovvideovdp_geometry(view);
+  const std::vector<double> frequencies =
+      fovvideovdp_bands_cpd(geometry.pixels_per_degree(), view.width_px, view.height_px);
+  const ChannelGains channels = channel_gains(settings.frames_per_second, 0, {});
+  const Vec2f gaze_deg = metric_gaze_deg(view, geometry, gaze_direction);
+  const double moment = absolute_moment(kP);
+  const std::vector<float> background(static_cast<std::size_t>(width), static_cast<float>(settings.luminance_cd_m2));
+  const std::size_t channel_count = settings.frames_per_second > 0 ? 2 : 1;
+  BandPowers powers;
+  powers.sustained_bands = frequencies.size();
+  for (std::size_t c = 0; c < channel_count; ++c) {
+    for (std::size_t b = 0; b < frequencies.size(); ++b) {
+      const BandGeometry band = band_geometry(geometry, true, frequencies[b], width, height, settings.threads);
+      const double per_contrast =
+          static_cast<double>(band_contrast_gain(b)) * std::sqrt(spectrum.gain[b] * channels.variance[c]);
+      std::vector<double> power;
+      std::vector<float> sensitivity_sustained;
+      std::vector<float> sensitivity_transient;
+      for (int y = 0; y < height; ++y) {
+        band_sensitivity(band, gaze_deg, y, background, sensitivity_sustained, sensitivity_transient);
+        for (const float s : c == 0 ? sensitivity_sustained : sensitivity_transient) {
+          power.push_back(moment * std::pow(per_contrast * static_cast<double>(s), kP));
+        }
+      }
+      powers.at.push_back(std::move(power));
+    }
+  }
+  return powers;
+}
+
+struct PooledRates {
+  double q = 0;
+  std::vector<double> slope;  // r dQ / dA of every band and channel
+};
+
+PooledRates pooled(const BandPowers& powers, const std::vector<double>& rates) {
+  std::vector<double> falls(rates.size());
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    falls[i] = std::pow(rates[i], -kP / 2);
+  }
+  std::vector<double> band_q;
+  for (const std::vector<double>& power : powers.at) {
+    const double sum = std::inner_product(power.begin(), power.end(), falls.begin(), 0.0);
+    band_q.push_back(std::pow(sum / static_cast<double>(rates.size()), 1 / kPoolSpace));
+  }
+  const auto middle = band_q.begin() + static_cast<std::ptrdiff_t>(powers.sustained_bands);
+  const std::vector<double> sustained(band_q.begin(), middle);
+  const std::vector<double> transient(middle, band_q.end());
+  PooledRates result;
+  result.q = pooled_over_bands(sustained, transient);
+  for (std::size_t k = 0; k < band_q.size(); ++k) {
+    const bool is_sustained = k < powers.sustained_bands;
+    const std::vector<double>& of_channel = is_sustained ? sustained : transient;
+    const double weight = is_sustained ? 1 : kTransientWeight;
+    const double channel = weight * std::accumulate(of_channel.begin(), of_channel.end(), 0.0);
+    result.slope.push_back(band_q[k] > 0 ? weight * std::pow(result.q / channel, 1 - kPoolChannels) *
+                                               std::pow(band_q[k], 1 - kPoolSpace)
+                                         : 0);
+  }
+  return result;
+}
+
+// The rates that the slopes ask for, with a mean of 1.
+std::vector<double> best_rates(const BandPowers& powers, const std::vector<double>& slope) {
+  std::vector<double> rates(powers.at.front().size());
+  for (std::size_t k = 0; k < powers.at.size(); ++k) {
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      rates[i] += slope[k] * powers.at[k][i];
+    }
+  }
+  double sum = 0;
+  for (double& rate : rates) {
+    rate = std::pow(rate, 1 / (1 + kP / 2));
+    sum += rate;
+  }
+  for (double& rate : rates) {
+    rate *= static_cast<double>(rates.size()) / sum;
+  }
+  return rates;
+}
+
+// Q that has this JOD.
+double q_of_jod(double jod) {
+  double low = 0;
+  double high = 1;
+  while (fovvideovdp_jod(high) > jod) {
+    high *= 2;
+  }
+  for (int step = 0; step < 100; ++step) {
+    const double middle = (low + high) / 2;
+    (fovvideovdp_jod(middle) > jod ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace
+
+ModelGain model_gain(const ModelGainSettings& settings, const Vec3d& gaze_direction, const ErrorSpectrum& spectrum) {
+  constexpr double kNone = 10;
+  if (!(settings.target_jod < kNone)) {
+    throw Error(ErrorKind::usage, "visible error",
+                fmt::format("a target of {} JOD: no noise scores 10 or more", settings.target_jod));
+  }
+  const int cell = raster_cell_px(settings.view);
+  const int width = (settings.view.width_px + cell - 1) / cell;
+  const int height = (settings.view.height_px + cell - 1) / cell;
+  const BandPowers powers = band_powers(settings, gaze_direction, spectrum, width, height);
+  std::vector<double> rates(powers.at.front().size(), 1.0);
+  const double uniform_q = pooled(powers, rates).q;
+  double allocated_q = uniform_q;
+  // The fixed point, approached in the mean of logarithms, which damps oscillation.
+  constexpr int kMostSteps = 100;
+  constexpr double kSettled = 1e-7;  // relative change of Q
+  for (int step = 0; step < kMostSteps; ++step) {
+    const std::vector<double> next = best_rates(powers, pooled(powers, rates).slope);
+    double sum = 0;
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      rates[i] = std::sqrt(rates[i] * next[i]);
+      sum += rates[i];
+    }
+    for (double& rate : rates) {
+      rate *= static_cast<double>(rates.size()) / sum;
+    }
+    const double before = allocated_q;
+    allocated_q = pooled(powers, rates).q;
+    if (std::fabs(before - allocated_q) < kSettled * allocated_q) {
+      break;
+    }
+  }
+  // Q falls as the rates to the power of -p / (2 r).
+  const double exponent = 2 * kPoolSpace / kP;
+  const double wanted = q_of_jod(settings.target_jod);
+  ModelGain result;
+  result.gain = std::pow(uniform_q / allocated_q, exponent);
+  result.uniform_spp = std::pow(uniform_q / wanted, exponent);
+  result.allocated_spp = result.uniform_spp / result.gain;
+  result.density = ImageGray(width, height);
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    result.density.pixels[i] = static_cast<float>(rates[i]);
+  }
+  return result;
+}
+
+}  // namespace gazetrace
