@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "gazetrace/reconstruct.hpp"
 #include "gazetrace/temporal.hpp"
 #include "gazetrace/trace.hpp"
+#include "gazetrace/visible_error.hpp"
 
 namespace gazetrace {
 
@@ -23,6 +25,10 @@ struct FrameSettings {
   ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
   AccumulateSettings accumulate;
   ExposureSettings exposure;
+  // What the fall-off `visible` must know of how frames are watched: with the frame's view, what its noise looks like.
+  double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
+  // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
+  std::function<DisplayCurve(double exposure_ev)> display_curve;
   double enhance_contrast = 0;  // strength of enhance_contrast(), after accumulation and the choice of an exposure
   int threads = 0;              // 0: all
 };

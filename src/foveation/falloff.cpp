@@ -11,7 +11,7 @@ namespace gazetrace {
 namespace {
 
 bool follows_picture(const std::string& falloff) {
-  return falloff == "map";
+  return falloff == "map" || falloff == "visible";
 }
 
 }  // namespace
@@ -46,6 +46,9 @@ FoveationSettings with_limits_of(const DensityModel& model, const FoveationSetti
   FoveationSettings own = settings;
   if (settings.density_floor <= kDefaultDensityFloor) {
     own.density_floor = std::min(settings.density_floor, model.own_floor);
+  }
+  if (model.own_block_samples && settings.block_samples == FoveationSettings().block_samples) {
+    own.block_samples = *model.own_block_samples;
   }
   if (settings.max_block_px == kDefaultMaxBlockPx) {
     const auto largest = std::bit_ceil(static_cast<unsigned>(model.own_block_px));

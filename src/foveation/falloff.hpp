@@ -44,8 +44,9 @@ struct DensityModel {
   bool from_picture = false;            // MapContext::density over its largest value multiplies the value
   std::optional<double> full_rate_spp;  // default: the settings' uniform_spp
   // For a model made from regions: the least of their densities and the side of their largest block. The default floor
-  // and the default limit of blocks give way to them (with_limits_of).
+  // and the default limit of blocks give way to them, and so do the default samples of a block (with_limits_of).
   double own_floor = 1;
+  std::optional<double> own_block_samples;
   int own_block_px = 1;
   // Eccentricities at which the value may change from falling to rising or back.
   std::vector<double> turns_deg;

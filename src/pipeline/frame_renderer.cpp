@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "pipeline/adaptive_rates.hpp"
 #include "pipeline/contrast_prepass.hpp"
 #include "pipeline/frame_stages.hpp"
 
@@ -30,6 +31,16 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   if (foveation.falloff == "map") {
     density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
     context.density = &density;
+  }
+  if (foveation.falloff == "visible") {
+    AdaptiveRates adaptive = timed(times.pilot_ms, [&] { return adaptive_rates(scene, request, settings_); });
+    foveation.target = {};
+    foveation.budget_samples.reset();
+    foveation.budget_spp = adaptive.spp;
+    density = std::move(adaptive.rates);
+    context.density = &density;
+    traced.first_look = std::move(adaptive.pilot);
+    traced.prediction = adaptive.prediction;
   }
   if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
     foveation = less_first_look(foveation, request);

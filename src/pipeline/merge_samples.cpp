@@ -136,6 +136,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";
   }
+  if (settings.foveation.falloff == "visible") {
+    return "the sampling map needs a pilot of the frame";
+  }
   if (settings.trace.only_pixel) {
     return "only one pixel is traced";
   }

@@ -21,8 +21,10 @@ namespace gazetrace {
 namespace {
 
 // What a sequence traces in every frame: what its files show of first hits is summed over the samples.
-FrameSettings frame_settings(const PipelineSettings& settings) {
+FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeline& color) {
   FrameSettings frame = settings;
+  frame.frames_per_second = static_cast<double>(settings.fps.numerator) / static_cast<double>(settings.fps.denominator);
+  frame.display_curve = [&color](double exposure_ev) { return view_display_curve(color, {}, exposure_ev); };
   const std::vector<std::string>& aovs = settings.output.exr.aovs;
   frame.trace.guides = frame.trace.guides || std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
                          return aov == "albedo" || aov == "normal" || aov == "depth";
@@ -103,7 +105,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history) {
   SequenceResult result;
-  const FrameRenderer renderer(tracer, frame_settings(settings));
+  const FrameRenderer renderer(tracer, frame_settings(settings, color));
   const std::string timing_path = timing_path_of(plan, settings);
   const ResumePlan resume = plan_resume(plan, settings, timing_path, history);
   result.warnings = resume.warnings;

@@ -122,6 +122,10 @@ int run_plan(const PlanArguments& arguments) {
     print_result(arguments.json ? gain_as_json(gain) : gain_as_text(gain));
     return exit_done;
   }
+  if (arguments.counts && job.foveation.falloff == "visible") {
+    throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
+                "give another one, or render and read timing.csv");
+  }
   if (!arguments.counts) {
     print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));
     return exit_done;

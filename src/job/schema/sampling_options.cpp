@@ -140,6 +140,41 @@ void add_model_options(JobSchema& schema) {
       .idle_when({with_other_falloffs({"map"})});
 }
 
+void add_pilot_options(JobSchema& schema) {
+  using F = FoveationSettings;
+  schema
+      .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
+             "visible: the least samples a pixel, anywhere")
+      .within(0, kMostSamples)
+      .idle_when({with_other_falloffs({"visible"})});
+  schema
+      .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
+             "visible: the most samples a pixel, anywhere")
+      .above(0, kMostSamples)
+      .idle_when({with_other_falloffs({"visible"})});
+  schema
+      .value("--target-relmse", at(&JobSettings::foveation, &F::target, &QualityTarget::relmse), "ERROR",
+             Touch::sampling,
+             "visible: as many samples as it takes until a pilot expects a frame of this relative squared error; "
+             "excludes budgets")
+      .above(0)
+      .need("`falloff` visible");
+  schema
+      .value(
+          "--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
+          "visible: the same until a clip of such frames is expected to score so many JOD in FovVideoVDP, where 10 is "
+          "perfect")
+      .above(0, 10)
+      .need("`falloff` visible");
+  schema
+      .value("--time-budget", at(&JobSettings::foveation, &F::target, &QualityTarget::time_s), "SECONDS",
+             Touch::sampling,
+             "visible: as many samples as there is time for, pilot and filter included, in every frame; pictures then "
+             "depend on the machine")
+      .above(0)
+      .need("`falloff` visible");
+}
+
 void add_term_options(JobSchema& schema) {
   using F = FoveationSettings;
   schema
@@ -180,6 +215,7 @@ void add_sampling_options(JobSchema& schema) {
   add_budget_options(schema);
   schema.group("Density models ('gazetrace list falloffs')");
   add_model_options(schema);
+  add_pilot_options(schema);
   add_term_options(schema);
 }
 
