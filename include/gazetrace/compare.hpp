@@ -130,9 +130,6 @@ DisplayImage error_map_picture(const std::string& metric, const ImageGray& map, 
 // cut off.
 void draw_gaze(DisplayImage& picture, const PlanarView& view, const Vec2d& gaze_px, const RetinalRegions& regions);
 
-// The frames for which a file of this pattern exists, ascending; {0} for the name of a single picture that exists.
-std::vector<std::int32_t> find_frames(const std::string& pattern);
-
 // What a frame's file states in its header; empty where it does not.
 struct FrameFacts {
   std::optional<double> exposure_ev;

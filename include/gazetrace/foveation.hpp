@@ -54,6 +54,15 @@ struct FalloffParameters {
   FalloffTable table;                                   // table
 };
 
+// A quality that the fall-off `visible` spends samples for until a pilot predicts it. At most one of the members is
+// given; it takes the place of a budget.
+struct QualityTarget {
+  std::optional<double> relmse;  // mean over the frame of squared error over (squared luminance + 0.01)
+  std::optional<double> jod;     // predicted JOD of the clip, up to 10; see visible_error.hpp
+  std::optional<double> time_s;  // no quality but a time: of pilot, samples and filter of one frame, in seconds
+  [[nodiscard]] bool is_given() const { return relmse || jod || time_s; }
+};
+
 constexpr int kDefaultMaxBlockPx = 16;
 constexpr double kDefaultDensityFloor = 1.0 / 512;
 
@@ -74,6 +83,12 @@ struct FoveationSettings {
   double border_blend_deg = 0;
 
   FalloffParameters parameters;
+  // Of the fall-off `map`: the file that MapContext::density is read from, or a pattern of files with a place for the
+  // frame's number (frame_file_name()).
+  std::string density_map;
+  // Of the fall-off `visible`: the least and the most samples a pixel of any place.
+  double min_spp = 0.0625, max_spp = 65536;
+  QualityTarget target;
   // A budget replaces the rates above: any fall-off is scaled so that a frame has this many samples, per pixel on
   // average or in total. At most one of the two may be given.
   std::optional<double> budget_spp;
@@ -92,6 +107,8 @@ struct FoveationSettings {
   //   4  p      is raised to at least density_floor
   //   5  count  = p times uniform_spp, or times the rate that meets the budget. A budget is always met: then steps 1 to
   //             4 only say where its samples go.
+  // Models that follow a picture (FalloffInfo::from_picture) have p = MapContext::density over its largest value in
+  // step 2, and that value, in samples a pixel, is their full rate. They need no gaze.
   bool retinal_velocity = false;  // the squared share of acuity that the speed of the image on the retina leaves
   double saccade_density = 1;     // 0..1, while the eye is in a saccade
   // 0..1. 0: off; 1: a quarter of the density is left where a first, coarse rendering shows no contrast.
@@ -106,14 +123,24 @@ struct MapContext {
   double gaze_speed_deg_s = 0;  // for retinal_velocity
   bool in_saccade = false;      // for saccade_density
   const ImageGray* contrast = nullptr;  // multiplies the density; of any size, stretched over the frame
-  int threads = 0;                      // 0: all cores; the map is the same for any number
+  // What models that follow a picture follow: samples a pixel, or relative rates where there is a budget. Of any size,
+  // stretched over the frame; see check_density_picture().
+  const ImageGray* density = nullptr;
+  int threads = 0;  // 0: all cores; the map is the same for any number
 };
 
 struct FalloffInfo {
   std::string name;
   std::string description;
+  bool from_picture = false;  // its rates are MapContext::density
 };
 std::vector<FalloffInfo> falloffs();
+bool follows_picture(const FoveationSettings& settings);
+// Whether frames without gaze are sampled as the fall-off says, instead of uniformly.
+bool works_without_gaze(const FoveationSettings& settings);
+// Error(input) that names `place` and the first pixel whose value is not a finite number of at least 0, or, without a
+// budget, is more than a pixel can have; and where all values are 0.
+void check_density_picture(const ImageGray& density, const FoveationSettings& settings, const std::string& place);
 void check_foveation(const FoveationSettings& settings);  // Error(usage) that names the setting that is out of range
 // The settings with every region ending `by_deg` of eccentricity farther out, for a gaze that may be off by that much.
 FoveationSettings widened(const FoveationSettings& settings, double by_deg);
@@ -181,8 +208,9 @@ struct SamplingMap {
 };
 
 // `gaze_direction` is in the eye's frame, of any length, and may point beside or behind the frame; where it is empty,
-// every pixel gets `uniform_spp` or its share of the budget. Error(usage) where it is zero or not finite, for settings
-// that check_foveation refuses, and for frames of more than 65535 px a side. Regions without pixels stay in the list.
+// every pixel gets `uniform_spp` or its share of the budget, unless the model follows a picture. Error(usage) where it
+// is zero or not finite, for settings that check_foveation refuses, for models whose picture is missing, and for frames
+// of more than 65535 px a side. Regions without pixels stay in the list.
 //
 // Real-valued rates are rounded to whole counts systematically along the sites: count_k = floor(C_k + u) -
 // floor(C_(k-1) + u), where C_k is the sum of what the first k sites expect and u is uniform, made from seed and frame.

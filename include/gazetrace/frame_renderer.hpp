@@ -4,6 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "gazetrace/color.hpp"
@@ -12,6 +16,7 @@
 #include "gazetrace/reconstruct.hpp"
 #include "gazetrace/temporal.hpp"
 #include "gazetrace/trace.hpp"
+#include "gazetrace/visible_error.hpp"
 
 namespace gazetrace {
 
@@ -21,6 +26,10 @@ struct FrameSettings {
   ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
   AccumulateSettings accumulate;
   ExposureSettings exposure;
+  // What the fall-off `visible` must know of how frames are watched: with the frame's view, what its noise looks like.
+  double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
+  // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
+  std::function<DisplayCurve(double exposure_ev)> display_curve;
   double enhance_contrast = 0;  // strength of enhance_contrast(), after accumulation and the choice of an exposure
   int threads = 0;              // 0: all
 };
@@ -32,6 +41,7 @@ bool uses_history(const FrameSettings& settings);
 // Wall time of the stages, ms.
 struct StageTimes {
   double plan_ms = 0;         // the sampling map
+  double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`
   double trace_ms = 0;        // samples, those of the first look included, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
   double reconstruct_ms = 0;  // the filter, and the enhancement
@@ -39,12 +49,21 @@ struct StageTimes {
   double exposure_ms = 0;
 };
 
+// What the pilot of the fall-off `visible` expects of the frame; empty for other fall-offs.
+struct Prediction {
+  std::optional<double> relmse;  // as QualityTarget::relmse
+  std::optional<double> jod;     // as QualityTarget::jod, of a clip of such frames
+};
+
 // The samples of a frame and where they went.
 struct TracedFrame {
   SamplingMap map;
   SparseFrame sparse;
-  TraceStats first_look;  // of the samples that told where there is contrast; none unless `contrast_strength` asks
-  StageTimes times;       // plan_ms and trace_ms
+  // Of the samples that told where the frame's own belong, and were discarded: those of the pilot, or of the first look
+  // of `contrast_strength`.
+  TraceStats first_look;
+  Prediction prediction;
+  StageTimes times;  // plan_ms, pilot_ms and trace_ms
 };
 
 struct RenderedFrame {
@@ -52,6 +71,7 @@ struct RenderedFrame {
   double exposure_ev = 0;  // stops; the radiance is not multiplied by it
   SamplingMap map;
   TraceStats samples, first_look;  // as SparseFrame::stats and TracedFrame::first_look
+  Prediction prediction;
   StageTimes times;
 };
 
@@ -95,7 +115,18 @@ class FrameRenderer {
   Reconstruction reconstruction_;
 };
 
-// What the sampling map of a frame depends on beside settings, view and gaze.
+// What the sampling map of a frame depends on beside settings, view and gaze, pictures left out.
 MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads = 0);
+
+// The picture that the fall-off `map` follows in a frame: FoveationSettings::density_map, checked by
+// check_density_picture(). Error(input).
+ImageGray read_density_map(const FoveationSettings& settings, std::int32_t frame);
+// Every file that FoveationSettings::density_map may stand for, by name; Error(input) where there is none.
+std::vector<std::string> density_map_files(const FoveationSettings& settings);
+
+// The sampling map of a frame, for settings under which no sample of the frame decides it: neither a first look
+// (`contrast_strength`) nor a pilot (`visible`).
+SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
+                                 int threads = 0);
 
 }  // namespace gazetrace

@@ -23,6 +23,9 @@ namespace gazetrace {
 // pattern with two places for the number, or with none where `require_number`.
 std::string frame_file_name(const std::string& pattern, std::int32_t frame, bool require_number = false);
 bool has_frame_number(const std::string& pattern);
+// The frames for which a file of this pattern exists, ascending; {0} for the name of a single picture that exists.
+// Error(input) where there is none.
+std::vector<std::int32_t> find_frames(const std::string& pattern);
 
 enum class ExrPixels { half, float32 };
 
@@ -99,18 +102,19 @@ constexpr std::size_t kTimingRegions = 11;
 
 struct TimingRow {
   std::int32_t frame = 0;
-  double plan_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0, color_ms = 0,
-         write_ms = 0, total_ms = 0;
+  double plan_ms = 0, pilot_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0,
+         color_ms = 0, write_ms = 0, total_ms = 0;
   double trace_cpu_ms = 0;
-  std::uint64_t pixels = 0, samples = 0;
+  std::uint64_t pixels = 0, samples = 0, pilot_samples = 0;  // those of the pilot are among the samples
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0, non_finite_samples = 0;
   // One entry per region, in the order of timing_regions().
   std::array<std::uint64_t, kTimingRegions> region_pixels{}, region_samples{};
   std::array<double, kTimingRegions> region_cpu_ms{};
   double exposure_ev = 0;
-  std::string gaze_state;             // of the gaze that steers the frame
-  std::string gaze_event;             // fixation, saccade, blink, ...; "none": not known
+  std::string predicted_relmse, predicted_jod;  // by the pilot; empty where it did not
+  std::string gaze_state;                       // of the gaze that steers the frame
+  std::string gaze_event;                       // fixation, saccade, blink, ...; "none": not known
   std::string gaze_age_ms;            // "unknown" where a log repeats values once per frame; empty without a row
   std::string gaze_effective_age_ms;  // GazeAges: in the middle of the frame's display; empty where not known
   int no_gaze = 0;                    // 1: the log has no gaze at this time, and the policy for that decided

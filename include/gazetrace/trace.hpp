@@ -52,6 +52,9 @@ struct TraceSettings {
   double pixel_cone = 0;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   SamplePattern sample_pattern = SamplePattern::scrambled;
+  // The pixel filter is this many times as wide, above 0. So a frame of an eighth of the size shows, with 1/8, single
+  // pixels of the larger frame, eight apart, and their samples have the noise that they have there.
+  double footprint = 1;
   std::uint64_t seed = 0;
   bool guides = false;    // collect albedo, normal and depth of the first hit
   bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters

@@ -17,15 +17,16 @@ struct Stage {
   const char* name;
   double TimingRow::*ms;
 };
-constexpr std::array<Stage, 9> kStages{{{"plan", &TimingRow::plan_ms},
-                                        {"trace", &TimingRow::trace_ms},
-                                        {"guides", &TimingRow::guides_ms},
-                                        {"reconstruct", &TimingRow::reconstruct_ms},
-                                        {"temporal", &TimingRow::temporal_ms},
-                                        {"exposure", &TimingRow::exposure_ms},
-                                        {"color", &TimingRow::color_ms},
-                                        {"write", &TimingRow::write_ms},
-                                        {"total", &TimingRow::total_ms}}};
+constexpr std::array<Stage, 10> kStages{{{"plan", &TimingRow::plan_ms},
+                                         {"pilot", &TimingRow::pilot_ms},
+                                         {"trace", &TimingRow::trace_ms},
+                                         {"guides", &TimingRow::guides_ms},
+                                         {"reconstruct", &TimingRow::reconstruct_ms},
+                                         {"temporal", &TimingRow::temporal_ms},
+                                         {"exposure", &TimingRow::exposure_ms},
+                                         {"color", &TimingRow::color_ms},
+                                         {"write", &TimingRow::write_ms},
+                                         {"total", &TimingRow::total_ms}}};
 
 struct Totals {
   std::array<double, kStages.size()> ms{};

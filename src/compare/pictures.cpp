@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -24,47 +23,7 @@ bool is_exr(const std::string& path) {
   return suffix == ".exr";
 }
 
-// The frame number with which the pattern gives `path`, if there is one: one of the runs of digits in its name.
-std::optional<std::int32_t> frame_of(const std::string& pattern, const std::string& path) {
-  const std::size_t name = path.find_last_of('/') == std::string::npos ? 0 : path.find_last_of('/') + 1;
-  for (std::size_t at = path.find_first_of("0123456789", name); at != std::string::npos;
-       at = path.find_first_of("0123456789", at)) {
-    const std::size_t end = std::min(path.find_first_not_of("0123456789", at), path.size());
-    std::int32_t frame = 0;
-    const auto [rest, problem] = std::from_chars(&path[at], path.data() + end, frame);
-    if (problem == std::errc() && rest == path.data() + end && frame_file_name(pattern, frame) == path) {
-      return frame;
-    }
-    at = end;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
-
-std::vector<std::int32_t> find_frames(const std::string& pattern) {
-  if (!has_frame_number(pattern)) {
-    if (!fs::is_regular_file(pattern)) {
-      throw Error(ErrorKind::input, pattern, "there is no such picture",
-                  "name a picture, or a sequence as name.####.exr");
-    }
-    return {0};
-  }
-  const fs::path folder = fs::path(pattern).parent_path();
-  std::vector<std::int32_t> frames;
-  std::error_code problem;
-  for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, problem)) {
-    const std::string path = (folder / entry.path().filename()).string();
-    if (const auto frame = frame_of((folder / fs::path(pattern).filename()).string(), path)) {
-      frames.push_back(*frame);
-    }
-  }
-  if (frames.empty()) {
-    throw Error(ErrorKind::input, pattern, "there are no such pictures", "check the folder and the name");
-  }
-  std::sort(frames.begin(), frames.end());
-  return frames;
-}
 
 ComparedPicture read_compared_picture(const std::string& path) {
   ComparedPicture result;

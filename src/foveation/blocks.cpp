@@ -53,7 +53,7 @@ class BlockCutter {
     } else {
       const int x_end = std::min(x + side, region_.width_px);
       const int y_end = std::min(y + side, region_.height_px);
-      add(x, y, side, field_.at(0.5 * (x + x_end), 0.5 * (y + y_end)));
+      add(x, y, side, field_.over(x, y, x_end, y_end));
     }
   }
 
@@ -165,7 +165,7 @@ double sum_of_density(const DensityField& field, int width_px, int height_px, in
     const int y_end = std::min(y + kGlancePx, height_px);
     for (int x = 0; x < width_px; x += kGlancePx) {
       const int x_end = std::min(x + kGlancePx, width_px);
-      sums[row] += field.at(0.5 * (x + x_end), 0.5 * (y + y_end)) * (x_end - x) * (y_end - y);
+      sums[row] += field.over(x, y, x_end, y_end) * (x_end - x) * (y_end - y);
     }
   });
   double sum = 0;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "foveation/picture.hpp"
 #include "foveation/terms/terms.hpp"
 #include "gazetrace/error.hpp"
 
@@ -46,6 +47,7 @@ DensityField::DensityField(const FoveationSettings& settings, const PlanarView& 
                            const MapContext& context, DensityModel model)
     : view_(&view),
       contrast_(context.contrast != nullptr && !context.contrast->empty() ? context.contrast : nullptr),
+      picture_(model.from_picture ? context.density : nullptr),
       model_(std::move(model)),
       gaze_(gaze_direction / length(gaze_direction)),
       right_(right_of(gaze_)),
@@ -59,6 +61,9 @@ DensityField::DensityField(const FoveationSettings& settings, const PlanarView& 
                settings.parameters.normalization == FalloffNormalization::display) {
   if (settings.retinal_velocity) {
     velocity_ = retinal_velocity_factor(context.gaze_speed_deg_s);
+  }
+  if (picture_ != nullptr) {
+    per_picture_value_ = 1 / largest_value(*picture_);
   }
   if (context.in_saccade) {
     flight_ = settings.saccade_density;
@@ -106,10 +111,28 @@ double DensityField::limited(double density) const {
 double DensityField::at(double x_px, double y_px) const {
   const Seen point = seen(x_px, y_px);
   double value = density(point.place, 1 / length(point.direction));
+  const double u = x_px / view_->width_px;
+  const double v = y_px / view_->height_px;
   if (contrast_ != nullptr) {
-    value *= contrast_at(*contrast_, x_px / view_->width_px, y_px / view_->height_px);
+    value *= picture_at(*contrast_, u, v);
+  }
+  if (picture_ != nullptr) {
+    value *= picture_at(*picture_, u, v) * per_picture_value_;
   }
   return limited(value);
+}
+
+double DensityField::over(int x_px, int y_px, int x_end_px, int y_end_px) const {
+  if (picture_ == nullptr) {
+    return at(0.5 * (x_px + x_end_px), 0.5 * (y_px + y_end_px));
+  }
+  double sum = 0;
+  for (int y = y_px; y < y_end_px; ++y) {
+    for (int x = x_px; x < x_end_px; ++x) {
+      sum += at(x + 0.5, y + 0.5);
+    }
+  }
+  return sum / (static_cast<double>(x_end_px - x_px) * (y_end_px - y_px));
 }
 
 DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const {
@@ -152,13 +175,16 @@ DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const
       }
     }
   }
-  if (contrast_ != nullptr) {
-    const auto [least, most] = contrast_within(*contrast_, x_px / static_cast<double>(view_->width_px),
-                                               y_px / static_cast<double>(view_->height_px),
-                                               (x_px + side_px) / static_cast<double>(view_->width_px),
-                                               (y_px + side_px) / static_cast<double>(view_->height_px));
-    bounds.least *= least;
-    bounds.most *= most;
+  for (const ImageGray* picture : {contrast_, picture_}) {
+    if (picture != nullptr) {
+      const double scale = picture == picture_ ? per_picture_value_ : 1.0;
+      const auto [least, most] = picture_within(*picture, x_px / static_cast<double>(view_->width_px),
+                                                y_px / static_cast<double>(view_->height_px),
+                                                (x_px + side_px) / static_cast<double>(view_->width_px),
+                                                (y_px + side_px) / static_cast<double>(view_->height_px));
+      bounds.least *= least * scale;
+      bounds.most *= most * scale;
+    }
   }
   return {limited(bounds.least), limited(bounds.most)};
 }

@@ -9,12 +9,17 @@ namespace gazetrace {
 
 class DensityField {
  public:
-  // Keeps references to `view` and `context.contrast`, which must outlive it.
+  // Keeps references to `view`, `context.contrast` and `context.density`, which must outlive it. A model that follows a
+  // picture must have one.
   DensityField(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction,
                const MapContext& context, DensityModel model);
 
   // The density at a point in continuous pixel coordinates, in [floor, 1].
   [[nodiscard]] double at(double x_px, double y_px) const;
+
+  // The density of a rectangle of pixels: that at its middle. Of a model that follows a picture, which need not be
+  // smooth, it is the mean over the pixels.
+  [[nodiscard]] double over(int x_px, int y_px, int x_end_px, int y_end_px) const;
 
   // Bounds of the density within a square of pixels. They hold strictly for models of eccentricity alone that fall, or
   // whose turns are known: by the triangle inequality no point of the square is farther from its centre, in degrees,
@@ -38,6 +43,8 @@ class DensityField {
 
   const PlanarView* view_;
   const ImageGray* contrast_;
+  const ImageGray* picture_;      // nullptr: the model follows none
+  double per_picture_value_ = 1;  // one over the picture's largest value
   DensityModel model_;
   Vec3d gaze_, right_, up_;  // of unit length
   Vec2d gaze_px_;

@@ -5,15 +5,31 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 namespace gazetrace {
+namespace {
+
+bool follows_picture(const std::string& falloff) {
+  return falloff == "map" || falloff == "visible";
+}
+
+}  // namespace
 
 std::vector<FalloffInfo> falloffs() {
   return {
-#define FALLOFF(file, name, description) {name, description},
+#define FALLOFF(file, name, description) {name, description, follows_picture(name)},
 #include "foveation/falloffs.def"
 #undef FALLOFF
   };
+}
+
+bool follows_picture(const FoveationSettings& settings) {
+  return follows_picture(settings.falloff);
+}
+
+bool works_without_gaze(const FoveationSettings& settings) {
+  return settings.falloff == "uniform" || follows_picture(settings);
 }
 
 Falloff make_falloff(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
@@ -30,6 +46,9 @@ FoveationSettings with_limits_of(const DensityModel& model, const FoveationSetti
   FoveationSettings own = settings;
   if (settings.density_floor <= kDefaultDensityFloor) {
     own.density_floor = std::min(settings.density_floor, model.own_floor);
+  }
+  if (model.own_block_samples && settings.block_samples == FoveationSettings().block_samples) {
+    own.block_samples = *model.own_block_samples;
   }
   if (settings.max_block_px == kDefaultMaxBlockPx) {
     const auto largest = std::bit_ceil(static_cast<unsigned>(model.own_block_px));

@@ -41,10 +41,12 @@ struct DensityModel {
   Quantity quantity = Quantity::cutoff_cpd;
   std::function<double(const FalloffPlace&)> value;
   bool uses_meridian = false, uses_radius = false;
+  bool from_picture = false;            // MapContext::density over its largest value multiplies the value
   std::optional<double> full_rate_spp;  // default: the settings' uniform_spp
   // For a model made from regions: the least of their densities and the side of their largest block. The default floor
-  // and the default limit of blocks give way to them (with_limits_of).
+  // and the default limit of blocks give way to them, and so do the default samples of a block (with_limits_of).
   double own_floor = 1;
+  std::optional<double> own_block_samples;
   int own_block_px = 1;
   // Eccentricities at which the value may change from falling to rising or back.
   std::vector<double> turns_deg;
@@ -79,6 +81,13 @@ DensityModel isotropic_density(const Density& density) {
   DensityModel model;
   model.quantity = DensityModel::Quantity::density;
   model.value = [density](const FalloffPlace& place) { return density(place.eccentricity_deg); };
+  return model;
+}
+
+// A model that follows MapContext::density.
+inline DensityModel picture_density() {
+  DensityModel model = isotropic_density([](double) { return 1.0; });
+  model.from_picture = true;
   return model;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -10,6 +13,7 @@
 
 #include "core/parallel.hpp"
 #include "foveation/blocks.hpp"
+#include "foveation/picture.hpp"
 #include "foveation/sites.hpp"
 #include "foveation/whole_counts.hpp"
 #include "gazetrace/error.hpp"
@@ -35,6 +39,17 @@ void check_gaze(const Vec3d& direction) {
     throw Error(ErrorKind::usage, "gaze direction", "it is zero or not finite",
                 "leave it empty for a frame without gaze");
   }
+}
+
+void require_picture(const DensityModel& model, const FoveationSettings& settings, const MapContext& context) {
+  if (!model.from_picture) {
+    return;
+  }
+  if (context.density == nullptr) {
+    throw Error(ErrorKind::usage, "`falloff`", "'" + settings.falloff + "' follows a picture, and there is none",
+                "give MapContext::density");
+  }
+  check_density_picture(*context.density, settings, "density picture");
 }
 
 // The budget in samples per frame, if there is one.
@@ -68,6 +83,10 @@ SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, co
 SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, const PlanarView& view,
                            const Vec3d& gaze_direction, const std::optional<double>& budget,
                            const MapContext& context) {
+  require_picture(model, asked, context);
+  if (model.from_picture) {
+    model.full_rate_spp = largest_value(*context.density);
+  }
   double rate = model.full_rate_spp.value_or(asked.uniform_spp);
   const FoveationSettings settings = with_limits_of(model, asked);
   const DensityField field(settings, view, gaze_direction, context, std::move(model));
@@ -86,21 +105,40 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
 SamplingMap map_of_falloff(const FoveationSettings& settings, const PlanarView& view,
                            const std::optional<Vec3d>& gaze_direction, const MapContext& context) {
   const std::optional<double> budget = budget_of(settings, view);
-  if (!gaze_direction) {
+  if (!gaze_direction && !follows_picture(settings)) {
     return map_of_layout(uniform_layout(settings.uniform_spp, view.width_px, view.height_px), budget, context);
   }
-  check_gaze(*gaze_direction);
-  Falloff falloff = make_falloff(settings, view, *gaze_direction);
+  const Vec3d gaze = gaze_direction.value_or(view.direction(0.5 * view.width_px, 0.5 * view.height_px));
+  check_gaze(gaze);
+  Falloff falloff = make_falloff(settings, view, gaze);
   if (auto* model = std::get_if<DensityModel>(&falloff)) {
-    return map_of_density(std::move(*model), settings, view, *gaze_direction, budget, context);
+    return map_of_density(std::move(*model), settings, view, gaze, budget, context);
   }
   if (context.uncertainty_deg > 0) {
-    falloff = make_falloff(widened(settings, context.uncertainty_deg), view, *gaze_direction);
+    falloff = make_falloff(widened(settings, context.uncertainty_deg), view, gaze);
   }
   return map_of_layout(std::get<Layout>(std::move(falloff)), budget, context);
 }
 
 }  // namespace
+
+void check_density_picture(const ImageGray& density, const FoveationSettings& settings, const std::string& place) {
+  const double most = settings.budget_spp || settings.budget_samples ? std::numeric_limits<float>::max() : kMaxSpp;
+  bool any = false;
+  for (std::size_t i = 0; i < density.pixels.size(); ++i) {
+    const auto value = static_cast<double>(density.pixels[i]);
+    if (!(value >= 0 && value <= most)) {
+      const auto width = static_cast<std::size_t>(density.width_px);
+      throw Error(ErrorKind::input, place, fmt::format("pixel {},{} has the value {}", i % width, i / width, value),
+                  fmt::format("give 0 to {:g}{}", most, most == kMaxSpp ? " samples a pixel" : ""));
+    }
+    any = any || value > 0;
+  }
+  if (!any) {
+    throw Error(ErrorKind::input, place, density.empty() ? "it has no pixels" : "no pixel has a value above 0",
+                "it says where the samples go");
+  }
+}
 
 std::uint64_t SamplingMap::samples() const {
   std::uint64_t sum = 0;
@@ -127,6 +165,7 @@ std::optional<ImageGray> falloff_density(const FoveationSettings& settings, cons
   if (model == nullptr) {
     return std::nullopt;
   }
+  require_picture(*model, settings, context);
   const DensityField field(with_limits_of(*model, settings), view, gaze_direction, context, std::move(*model));
   ImageGray image(view.width_px, view.height_px);
   parallel_for(static_cast<std::size_t>(view.height_px), context.threads, [&](std::size_t row) {

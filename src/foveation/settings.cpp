@@ -88,8 +88,36 @@ void check_density(const FoveationSettings& settings) {
                   "the share of the density that a saccade leaves");
 }
 
+void check_rates(const FoveationSettings& settings) {
+  const bool by_pilot = settings.falloff == "visible";
+  require(settings.min_spp >= 0 && settings.max_spp > 0 && settings.min_spp <= settings.max_spp &&
+              settings.max_spp <= kMaxSamples,
+          "`min-spp`", shown(settings.min_spp) + " to " + shown(settings.max_spp) + " samples a pixel are not possible",
+          "give at least 0, and a `max-spp` of no less, up to " + std::to_string(kMaxSamples));
+  const QualityTarget& target = settings.target;
+  if (!target.is_given()) {
+    return;
+  }
+  require(int{target.relmse.has_value()} + int{target.jod.has_value()} + int{target.time_s.has_value()} == 1,
+          "`target-jod`", "there are several targets", "give one of `target-relmse`, `target-jod` and `time-budget`");
+  const std::string_view place = target.relmse ? "`target-relmse`" : target.jod ? "`target-jod`" : "`time-budget`";
+  require(by_pilot, place, "the fall-off '" + settings.falloff + "' does not know a frame's error",
+          "give `falloff` visible");
+  require(!settings.budget_spp && !settings.budget_samples, place, "there is a budget, too",
+          "give a target, or `budget-spp` or `budget-samples`");
+  if (target.jod) {
+    require(*target.jod > 0 && *target.jod < 10, place, shown(*target.jod) + " JOD are not possible",
+            "give more than 0 and less than 10, such as 9.5");
+  } else {
+    require_positive(place, target.relmse ? *target.relmse : *target.time_s,
+                     target.relmse ? "a relative squared error" : "seconds a frame");
+  }
+}
+
 // Terms multiply a density, which a layout of whole rates does not have.
 void check_terms(const FoveationSettings& settings) {
+  require(settings.falloff != "visible" || settings.contrast_strength == 0, "`contrast-strength`",
+          "the fall-off 'visible' looks at the frame by itself", "give another `falloff`");
   const bool hard_regions = settings.falloff == "regions" && settings.border_blend_deg == 0;
   if (!hard_regions && settings.falloff != "uniform") {
     return;
@@ -151,6 +179,7 @@ void check_foveation(const FoveationSettings& settings) {
   }
   check_angles(settings);
   check_density(settings);
+  check_rates(settings);
   check_terms(settings);
   check_parameters(settings);
 }

@@ -117,6 +117,10 @@ void check_job(const Job& whole, const JobSchema& schema) {
   const JobSettings& job = whole.settings;
   check_registry_name("`falloff`", "falloff", job.foveation.falloff, falloffs());
   check_foveation(job.foveation);
+  if (job.foveation.falloff == "map" && job.foveation.density_map.empty()) {
+    throw Error(ErrorKind::usage, "`density-map`", "the fall-off 'map' has no picture",
+                "name an EXR of samples a pixel");
+  }
   check_registry_name("`filter`", "filter", filter_of(job).name, reconstruction_filters());
   if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job).name, {}}).filter().blurs_blocks) {
     throw Error(ErrorKind::usage, "`enhance-contrast`",
@@ -154,8 +158,9 @@ FilterChoice filter_of(const JobSettings& job) {
   if (job.filter != "auto") {
     return {job.filter, {}};
   }
-  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;  // without any gaze all frames are uniform
-  return choose_filter({.foveated = has_gaze && job.foveation.falloff != "uniform",
+  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;
+  const bool foveated = follows_picture(job.foveation) || (has_gaze && job.foveation.falloff != "uniform");
+  return choose_filter({.foveated = foveated,
                         .blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs(),
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,

@@ -33,6 +33,10 @@ std::vector<std::string> existing(const std::vector<std::string>& paths) {
   return found;
 }
 
+std::vector<std::string> density_files(const JobSettings& job) {
+  return job.foveation.falloff == "map" ? density_map_files(job.foveation) : std::vector<std::string>();
+}
+
 }  // namespace
 
 std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
@@ -46,6 +50,8 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
     const std::vector<std::string> scene = scene_files(job.scene);
     files.insert(files.end(), scene.begin(), scene.end());
   }
+  const std::vector<std::string> densities = density_files(job);
+  files.insert(files.end(), densities.begin(), densities.end());
   return digest_files(files, job.threads);
 }
 
@@ -67,6 +73,10 @@ void digest_job(const JobSettings& job, const std::vector<std::int32_t>& frames,
   }
   for (const std::string& path : job.scene.empty() ? std::vector<std::string>() : scene_files(job.scene)) {
     parts.emplace_back("scene file", digest_of(path));
+  }
+  // Of a sequence all files count, whatever frames are wanted: the parts of a run have one digest.
+  for (const std::string& path : density_files(job)) {
+    parts.emplace_back("density map " + fs::path(path).filename().string(), digest_of(path));
   }
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
   settings.history_digest = digest_settings(parts);

@@ -196,6 +196,16 @@ void load_viewing(ResolvedJob& resolved) {
   }
 }
 
+// A single picture is the same for every frame.
+void check_density_maps(const FoveationSettings& foveation, const FramePlan& plan) {
+  for (const FrameRequest& request : plan.frames) {
+    read_density_map(foveation, request.frame);
+    if (!has_frame_number(foveation.density_map)) {
+      return;
+    }
+  }
+}
+
 // Inputs that are quick to read come first, so that a wrong name is found before a scene is loaded.
 void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
@@ -222,13 +232,16 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   resolved.decisions.emplace_back("camera", decision);
   resolved.frames = choose_frames(job, camera, log, taken_off_ns, scene, decision);
   resolved.decisions.emplace_back("frames", decision);
-  if (log == nullptr) {
+  if (log == nullptr && !follows_picture(job.foveation)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
   make_plan(job, camera, taken_off_ns, resolved);
   const auto& aovs = job.exr.aovs;
   if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
     throw Error(ErrorKind::usage, "`aov`", "there is no eccentricity without gaze", "give `gaze` or `gaze-at`");
+  }
+  if (job.foveation.falloff == "map" && options.scope == ResolveScope::render) {
+    check_density_maps(job.foveation, resolved.plan);
   }
   append(resolved.warnings, camera.warnings);
   warn_of_filter(job, camera, scene, resolved.warnings);

@@ -312,6 +312,35 @@ void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, co
   }
 }
 
+// Opens an EXR and gives what `read` makes of it; what OpenEXR throws becomes Error(input).
+template <class Read>
+auto read_exr(const std::string& path, const Read& read) {
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::input, path, "there is no such file");
+  }
+  try {
+    Imf::InputFile file(path.c_str(), 0);
+    return read(file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(ErrorKind::input, path, std::string("cannot read the EXR: ") + e.what());
+  }
+}
+
+std::string gray_channel(const Imf::ChannelList& channels) {
+  auto second = channels.begin();
+  if (second != channels.end() && ++second == channels.end()) {
+    return channels.begin().name();
+  }
+  for (const char* name : {"Y", "samples_per_pixel", "R"}) {
+    if (channels.findChannel(name) != nullptr) {
+      return name;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 const std::vector<std::string>& exr_compression_names() {
@@ -362,11 +391,7 @@ void write_sampling_map_exr(const std::string& path, const SamplingMap& map, con
 }
 
 ImageRgb read_exr_rgb(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
-    throw Error(ErrorKind::input, path, "there is no such file");
-  }
-  try {
-    Imf::InputFile file(path.c_str(), 0);
+  return read_exr(path, [&](Imf::InputFile& file) {
     const Imath::Box2i window = file.header().dataWindow();
     if (file.header().channels().findChannel("R") == nullptr) {
       throw Error(ErrorKind::input, path, "the EXR has no channel R", "name an RGB picture");
@@ -381,11 +406,25 @@ ImageRgb read_exr_rgb(const std::string& path) {
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
     return image;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw Error(ErrorKind::input, path, std::string("cannot read the EXR: ") + e.what());
-  }
+  });
+}
+
+ImageGray read_exr_gray(const std::string& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    const Imath::Box2i window = file.header().dataWindow();
+    const std::string name = gray_channel(file.header().channels());
+    if (name.empty()) {
+      throw Error(ErrorKind::input, path, "the EXR has several channels, and none of them is Y, samples_per_pixel or R",
+                  "write a picture of one channel");
+    }
+    ImageGray image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+    Imf::FrameBuffer buffer;
+    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, image.pixels.data(), window, sizeof(float),
+                                         sizeof(float) * static_cast<std::size_t>(image.width_px)));
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  });
 }
 
 std::string read_exr_text(const std::string& path, const std::string& attribute) {

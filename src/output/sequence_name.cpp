@@ -3,14 +3,22 @@
 // their # and %.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Placeholder {
   std::size_t length = 0;  // of the placeholder in the pattern, in characters
@@ -70,6 +78,22 @@ Expanded expand(const std::string& pattern, std::int32_t frame) {
   return result;
 }
 
+// The frame number with which the pattern gives `path`, if there is one: one of the runs of digits in its name.
+std::optional<std::int32_t> frame_of(const std::string& pattern, const std::string& path) {
+  const std::size_t name = path.find_last_of('/') == std::string::npos ? 0 : path.find_last_of('/') + 1;
+  for (std::size_t at = path.find_first_of("0123456789", name); at != std::string::npos;
+       at = path.find_first_of("0123456789", at)) {
+    const std::size_t end = std::min(path.find_first_not_of("0123456789", at), path.size());
+    std::int32_t frame = 0;
+    const auto [rest, problem] = std::from_chars(&path[at], path.data() + end, frame);
+    if (problem == std::errc() && rest == path.data() + end && frame_file_name(pattern, frame) == path) {
+      return frame;
+    }
+    at = end;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string frame_file_name(const std::string& pattern, std::int32_t frame, bool require_number) {
@@ -89,6 +113,30 @@ std::string frame_file_name(const std::string& pattern, std::int32_t frame, bool
 
 bool has_frame_number(const std::string& pattern) {
   return expand(pattern, 1).numbers > 0;
+}
+
+std::vector<std::int32_t> find_frames(const std::string& pattern) {
+  if (!has_frame_number(pattern)) {
+    if (!fs::is_regular_file(pattern)) {
+      throw Error(ErrorKind::input, pattern, "there is no such picture",
+                  "name a picture, or a sequence as name.####.exr");
+    }
+    return {0};
+  }
+  const fs::path folder = fs::path(pattern).parent_path();
+  std::vector<std::int32_t> frames;
+  std::error_code problem;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, problem)) {
+    const std::string path = (folder / entry.path().filename()).string();
+    if (const auto frame = frame_of((folder / fs::path(pattern).filename()).string(), path)) {
+      frames.push_back(*frame);
+    }
+  }
+  if (frames.empty()) {
+    throw Error(ErrorKind::input, pattern, "there are no such pictures", "check the folder and the name");
+  }
+  std::sort(frames.begin(), frames.end());
+  return frames;
 }
 
 }  // namespace gazetrace

@@ -21,6 +21,7 @@ template <class Row, class Visit>
 void for_each_column(Row& row, const Visit& visit) {
   visit("frame", row.frame);
   visit("plan_ms", row.plan_ms);
+  visit("pilot_ms", row.pilot_ms);
   visit("trace_ms", row.trace_ms);
   visit("guides_ms", row.guides_ms);
   visit("reconstruct_ms", row.reconstruct_ms);
@@ -32,6 +33,7 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("trace_cpu_ms", row.trace_cpu_ms);
   visit("pixels", row.pixels);
   visit("samples", row.samples);
+  visit("pilot_samples", row.pilot_samples);
   visit("rays_primary", row.rays_primary);
   visit("rays_bounce", row.rays_bounce);
   visit("rays_shadow", row.rays_shadow);
@@ -43,6 +45,8 @@ void for_each_column(Row& row, const Visit& visit) {
     visit(std::string(kRegions[i]) + "_cpu_ms", row.region_cpu_ms[i]);
   }
   visit("exposure_ev", row.exposure_ev);
+  visit("predicted_relmse", row.predicted_relmse);
+  visit("predicted_jod", row.predicted_jod);
   visit("gaze_state", row.gaze_state);
   visit("gaze_event", row.gaze_event);
   visit("gaze_age_ms", row.gaze_age_ms);

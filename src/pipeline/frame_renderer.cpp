@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "pipeline/adaptive_rates.hpp"
 #include "pipeline/first_look.hpp"
 #include "pipeline/frame_stages.hpp"
 
@@ -26,6 +27,21 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;
   ImageGray contrast;
+  ImageGray density;
+  if (foveation.falloff == "map") {
+    density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
+    context.density = &density;
+  }
+  if (foveation.falloff == "visible") {
+    AdaptiveRates adaptive = timed(times.pilot_ms, [&] { return adaptive_rates(scene, request, settings_); });
+    foveation.target = {};
+    foveation.budget_samples.reset();
+    foveation.budget_spp = adaptive.spp;
+    density = std::move(adaptive.rates);
+    context.density = &density;
+    traced.first_look = std::move(adaptive.pilot);
+    traced.prediction = adaptive.prediction;
+  }
   if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
     foveation = less_first_look(foveation, request);
     FirstLook first_look = timed(times.trace_ms, [&] {
@@ -86,6 +102,7 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
   rendered.map = std::move(traced.map);
   rendered.samples = std::move(traced.sparse.stats);
   rendered.first_look = std::move(traced.first_look);
+  rendered.prediction = traced.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
   return rendered;

@@ -121,6 +121,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";
   }
+  if (settings.foveation.falloff == "visible") {
+    return "the sampling map needs a pilot of the frame";
+  }
   if (settings.trace.only_pixel) {
     return "only one pixel is traced";
   }
@@ -130,8 +133,7 @@ std::string needs_all_samples(const PipelineSettings& settings) {
 MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
                           const PipelineSettings& settings) {
   const auto map_of = [&](const FrameRequest& request) {
-    return make_sampling_map(settings.foveation, request.view, request.gaze_direction_render,
-                             map_context(request, settings.trace.seed, settings.threads));
+    return planned_sampling_map(settings.foveation, request, settings.trace.seed, settings.threads);
   };
   std::vector<std::vector<FramePart>> found;
   std::vector<TimingRow> rows;

@@ -22,8 +22,11 @@
 namespace gazetrace {
 namespace {
 
-FrameSettings frame_settings(const PipelineSettings& settings) {
+// What a sequence traces in every frame: what its files show of first hits is summed over the samples.
+FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeline& color) {
   FrameSettings frame = settings;
+  frame.frames_per_second = static_cast<double>(settings.fps.numerator) / static_cast<double>(settings.fps.denominator);
+  frame.display_curve = [&color](double exposure_ev) { return view_display_curve(color, {}, exposure_ev); };
   frame.trace.guides = frame.trace.guides || show_first_hits(settings.output.exr.aovs);
   return frame;
 }
@@ -101,7 +104,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history) {
   SequenceResult result;
-  const FrameRenderer renderer(tracer, frame_settings(settings));
+  const FrameRenderer renderer(tracer, frame_settings(settings, color));
   std::optional<FrameWindow> window;
   if (settings.accumulate.mode == AccumulateMode::two_sided) {
     window.emplace(renderer, plan);
@@ -129,6 +132,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         const RenderedFrame rendered = window ? window->render(request, history) : renderer.render(request, history);
         count_samples(rendered.samples, rendered.first_look, rendered.map, row, result);
         add_times(rendered.times, row);
+        add_prediction(rendered.prediction, row);
         row.exposure_ev = rendered.exposure_ev;
         if (observer.frame_ready) {
           observer.frame_ready(request, rendered.frame, rendered.exposure_ev);

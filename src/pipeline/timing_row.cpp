@@ -46,6 +46,7 @@ TimingRow timing_row(const FrameRequest& request) {
 
 void add_times(const StageTimes& times, TimingRow& row) {
   row.plan_ms += times.plan_ms;
+  row.pilot_ms += times.pilot_ms;
   row.trace_ms += times.trace_ms;
   row.guides_ms += times.guides_ms;
   row.reconstruct_ms += times.reconstruct_ms;
@@ -53,9 +54,18 @@ void add_times(const StageTimes& times, TimingRow& row) {
   row.exposure_ms += times.exposure_ms;
 }
 
+void add_prediction(const Prediction& prediction, TimingRow& row) {
+  const auto text = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.6g}", *value) : std::string();
+  };
+  row.predicted_relmse = text(prediction.relmse);
+  row.predicted_jod = text(prediction.jod);
+}
+
 void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row) {
   add_counts(samples, row);
   add_counts(first_look, row);
+  row.pilot_samples += first_look.samples;
   const std::vector<std::string>& names = timing_regions();
   for (std::size_t i = 0; i < map.regions.size(); ++i) {
     const auto name = std::find(names.begin(), names.end(), map.regions[i].name);

@@ -39,6 +39,7 @@ void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   foveation.falloff = "uniform";
   foveation.retinal_velocity = false;
   foveation.contrast_strength = 0;
+  foveation.target = {};
   foveation.budget_samples.reset();
   foveation.budget_spp.reset();
   if (is_whole(spp)) {
@@ -205,13 +206,19 @@ std::optional<PlannedRow> cost_row(const SweepPlan& plan, const PlannedRow& test
 }
 
 double planned_spp(const PlannedRow& row) {
+  const FoveationSettings& foveation = row.pipeline.foveation;
   double samples = 0;
   double pixels = 0;
   for (const FrameRequest& request : row.plan.frames) {
-    const SamplingMap map = make_sampling_map(row.pipeline.foveation, request.view, request.gaze_direction_render,
-                                              map_context(request, row.pipeline.trace.seed, row.pipeline.threads));
+    const double size = static_cast<double>(request.width_px) * request.height_px;
+    pixels += size;
+    if (foveation.falloff == "visible") {  // a pilot decides; with a target it is not known how many it takes
+      samples += foveation.budget_samples ? static_cast<double>(*foveation.budget_samples)
+                                          : foveation.budget_spp.value_or(foveation.uniform_spp) * size;
+      continue;
+    }
+    const SamplingMap map = planned_sampling_map(foveation, request, row.pipeline.trace.seed, row.pipeline.threads);
     samples += static_cast<double>(map.samples());
-    pixels += static_cast<double>(request.width_px) * request.height_px;
   }
   return samples / pixels;
 }

@@ -292,7 +292,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
                               const TraceSettings& settings) const {
   tracer_->pose(times_);
   const CameraRays rays(camera, map.height_px);
-  const PixelFilterSampler filter(settings.filter);
+  const PixelFilterSampler filter(settings.filter, settings.footprint);
   const SceneFeatures& features = tracer_->render_scene.features;
   const NamedKernel& variant =
       choose_kernel(kernel_features(features, tracer_->render_scene), tracer_->options.all_features);

@@ -394,8 +394,9 @@ int run(int argc, char** argv) {
     PathTracer tracer(world.scene, {});
     const auto uniform = uniform_frames(tracer, world, options);
     for (const FalloffInfo& info : falloffs()) {
-      if (!options.models.empty() &&
-          std::find(options.models.begin(), options.models.end(), info.name) == options.models.end()) {
+      if (info.from_picture ||
+          (!options.models.empty() &&
+           std::find(options.models.begin(), options.models.end(), info.name) == options.models.end())) {
         continue;
       }
       FoveationSettings settings;

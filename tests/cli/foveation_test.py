@@ -28,7 +28,7 @@ class Foveation(harness.CliTest):
 
     def test_every_model_meets_its_budget_and_renders(self):
         self.write("table.csv", TABLE)
-        models = [member["name"] for member in self.names("falloffs")]
+        models = [member["name"] for member in self.names("falloffs") if member["name"] not in ("map", "visible")]
         self.assertIn("geisler-perry", models)
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for model in models:

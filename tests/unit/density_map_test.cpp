@@ -41,6 +41,9 @@ double expected_sum(const SamplingMap& map) {
 TEST(DensityMap, EveryModelGivesAConsistentMap) {
   const PlanarView view = small_view();
   for (const FalloffInfo& info : falloffs()) {
+    if (info.from_picture) {
+      continue;  // density_picture_test.cpp
+    }
     SCOPED_TRACE(info.name);
     for (const Vec2d at : {Vec2d{240, 135}, Vec2d{3.5, 200}, Vec2d{-4000, 100}}) {
       const SamplingMap map = make_sampling_map(model(info.name), view, view.direction(at.x, at.y));
@@ -104,6 +107,9 @@ TEST(DensityMap, BudgetsAreMet) {
   const PlanarView view = view_of_display(display_by_name("paper"), {}, 480, 270);
   const double pixels = 480.0 * 270;
   for (const FalloffInfo& info : falloffs()) {
+    if (info.from_picture) {
+      continue;  // density_picture_test.cpp
+    }
     for (const double spp : {0.13, 1.04, 7.5, 200.0}) {
       for (const Vec2d at : {Vec2d{240, 135}, Vec2d{475, 5}}) {
         FoveationSettings settings = model(info.name);
@@ -159,6 +165,9 @@ TEST(DensityMap, MirrorSymmetricAboutTheGaze) {
   const PlanarView view = view_of_perspective(1.1, 128, 64);
   const Vec3d gaze = view.direction(64, 32);
   for (const FalloffInfo& info : falloffs()) {
+    if (info.from_picture) {
+      continue;  // density_picture_test.cpp
+    }
     FoveationSettings settings = model(info.name);
     const SamplingMap map = make_sampling_map(settings, view, gaze);
     const auto density = falloff_density(settings, view, gaze);
@@ -239,7 +248,7 @@ TEST(DensityMap, ContrastAndFlightTakeTheirPartOfWhatIsLimitedToTheFullRate) {
   const Vec3d gaze = view.direction(240, 135);
   ImageGray contrast(1, 1);
   for (const FalloffInfo& info : falloffs()) {
-    if (info.name == "uniform" || info.name == "regions") {
+    if (info.name == "uniform" || info.name == "regions" || info.from_picture) {
       continue;
     }
     SCOPED_TRACE(info.name);
@@ -309,6 +318,9 @@ TEST(DensityMap, BlocksSeeTheBumpOfATable) {
 TEST(DensityMap, ExtremesGiveMaps) {
   const PlanarView plain = view_of_perspective(1.0, 61, 37);
   for (const FalloffInfo& info : falloffs()) {
+    if (info.from_picture) {
+      continue;  // density_picture_test.cpp
+    }
     SCOPED_TRACE(info.name);
     for (const Vec3d& gaze : {Vec3d{0, 0, 1}, Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, plain.direction(600, -370)}) {
       expect_consistent(make_sampling_map(model(info.name), plain, gaze));

@@ -30,7 +30,7 @@ FoveationSettings model(const std::string& name) {
 std::vector<std::string> density_models() {
   std::vector<std::string> names;
   for (const FalloffInfo& info : falloffs()) {
-    if (info.name != "uniform" && info.name != "regions") {
+    if (info.name != "uniform" && info.name != "regions" && !info.from_picture) {
       names.push_back(info.name);
     }
   }

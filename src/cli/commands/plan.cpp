@@ -37,8 +37,7 @@ struct FrameCounts {
 
 FrameCounts count_samples(const FrameRequest& request, const JobSettings& job) {
   const FoveationSettings& settings = job.foveation;
-  const SamplingMap map = make_sampling_map(settings, request.view, request.gaze_direction_render,
-                                            map_context(request, job.trace.seed, job.threads));
+  const SamplingMap map = planned_sampling_map(settings, request, job.trace.seed, job.threads);
   FrameCounts counts;
   counts.frame = request.frame;
   counts.regions = map.regions;
@@ -122,6 +121,10 @@ int run_plan(const PlanArguments& arguments) {
     const GainOfPlan gain = gain_of_plan(resolved.plan, fps, job.threads);
     print_result(arguments.json ? gain_as_json(gain) : gain_as_text(gain));
     return exit_done;
+  }
+  if (arguments.counts && job.foveation.falloff == "visible") {
+    throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
+                "give another one, or render and read timing.csv");
   }
   if (!arguments.counts) {
     print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));

@@ -19,6 +19,12 @@ JobIdleRule without_gaze() {
   return {"without gaze", [](const JobSettings& job) { return !has_gaze(job); }};
 }
 
+JobIdleRule without_density() {
+  return {"without gaze (unless `falloff` follows a picture)",
+          [](const JobSettings& job) { return !has_gaze(job) && !follows_picture(job.foveation); },
+          [](const JobSettings&) { return std::string("without gaze"); }};
+}
+
 JobIdleRule without_gaze_log() {
   return {"without a gaze log", [](const JobSettings& job) { return !has_gaze_log(job); }};
 }

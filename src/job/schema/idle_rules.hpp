@@ -15,6 +15,8 @@ bool has_gaze_log(const JobSettings& job);
 bool has_gaze(const JobSettings& job);  // from a log or fixed
 
 JobIdleRule without_gaze();
+// Without gaze, except for a fall-off that follows a picture.
+JobIdleRule without_density();
 JobIdleRule without_gaze_log();
 JobIdleRule with_uniform();
 JobIdleRule with_hard_regions();

@@ -72,18 +72,18 @@ void add_budget_options(JobSchema& schema) {
       .value("--block-samples", foveation(&F::block_samples), "SAMPLES", Touch::sampling,
              "Density models: the smallest block is taken that expects so many samples")
       .within(1, 65536)
-      .idle_when({without_gaze(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
       .value("--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
              "Density models: largest side of a block, pixels")
       .within(1, 16)
-      .idle_when({without_gaze(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
       .value("--density-floor", foveation(&F::density_floor), "DENSITY", Touch::sampling,
              "Density models: the least part of the full rate that a place gets; blended regions go below 1/512 where "
              "their own rates do")
       .above(0, 1)
-      .idle_when({without_gaze(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_hard_regions(), with_uniform()});
 }
 
 void add_model_options(JobSchema& schema) {
@@ -131,6 +131,48 @@ void add_model_options(JobSchema& schema) {
   schema.value("--falloff-table", model(&P::table), "FILE", Touch::sampling, "table: a CSV of ecc_deg,density")
       .decides_by_file()
       .idle_when({with_other_falloffs({"table"})});
+  schema
+      .value(
+          "--density-map", foveation(&FoveationSettings::density_map), "FILE", Touch::sampling,
+          "map: an EXR of samples a pixel, or of relative rates where there is a budget; of any size, stretched over "
+          "the frame. With #### in its name, one for each frame")
+      .decides_by_file()
+      .idle_when({with_other_falloffs({"map"})});
+}
+
+void add_pilot_options(JobSchema& schema) {
+  using F = FoveationSettings;
+  schema
+      .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
+             "visible: the least samples a pixel, anywhere")
+      .within(0, kMostSamples)
+      .idle_when({with_other_falloffs({"visible"})});
+  schema
+      .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
+             "visible: the most samples a pixel, anywhere")
+      .above(0, kMostSamples)
+      .idle_when({with_other_falloffs({"visible"})});
+  schema
+      .value("--target-relmse", at(&JobSettings::foveation, &F::target, &QualityTarget::relmse), "ERROR",
+             Touch::sampling,
+             "visible: as many samples as it takes until a pilot expects a frame of this relative squared error; "
+             "excludes budgets")
+      .above(0)
+      .need("`falloff` visible");
+  schema
+      .value(
+          "--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
+          "visible: the same until a clip of such frames is expected to score so many JOD in FovVideoVDP, where 10 is "
+          "perfect")
+      .above(0, 10)
+      .need("`falloff` visible");
+  schema
+      .value("--time-budget", at(&JobSettings::foveation, &F::target, &QualityTarget::time_s), "SECONDS",
+             Touch::sampling,
+             "visible: as many samples as there is time for, pilot and filter included, in every frame; pictures then "
+             "depend on the machine")
+      .above(0)
+      .need("`falloff` visible");
 }
 
 void add_term_options(JobSchema& schema) {
@@ -158,7 +200,7 @@ void add_term_options(JobSchema& schema) {
 void add_sampling_options(JobSchema& schema) {
   schema.group("Where the samples go");
   JobIdleRule without_any_gaze = without_gaze();
-  without_any_gaze.holds = [](const JobSettings& job) { return !has_gaze(job) && job.foveation.falloff != "uniform"; };
+  without_any_gaze.holds = [](const JobSettings& job) { return !has_gaze(job) && !works_without_gaze(job.foveation); };
   schema
       .value("--falloff", foveation(&FoveationSettings::falloff), "NAME", Touch::sampling,
              "How sampling falls off with eccentricity ('gazetrace list falloffs')")
@@ -173,6 +215,7 @@ void add_sampling_options(JobSchema& schema) {
   add_budget_options(schema);
   schema.group("Density models ('gazetrace list falloffs')");
   add_model_options(schema);
+  add_pilot_options(schema);
   add_term_options(schema);
 }
 

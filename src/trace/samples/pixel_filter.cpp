@@ -21,7 +21,8 @@ double blackman_harris_distribution(double x) {
 
 }  // namespace
 
-PixelFilterSampler::PixelFilterSampler(PixelFilter filter) : box_(filter == PixelFilter::box) {
+PixelFilterSampler::PixelFilterSampler(PixelFilter filter, double scale)
+    : box_(filter == PixelFilter::box), scale_(static_cast<float>(scale)) {
   for (std::size_t i = 0; i <= kSteps; ++i) {
     const double target = static_cast<double>(i) / kSteps;
     double low = 0;

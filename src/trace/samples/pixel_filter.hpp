@@ -13,10 +13,11 @@ namespace gazetrace {
 
 class PixelFilterSampler {
  public:
-  explicit PixelFilterSampler(PixelFilter filter);
+  explicit PixelFilterSampler(PixelFilter filter, double scale = 1);  // the filter is `scale` times as wide
   // Maps [0,1)^2 to an offset from the pixel's centre, in pixels.
   [[nodiscard]] Vec2f offset(float u, float v) const {
-    return box_ ? Vec2f{u - 0.5F, v - 0.5F} : Vec2f{lookup(u), lookup(v)};
+    const Vec2f at = box_ ? Vec2f{u - 0.5F, v - 0.5F} : Vec2f{lookup(u), lookup(v)};
+    return {at.x * scale_, at.y * scale_};
   }
 
  private:
@@ -28,6 +29,7 @@ class PixelFilterSampler {
     return inverse_[i] + f * (inverse_[i + 1] - inverse_[i]);
   }
   bool box_ = true;
+  float scale_ = 1;
   std::array<float, kSteps + 2> inverse_{};  // the inverse of the filter's distribution function, at equal steps
 };
 

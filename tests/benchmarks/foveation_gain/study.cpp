@@ -82,7 +82,7 @@ class Study {
                settings.clip_frames),
         rows_(settings.csv) {
     for (const FalloffInfo& info : falloffs()) {
-      if (info.name != "uniform" &&
+      if (info.name != "uniform" && !info.from_picture &&
           (settings_.models.empty() ||
            std::find(settings_.models.begin(), settings_.models.end(), info.name) != settings_.models.end())) {
         models_.push_back(info.name);

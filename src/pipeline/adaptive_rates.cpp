@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/adaptive_rates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/stopwatch.hpp"
+#include "gazetrace/error.hpp"
+#include "pipeline/noise_estimate.hpp"
+#include "pipeline/visible_noise.hpp"
+
+namespace gazetrace {
+namespace {
+
+// A first pilot takes about this part of a budget, within these bounds of samples a pixel (of the pilot).
+constexpr double kFirstShare = 0.03;
+constexpr double kLeastFirst = 2, kMostFirst = 64;
+// Further pilots take at most this part of the frame's samples, unless that would be less than kLeastRound a pixel. In
+// frames of 512 rows and more they take a sixty-fourth; only small frames have pilots that are large beside them.
+constexpr double kRoundShare = 1.0 / 32;
+constexpr double kLeastRound = 4;
+// On a budget a second pilot is left out where it would take more than this part.
+constexpr double kMostSecond = 0.1;
+constexpr double kFirstForTarget = 16;
+constexpr int kMostRounds = 3;        // after the first
+constexpr double kCloseEnough = 1.1;  // a change of the rate that needs no further round
+constexpr double kMostGrowth = 16;    // of the rate from one round to the next
+constexpr double kDefensiveShare = 0.125;
+
+double pixels_of(const FrameRequest& request) {
+  return static_cast<double>(request.width_px) * request.height_px;
+}
+
+double mean_of(const ImageGray& image) {
+  double sum = 0;
+  for (const float value : image.pixels) {
+    sum += static_cast<double>(value);
+  }
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+ImageGray clamped(const ImageGray& wanted, double scale, double least, double most) {
+  ImageGray rates = wanted;
+  for (float& value : rates.pixels) {
+    value = static_cast<float>(std::clamp(scale * static_cast<double>(value), least, most));
+  }
+  return rates;
+}
+
+// Of light that a pilot missed altogether it says nothing: no rate is below a share of the mean.
+ImageGray defended(ImageGray wanted) {
+  const auto least = static_cast<float>(kDefensiveShare * mean_of(wanted));
+  for (float& value : wanted.pixels) {
+    value = std::max(value, least);
+  }
+  return wanted;
+}
+
+void add_counts(const TraceStats& from, TraceStats& to) {
+  to.samples += from.samples;
+  to.rays_primary += from.rays_primary;
+  to.rays_bounce += from.rays_bounce;
+  to.rays_shadow += from.rays_shadow;
+  to.rejected_rays += from.rejected_rays;
+  to.non_finite_samples += from.non_finite_samples;
+  to.regions.insert(to.regions.end(), from.regions.begin(), from.regions.end());
+  to.kernel = from.kernel;
+}
+
+class RateFinder {
+ public:
+  RateFinder(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings)
+      : scene_(scene), request_(request), settings_(settings), noise_(request, settings) {}
+
+  AdaptiveRates find() {
+    const QualityTarget& target = settings_.foveation.target;
+    if (target.relmse || target.jod) {
+      meet_target();
+    } else if (target.time_s) {
+      spend_time(*target.time_s);
+    } else {
+      spend(budget());
+    }
+    result_.spp = mean_of(result_.rates);
+    return std::move(result_);
+  }
+
+ private:
+  // Samples a pixel, the pilot's among them.
+  [[nodiscard]] double budget() const {
+    const FoveationSettings& foveation = settings_.foveation;
+    return foveation.budget_samples ? static_cast<double>(*foveation.budget_samples) / pixels_of(request_)
+                                    : foveation.budget_spp.value_or(foveation.uniform_spp);
+  }
+
+  void look(const ImageGray& rates) {
+    Pilot pilot = trace_pilot(scene_, request_, settings_, rates, static_cast<std::uint64_t>(result_.rounds));
+    ++result_.rounds;
+    add_counts(pilot.stats, result_.pilot);
+    noise_.learn(std::move(pilot));
+  }
+  // At `rates`, or in proportion to them. As many samples a pixel as the frame would be the best to learn from.
+  [[nodiscard]] double share_of_round() const {
+    const double cell = pilot_cell_px(request_);
+    return std::clamp(std::max(kRoundShare * cell * cell, kLeastRound / mean_of(result_.rates)), 0.0, 1.0);
+  }
+  void look_again() { look(clamped(result_.rates, share_of_round(), 0, settings_.foveation.max_spp)); }
+  void look(double spp) { look(ImageGray(1, 1, static_cast<float>(spp))); }
+
+  // A frame whose error is measured by its relative square is given the best rates for that.
+  [[nodiscard]] ImageGray wanted_rates() const {
+    return defended(settings_.foveation.target.relmse ? noise_.wanted_for_relmse() : noise_.wanted_by_eye());
+  }
+
+  [[nodiscard]] double pilot_spp() const { return static_cast<double>(result_.pilot.samples) / pixels_of(request_); }
+
+  void set_rates(double spp) {
+    const FoveationSettings& foveation = settings_.foveation;
+    result_.rates = rates_between(wanted_rates(), spp, foveation.min_spp, foveation.max_spp);
+  }
+
+  // A second pilot looks at the frame at the rates that the first one asks for.
+  void spend(double spp) {
+    const double cell = pilot_cell_px(request_);
+    look(std::clamp(std::round(kFirstShare * spp * cell * cell), kLeastFirst, kMostFirst));
+    set_rates(left_of(spp));
+    if (share_of_round() * mean_of(result_.rates) < kMostSecond * spp * cell * cell) {
+      look_again();
+      set_rates(left_of(spp));
+    }
+    predict();
+  }
+
+  [[nodiscard]] double left_of(double spp) const {
+    const double left = spp - pilot_spp();
+    if (!(left > 0)) {
+      throw Error(
+          ErrorKind::usage, settings_.foveation.budget_samples ? "`budget-samples`" : "`budget-spp`",
+          fmt::format("the pilot of `falloff` visible takes {} samples of a frame of {} x {} pixels, the budget "
+                      "is {:.0f}",
+                      result_.pilot.samples, request_.width_px, request_.height_px, spp * pixels_of(request_)),
+          "give more");
+    }
+    return left;
+  }
+
+  // The time of a sample, of first hits and of the filter is that of the pilot, which has as many pixels less.
+  void spend_time(double seconds) {
+    const Stopwatch watch;
+    look(kFirstForTarget);
+    const StageTimes& times = noise_.pilot().times;
+    const double pilot_pixels = static_cast<double>(noise_.pilot().luminance.pixels.size());
+    const double sample_ms = times.trace_ms / std::max(1.0, static_cast<double>(result_.pilot.samples));
+    const double fixed_ms = (times.guides_ms + times.reconstruct_ms) * pixels_of(request_) / pilot_pixels;
+    const double wanted = (1e3 * seconds - watch.elapsed_ms() - fixed_ms) / sample_ms / pixels_of(request_);
+    set_rates(std::clamp(wanted, std::max(settings_.foveation.min_spp, 0.01), settings_.foveation.max_spp));
+    predict();
+  }
+
+  void predict() {
+    result_.prediction.relmse = noise_.relmse_at(result_.rates);
+    if (noise_.is_seen()) {
+      result_.prediction.jod = noise_.jod_of(noise_.q_at(result_.rates));
+    }
+  }
+
+  // How far the frame is from the target at these rates: 1 where it is met, more where it is noisier. About a power of
+  // the rate.
+  [[nodiscard]] double excess_at(const ImageGray& rates) const {
+    const QualityTarget& target = settings_.foveation.target;
+    return target.relmse ? noise_.relmse_at(rates) / *target.relmse : noise_.q_at(rates) / noise_.q_of(*target.jod);
+  }
+
+  // Each round looks at the frame at the rates that the one before asks for. So the filter's gain is seen where it will
+  // be, and only what is left of a change in the rate is extrapolated, as if the error fell with 1 / n.
+  void meet_target() {
+    look(kFirstForTarget);
+    double before = kFirstForTarget;
+    for (int round = 0;; ++round) {
+      find_rates(before);
+      const double spp = mean_of(result_.rates);
+      const double change = spp / before;
+      if (round == kMostRounds || (round > 0 && change < kCloseEnough && change > 1 / kCloseEnough)) {
+        predict();
+        return;
+      }
+      look_again();
+      before = spp;
+    }
+  }
+
+  // The rates at which the target is met, or that are kMostGrowth times as many as before, or as few: by secants in the
+  // logarithms of rate and excess.
+  void find_rates(double before) {
+    constexpr int kMostSteps = 12;
+    constexpr double kTolerance = 0.004;
+    const FoveationSettings& foveation = settings_.foveation;
+    const ImageGray wanted = wanted_rates();
+    const double start = std::log(before / std::max(mean_of(wanted), 1e-30));
+    const double reach = std::log(kMostGrowth);
+    double at = start;
+    double slope = 1;
+    double last_at = 0;
+    double last_excess = 0;
+    for (int step = 0; step < kMostSteps; ++step) {
+      result_.rates = clamped(wanted, std::exp(at), foveation.min_spp, foveation.max_spp);
+      const double excess = std::log(std::max(excess_at(result_.rates), 1e-12));
+      if (step > 0 && at != last_at) {
+        slope = std::clamp((last_excess - excess) / (at - last_at), 0.3, 3.0);
+      }
+      last_at = at;
+      last_excess = excess;
+      const double next = std::clamp(at + excess / slope, start - reach, start + reach);
+      if (std::abs(excess) < kTolerance || next == at) {
+        return;
+      }
+      at = next;
+    }
+  }
+
+  const PosedScene& scene_;
+  const FrameRequest& request_;
+  const FrameSettings& settings_;
+  VisibleNoise noise_;
+  AdaptiveRates result_;
+};
+
+}  // namespace
+
+ImageGray rates_between(const ImageGray& wanted, double spp, double least, double most) {
+  least = std::min(least, spp);
+  most = std::max(most, spp);
+  if (!(mean_of(wanted) > 0)) {
+    return ImageGray(wanted.width_px, wanted.height_px, static_cast<float>(spp));
+  }
+  // The mean grows with the scale, from `least` to `most`.
+  double low = 0;
+  double high = spp / mean_of(wanted);
+  for (int step = 0; step < 200 && mean_of(clamped(wanted, high, least, most)) < spp; ++step) {
+    low = high;
+    high *= 2;
+  }
+  for (int step = 0; step < 50; ++step) {
+    const double middle = 0.5 * (low + high);
+    (mean_of(clamped(wanted, middle, least, most)) < spp ? low : high) = middle;
+  }
+  return clamped(wanted, high, least, most);
+}
+
+AdaptiveRates adaptive_rates(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings) {
+  return RateFinder(scene, request, settings).find();
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/visible_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "pipeline/noise_estimate.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kEpsilon = 0.01;  // that of the metric relmse
+constexpr int kLeastSidePx = 8;    // of VisibleErrorModel
+
+double squared(double value) {
+  return value * value;
+}
+
+double per_luminance(const Pilot& pilot, std::size_t i) {
+  return squared(static_cast<double>(pilot.luminance.pixels[i])) + kEpsilon;
+}
+
+// The squared error that one sample would have.
+double error_of_one(const Pilot& pilot, std::size_t i) {
+  return static_cast<double>(pilot.squared_error.pixels[i]) * static_cast<double>(pilot.spp.pixels[i]);
+}
+
+// Two pilots differ by the noise of both; relative to the luminance and to the rates, of which they may have different
+// ones, it is of one kind everywhere.
+ImageGray relative_difference(const Pilot& a, const Pilot& b) {
+  ImageGray difference(a.luminance.width_px, a.luminance.height_px);
+  for (std::size_t i = 0; i < difference.pixels.size(); ++i) {
+    const double light =
+        0.5 * (static_cast<double>(a.luminance.pixels[i]) + static_cast<double>(b.luminance.pixels[i]));
+    const double spread = 1 / static_cast<double>(a.spp.pixels[i]) + 1 / static_cast<double>(b.spp.pixels[i]);
+    const double raw = static_cast<double>(a.luminance.pixels[i]) - static_cast<double>(b.luminance.pixels[i]);
+    const double value = raw / std::sqrt((squared(light) + kEpsilon) * spread);
+    difference.pixels[i] = std::isfinite(value) ? static_cast<float>(value) : 0.0F;
+  }
+  return difference;
+}
+
+}  // namespace
+
+VisibleNoise::VisibleNoise(const FrameRequest& request, const FrameSettings& settings)
+    : request_(request), settings_(settings) {
+  if (std::min(request.width_px, request.height_px) >= kLeastSidePx) {
+    VisibleErrorSettings seen;
+    seen.view = request.view;
+    seen.frames_per_second = settings.frames_per_second;
+    seen.cell_px = pilot_cell_px(request);
+    seen.threads = settings.threads;
+    model_.emplace(seen);
+  }
+}
+
+void VisibleNoise::learn(Pilot pilot) {
+  if (model_) {
+    TemporalHistory none;
+    const double ev = choose_exposure_ev(pilot.radiance, request_.t_video_ns, settings_.exposure, none);
+    display_ = settings_.display_curve ? settings_.display_curve(ev) : linear_display_curve({}, ev);
+    if (pilot_) {
+      spectrum_ = measured_spectrum(relative_difference(*pilot_, pilot), settings_.threads);
+    }
+  }
+  pilot_ = std::move(pilot);
+}
+
+ImageGray VisibleNoise::relative_squared_error() const {
+  ImageGray relative(pilot_->luminance.width_px, pilot_->luminance.height_px);
+  for (std::size_t i = 0; i < relative.pixels.size(); ++i) {
+    relative.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / per_luminance(*pilot_, i));
+  }
+  return pooled(relative, settings_.threads);
+}
+
+ImageGray VisibleNoise::wanted_for_relmse() const {
+  ImageGray wanted = relative_squared_error();
+  for (float& value : wanted.pixels) {
+    value = std::sqrt(value);
+  }
+  return wanted;
+}
+
+ImageGray VisibleNoise::wanted_by_eye() const {
+  if (!model_) {
+    return wanted_for_relmse();
+  }
+  const ImageGray weights = model_->weights(picture(), {error_at(pilot_->spp)});
+  ImageGray error = relative_squared_error();
+  for (std::size_t i = 0; i < error.pixels.size(); ++i) {
+    error.pixels[i] = static_cast<float>(static_cast<double>(error.pixels[i]) * per_luminance(*pilot_, i));
+  }
+  return visible_allocation(weights, error, settings_.threads);
+}
+
+double VisibleNoise::relmse_at(const ImageGray& rates) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
+    sum += error_of_one(*pilot_, i) / per_luminance(*pilot_, i) / static_cast<double>(rates.pixels[i]);
+  }
+  return sum / static_cast<double>(rates.pixels.size());
+}
+
+ErrorComponent VisibleNoise::error_at(const ImageGray& rates) const {
+  ErrorComponent error;
+  error.squared_error = ImageGray(rates.width_px, rates.height_px);
+  for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
+    error.squared_error.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / static_cast<double>(rates.pixels[i]));
+  }
+  error.spectrum = spectrum_;
+  return error;
+}
+
+VisiblePicture VisibleNoise::picture() const {
+  return {pilot_->luminance, display_, request_.gaze_direction_render};
+}
+
+double VisibleNoise::q_at(const ImageGray& rates) const {
+  return model_->predict(picture(), {error_at(rates)}).q;
+}
+
+double VisibleNoise::jod_of(double q) {
+  return visible_jod({q});
+}
+
+double VisibleNoise::q_of(double jod) {
+  // fovvideovdp_jod() falls with q.
+  double low = 0;
+  double high = 1;
+  while (fovvideovdp_jod(high) > jod && high < 1e12) {
+    high *= 2;
+  }
+  for (int step = 0; step < 80; ++step) {
+    const double middle = 0.5 * (low + high);
+    (fovvideovdp_jod(middle) > jod ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace gazetrace

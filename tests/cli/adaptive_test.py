@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""--falloff visible: rates by a pilot, on a budget or until a target is expected to be met."""
+
+import csv
+
+import harness
+
+VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--falloff", "visible"]
+
+
+class Adaptive(harness.CliTest):
+    def rows(self, folder):
+        with open(self.folder / folder / "timing.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def render(self, folder, *more):
+        self.run_ok("render", "box.gltf", *VIEW, *more, "-o", f"{folder}/f.####.exr")
+        return self.rows(folder)
+
+    def test_budgets_and_targets(self):
+        row, = self.render("budget", "--budget-spp", "9")
+        self.assertAlmostEqual(int(row["samples"]), 9 * 64 * 40, delta=2)
+        self.assertGreater(int(row["pilot_samples"]), 0)
+        self.assertGreater(float(row["pilot_ms"]), 0)
+        self.assertGreater(float(row["predicted_relmse"]), 0)
+        self.assertLess(float(row["predicted_jod"]), 10)
+        samples = []
+        for target in ("0.01", "0.001"):
+            row, = self.render(f"relmse-{target}", "--target-relmse", target, "--filter", "none")
+            self.assertAlmostEqual(float(row["predicted_relmse"]) / float(target), 1, delta=0.05)
+            samples.append(int(row["samples"]) - int(row["pilot_samples"]))
+        self.assertGreater(samples[1], 3 * samples[0])
+        samples = []
+        for target in ("8", "9.5"):
+            row, = self.render(f"jod-{target}", "--target-jod", target, "--filter", "none", *harness.SCREEN, "--gaze-at", "0.4,0.5")
+            self.assertAlmostEqual(float(row["predicted_jod"]), float(target), delta=0.05)
+            samples.append(int(row["samples"]) - int(row["pilot_samples"]))
+        self.assertGreater(samples[1], samples[0])
+
+    def test_the_same_bytes_by_threads_parts_and_resuming(self):
+        common = ["--target-relmse", "0.02", "--frames", "1-3"]
+        self.render("one", *common, "--threads", "1")
+        self.render("three", *common, "--threads", "3")
+        whole = self.pictures("one")
+        self.assertEqual(len(whole), 3)
+        self.assertEqual(whole, self.pictures("three"))
+        for part in ("1", "2-3"):
+            self.run_ok("render", "box.gltf", *VIEW, *common[:2], "--frames", part, "--part", "-o", "parts/f.####.exr")
+        self.run_ok("merge", "parts")
+        self.assertEqual(whole, self.pictures("parts"))
+        (self.folder / "three/f.0002.exr").unlink()
+        self.render("three", *common, "--resume")
+        self.assertEqual(whole, self.pictures("three"))
+        self.render("other", *common, "--seed", "5")
+        self.assertNotEqual(whole, self.pictures("other"))
+
+    def test_time(self):
+        row, = self.render("time", "--time-budget", "0.2")
+        self.assertGreater(int(row["samples"]), int(row["pilot_samples"]))
+
+    def test_what_is_refused(self):
+        render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
+        for words, *arguments in [
+            (["--target-relmse", "visible"], "--target-relmse", "0.01"),
+            (["--target-jod", "budget"], "--falloff", "visible", "--target-jod", "9", "--budget-spp", "3"),
+            (["--target-jod", "several"], "--falloff", "visible", "--target-jod", "9", "--target-relmse", "0.01"),
+            (["--target-jod", "10"], "--falloff", "visible", "--target-jod", "10"),
+            (["--time-budget"], "--falloff", "visible", "--time-budget", "0"),
+            (["--min-spp"], "--falloff", "visible", "--min-spp", "5", "--max-spp", "4"),
+            (["--contrast-strength"], "--falloff", "visible", "--contrast-strength", "1"),
+            (["--sample-range", "pilot"], "--falloff", "visible", "--sample-range", "0:2", "--filter", "none"),
+            (["--budget-spp", "pilot"], "--falloff", "visible", "--budget-spp", "0.01"),
+        ]:
+            with self.subTest(arguments=arguments):
+                result = self.run_program(*render, *arguments)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                for word in words:
+                    self.assertIn(word, result.stderr)
+        counts = self.run_program("plan", "--counts", "--size", "64x40", "--falloff", "visible")
+        self.assertEqual(counts.returncode, 2)
+        self.assertIn("pilot", counts.stderr)
+
+
+if __name__ == "__main__":
+    harness.main()
