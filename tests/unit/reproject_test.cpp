@@ -95,8 +95,7 @@ TEST(Reproject, APlaneSeenAtASlantIsStillThatPlane) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       motion.depth_m(x, y) = static_cast<float>(view.depth_on_plane(center, 2, normal, {x + 0.5, y + 0.5}));
-      motion.other_depth_m(x, y) =
-          static_cast<float>(view.depth_on_plane(center, 2, normal, motion.other_px(x, y)));
+      motion.other_depth_m(x, y) = static_cast<float>(view.depth_on_plane(center, 2, normal, motion.other_px(x, y)));
       motion.normal(x, y) = motion.other_normal(x, y) = to_float(normal);
     }
   }

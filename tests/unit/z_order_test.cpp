@@ -290,8 +290,9 @@ double edge(const Sample& sample) {
 
 // The amplitude of the error's low spatial frequencies is below a share of that of independent pixels: energies of the
 // same seeds are compared by Student's t, at a level of 1e-3 over all comparisons. Another implementation of the method
-// reached shares of 0.34 to 0.08 in the three lowest octaves with one pair of dimensions, 0.48 to 0.33 with two and 0.64
-// to 0.54 with four. Its integrands were others, and squares off the curve's own see less: these bounds leave room.
+// reached shares of 0.34 to 0.08 in the three lowest octaves with one pair of dimensions, 0.48 to 0.33 with two and
+// 0.64 to 0.54 with four. Its integrands were others, and squares off the curve's own see less: these bounds leave
+// room.
 TEST(ZOrder, TheErrorOfNeighboursCancels) {
   struct Case {
     const char* name;
