@@ -17,12 +17,14 @@ namespace gazetrace {
 namespace {
 
 constexpr int kBands = 3;
+constexpr float kMostShare = 4;  // of a block's residual, in a pixel that is much brighter than the rest of it
 constexpr std::size_t kRowsPerTask = 8;
 
 // Of a site, or of a pixel between sites.
 struct Residual {
   Vec3f radiance;
   float replica = 0;  // of the error of its luminance
+  float shown = 0;    // mean luminance of the picture
 };
 
 // Mean squares, relative to the picture's own.
@@ -32,10 +34,10 @@ struct Power {
 };
 
 Residual operator+(const Residual& a, const Residual& b) {
-  return {a.radiance + b.radiance, a.replica + b.replica};
+  return {a.radiance + b.radiance, a.replica + b.replica, a.shown + b.shown};
 }
 Residual operator*(float w, const Residual& a) {
-  return {w * a.radiance, w * a.replica};
+  return {w * a.radiance, w * a.replica, w * a.shown};
 }
 Power operator+(const Power& a, const Power& b) {
   return {a.residual + b.residual, a.noise + b.noise, a.spread + b.spread};
@@ -158,6 +160,7 @@ std::vector<Residual> residuals_of_sites(const FilterInput& input, const Surface
       const float share = 1.0F / static_cast<float>(map.sites[i].pixels);
       Residual& residual = residuals[i];
       residual.radiance = input.values.value(i).radiance - share * mean;
+      residual.shown = share * luminance(mean);
       const float difference = input.sparse.half_difference[i];
       if (difference != 0) {
         residual.replica = difference - share * replica;
@@ -172,9 +175,10 @@ std::vector<Residual> residuals_of_sites(const FilterInput& input, const Surface
   return residuals;
 }
 
-// Interpolates between the centres of blocks.
-Image<Residual> residuals_of_pixels(const FilterInput& input, const std::vector<Residual>& of_site,
-                                    const Image<std::uint32_t>& site_of_pixel) {
+// Interpolates between the centres of blocks. The pixels of a block share its residual in proportion to what they show:
+// what is wrong with light is wrong by a factor.
+Image<Residual> residuals_of_pixels(const FilterInput& input, const SurfacePicture& picture,
+                                    const std::vector<Residual>& of_site, const Image<std::uint32_t>& site_of_pixel) {
   const SamplingMap& map = input.map;
   Image<Residual> residuals(map.width_px, map.height_px);
   for_each_row(map.height_px, input.threads, [&](int y) {
@@ -196,6 +200,9 @@ Image<Residual> residuals_of_pixels(const FilterInput& input, const std::vector<
       };
       residuals(x, y) = ((1.0F - fx) * (1.0F - fy)) * site(0, 0) + (fx * (1.0F - fy)) * site(1, 0) +
                         ((1.0F - fx) * fy) * site(0, 1) + (fx * fy) * site(1, 1);
+      const float shown = residuals(x, y).shown;
+      const float here = luminance(picture.radiance(x, y));
+      residuals(x, y) = (shown > 0 ? std::min(here / shown, kMostShare) : 1.0F) * residuals(x, y);
     }
   });
   return residuals;
@@ -242,7 +249,7 @@ float share_to_keep(const Power& near, const Power& wide, float doubt) {
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, SurfacePicture& picture) {
   const SamplingMap& map = input.map;
-  Image<Residual> finer = residuals_of_pixels(input, residuals_of_sites(input, picture), site_of_pixel);
+  Image<Residual> finer = residuals_of_pixels(input, picture, residuals_of_sites(input, picture), site_of_pixel);
   Image<Residual> coarser(map.width_px, map.height_px);
   Image<Residual> scratch(map.width_px, map.height_px);
   Image<Power> power(map.width_px, map.height_px);
