@@ -2,13 +2,13 @@
 // Flicker: temporal contrast that a test sequence has in excess of its reference, in multiples of what the eye can just
 // see at that place of the visual field.
 //
-// Luminance is averaged over square cells of four sizes, s = 0..3: n_s = 2^s max(1, round(ppd / 8)) pixels a side, so
-// that two cells are one cycle of rho_s = ppd / (2 n_s), about 4, 2, 1 and 0.5 cycles per degree. For each cell a
+// Luminance is averaged over square patches of four sizes, s = 0..3: n_s = 2^s max(1, round(ppd / 8)) pixels a side, so
+// that two patches are one cycle of rho_s = ppd / (2 n_s), about 4, 2, 1 and 0.5 cycles per degree. For each patch a
 // discrete Fourier transform of the last N = round(fps) frames (one second), with the mean subtracted and under a Hann
 // window, gives the frequencies f_k = k fps / N, k = 1 .. N/2. With P_k the power at f_k of the luminance divided by
 // the reference's mean luminance L in that second (at least 0.1 cd/m2),
 //   F = max over s of max(0, sum over k of 2 S(rho_s, f_k, L, e)^2 (P_k of the test - P_k of the reference)),
-// where e is the eccentricity of the cell's middle from this frame's gaze. A cell whose luminance oscillates with a
+// where e is the eccentricity of the patch's middle from this frame's gaze. A patch whose luminance oscillates with a
 // contrast (amplitude over mean) of A has P = A^2 / 2 at one frequency, and so F = (A S)^2: a value of 1 is just
 // visible. The printed number is the root of the mean of F.
 //
@@ -18,8 +18,8 @@
 // cortical magnification of Dougherty et al. 2003), evaluated at every f_k.
 //
 // It leaves out colour, changes slower than a second or faster than half the frame rate, and that the eye may follow
-// what moves (cells are fixed to the screen). Two equally noisy sequences do not score 0, since the excess is taken
-// cell by cell; the score of one reference against another is the noise floor. A picture that never changes scores 0
+// what moves (patches are fixed to the screen). Two equally noisy sequences do not score 0, since the excess is taken
+// patch by patch; the score of one reference against another is the noise floor. A picture that never changes scores 0
 // however wrong it is: read it together with "temporal_bias".
 #pragma once
 
@@ -51,7 +51,7 @@ struct FlickerSettings {
   int threads = 0;  // the same bits for any number
 };
 
-// Its state is the last second of every cell in both sequences, with its spectrum, so that its memory does not grow
+// Its state is the last second of every patch in both sequences, with its spectrum, so that its memory does not grow
 // with time.
 class FlickerMeter {
  public:

@@ -3,6 +3,7 @@
 // (pipeline.hpp) makes sequences of files with it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -33,7 +34,8 @@ struct FrameSettings {
   int threads = 0;              // 0: all
 };
 
-// A frame depends on those before it.
+// A frame depends on what became of those before it. That it reads the samples of other frames (two_sided) is no
+// history: it has the same bits whichever frames are rendered beside it.
 bool uses_history(const FrameSettings& settings);
 
 // Wall time of the stages, ms.
@@ -73,6 +75,16 @@ struct RenderedFrame {
   StageTimes times;
 };
 
+// A frame as it was reconstructed from its own samples, which other frames may read.
+struct ReconstructedFrame {
+  FrameRequest request;
+  Frame frame;
+  SamplingMap map;
+  TemporalHistory alone;  // what the frame would leave as history if it were the first one
+  TraceStats samples, first_look;
+  StageTimes times;
+};
+
 class FrameRenderer {
  public:
   // Error(usage) for a filter that is not there. Keeps a reference to `tracer`, which must outlive it; several
@@ -83,8 +95,16 @@ class FrameRenderer {
 
   // map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure -> enhance.
   // A function of its arguments: without history (uses_history) a frame has the same bits alone and in a sequence.
-  // `history` is that of the frames before, and then that of this frame as well; it begins empty.
+  // `history` is that of the frames before, and then that of this frame as well; it begins empty. Error(usage) with
+  // AccumulateMode::two_sided, which takes reconstruct() and join().
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
+
+  // AccumulateMode::two_sided in two steps: the stages up to reconstruction, and, once the frames around it are there,
+  // accumulation and all that follows. `window` holds consecutive frames in order, at most AccumulateSettings::window
+  // on each side of `own`; where there are fewer, fewer are read.
+  [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request) const;
+  [[nodiscard]] RenderedFrame join(const std::vector<const ReconstructedFrame*>& window, std::size_t own,
+                                   TemporalHistory& history) const;
 
   // The first two stages alone. With TraceSettings::samples their sums are what can be joined with other parts'.
   [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;

@@ -90,7 +90,7 @@ struct GazeFinding {
              // "missing-value", "decimal-commas", "y-flip", "x-flip", "swapped-axes", "frozen", "disparity", ...
   std::string what;
   std::string evidence;
-  std::string flag;  // what to write on the command line to mend it, such as "--gaze-flip-y"; empty: no option does
+  std::string setting;  // what mends it, such as "`gaze-flip-y`" or "`gaze-unit` px"; empty: no option does
 };
 
 struct GazeInspection {
@@ -119,8 +119,8 @@ struct GazeInspection {
   std::vector<VorTest> vor;
   std::vector<GazeAxisTest> axes;
   std::vector<GazeFinding> findings;
-  std::string verdict;             // one sentence
-  std::vector<std::string> flags;  // of all findings, in the order in which to give them
+  std::string verdict;                // one sentence
+  std::vector<std::string> settings;  // those that mend findings, in the order in which to give them
 };
 
 // Names, participants, serial numbers and times of day are left out unless `keep_ids` is set. `display` completes what

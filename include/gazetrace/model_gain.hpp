@@ -10,8 +10,9 @@
 //   A_bc = mean over x of s_bc(x)^p n(x)^(-p/2),   p = kVisiblePooling.
 // At the least Q for a given mean of n, the derivative of Q by n(x) is the same everywhere, hence
 //   n(x) ~ (sum over b, c of (dQ / dA_bc) s_bc(x)^p)^(1 / (1 + p/2)),
-// which is solved by iteration, since the derivatives depend on n. Q falls with all rates as their power of -1.2, so
-// that the gain is the same at every quality (the metric's own limit of 10000 per difference left out).
+// which is solved by iteration, since the derivatives depend on n. These rates are the same at every quality, since Q
+// falls with all of them as their power of -1.2. The samples that reach a quality heed that the metric limits each
+// difference to 10000, which at uniform rates ends what the fovea counts for: at less quality there is less to gain.
 #pragma once
 
 #include <optional>
@@ -26,7 +27,10 @@ struct ModelGainSettings {
   PlanarView view;               // of the frame, as in FrameRequest
   double frames_per_second = 0;  // fresh noise in every frame of a clip; 0: a still
   double luminance_cd_m2 = 30;   // of the field
-  double target_jod = 9.5;       // below 10; for the numbers of samples
+  // FovVideoVDP counts the pixels per degree of a flat screen, which grow off its middle, so that the same noise is
+  // finer there. true: those of the middle hold everywhere, as behind lenses that spread pixels evenly.
+  bool even_resolution = false;
+  double target_jod = 9.5;  // 5 or more, and below 10
   int threads = 0;
 };
 
@@ -39,7 +43,7 @@ struct ModelGain {
 };
 
 // `spectrum` is that of the noise after reconstruction; see cut_error(). Error(usage) where VisibleErrorModel gives
-// one, and for a target that is not below 10.
+// one, and for a target out of range.
 ModelGain model_gain(const ModelGainSettings& settings, const Vec3d& gaze_direction, const ErrorSpectrum& spectrum);
 
 }  // namespace gazetrace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion vectors: where the surface point that a pixel shows was in an earlier view, by the motion of the camera, of
-// rigid bodies and of shapes. Reprojection uses them.
+// Motion vectors: where the surface point that a pixel shows is in another view, earlier or later, by the motion of the
+// camera, of rigid bodies and of shapes. Reprojection uses them.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@
 namespace gazetrace {
 
 // The view that a frame is compared with.
-struct EarlierView {
+struct OtherView {
   Camera camera;
   std::int64_t t_video_ns = 0;  // the time whose positions and shapes count
 };
 
 // One entry per pixel, found by the ray through its centre. Lens and shutter are left out: both cameras are pinholes in
-// the middle of their frames' times. Where the ray misses everything, earlier_px is where its direction was.
+// the middle of their frames' times. Where the ray misses everything, other_px is where its direction is.
 struct SurfaceMotion {
   ImageGray depth_m;            // along the view axis; +Inf for a miss
   ImageRgb normal;              // of the triangle, unit, towards the camera; zero for a miss
   Image<std::uint32_t> object;  // 1 + index into Scene::instances; 0: a miss
-  Image<Vec2d> earlier_px;      // where the same point of the surface was, in continuous coordinates (pixel centres at
-                                // + 0.5); NaN where it was not in front of the earlier camera
-  ImageGray earlier_depth_m;    // along the earlier view axis; +Inf for a miss
-  ImageRgb earlier_normal;      // as `normal`, of the triangle at the earlier time, towards the earlier camera
+  Image<Vec2d> other_px;        // where the same point of the surface is, in continuous coordinates (pixel centres at
+                                // + 0.5); NaN where it is not in front of the other camera
+  ImageGray other_depth_m;      // along the other view's axis; +Inf for a miss
+  ImageRgb other_normal;        // as `normal`, of the triangle at the other time, towards the other camera
 };
 
 // Projects points of the world into continuous pixel coordinates of a frame, with their depth along the view axis.

@@ -107,6 +107,9 @@ struct GazeAges {
 
 struct FramePlan {
   std::vector<FrameRequest> frames;
+  // Further frames in ascending order, none of them among `frames`, that are traced only because those read them
+  // (AccumulateMode::two_sided).
+  std::vector<FrameRequest> around;
   std::optional<GazeAges> ages;              // empty: no frame has gaze from a log
   std::int64_t gaze_latency_ns = 0;          // that of the settings
   std::vector<std::string> gaze_processing;  // what was done to the log that steers, one line per step
@@ -121,6 +124,9 @@ struct FramePlan {
 // positive, and a negative latency.
 FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSettings& settings,
                       const ProcessedGaze* steering = nullptr);
+
+// Whether there is such a frame: it is 1 or later, and the camera's path covers it.
+bool has_frame(const CameraPath& camera, const PlanSettings& settings, std::int64_t frame);
 
 // For a plan that goes on where another run ended: enters what the eye has done since `frame_before`, the last frame of
 // that run. By itself plan_frames() assumes that the frame before its first one is as far away as the next one. `log`

@@ -16,9 +16,12 @@ namespace gazetrace {
 
 // Every pixel has a finite value. The AOV images (albedo, normal, depth) are empty unless the SparseFrame holds guides.
 struct Frame {
-  ImageRgb radiance;        // linear Rec.709
-  ImageGray sample_count;   // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
-  ImageGray variance;       // of the pixel's mean luminance, from the samples' spread; 0 for a single sample
+  ImageRgb radiance;       // linear Rec.709
+  ImageGray sample_count;  // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
+  ImageGray variance;      // of the pixel's mean luminance, from the samples' spread; 0 for a single sample
+  // Estimate of the squared error of the pixel's luminance: its variance, and the square of what the filter changed
+  // beside noise. Empty for filters that make no estimate of it (all but those that need halves).
+  ImageGray squared_error;
   ImageRgb albedo, normal;  // first hit, means over all samples; normal in world space, zero where nothing was hit
   ImageGray depth_m;        // mean over the hits; +Inf where the pixel's site hit nothing
 };
@@ -30,6 +33,7 @@ struct ReconstructionNeeds {
   // Sums per surface (SparseFrame::surfaces). Only samples can be sorted by surface: an accumulated frame and the sums
   // of a part of the samples do not hold them.
   bool surfaces = false;
+  bool halves = false;  // SparseFrame::half_difference, and samples that are traced in halves
 };
 
 struct FilterInfo {

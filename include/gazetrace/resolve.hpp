@@ -25,6 +25,12 @@
 namespace gazetrace {
 
 enum class ResolveScope {
+  // How pictures of the job are looked at: the gaze log with its clock, the screen, and where the frame lies on it,
+  // which
+  // are in `gaze` and `plan_settings`. The plan stays empty, and scene, camera and outputs are not looked at. The
+  // screen
+  // is not checked, and stays empty where neither the job nor the log states one.
+  viewing,
   // The plan alone. The scene is read only where the camera comes from it, and may be missing where nothing needs it.
   // No file is hashed.
   plan,
@@ -53,7 +59,7 @@ struct ResolvedJob {
   PlanSettings plan_settings;
   FramePlan plan;                                    // with the frames of `preroll` at its beginning
   std::vector<std::int32_t> frames;                  // those that are wanted
-  PipelineSettings pipeline;                         // with its digests, unless the scope is the plan alone
+  PipelineSettings pipeline;                         // with its digests, from the scope `digests` on
   TemporalHistory history;                           // what the first frame starts from; with the scope render
   std::map<std::string, std::string> input_digests;  // path -> content hash
   // What was decided where the settings left a choice, such as "environment" -> "the built-in sky, ...", and which
@@ -63,11 +69,12 @@ struct ResolvedJob {
   double load_s = 0;  // of scene and environment
 };
 
-// Throws Error(usage or input) for anything that is wrong with the job or with the files that it names. Writes nothing.
+// Throws Error(usage or input) for anything that is wrong with the job or with the files that it names, as far as the
+// scope goes. Writes nothing. For pictures that were rendered already, recorded_run.hpp finds the job.
 ResolvedJob resolve(const Job& job, const ResolveOptions& options = {});
 
 // The checks that need no input file: ranges, names, patterns, and options that exclude each other; and whether the
-// folders of the outputs can be written to. resolve() begins with these checks.
+// folders of the outputs can be written to. resolve() begins with these checks, except with the scope viewing.
 void check_job(const Job& job, const JobSchema& schema = job_schema());
 
 // The filter that the setting names, without a reason; or the filter that "auto" stands for, with the reason, see

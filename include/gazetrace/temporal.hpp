@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accumulation over frames: what earlier frames still have to say about a pixel.
+// Accumulation over frames: what other frames have to say about a pixel.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,11 @@ struct TemporalHistory {
 };
 
 // off: every frame stands for itself. running: the mean over frames while the camera stands still. reproject: what a
-// pixel shows is looked up where it was in the frame before, and used where it was the same surface.
-enum class AccumulateMode : std::uint8_t { off, running, reproject };
+// pixel shows is looked up where it was in the frame before, and used where it was the same surface. two_sided: it is
+// looked up so in the frames before and in those after, as each was reconstructed from its own samples; nothing is
+// accumulated from frame to frame. Frames that are still to come are known only where whole sequences are rendered, so
+// this is not causal: nobody could be shown such a picture while looking.
+enum class AccumulateMode : std::uint8_t { off, running, reproject, two_sided };
 // Whether frames are accumulated before or after the reconstruction filter. Filters that need sums per surface
 // (ReconstructionNeeds::surfaces) always come first, since an accumulated site no longer holds them.
 enum class AccumulateOrder : std::uint8_t { before, after };
@@ -52,10 +55,14 @@ inline constexpr double kLeastBlend = 1e-6;
 struct AccumulateSettings {
   AccumulateMode mode = AccumulateMode::off;
 
-  // Only reproject uses the rest.
+  // Only two_sided uses this: so many frames before a frame and after it are read.
+  std::int32_t window = 4;
+  // Only reproject uses this: two_sided comes after the filter.
   AccumulateOrder order = AccumulateOrder::after;
+
+  // reproject and two_sided use the rest.
   // Memory in frames: each frame multiplies the counts of the past by 1 - 1/frames, so that a pixel gathers this many
-  // times a frame's samples. 0: nothing is forgotten.
+  // times a frame's samples. 0: nothing is forgotten. two_sided: so it does for each frame that lies between.
   double frames = 16;
   // Share of the current frame wherever there is history (the classic exponential average), whatever the counts say;
   // at least kLeastBlend. 0: the weights follow the counts.
@@ -64,7 +71,8 @@ struct AccumulateSettings {
   // by r such limits, it keeps the share r^-4 of its count. 0: history is never clipped.
   double clip_sigmas = 3;
   // A frame uses nothing of the past if the eye made a saccade, or was closed, at any time since the frame before it
-  // (FrameRequest::saccade_since_last_frame, blink_since_last_frame).
+  // (FrameRequest::saccade_since_last_frame, blink_since_last_frame). two_sided: nor do those before it use anything of
+  // it or of what follows.
   bool reset_at_saccades = false, reset_at_blinks = false;
 };
 

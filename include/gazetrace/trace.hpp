@@ -21,6 +21,12 @@ namespace gazetrace {
 
 enum class LightSampling : std::uint8_t { mis, light_only, bsdf_only };
 enum class PixelFilter : std::uint8_t { box, blackman_harris };
+// How the random numbers of pixels are related. scrambled: every site has a sequence of its own (Owen-scrambled Sobol
+// points), so that errors are white noise over the picture. z_order: all sites share one such sequence for every pair
+// of dimensions, along a Z-curve over the picture (Ahmed and Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo
+// Sampling Error via Hierarchical Ordering of Pixels", ACM TOG 39(6), 2020), so that errors of neighbours cancel in
+// their mean. In both every sample by itself is uniform, and frames are independent of each other.
+enum class SamplePattern : std::uint8_t { scrambled, z_order };
 enum class BvhQuality : std::uint8_t { high, medium };
 
 struct TraceSettings {
@@ -45,6 +51,7 @@ struct TraceSettings {
   // root mean square difference of 12 % per pixel).
   double pixel_cone = 0;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
+  SamplePattern sample_pattern = SamplePattern::scrambled;
   // The pixel filter is this many times as wide, above 0. So a frame of an eighth of the size shows, with 1/8, single
   // pixels of the larger frame, eight apart, and their samples have the noise that they have there.
   double footprint = 1;
@@ -52,7 +59,11 @@ struct TraceSettings {
   bool guides = false;    // collect albedo, normal and depth of the first hit
   bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
   std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
-  std::optional<PixelIndex> only_pixel;               // trace only the site that holds this pixel
+  // Splits the samples of every site into two halves of independent scramblings: sample k is number k / 2 of one of
+  // them. Their difference says how far off their mean is (SparseFrame::half_difference). Each half is stratified by
+  // itself, so that a mean over both has a little more noise than one over a single sequence.
+  bool halves = false;
+  std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
   // Traces only these samples of every site, and keeps their exact sums in SparseFrame::unrounded as well. Rays are
   // then traced one by one instead of in packets, so that a sample does not depend on its neighbours in the packet:
   // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
@@ -89,11 +100,12 @@ struct GuideSums {
 // Sums over those samples of a site whose first hits lie on one surface: they are of one kind, face about the same way
 // and lie about in one plane. A site has at most kMostSurfaces; further samples join the one that fits best.
 struct SurfaceSums {
-  Vec3f reflected;   // sum of the radiance, without what the first hit itself emits
-  Vec3f albedo;      // sum, as Guides::albedo
-  Vec3f normal;      // sum of the shading normals
-  Vec3f place_m;     // sum of the hit points, relative to the camera, in world axes
-  float square = 0;  // sum over the samples of (luminance of `reflected` / luminance of `albedo`)^2
+  Vec3f reflected;            // sum of the radiance, without what the first hit itself emits
+  Vec3f albedo;               // sum, as Guides::albedo
+  Vec3f normal;               // sum of the shading normals
+  Vec3f place_m;              // sum of the hit points, relative to the camera, in world axes
+  float square = 0;           // sum over the samples of (luminance of `reflected` / luminance of `albedo`)^2
+  float half_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `reflected`
   std::uint32_t count = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
 };
@@ -129,6 +141,10 @@ struct SparseFrame {
                                             // saturates at float's largest value
   std::vector<std::uint32_t> count;         // of samples
   std::vector<GuideSums> guides;            // empty unless TraceSettings::guides
+  // Of each site, (a - b) sqrt(n_a n_b) / (n_a + n_b), where a and b are the mean luminances of its halves and n_a and
+  // n_b their numbers of samples. Its expectation is 0, and that of its square is the variance of the mean of all
+  // samples: it is a replica of that mean's error. 0 where a half has no samples; empty unless TraceSettings::halves.
+  std::vector<float> half_difference;
   // The surfaces of site i are surfaces[first_surface[i]] up to, not including, surfaces[first_surface[i + 1]]. Samples
   // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
@@ -148,9 +164,8 @@ SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 // and not the whole number of samples: of pixels that expect 15.5 samples half have 16, and others in every frame.
 class PassThrough {
  public:
-  // `samples`: so many are enough; 0: no number is. Empty: as many as the fovea has, where that is at least 8 and below
-  // 16, and otherwise 16, since below 8 samples smoothing is worth more than a fovea as it was traced. In a uniform
-  // frame there is no fovea, and no number is enough: whoever asks for such a filter there wants all of it smoothed.
+  // `samples`: so many are enough; 0 or empty: no number is, since filters themselves give back what samples know
+  // better.
   // Keeps a reference to `map`, which must outlive it.
   PassThrough(const SamplingMap& map, const std::optional<std::uint64_t>& samples);
 
@@ -221,9 +236,9 @@ class PosedScene {
   // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
 
-  // What the pixels' centres see in this pose, and where that was in an earlier view.
+  // What the pixels' centres see in this pose, and where that is in another view, earlier or later.
   [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,
-                                             const EarlierView& earlier) const;
+                                             const OtherView& other) const;
 
  private:
   friend class PathTracer;

@@ -72,7 +72,7 @@ void check_same_gaze(const CompareJob& job, const CompareInputs& inputs, const F
 ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, const FrameFacts& reference,
                            const FrameFacts& test, std::int32_t frame, int width_px, int height_px) {
   std::optional<GazeAtTime> gaze = inputs.gaze.is_of_test ? test.gaze_true : reference.gaze_true;
-  const std::optional<JobSettings>& run = inputs.gaze.is_of_test ? inputs.test_run : inputs.reference_run;
+  const std::optional<RecordedRun>& run = inputs.gaze.is_of_test ? inputs.test_run : inputs.reference_run;
   if (job.shared.gaze_at) {
     // An eye that rests there.
     gaze.emplace();
@@ -81,14 +81,14 @@ ComparedGaze compared_gaze(const CompareJob& job, const CompareInputs& inputs, c
     gaze->v = job.shared.gaze_at->y;
     gaze->movement = EyeMovement::fixation;
   } else if (inputs.gaze_log) {
-    gaze = gaze_at(*inputs.gaze_log, gaze_mapping(job.shared, &*inputs.gaze_log),
+    gaze = gaze_at(*inputs.gaze_log->gaze, inputs.gaze_log->plan_settings.gaze,
                    video_time_ns(job, inputs, reference, test, frame),
                    inputs.movements.empty() ? nullptr : &inputs.movements);
   }
   if (!gaze) {
     return {};
   }
-  if (!inputs.gaze_log && !gaze->movement && run && run->gaze_at) {
+  if (!inputs.gaze_log && !gaze->movement && run && run->settings().gaze_at) {
     gaze->movement = EyeMovement::fixation;
   }
   const GazeClass gaze_class = gaze_class_of(*gaze);

@@ -5,31 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
-
-namespace fs = std::filesystem;
-
-// The settings of the run whose record lies beside the pictures, if it is the record of these.
-std::optional<JobSettings> settings_of_run(const std::string& pattern, const FrameFacts& facts, std::string& view) {
-  const std::string path = (fs::path(pattern).parent_path() / "run.json").string();
-  if (!fs::is_regular_file(path)) {
-    return std::nullopt;
-  }
-  const RunRecord record = read_run_record(path);
-  const auto& parts = record.part_digests;
-  if (record.settings_digest != facts.settings_digest &&
-      std::find(parts.begin(), parts.end(), facts.settings_digest) == parts.end()) {
-    return std::nullopt;
-  }
-  const auto found = record.facts.find("view");
-  view = found == record.facts.end() ? std::string() : found->second;
-  return job_of_record(record, path).settings;
-}
 
 std::vector<std::int32_t> frames_of_both(const CompareJob& job) {
   const std::vector<std::int32_t> reference = find_frames(job.reference);
@@ -59,37 +39,35 @@ RetinalRegions regions_of(const CompareJob& job, const CompareInputs& inputs) {
   if (job.region_angles_deg) {
     return retinal_regions(*job.region_angles_deg, job.reading);
   }
-  for (const auto& run : {inputs.test_run, inputs.reference_run}) {
-    if (run && run->foveation.falloff == "regions") {
-      return retinal_regions(run->foveation.region_angles_deg, run->foveation.reading);
+  for (const auto* const run : {&inputs.test_run, &inputs.reference_run}) {
+    if (*run && (*run)->settings().foveation.falloff == "regions") {
+      const FoveationSettings& foveation = (*run)->settings().foveation;
+      return retinal_regions(foveation.region_angles_deg, foveation.reading);
     }
   }
   return {};
 }
 
+// The gaze log that is given, seen on the screen that is given or, where none is, on that of the reference.
 void read_gaze_log(const CompareJob& job, CompareInputs& inputs) {
-  GazeLog log = read_gaze_file(job.shared.gaze, job.shared.screen);
+  Job viewed;
+  viewed.settings = job.shared;
+  viewed.settings.gaze_at.reset();
+  if (!screen_geometry(job.shared.screen) && inputs.reference_run) {
+    viewed.settings.screen = inputs.reference_run->settings().screen;
+  }
+  ResolveOptions options;
+  options.scope = ResolveScope::viewing;
+  ResolvedJob resolved = resolve(viewed, options);
+  const GazeLog& log = *resolved.gaze;
   if (log.kind != GazeKind::screen) {
     throw Error(ErrorKind::input, job.shared.gaze.path, "holds directions from the head, not places on a screen",
                 "compare such runs without bands, or give --gaze-at");
   }
-  if (!inputs.screen) {
-    inputs.screen = log.recording_geometry;
-  }
-  const bool says_screen = screen_geometry(job.shared.screen).has_value() || !inputs.reference_run;
-  complete_recording_geometry(log, says_screen ? job.shared.screen : inputs.reference_run->screen);
   if (log.samples.size() > 1 && knows_angles(log)) {
     inputs.movements = detect_events(log, default_event_preset(log)).labels;
   }
-  inputs.gaze_log = std::move(log);
-}
-
-// The screen of a run: as it was given, else that of its gaze log.
-std::optional<DisplayGeometry> screen_of(const JobSettings& run) {
-  if (std::optional<DisplayGeometry> screen = screen_geometry(run.screen)) {
-    return screen;
-  }
-  return fs::is_regular_file(run.gaze.path) ? read_gaze_file(run.gaze, run.screen).recording_geometry : std::nullopt;
+  inputs.gaze_log = std::move(resolved);
 }
 
 double rate_of(const FrameRate& fps) {
@@ -102,10 +80,10 @@ std::optional<double> stated_fps(const CompareJob& job, const CompareInputs& inp
     return rate_of(*job.fps);
   }
   if (reference.frames_per_second || inputs.reference_run) {
-    return reference.frames_per_second ? *reference.frames_per_second : rate_of(inputs.reference_run->fps);
+    return reference.frames_per_second ? *reference.frames_per_second : rate_of(inputs.reference_run->settings().fps);
   }
   return test.frames_per_second ? test.frames_per_second
-         : inputs.test_run      ? std::optional(rate_of(inputs.test_run->fps))
+         : inputs.test_run      ? std::optional(rate_of(inputs.test_run->settings().fps))
                                 : std::nullopt;
 }
 
@@ -124,19 +102,22 @@ CompareInputs load_compare_inputs(const CompareJob& job) {
   inputs.frames = frames_of_both(job);
   const FrameFacts facts = read_frame_facts(picture_path(job.reference, inputs.frames.front()));
   const FrameFacts test_facts = read_frame_facts(picture_path(job.test, inputs.frames.front()));
-  inputs.reference_run = settings_of_run(job.reference, facts, inputs.reference_view);
-  inputs.test_run = settings_of_run(job.test, test_facts, inputs.test_view);
-  inputs.screen = screen_geometry(job.shared.screen);
-  // The reference's, or the test's where the reference knows of none.
-  const std::optional<JobSettings>* shown = &inputs.reference_run;
-  for (const std::optional<JobSettings>* const run : {&inputs.reference_run, &inputs.test_run}) {
-    if (!inputs.screen && *run) {
-      inputs.screen = screen_of(**run);
-      shown = inputs.screen ? run : shown;
-    }
-  }
+  inputs.reference_run = find_recorded_run(job.reference, facts.settings_digest);
+  inputs.test_run = find_recorded_run(job.test, test_facts.settings_digest);
   if (!job.shared.gaze.path.empty()) {
     read_gaze_log(job, inputs);
+  }
+  inputs.screen = screen_geometry(job.shared.screen);
+  // The reference's, or the test's where the reference knows of none, or at last that of the gaze log.
+  const RecordedRun* shown = inputs.reference_run ? &*inputs.reference_run : nullptr;
+  for (const std::optional<RecordedRun>* const run : {&inputs.reference_run, &inputs.test_run}) {
+    if (!inputs.screen && *run && (*run)->resolved.plan_settings.display) {
+      inputs.screen = (*run)->resolved.plan_settings.display;
+      shown = &**run;
+    }
+  }
+  if (!inputs.screen && inputs.gaze_log) {
+    inputs.screen = inputs.gaze_log->plan_settings.display;
   }
   if (inputs.screen) {
     check_display(*inputs.screen);
@@ -144,8 +125,8 @@ CompareInputs load_compare_inputs(const CompareJob& job) {
   inputs.regions = regions_of(job, inputs);
   if (job.shared.frame_rect) {
     inputs.frame_rect = *job.shared.frame_rect;
-  } else if (*shown && (*shown)->frame_rect) {
-    inputs.frame_rect = *(*shown)->frame_rect;
+  } else if (shown != nullptr) {
+    inputs.frame_rect = shown->resolved.plan_settings.frame_rect;
   }
   inputs.stated_fps = stated_fps(job, inputs, facts, test_facts);
   if (inputs.frames.size() > 1) {
@@ -176,13 +157,14 @@ void check_comparable(const CompareJob& job, const CompareInputs& inputs, const 
   if (job.anyway) {
     return;
   }
-  if (!reference.is_linear && inputs.reference_view != inputs.test_view && !inputs.reference_view.empty() &&
-      !inputs.test_view.empty()) {
-    differ(test_path,
-           fmt::format("was shown through '{}', the reference through '{}'", inputs.test_view, inputs.reference_view),
+  const auto& reference_run = inputs.reference_run;
+  const std::string reference_view = reference_run ? reference_run->view : "";
+  const std::string test_view = inputs.test_run ? inputs.test_run->view : "";
+  if (!reference.is_linear && reference_view != test_view && !reference_view.empty() && !test_view.empty()) {
+    differ(test_path, fmt::format("was shown through '{}', the reference through '{}'", test_view, reference_view),
            "render both with one view, or say --anyway");
   }
-  const bool automatic = inputs.reference_run && inputs.reference_run->exposure.mode == ExposureMode::log_average;
+  const bool automatic = reference_run && reference_run->settings().exposure.mode == ExposureMode::log_average;
   const auto& a = reference.facts.exposure_ev;
   const auto& b = test.facts.exposure_ev;
   constexpr double kSameEv = 1e-9;
@@ -190,6 +172,12 @@ void check_comparable(const CompareJob& job, const CompareInputs& inputs, const 
     differ(test_path, fmt::format("was exposed by {} stops, the reference by {} ({})", *b, *a, reference_path),
            "render both with one exposure, or say --anyway");
   }
+}
+
+ColorSettings compare_color(const CompareJob& job, const CompareInputs& inputs) {
+  const ColorSettings& given = job.shared.color;
+  const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
+  return any || !inputs.reference_run ? given : inputs.reference_run->settings().color;
 }
 
 std::optional<PlanarView> compare_view(const CompareInputs& inputs, int width_px, int height_px) {

@@ -10,7 +10,7 @@
 
 #include "gazetrace/compare.hpp"
 #include "gazetrace/metric_options.hpp"
-#include "gazetrace/resolve.hpp"
+#include "gazetrace/recorded_run.hpp"
 
 namespace gazetrace {
 
@@ -37,15 +37,14 @@ struct GazeSource {
 
 struct CompareInputs {
   std::vector<std::int32_t> frames;                    // {0}: single pictures
-  std::optional<JobSettings> reference_run, test_run;  // from the run records beside the pictures
-  std::string reference_view, test_view;               // as those name them
+  std::optional<RecordedRun> reference_run, test_run;  // where their records lie beside the pictures
   std::optional<DisplayGeometry> screen;
   FrameRect frame_rect;
   RetinalRegions regions;
-  std::optional<GazeLog> gaze_log;
-  std::vector<EyeMovement> movements;  // of the log's samples, where it knows angles
-  std::optional<double> stated_fps;    // by option, pictures or run records, whatever the number of frames
-  double frames_per_second = 0;        // 0: a single picture, or not known
+  std::optional<ResolvedJob> gaze_log;  // the log that is given, with its clock
+  std::vector<EyeMovement> movements;   // of the log's samples, where it knows angles
+  std::optional<double> stated_fps;     // by option, pictures or run records, whatever the number of frames
+  double frames_per_second = 0;         // 0: a single picture, or not known
   GazeSource gaze;
 };
 
@@ -57,6 +56,8 @@ std::string picture_path(const std::string& pattern, std::int32_t frame);
 // Error(input) where the two differ in what decides how they look, unless told --anyway.
 void check_comparable(const CompareJob& job, const CompareInputs& inputs, const ComparedPicture& reference,
                       const ComparedPicture& test, const std::string& reference_path, const std::string& test_path);
+// As given, else as the reference was shown.
+ColorSettings compare_color(const CompareJob& job, const CompareInputs& inputs);
 std::optional<PlanarView> compare_view(const CompareInputs& inputs, int width_px, int height_px);
 GazeSource compared_gaze_source(const CompareJob& job, const CompareInputs& inputs);
 // Error(input) where both have a gaze and look at different places, unless a gaze is given or told --anyway.

@@ -15,7 +15,10 @@ namespace {
 constexpr double kCutFactor = 0.1;
 
 const std::vector<NoiseKind>& noise_kinds() {
-  static const std::vector<NoiseKind> kKinds{{"white", 0}, {"cut_below_4_cpd", 4}, {"cut_below_2_cpd", 2}};
+  static const std::vector<NoiseKind> kKinds{{"white", false, 0},
+                                             {"cut_below_4_cpd", false, 4},
+                                             {"cut_below_2_cpd", false, 2},
+                                             {"white_even_resolution", true, 0}};
   return kKinds;
 }
 
@@ -47,6 +50,9 @@ bool same_direction(const Vec3d& a, const Vec3d& b) {
 }
 
 std::string words_of(const NoiseKind& kind) {
+  if (kind.even_resolution) {
+    return "white noise, on a screen of even pixels a degree";
+  }
   return kind.cut_below_cpd == 0
              ? "white noise"
              : fmt::format("its variance below {:g} cycles a degree cut tenfold", kind.cut_below_cpd);
@@ -80,6 +86,7 @@ GainOfPlan gain_of_plan(const FramePlan& plan, double frames_per_second, int thr
       if (i == 0 || !same_direction(gaze, *frames[i - 1]->gaze_direction_true)) {
         ModelGainSettings settings = result.settings;
         settings.view = frames[i]->view;
+        settings.even_resolution = kind.even_resolution;
         last = model_gain(settings, gaze, spectrum);
       }
       mean.gain += last.gain / count;
@@ -93,28 +100,34 @@ GainOfPlan gain_of_plan(const FramePlan& plan, double frames_per_second, int thr
 
 std::string gain_as_text(const GainOfPlan& gain) {
   const ModelGainSettings& settings = gain.settings;
+  const std::string frames = gain.frames == gain.frames_with_gaze
+                                 ? fmt::format("{} frame{}", gain.frames, gain.frames == 1 ? "" : "s")
+                                 : fmt::format("{} of {} frames", gain.frames, gain.frames_with_gaze);
+  const std::string rate = settings.frames_per_second > 0
+                               ? fmt::format("{:g} frames a second", settings.frames_per_second)
+                               : std::string("still pictures");
   std::string text = fmt::format(
-      "What the best sampling by eccentricity alone saves here: samples of uniform sampling over its samples, at "
-      "equal\nvisible error by FovVideoVDP's model. The mean over {} with gaze; {:.1f} x {:.1f} degrees at {:.1f} "
-      "pixels a degree, {}.\n",
-      gain.frames == gain.frames_with_gaze ? fmt::format("{} frame{}", gain.frames, gain.frames == 1 ? "" : "s")
-                                           : fmt::format("{} of {} frames", gain.frames, gain.frames_with_gaze),
-      gain.width_deg, gain.height_deg, gain.pixels_per_degree,
-      settings.frames_per_second > 0 ? fmt::format("{:g} frames a second", settings.frames_per_second)
-                                     : std::string("still pictures"));
+      "Samples of uniform sampling over those of the best sampling by eccentricity alone, at equal visible error by\n"
+      "FovVideoVDP's model ({:g} JOD). The mean over {} with gaze; {:.1f} x {:.1f} degrees,\n"
+      "{:.1f} pixels a degree, {}.\n",
+      settings.target_jod, frames, gain.width_deg, gain.height_deg, gain.pixels_per_degree, rate);
   for (const GainOfKind& kind : gain.kinds) {
     text += fmt::format("  {:<54}{:>6.2f} times\n", words_of(kind.kind), kind.gain);
   }
-  return text + fmt::format(
-                    "The noise is of one relative size on an even grey of {:g} cd/m2: that pictures differ in noise "
-                    "from place to place,\nand that their contrast hides it, is left out. So this is no bound.\n",
-                    settings.luminance_cd_m2);
+  return text +
+         fmt::format(
+             "Content and masking are left out: the noise has one relative size everywhere, on an even grey of {:g}\n"
+             "cd/m2, while pictures differ in noise from place to place, and their contrast hides it. So this is no\n"
+             "bound. Off its middle a flat screen has more pixels a degree, which makes noise finer there; the last\n"
+             "line is without that, as behind the lenses of some headsets.\n",
+             settings.luminance_cd_m2);
 }
 
 std::string gain_as_json(const GainOfPlan& gain) {
   nlohmann::ordered_json kinds = nlohmann::ordered_json::array();
   for (const GainOfKind& kind : gain.kinds) {
     kinds.push_back({{"noise", kind.kind.name},
+                     {"even_resolution", kind.kind.even_resolution},
                      {"cut_below_cpd", kind.kind.cut_below_cpd},
                      {"cut_factor", kind.kind.cut_below_cpd > 0 ? kCutFactor : 1},
                      {"gain", kind.gain},

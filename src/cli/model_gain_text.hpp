@@ -12,8 +12,9 @@ namespace gazetrace {
 
 // What is assumed of the noise in one line of the result.
 struct NoiseKind {
-  std::string name;          // its key in JSON
-  double cut_below_cpd = 0;  // the power below this frequency is a tenth; 0: white noise
+  std::string name;              // its key in JSON
+  bool even_resolution = false;  // see ModelGainSettings
+  double cut_below_cpd = 0;      // the power below this frequency is a tenth; 0: white noise
 };
 
 // Means over the frames that were looked at.

@@ -41,22 +41,26 @@ std::optional<Named> named(const std::string& name, std::initializer_list<Named>
 void take_gaze(const std::string& text, FrameFacts& facts) {
   const auto state =
       named(value_of(text, "state"), {GazeState::measured, GazeState::held, GazeState::center, GazeState::none});
+  const std::string direction = value_of(text, "direction");
   const std::optional<double> u = number_from(value_of(text, "u"));
   const std::optional<double> v = number_from(value_of(text, "v"));
   const std::string no_gaze = value_of(text, "no_gaze");
-  if (!state || !u || !v || no_gaze.empty()) {
+  const bool has_place = u && v;
+  if (!state || (!has_place && direction.empty()) || no_gaze.empty()) {
     return;
   }
   GazeAtTime gaze;
   gaze.state = *state;
-  gaze.u = *u;
-  gaze.v = *v;
+  if (has_place) {
+    gaze.u = *u;
+    gaze.v = *v;
+  }
   gaze.no_gaze = no_gaze == "1";
   gaze.movement = named(value_of(text, "event"), {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::pursuit,
                                                   EyeMovement::blink, EyeMovement::lost, EyeMovement::unclassified});
   gaze.since_saccade_ns = integer_of(value_of(text, "since_saccade_ns"));
-  // Gaze on a screen has the default direction, straight ahead; gaze directions have the default position, the middle.
-  facts.gaze_is_direction = value_of(text, "direction") != "0,0,-1";
+  // Files of earlier versions state both: there, gaze on a screen has the default direction, straight ahead.
+  facts.gaze_is_direction = !direction.empty() && (!has_place || direction != "0,0,-1");
   gaze.kind = facts.gaze_is_direction ? GazeKind::direction : GazeKind::screen;
   facts.gaze_true = gaze;
 }

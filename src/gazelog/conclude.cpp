@@ -36,12 +36,12 @@ void conclude_unit(const RawGaze& raw, const GazeReadOptions& options, Conventio
     c.unit.value = guess_position_unit(rows_for_a_guess(raw, c), evidence);
     c.unit.evidence = Evidence::statistics;
     c.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with --gaze-unit",
+        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with `gaze-unit`",
                     raw.place, evidence, to_string(c.unit.value)));
   }
   const PositionUnit given = options.columns.position_unit;
   if (given != PositionUnit::automatic && given != c.unit.value) {
-    c.warnings.push_back(fmt::format("{}: positions of {} are in {}; --gaze-unit {} was given and is used", raw.place,
+    c.warnings.push_back(fmt::format("{}: positions of {} are in {}; `gaze-unit` {} was given and is used", raw.place,
                                      raw.format, to_string(c.unit.value), to_string(given)));
     c.unit = {given, Evidence::option, {}};
     c.origin.value = given == PositionUnit::deg ? PositionOrigin::center : c.origin.value;
@@ -52,7 +52,7 @@ void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Convent
   const PositionOrigin given = options.columns.origin;
   if (given != PositionOrigin::automatic && given != c.origin.value) {
     if (c.origin.value != PositionOrigin::automatic) {
-      c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; --gaze-origin {} was given and is used",
+      c.warnings.push_back(fmt::format("{}: positions of {} count from the {}; `gaze-origin` {} was given and is used",
                                        raw.place, raw.format, to_string(c.origin.value), to_string(given)));
     }
     c.origin = {given, Evidence::option, {}};
@@ -69,7 +69,7 @@ void conclude_origin(const RawGaze& raw, const GazeReadOptions& options, Convent
   if (share_negative > 0.25) {
     c.warnings.push_back(
         fmt::format("{}: {:.0f} % of the positions are negative, counted from the top left: is the origin at the "
-                    "center (--gaze-origin center)?",
+                    "center (`gaze-origin` center)?",
                     raw.place, 100 * share_negative));
   }
 }
@@ -109,7 +109,7 @@ void guess_display(const RawGaze& raw, Conventions& c) {
   c.display = {display, Evidence::statistics, "the smallest usual display that holds 98 % of the positions"};
   c.warnings.push_back(
       fmt::format("{}: the size of the display is not stated; {}x{} px were guessed from the positions to look at "
-                  "them; give --screen-px W,H",
+                  "them; give `screen-px` W,H",
                   raw.place, display.width_px, display.height_px));
 }
 
@@ -127,7 +127,7 @@ void conclude_axes(const RawGaze& raw, const GazeReadOptions& options, Conventio
   if (given != GazeAxes::automatic && given != own) {
     if (own != GazeAxes::automatic) {
       c.warnings.push_back(
-          fmt::format("{}: directions of this log are in {} axes; --gaze-axes {} was given and is used", raw.place,
+          fmt::format("{}: directions of this log are in {} axes; `gaze-axes` {} was given and is used", raw.place,
                       to_string(own), to_string(given)));
     }
     c.axes = {given, Evidence::option, {}};

@@ -32,15 +32,15 @@ Vec2d display_size(PositionUnit unit, const DisplayGeometry& d, const std::strin
   };
   if (unit == PositionUnit::px) {
     if (d.width_px <= 0 || d.height_px <= 0) {
-      missing("the size in pixels", "give --screen-px W,H, or write `# display_px W H` above the header");
+      missing("the size in pixels", "give `screen-px` W,H, or write `# display_px W H` above the header");
     }
     return {static_cast<double>(d.width_px), static_cast<double>(d.height_px)};
   }
   if (!(d.width_cm > 0) || !(d.height_cm > 0)) {
-    missing("the size in cm", "give --screen-cm W,H, or write `# display_mm W H` above the header");
+    missing("the size in cm", "give `screen-cm` W,H, or write `# display_mm W H` above the header");
   }
   if (unit == PositionUnit::deg && !(d.distance_cm > 0)) {
-    missing("the eye's distance", "give --screen-distance-cm, or write `# distance_mm D` above the header");
+    missing("the eye's distance", "give `screen-distance-cm`, or write `# distance_mm D` above the header");
   }
   const double per_cm = unit == PositionUnit::mm ? 10.0 : 1.0;
   return {d.width_cm * per_cm, d.height_cm * per_cm};

@@ -75,7 +75,7 @@ auto with_a_hint_of_the_format(const std::string& named, const GazeFile& file, c
     if (guesses.empty() || guesses.front().format->name == named || guesses.front().confidence < kSure) {
       throw;
     }
-    throw Error(ErrorKind::input, "", error.what(), "it looks like --gaze-format " + guesses.front().format->name);
+    throw Error(ErrorKind::input, "", error.what(), "it looks like `gaze-format` " + guesses.front().format->name);
   }
 }
 
@@ -129,7 +129,7 @@ std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOption
   const std::string problem = fmt::format(
       "rows hold more cells than the {} columns: numbers have decimal commas, and commas separate the columns, too",
       file.fractions.size());
-  return RawFault{"decimal-commas", file.path, problem, "give `gaze-decimal-comma`", "--gaze-decimal-comma", problem};
+  return RawFault{"decimal-commas", file.path, problem, "give `gaze-decimal-comma`", "`gaze-decimal-comma`", problem};
 }
 
 // Says so where the numbers of a table have decimal commas. The first rows decide.
@@ -170,7 +170,7 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
     const std::vector<Guess> guesses = sniff(file);
     if (guesses.empty()) {
       throw Error(ErrorKind::input, path, "is not a gaze log of a known format",
-                  "give a CSV or TSV with a header, or name the format with --gaze-format");
+                  "give a CSV or TSV with a header, or name the format with `gaze-format`");
     }
     format = guesses.front().format;
     confidence = guesses.front().confidence;

@@ -130,6 +130,19 @@ void LabelRuns::finish(RawGaze& raw) {
   raw.events.insert(raw.events.end(), events_.begin(), events_.end());
 }
 
+RawSample position_row(std::int64_t t_ns, std::int64_t row, Eye eye, const Vec2d& at, double pupil) {
+  RawSample sample;
+  sample.t_ns = t_ns;
+  sample.row = row;
+  sample.eye = eye;
+  sample.confidence = static_cast<float>(kNan);
+  sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
+  const bool is_known = !std::isnan(at.x) && !std::isnan(at.y);
+  sample.at = is_known ? Vec3d{at.x, at.y, 0} : Vec3d{kNan, kNan, 0};
+  sample.validity = is_known ? GazeValidity::ok : GazeValidity::lost;
+  return sample;
+}
+
 RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye) {
   RawSample sample;
   sample.t_ns = t_ns;

@@ -70,6 +70,9 @@ class LabelRuns {
   bool open_ = false;
 };
 
+// A row with a position on a display, of a format that has no confidence. A pupil that is not above 0 is missing. Where
+// a coordinate is missing, the other one is taken for missing as well, and the eye is lost.
+RawSample position_row(std::int64_t t_ns, std::int64_t row, Eye eye, const Vec2d& at, double pupil);
 // A row whose position is not known.
 RawSample missing_row(std::int64_t t_ns, std::int64_t row, Eye eye);
 

@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "gazetrace/error.hpp"
+#include "output/aovs.hpp"
 
 namespace gazetrace {
 namespace {
@@ -154,6 +155,7 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.foveation = job.foveation;
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
+  settings.trace.guides = show_first_hits(job.exr.aovs);
   settings.reconstruction = {filter_of(job).name, job.pass_through_samples};
   settings.enhance_contrast = job.enhance_contrast;
   settings.accumulate = job.accumulate;

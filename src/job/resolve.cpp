@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -50,9 +51,6 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   settings.width_px = job.size.width;
   settings.height_px = job.size.height;
   settings.display = screen_geometry(job.screen);
-  if (settings.display && (log == nullptr || log->kind == GazeKind::direction)) {
-    check_display(*settings.display);
-  }
   if (settings.display) {
     decisions.emplace_back("screen", job.screen.name.empty() ? "as given" : job.screen.name);
   } else if (log != nullptr && log->recording_geometry && log->kind == GazeKind::screen) {
@@ -62,14 +60,17 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
   if (job.frame_rect) {
     settings.frame_rect = *job.frame_rect;
   }
-  if (log != nullptr && log->kind == GazeKind::screen) {
-    if (!settings.display) {
-      throw Error(ErrorKind::input, log->source, "gaze on a screen needs the screen's size and distance",
-                  "give `screen` NAME, or `screen-px`, `screen-cm` and `screen-distance-cm`");
-    }
+  return settings;
+}
+
+void check_screen(const PlanSettings& settings, const GazeLog* log) {
+  if (log != nullptr && log->kind == GazeKind::screen && !settings.display) {
+    throw Error(ErrorKind::input, log->source, "gaze on a screen needs the screen's size and distance",
+                "give `screen` NAME, or `screen-px`, `screen-cm` and `screen-distance-cm`");
+  }
+  if (settings.display) {
     check_display(*settings.display);
   }
-  return settings;
 }
 
 // The blur that is lost because filters with guides take the first hits through a pinhole in the middle of the frame's
@@ -120,6 +121,29 @@ std::string sampling_without_gaze(const FoveationSettings& foveation) {
   return rate + " everywhere: there is no gaze";
 }
 
+// For accumulation from both sides: the frames that those of the plan read beside each other. They exist from frame 1
+// on and as far as the camera's path goes, whether or not they are rendered, so that a frame is the same in every run.
+void add_frames_around(const JobSettings& job, const CameraPath& camera, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  PlanSettings settings = resolved.plan_settings;
+  const std::set<std::int32_t> asked(settings.frames.begin(), settings.frames.end());
+  std::set<std::int32_t> all = asked;
+  for (const std::int32_t frame : asked) {
+    for (std::int32_t apart = -job.accumulate.window; apart <= job.accumulate.window; ++apart) {
+      if (has_frame(camera, settings, std::int64_t{frame} + apart)) {
+        all.insert(frame + apart);
+      }
+    }
+  }
+  settings.frames.assign(all.begin(), all.end());
+  // What the eye did since the frame before is asked of neighbours, so that it is that of this plan.
+  FramePlan whole = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
+  resolved.plan.frames.clear();
+  for (FrameRequest& request : whole.frames) {
+    (asked.contains(request.frame) ? resolved.plan.frames : resolved.plan.around).push_back(std::move(request));
+  }
+}
+
 void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
@@ -138,6 +162,9 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   }
   resolved.plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
   resolved.plan_settings = std::move(settings);
+  if (job.accumulate.mode == AccumulateMode::two_sided && job.accumulate.window > 0) {
+    add_frames_around(job, camera, resolved);
+  }
   if (resolved.plan.ages && !job.gaze_at) {
     resolved.decisions.emplace_back("effective gaze age", gaze_ages_text(*resolved.plan.ages));
   }
@@ -155,6 +182,17 @@ void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scen
         fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
                     "blackman-harris is missing there, `filter` linear or tent keep it",
                     job.filter));
+  }
+}
+
+void load_viewing(ResolvedJob& resolved) {
+  const JobSettings& job = resolved.job.settings;
+  std::int64_t taken_off_ns = 0;
+  resolved.gaze = gaze_of_job(job, taken_off_ns);
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  resolved.plan_settings = plan_settings(job, {}, log, taken_off_ns, resolved.decisions);
+  if (log != nullptr) {
+    append(resolved.warnings, log->warnings);
   }
 }
 
@@ -176,7 +214,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   {
     Decisions unused;
-    plan_settings(job, {1}, log, taken_off_ns, unused);  // only to find errors early
+    check_screen(plan_settings(job, {1}, log, taken_off_ns, unused), log);
   }
   CameraPath camera;
   std::string decision;
@@ -216,10 +254,14 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
 }  // namespace
 
 ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
-  check_job(job);
   ResolvedJob resolved;
   resolved.job = job;
   resolved.decisions = job.decisions;
+  if (options.scope == ResolveScope::viewing) {
+    load_viewing(resolved);
+    return resolved;
+  }
+  check_job(job);
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(job);
   }

@@ -13,7 +13,7 @@
 #include "gazetrace/error.hpp"
 #include "metrics/contrast_sensitivity.hpp"
 #include "metrics/flicker_sensitivity.hpp"
-#include "metrics/luminance_cells.hpp"
+#include "metrics/luminance_patches.hpp"
 #include "metrics/sliding_spectrum.hpp"
 
 namespace gazetrace {
@@ -23,29 +23,29 @@ constexpr std::size_t kScales = 4;
 constexpr double kFinestCpd = 4;
 constexpr double kLeastLuminance = 0.1;  // of the background L, cd/m2
 
-int finest_cell_px(double pixels_per_degree) {
+int finest_patch_px(double pixels_per_degree) {
   return std::max(1, static_cast<int>(std::lround(pixels_per_degree / (2 * kFinestCpd))));
 }
 
-// The spectra of both sequences in the cells of one size.
-struct CellSpectra {
-  int cell_px = 0, columns = 0, rows = 0;
-  std::vector<std::complex<double>> reference, test;  // k = 0 .. N/2 of each cell
+// The spectra of both sequences in the patches of one size.
+struct PatchSpectra {
+  int patch_px = 0, columns = 0, rows = 0;
+  std::vector<std::complex<double>> reference, test;  // k = 0 .. N/2 of each patch
   std::vector<double> luminance;                      // mean of the reference
-  std::vector<double> pixels;                         // number of the cell's pixels inside the picture
+  std::vector<double> pixels;                         // number of the patch's pixels inside the picture
 };
 
-// The spectra of cells of twice the side, as means over four cells.
-CellSpectra paired(const CellSpectra& fine, std::size_t bins, int threads) {
-  CellSpectra coarse;
-  coarse.cell_px = 2 * fine.cell_px;
+// The spectra of patches of twice the side, as means over four patches.
+PatchSpectra paired(const PatchSpectra& fine, std::size_t bins, int threads) {
+  PatchSpectra coarse;
+  coarse.patch_px = 2 * fine.patch_px;
   coarse.columns = (fine.columns + 1) / 2;
   coarse.rows = (fine.rows + 1) / 2;
-  const auto cells = static_cast<std::size_t>(coarse.columns) * static_cast<std::size_t>(coarse.rows);
-  coarse.reference.resize(cells * bins);
-  coarse.test.resize(cells * bins);
-  coarse.luminance.resize(cells);
-  coarse.pixels.resize(cells);
+  const auto patches = static_cast<std::size_t>(coarse.columns) * static_cast<std::size_t>(coarse.rows);
+  coarse.reference.resize(patches * bins);
+  coarse.test.resize(patches * bins);
+  coarse.luminance.resize(patches);
+  coarse.pixels.resize(patches);
   parallel_for(static_cast<std::size_t>(coarse.rows), threads, [&](std::size_t r) {
     const int row = static_cast<int>(r);
     for (int column = 0; column < coarse.columns; ++column) {
@@ -128,14 +128,14 @@ std::string flicker_range_text(const FlickerRange& range) {
 struct FlickerMeter::Impl {
   FlickerSettings settings;
   int frames;
-  int cell_px;
+  int patch_px;
   SlidingSpectrum reference, test;
   std::vector<FlickerSensitivity> sensitivity;  // one per scale
 
-  Impl(const FlickerSettings& given, int frame_count, int cell, int columns, int rows)
+  Impl(const FlickerSettings& given, int frame_count, int patch, int columns, int rows)
       : settings(given),
         frames(frame_count),
-        cell_px(cell),
+        patch_px(patch),
         reference(columns, rows, frame_count),
         test(columns, rows, frame_count) {
     std::vector<double> frequencies_hz;
@@ -143,47 +143,47 @@ struct FlickerMeter::Impl {
       frequencies_hz.push_back(k * settings.frames_per_second / frames);
     }
     for (std::size_t s = 0; s < kScales; ++s) {
-      const double rho_cpd = pixels_per_degree_of(settings.view) / (2 * cell_px * std::exp2(s));
+      const double rho_cpd = pixels_per_degree_of(settings.view) / (2 * patch_px * std::exp2(s));
       sensitivity.emplace_back(rho_cpd, frequencies_hz, settings.threads);
     }
   }
 
-  [[nodiscard]] CellSpectra finest() const {
-    CellSpectra cells;
-    cells.cell_px = cell_px;
-    cells.columns = (settings.view.width_px + cell_px - 1) / cell_px;
-    cells.rows = (settings.view.height_px + cell_px - 1) / cell_px;
-    const auto count = static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows);
-    cells.reference.assign(reference.at(0), reference.at(0) + count * reference.bins());
-    cells.test.assign(test.at(0), test.at(0) + count * test.bins());
-    for (int row = 0; row < cells.rows; ++row) {
-      for (int column = 0; column < cells.columns; ++column) {
-        const int width = std::min(cell_px, settings.view.width_px - column * cell_px);
-        const int height = std::min(cell_px, settings.view.height_px - row * cell_px);
-        cells.pixels.push_back(static_cast<double>(width) * height);
-        cells.luminance.push_back(reference.mean(cells.luminance.size()));
+  [[nodiscard]] PatchSpectra finest() const {
+    PatchSpectra patches;
+    patches.patch_px = patch_px;
+    patches.columns = (settings.view.width_px + patch_px - 1) / patch_px;
+    patches.rows = (settings.view.height_px + patch_px - 1) / patch_px;
+    const auto count = static_cast<std::size_t>(patches.columns) * static_cast<std::size_t>(patches.rows);
+    patches.reference.assign(reference.at(0), reference.at(0) + count * reference.bins());
+    patches.test.assign(test.at(0), test.at(0) + count * test.bins());
+    for (int row = 0; row < patches.rows; ++row) {
+      for (int column = 0; column < patches.columns; ++column) {
+        const int width = std::min(patch_px, settings.view.width_px - column * patch_px);
+        const int height = std::min(patch_px, settings.view.height_px - row * patch_px);
+        patches.pixels.push_back(static_cast<double>(width) * height);
+        patches.luminance.push_back(reference.mean(patches.luminance.size()));
       }
     }
-    return cells;
+    return patches;
   }
 
-  // F of each cell at one scale, before the maximum over the scales is taken.
-  [[nodiscard]] ImageGray excess(const CellSpectra& cells, std::size_t scale, const Vec3d& gaze) const {
-    ImageGray result(cells.columns, cells.rows);
+  // F of each patch at one scale, before the maximum over the scales is taken.
+  [[nodiscard]] ImageGray excess(const PatchSpectra& patches, std::size_t scale, const Vec3d& gaze) const {
+    ImageGray result(patches.columns, patches.rows);
     const std::size_t bins = reference.bins();
-    parallel_for(static_cast<std::size_t>(cells.rows), settings.threads, [&](std::size_t r) {
+    parallel_for(static_cast<std::size_t>(patches.rows), settings.threads, [&](std::size_t r) {
       const int row = static_cast<int>(r);
       std::vector<double> s2(bins - 1);
       std::vector<double> of_reference(bins - 1);
       std::vector<double> of_test(bins - 1);
-      const double y_px = std::min((row + 0.5) * cells.cell_px, static_cast<double>(settings.view.height_px));
-      for (int column = 0; column < cells.columns; ++column) {
-        const auto cell = r * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(column);
-        const double x_px = std::min((column + 0.5) * cells.cell_px, static_cast<double>(settings.view.width_px));
-        const double luminance = std::max(cells.luminance[cell], kLeastLuminance);
+      const double y_px = std::min((row + 0.5) * patches.patch_px, static_cast<double>(settings.view.height_px));
+      for (int column = 0; column < patches.columns; ++column) {
+        const auto patch = r * static_cast<std::size_t>(patches.columns) + static_cast<std::size_t>(column);
+        const double x_px = std::min((column + 0.5) * patches.patch_px, static_cast<double>(settings.view.width_px));
+        const double luminance = std::max(patches.luminance[patch], kLeastLuminance);
         sensitivity[scale].squared(luminance, eccentricity_deg(settings.view, gaze, x_px, y_px), s2);
-        hann_power(&cells.reference[cell * bins], frames, of_reference);
-        hann_power(&cells.test[cell * bins], frames, of_test);
+        hann_power(&patches.reference[patch * bins], frames, of_reference);
+        hann_power(&patches.test[patch * bins], frames, of_test);
         double sum = 0;
         for (std::size_t k = 0; k < s2.size(); ++k) {
           sum += s2[k] * (of_test[k] - of_reference[k]);
@@ -196,26 +196,26 @@ struct FlickerMeter::Impl {
 
   [[nodiscard]] ImageGray score(const Vec2d& gaze_px) const {
     const Vec3d gaze = settings.view.direction(gaze_px.x, gaze_px.y);
-    CellSpectra cells = finest();
-    ImageGray most = excess(cells, 0, gaze);
+    PatchSpectra patches = finest();
+    ImageGray most = excess(patches, 0, gaze);
     for (std::size_t scale = 1; scale < kScales; ++scale) {
-      cells = paired(cells, reference.bins(), settings.threads);
-      const ImageGray coarse = excess(cells, scale, gaze);
+      patches = paired(patches, reference.bins(), settings.threads);
+      const ImageGray coarse = excess(patches, scale, gaze);
       for (int y = 0; y < most.height_px; ++y) {
         for (int x = 0; x < most.width_px; ++x) {
           most(x, y) = std::max(most(x, y), coarse(x >> scale, y >> scale));
         }
       }
     }
-    return spread_cells(most, cell_px, settings.view.width_px, settings.view.height_px, settings.threads);
+    return spread_patches(most, patch_px, settings.view.width_px, settings.view.height_px, settings.threads);
   }
 };
 
 FlickerMeter::FlickerMeter(const FlickerSettings& settings) {
   const int frames = frames_of_a_second(settings.frames_per_second);
-  const int cell_px = finest_cell_px(pixels_per_degree_of(settings.view));
-  impl_ = std::make_unique<Impl>(settings, frames, cell_px, (settings.view.width_px + cell_px - 1) / cell_px,
-                                 (settings.view.height_px + cell_px - 1) / cell_px);
+  const int patch_px = finest_patch_px(pixels_per_degree_of(settings.view));
+  impl_ = std::make_unique<Impl>(settings, frames, patch_px, (settings.view.width_px + patch_px - 1) / patch_px,
+                                 (settings.view.height_px + patch_px - 1) / patch_px);
 }
 FlickerMeter::~FlickerMeter() = default;
 
@@ -229,8 +229,8 @@ std::optional<ImageGray> FlickerMeter::add(const ImageGray& reference_cd_m2, con
                               state.settings.view.width_px, state.settings.view.height_px));
     }
   }
-  state.reference.add(cell_means(reference_cd_m2, state.cell_px, state.settings.threads), state.settings.threads);
-  state.test.add(cell_means(test_cd_m2, state.cell_px, state.settings.threads), state.settings.threads);
+  state.reference.add(patch_means(reference_cd_m2, state.patch_px, state.settings.threads), state.settings.threads);
+  state.test.add(patch_means(test_cd_m2, state.patch_px, state.settings.threads), state.settings.threads);
   if (!gaze_px || !state.reference.is_full()) {
     return std::nullopt;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "gazetrace/output.hpp"
+#include "output/aovs.hpp"
 #include "output/exr.hpp"
 
 namespace gazetrace {
@@ -28,6 +29,11 @@ void check_exr_name(const std::string& pattern, bool require_number) {
 const std::vector<std::string>& aov_names() {
   static const std::vector<std::string> kNames{"albedo", "normal", "depth", "samples", "variance", "eccentricity"};
   return kNames;
+}
+
+bool show_first_hits(const std::vector<std::string>& aovs) {
+  return std::any_of(aovs.begin(), aovs.end(),
+                     [](const std::string& aov) { return aov == "albedo" || aov == "normal" || aov == "depth"; });
 }
 
 void check_output_settings(const OutputSettings& settings, bool several_frames) {

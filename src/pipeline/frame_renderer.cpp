@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "pipeline/adaptive_rates.hpp"
-#include "pipeline/contrast_prepass.hpp"
+#include "pipeline/first_look.hpp"
 #include "pipeline/frame_stages.hpp"
 
 namespace gazetrace {
@@ -44,8 +44,8 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   }
   if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
     foveation = less_first_look(foveation, request);
-    ContrastPrepass first_look = timed(times.trace_ms, [&] {
-      return trace_contrast(scene, request, settings_.trace, settings_.foveation.contrast_strength);
+    FirstLook first_look = timed(times.trace_ms, [&] {
+      return trace_first_look(scene, request, settings_.trace, settings_.foveation.contrast_strength);
     });
     contrast = std::move(first_look.multiplier);
     context.contrast = &contrast;
@@ -61,6 +61,10 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
 }
 
 RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history) const {
+  if (settings_.accumulate.mode == AccumulateMode::two_sided) {
+    throw Error(ErrorKind::usage, "`accumulate`", "two-sided reads the frames around a frame, and here is one alone",
+                "reconstruct them and join them, or call render_sequence()");
+  }
   TracedFrame traced = trace(request);
   const PosedScene scene = tracer_->at(shutter_of(request));
   RenderedFrame rendered;
@@ -77,8 +81,8 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
   };
   const auto reprojected = [&](Frame frame) {
     return timed(times.temporal_ms, [&] {
-      const EarlierView earlier{history.camera.value_or(request.camera),
-                                history.camera ? history.t_video_ns : request.t_video_ns};
+      const OtherView earlier{history.camera.value_or(request.camera),
+                              history.camera ? history.t_video_ns : request.t_video_ns};
       const SurfaceMotion motion =
           scene.surface_motion(request.camera, traced.map.width_px, traced.map.height_px, earlier);
       return reproject(std::move(frame), traced.map, motion, request, settings_.accumulate, history, settings_.threads);
@@ -105,7 +109,7 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
 }
 
 bool uses_history(const FrameSettings& settings) {
-  return settings.accumulate.mode != AccumulateMode::off ||
+  return settings.accumulate.mode == AccumulateMode::running || settings.accumulate.mode == AccumulateMode::reproject ||
          (settings.exposure.mode == ExposureMode::log_average && settings.exposure.smoothing_s > 0);
 }
 

@@ -92,24 +92,6 @@ SampleSums join_sums(const std::vector<FramePart>& parts, std::int32_t frame, co
   return sums;
 }
 
-// Adds what a part says of its tracing: times, counts and rays.
-void add_traced(const TimingRow& part, TimingRow& whole) {
-  whole.trace_ms += part.trace_ms;
-  whole.trace_cpu_ms += part.trace_cpu_ms;
-  whole.total_ms += part.total_ms;
-  whole.samples += part.samples;
-  whole.rays_primary += part.rays_primary;
-  whole.rays_bounce += part.rays_bounce;
-  whole.rays_shadow += part.rays_shadow;
-  whole.rejected_rays += part.rejected_rays;
-  whole.non_finite_samples += part.non_finite_samples;
-  whole.region_pixels = part.region_pixels;
-  for (std::size_t i = 0; i < kTimingRegions; ++i) {
-    whole.region_samples.at(i) += part.region_samples.at(i);
-    whole.region_cpu_ms.at(i) += part.region_cpu_ms.at(i);
-  }
-}
-
 TimingRow row_of(const std::vector<FramePart>& parts, const FrameRequest& request) {
   TimingRow row = timing_row(request);
   for (const FramePart& part : parts) {
@@ -128,6 +110,9 @@ TimingRow row_of(const std::vector<FramePart>& parts, const FrameRequest& reques
 std::string needs_all_samples(const PipelineSettings& settings) {
   if (uses_history(settings)) {
     return "frames depend on those before them";
+  }
+  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+    return "frames read those around them";
   }
   const Reconstruction reconstruction(settings.reconstruction);
   if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind

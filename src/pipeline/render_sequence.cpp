@@ -3,16 +3,18 @@
 // history and the timing log outlive a frame.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/stopwatch.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "output/aovs.hpp"
 #include "pipeline/frame_files.hpp"
+#include "pipeline/frame_window.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
@@ -25,10 +27,7 @@ FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeli
   FrameSettings frame = settings;
   frame.frames_per_second = static_cast<double>(settings.fps.numerator) / static_cast<double>(settings.fps.denominator);
   frame.display_curve = [&color](double exposure_ev) { return view_display_curve(color, {}, exposure_ev); };
-  const std::vector<std::string>& aovs = settings.output.exr.aovs;
-  frame.trace.guides = frame.trace.guides || std::any_of(aovs.begin(), aovs.end(), [](const std::string& aov) {
-                         return aov == "albedo" || aov == "normal" || aov == "depth";
-                       });
+  frame.trace.guides = frame.trace.guides || show_first_hits(settings.output.exr.aovs);
   return frame;
 }
 
@@ -106,6 +105,10 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                TemporalHistory history) {
   SequenceResult result;
   const FrameRenderer renderer(tracer, frame_settings(settings, color));
+  std::optional<FrameWindow> window;
+  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+    window.emplace(renderer, plan);
+  }
   const std::string timing_path = timing_path_of(plan, settings);
   const ResumePlan resume = plan_resume(plan, settings, timing_path, history);
   result.warnings = resume.warnings;
@@ -126,7 +129,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       if (settings.trace.samples) {
         render_samples(renderer, request, settings, row, result);
       } else {
-        const RenderedFrame rendered = renderer.render(request, history);
+        const RenderedFrame rendered = window ? window->render(request, history) : renderer.render(request, history);
         count_samples(rendered.samples, rendered.first_look, rendered.map, row, result);
         add_times(rendered.times, row);
         add_prediction(rendered.prediction, row);

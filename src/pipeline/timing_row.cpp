@@ -78,4 +78,21 @@ void add_samples(const TraceStats& samples, const TraceStats& first_look, const 
   }
 }
 
+void add_traced(const TimingRow& part, TimingRow& whole) {
+  whole.trace_ms += part.trace_ms;
+  whole.trace_cpu_ms += part.trace_cpu_ms;
+  whole.total_ms += part.total_ms;
+  whole.samples += part.samples;
+  whole.rays_primary += part.rays_primary;
+  whole.rays_bounce += part.rays_bounce;
+  whole.rays_shadow += part.rays_shadow;
+  whole.rejected_rays += part.rejected_rays;
+  whole.non_finite_samples += part.non_finite_samples;
+  whole.region_pixels = part.region_pixels;
+  for (std::size_t i = 0; i < kTimingRegions; ++i) {
+    whole.region_samples.at(i) += part.region_samples.at(i);
+    whole.region_cpu_ms.at(i) += part.region_cpu_ms.at(i);
+  }
+}
+
 }  // namespace gazetrace

@@ -187,6 +187,14 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
   return plan;
 }
 
+bool has_frame(const CameraPath& camera, const PlanSettings& settings, std::int64_t frame) {
+  if (frame < 1 || frame > std::numeric_limits<std::int32_t>::max()) {
+    return false;
+  }
+  const auto t_ns = mid_frame_ns(static_cast<std::int32_t>(frame), settings.fps, settings.start_ns);
+  return t_ns && covers(camera, *t_ns);
+}
+
 void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, const PlanSettings& settings) {
   if (!plan.frames.empty()) {
     say_what_the_eye_did(plan.frames.front(), frame_before, GazeMotion(&log, settings), log,

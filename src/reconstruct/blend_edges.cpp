@@ -10,7 +10,7 @@
 namespace gazetrace {
 
 void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Image<std::uint32_t>& site_of_pixel,
-                 Frame& frame) {
+                 SurfacePicture& picture) {
   const Guides& guides = *input.guides;
   const std::vector<EdgeRay>& rays = guides.edge_rays;
   constexpr std::size_t kRaysPerTask = 4096;
@@ -21,7 +21,7 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
   std::vector<std::vector<Blended>> blended((rays.size() + kRaysPerTask - 1) / kRaysPerTask);
   const auto value_of = [&](const EdgeRay& ray) -> PixelValue {
     if (!ray.own_surface) {
-      return {frame.radiance.pixels[ray.seen_by], frame.variance.pixels[ray.seen_by]};
+      return picture.at(ray.seen_by);
     }
     const EdgeSurface& surface = guides.edge_surfaces[ray.seen_by];
     if (only_shines(surface.kind)) {
@@ -42,26 +42,28 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
     while (k < std::min((task + 1) * kRaysPerTask, rays.size())) {
       const std::uint32_t pixel = rays[k].pixel;
       const bool changed = input.pass_through.needs_filtering(site_of_pixel.pixels[pixel]);
-      PixelValue sum{frame.radiance.pixels[pixel], frame.variance.pixels[pixel]};
+      PixelValue sum = picture.at(pixel);
       float count = 1;
       for (; k < rays.size() && rays[k].pixel == pixel; ++k) {
         if (changed) {
           const PixelValue value = value_of(rays[k]);
           sum.radiance += value.radiance;
           sum.variance += value.variance;
+          sum.replica += value.replica;
+          sum.error += value.error;
           ++count;
         }
       }
       if (changed) {
         // An upper bound of the variance: the values may share their samples.
-        blended[task].push_back({pixel, {sum.radiance / count, sum.variance / count}});
+        blended[task].push_back(
+            {pixel, {sum.radiance / count, sum.variance / count, sum.replica / count, sum.error / count}});
       }
     }
   });
   parallel_for(blended.size(), input.threads, [&](std::size_t task) {
     for (const Blended& b : blended[task]) {
-      frame.radiance.pixels[b.pixel] = b.value.radiance;
-      frame.variance.pixels[b.pixel] = b.value.variance;
+      picture.put(b.pixel, b.value);
     }
   });
 }

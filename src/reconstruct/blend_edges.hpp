@@ -8,8 +8,8 @@
 
 namespace gazetrace {
 
-// `frame` is filled; its values are read until all means are known.
+// `picture` is filled; its values are read until all means are known.
 void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Image<std::uint32_t>& site_of_pixel,
-                 Frame& frame);
+                 SurfacePicture& picture);
 
 }  // namespace gazetrace

@@ -24,7 +24,7 @@ struct Square {
 class SquareFiller {
  public:
   SquareFiller(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings,
-               const SurfaceLookup& lookup, std::size_t region, Frame& frame)
+               const SurfaceLookup& lookup, std::size_t region, SurfacePicture& picture)
       : input_(input),
         map_(input.map),
         guides_(*input.guides),
@@ -33,7 +33,7 @@ class SquareFiller {
         lookup_(lookup),
         region_(region),
         block_(input.map.regions[region].block_px),
-        frame_(frame) {}
+        picture_(picture) {}
 
   void fill(const Square& square) {
     for (int y = square.y; y < square.y_end; ++y) {
@@ -55,7 +55,7 @@ class SquareFiller {
  private:
   void put(int x, int y) {
     const std::size_t i = pixels_.count++;
-    const std::size_t p = frame_.radiance.index(x, y);
+    const std::size_t p = picture_.radiance.index(x, y);
     at_[i] = {x, y};
     pixels_.x_px[i] = static_cast<float>(x) + 0.5F - 0.5F * static_cast<float>(map_.width_px);
     pixels_.y_px[i] = static_cast<float>(y) + 0.5F - 0.5F * static_cast<float>(map_.height_px);
@@ -86,7 +86,7 @@ class SquareFiller {
   }
 
   void store(int x, int y, const LightLanes& sums, std::size_t i) {
-    const std::size_t p = frame_.radiance.index(x, y);
+    const std::size_t p = picture_.radiance.index(x, y);
     const Vec3f& albedo = guides_.albedo.pixels[p];
     PixelValue value{guides_.emission.pixels[p]};
     const bool reflects = !only_shines(guides_.kind.pixels[p]);
@@ -94,12 +94,13 @@ class SquareFiller {
       value.radiance += albedo * Vec3f{sums.reflected_r[i], sums.reflected_g[i], sums.reflected_b[i]};
       const float shade_of = luminance(albedo);
       value.variance = shade_of * shade_of * sums.variance[i];
+      value.replica = shade_of * sums.replica[i];
+      value.error = shade_of * shade_of * sums.error[i];
     } else if (reflects) {
       value = shaded(lookup_.farther(x, y, lookup_.surface_of(x, y)), albedo, value.radiance,
                      [&] { return input_.values.value(lattice_.site_of_pixel(x, y)); });
     }
-    frame_.radiance.pixels[p] = value.radiance;
-    frame_.variance.pixels[p] = value.variance;
+    picture_.put(p, value);
   }
 
   const FilterInput& input_;
@@ -110,7 +111,7 @@ class SquareFiller {
   const SurfaceLookup& lookup_;
   std::size_t region_;
   int block_;
-  Frame& frame_;
+  SurfacePicture& picture_;
   SurfaceLanes pixels_;
   struct Place {
     int x, y;
@@ -140,14 +141,14 @@ std::vector<SquareRow> rows_of_squares(const SurfaceCells& lattice, const Sampli
 }  // namespace
 
 void fill_squares(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings,
-                  const SurfaceLookup& lookup, Frame& frame) {
+                  const SurfaceLookup& lookup, SurfacePicture& picture) {
   const SamplingMap& map = input.map;
   const std::vector<SquareRow> rows = rows_of_squares(lattice, map);
   parallel_for(rows.size(), input.threads, [&](std::size_t k) {
     const SquareRow& row = rows[k];
     const int block = map.regions[row.region].block_px;
     const auto begin = [&](int at) { return at * block + block / 2; };
-    SquareFiller filler(input, lattice, settings, lookup, row.region, frame);
+    SquareFiller filler(input, lattice, settings, lookup, row.region, picture);
     for (int column = row.first_column; column < row.end_column; ++column) {
       filler.fill({column, row.row, std::max(begin(column), 0), std::max(begin(row.row), 0),
                    std::min(begin(column + 1), map.width_px), std::min(begin(row.row + 1), map.height_px)});

@@ -8,6 +8,6 @@
 namespace gazetrace {
 
 void fill_squares(const FilterInput& input, const SurfaceCells& lattice, const SmoothingSettings& settings,
-                  const SurfaceLookup& lookup, Frame& frame);
+                  const SurfaceLookup& lookup, SurfacePicture& picture);
 
 }  // namespace gazetrace

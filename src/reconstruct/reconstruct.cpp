@@ -59,8 +59,9 @@ FilterInfo info_of(const NamedFilter& filter) {
 
 void check_needs(const ReconstructionNeeds& needs, const SparseFrame& sparse, const SamplingMap& map,
                  const Guides* guides) {
-  if ((needs.guides && guides == nullptr) || (needs.surfaces && sparse.first_surface.size() != map.sites.size() + 1)) {
-    throw Error(ErrorKind::runtime, "reconstruct", "the filter needs guides and sums per surface",
+  if ((needs.guides && guides == nullptr) || (needs.surfaces && sparse.first_surface.size() != map.sites.size() + 1) ||
+      (needs.halves && sparse.half_difference.size() != map.sites.size())) {
+    throw Error(ErrorKind::runtime, "reconstruct", "the filter needs guides, sums per surface and halves",
                 "trace with Reconstruction::trace_settings and pass guides of Reconstruction::guide_settings");
   }
   if (needs.guides && (guides->albedo.width_px != map.width_px || guides->albedo.height_px != map.height_px)) {
@@ -88,6 +89,7 @@ Reconstruction::Reconstruction(const ReconstructionSettings& settings)
 
 TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
   settings.surfaces = filter_.needs.surfaces;
+  settings.halves = filter_.needs.halves;
   settings.pass_through_samples = pass_through_samples_;
   return settings;
 }

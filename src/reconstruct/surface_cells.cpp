@@ -25,6 +25,7 @@ SurfaceCell cell_of(const SurfaceSums& sums, float block_px, float pixel_m, bool
   cell.footprint_m = block_px * pixel_m * distance;
   cell.light = luminance(cell.reflected) / std::max(luminance(cell.albedo), kLeastAlbedo);
   cell.square = sums.square / n;
+  cell.replica = sums.half_difference / std::max(luminance(cell.albedo), kLeastAlbedo);
   cell.kind = sums.kind;
   return cell;
 }

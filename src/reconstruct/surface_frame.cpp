@@ -2,11 +2,13 @@
 #include "reconstruct/surface_frame.hpp"
 
 #include <cstddef>
+#include <utility>
 
 #include "core/parallel.hpp"
 #include "foveation/sites.hpp"
 #include "reconstruct/blend_edges.hpp"
 #include "reconstruct/fill_squares.hpp"
+#include "reconstruct/keep_residuals.hpp"
 #include "reconstruct/surface_lookup.hpp"
 
 namespace gazetrace {
@@ -17,23 +19,34 @@ Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
   SurfaceCells lattice = make_surface_cells(input.sparse, map, input.guides->camera, input.threads);
   smooth(lattice, map, settings, input.threads);
 
+  SurfacePicture picture(map.width_px, map.height_px);
   // AOVs are those of the linear filter.
   Frame frame = input.values.has_guides() ? filter_linear.frame(input) : make_frame(map, false);
   parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
     for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-      if (!input.pass_through.needs_filtering(i)) {
-        paint_site(frame, map, input.values, i);
-        continue;
-      }
       const Site& site = map.sites[i];
       const float density = static_cast<float>(input.values.count(i)) / static_cast<float>(site.pixels);
       for_each_pixel(map, site, [&](int x, int y) { frame.sample_count(x, y) = density; });
+      if (!input.pass_through.needs_filtering(i)) {
+        const SiteValue value = input.values.value(i);
+        for_each_pixel(map, site, [&](int x, int y) {
+          picture.put(frame.radiance.index(x, y),
+                      {value.radiance, value.variance, input.sparse.half_difference[i], value.variance});
+        });
+        if (input.values.has_guides()) {
+          paint_site(frame, map, input.values, i);
+        }
+      }
     }
   });
   const SurfaceLookup lookup(input, lattice, settings);
-  fill_squares(input, lattice, settings, lookup, frame);
-  blend_edges(input, lookup, lattice.site_of_pixel, frame);
+  fill_squares(input, lattice, settings, lookup, picture);
+  blend_edges(input, lookup, lattice.site_of_pixel, picture);
+  keep_residuals(input, settings, lattice.site_of_pixel, picture);
+  frame.radiance = std::move(picture.radiance);
+  frame.variance = std::move(picture.variance);
+  frame.squared_error = std::move(picture.error);
   return frame;
 }
 

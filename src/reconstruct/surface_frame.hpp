@@ -11,8 +11,8 @@ namespace gazetrace {
 
 // One ray a pixel, whose cone is as wide as the pixel: finer texture would be noise, which no sample averages. The
 // number of edge rays was measured in tests/benchmarks/filters.cpp.
-inline constexpr ReconstructionNeeds kSurfaceNeeds{.guides = GuideSettings{.pixel_cone = 1, .edge_rays = 4},
-                                                   .surfaces = true};
+inline constexpr ReconstructionNeeds kSurfaceNeeds{
+    .guides = GuideSettings{.pixel_cone = 1, .edge_rays = 4}, .surfaces = true, .halves = true};
 
 using SmoothSurfaces = void (*)(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings,
                                 int threads);

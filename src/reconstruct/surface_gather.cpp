@@ -28,6 +28,8 @@ template <std::size_t kWidth>
     sums.all[i] += nearness;
     sums.weight[i] += w;
     sums.variance[i] += w * w * cell.variance;
+    sums.replica[i] += w * cell.replica;
+    sums.error[i] += w * cell.error;
     sums.reflected_r[i] += w * cell.reflected.x;
     sums.reflected_g[i] += w * cell.reflected.y;
     sums.reflected_b[i] += w * cell.reflected.z;
@@ -69,6 +71,8 @@ GAZETRACE_CLONES void divide_light(LightLanes& sums) {
     sums.reflected_b[i] /= std::max(sums.albedo_b[i], least);
     const float weight = std::max(sums.weight[i], std::numeric_limits<float>::min());
     sums.variance[i] = sums.variance[i] / weight / weight;
+    sums.replica[i] /= weight;
+    sums.error[i] /= weight;
   }
 }
 

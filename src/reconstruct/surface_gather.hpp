@@ -35,7 +35,7 @@ struct SurfaceLanes {
 // Weighted sums over cells; after divide_light, `reflected` is light: reflected over albedo.
 struct LightLanes {
   GatherLane reflected_r, reflected_g, reflected_b, albedo_r, albedo_g, albedo_b;
-  GatherLane variance, weight;
+  GatherLane variance, replica, error, weight;
   GatherLane all;  // sum of the weights without regard to likeness
 };
 

@@ -16,7 +16,7 @@ namespace gazetrace {
 
 struct GatheredLight {
   Vec3f reflected, albedo;
-  float variance = 0;
+  float variance = 0, replica = 0, error = 0;
   float weight = 0;
   float all = 0;  // sum of the weights without regard to likeness
 
@@ -24,6 +24,8 @@ struct GatheredLight {
     reflected += w * cell.reflected;
     albedo += w * cell.albedo;
     variance += w * w * cell.variance;
+    replica += w * cell.replica;
+    error += w * cell.error;
     weight += w;
   }
 };
@@ -72,6 +74,29 @@ inline bool only_shines(SurfaceKind kind) {
 struct PixelValue {
   Vec3f radiance;
   float variance = 0;
+  float replica = 0;  // of the error of its luminance
+  float error = 0;    // estimated squared error of its luminance
+};
+
+// What the filter has found so far.
+struct SurfacePicture {
+  ImageRgb radiance;
+  ImageGray variance, replica, error;  // as PixelValue
+
+  SurfacePicture(int width_px, int height_px)
+      : radiance(width_px, height_px),
+        variance(width_px, height_px),
+        replica(width_px, height_px),
+        error(width_px, height_px) {}
+  [[nodiscard]] PixelValue at(std::size_t pixel) const {
+    return {radiance.pixels[pixel], variance.pixels[pixel], replica.pixels[pixel], error.pixels[pixel]};
+  }
+  void put(std::size_t pixel, const PixelValue& value) {
+    radiance.pixels[pixel] = value.radiance;
+    variance.pixels[pixel] = value.variance;
+    replica.pixels[pixel] = value.replica;
+    error.pixels[pixel] = value.error;
+  }
 };
 
 // The value of a surface that reflects. `unknown()` returns what to show where no sample is near.
@@ -79,14 +104,14 @@ template <class Unknown>
 PixelValue shaded(const GatheredLight& light, const Vec3f& albedo, const Vec3f& emission, const Unknown& unknown) {
   if (!(light.weight > 0)) {
     const SiteValue value = unknown();
-    return {value.radiance, value.variance};
+    return {value.radiance, value.variance, 0, value.variance};
   }
   const float least = kLeastAlbedo * light.weight;
   const float scale = luminance(albedo) / light.weight;
   return {emission + Vec3f{albedo.x * light.reflected.x / std::max(light.albedo.x, least),
                            albedo.y * light.reflected.y / std::max(light.albedo.y, least),
                            albedo.z * light.reflected.z / std::max(light.albedo.z, least)},
-          scale * scale * light.variance};
+          scale * scale * light.variance, scale * light.replica, scale * scale * light.error * light.weight};
 }
 
 }  // namespace gazetrace

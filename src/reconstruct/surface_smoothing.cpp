@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/hash.hpp"
 #include "core/instruction_sets.hpp"
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
@@ -24,7 +25,29 @@ constexpr float kOwnShare = 0.1F;
 struct CellLight {
   Vec3f reflected, albedo;
   float light = 0, variance = 0;
+  float reflected_replica = 0;  // of the error of the luminance of `reflected`
+
+  [[nodiscard]] float replica() const { return reflected_replica / std::max(luminance(albedo), kLeastAlbedo); }
 };
+
+// What one step of smoothing took away from a cell's light, and its noise.
+struct Detail {
+  float light = 0;
+  float variance = 0;  // from that of the light before the step, as if neighbours were independent of each other
+  float replica = 0;
+};
+
+// What is added to the light that is smoothed most.
+struct KeptDetail {
+  Vec3f light;
+  float variance = 0, replica = 0, error = 0;
+};
+
+Vec3f light_of(const CellLight& cell) {
+  return {cell.reflected.x / std::max(cell.albedo.x, kLeastAlbedo),
+          cell.reflected.y / std::max(cell.albedo.y, kLeastAlbedo),
+          cell.reflected.z / std::max(cell.albedo.z, kLeastAlbedo)};
+}
 
 // Another surface near by, and its weight by place and orientation, which is the same in both directions.
 struct Tie {
@@ -89,6 +112,18 @@ GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& s
   }
 }
 
+struct TileGrid {
+  int columns = 0, rows = 0;
+};
+TileGrid tile_grid(const SamplingMap& map) {
+  int columns = 0;
+  while (static_cast<std::size_t>(columns) < map.tiles.size() &&
+         map.tiles[static_cast<std::size_t>(columns)].y_px == map.tiles[0].y_px) {
+    ++columns;
+  }
+  return {columns, columns > 0 ? static_cast<int>(map.tiles.size()) / columns : 0};
+}
+
 int levels_of(const MapRegion& region, const SmoothingSettings& settings) {
   const double samples =
       static_cast<double>(region.samples) / static_cast<double>(std::max<std::uint64_t>(region.sites, 1));
@@ -113,11 +148,14 @@ class Smoother {
         samples_(cells.cells.size()),
         total_(cells.cells.size()),
         orientations_(cells.cells.size()),
-        flows_(map.tiles.size()) {
+        flows_(map.tiles.size()),
+        details_(cells.cells.size()),
+        kept_(cells.cells.size()) {
     for_each_tile([&](std::size_t t) {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         const SurfaceCell& cell = cells.cells[i];
-        lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance};
+        lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance,
+                      cell.replica * std::max(luminance(cell.albedo), kLeastAlbedo)};
         samples_[i] = cell.samples;
         orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
       }
@@ -165,6 +203,13 @@ class Smoother {
         }
         const double mean = light / weight;
         lights_[i].variance = static_cast<float>(std::max(square / weight - mean * mean, 0.0)) / own.samples;
+        if (lights_[i].reflected_replica == 0) {
+          // One of the halves has no sample here. The error of a single sample is as large as the spread, and has
+          // either sign.
+          const float sign = (hash32(static_cast<std::uint32_t>(i)) & 1U) != 0 ? 1.0F : -1.0F;
+          lights_[i].reflected_replica =
+              sign * std::sqrt(lights_[i].variance) * std::max(luminance(own.albedo), kLeastAlbedo);
+        }
       });
     });
   }
@@ -186,15 +231,20 @@ class Smoother {
           sum.reflected += w * other.reflected;
           sum.albedo += w * other.albedo;
           sum.variance += w * w * other.variance;
+          sum.reflected_replica += w * other.reflected_replica;
         }
         const float kept = 1 - taken;
         CellLight& smooth = next_[i];
         smooth.reflected = kept * own.reflected + sum.reflected;
         smooth.albedo = kept * own.albedo + sum.albedo;
         smooth.variance = kept * kept * own.variance + sum.variance;
+        smooth.reflected_replica = kept * own.reflected_replica + sum.reflected_replica;
         smooth.light = luminance(smooth.reflected) / std::max(luminance(smooth.albedo), kLeastAlbedo);
+        details_[i] = {own.light - smooth.light, taken * taken * own.variance + sum.variance,
+                       own.replica() - smooth.replica()};
       });
     });
+    keep_details(ties);
     lights_.swap(next_);
   }
 
@@ -202,15 +252,102 @@ class Smoother {
     for_each_tile([&](std::size_t t) {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         SurfaceCell& cell = lattice_.cells[i];
-        cell.reflected = lights_[i].reflected;
-        cell.albedo = lights_[i].albedo;
-        cell.light = lights_[i].light;
-        cell.variance = lights_[i].variance;
+        const KeptDetail& kept = kept_[i];
+        const Vec3f light = light_of(lights_[i]) + kept.light;
+        // With its own albedo, so that a cell that keeps every detail is what it was.
+        cell.reflected = cell.albedo * Vec3f{std::max(light.x, 0.0F), std::max(light.y, 0.0F), std::max(light.z, 0.0F)};
+        cell.light = luminance(cell.reflected) / std::max(luminance(cell.albedo), kLeastAlbedo);
+        cell.variance = lights_[i].variance + kept.variance;
+        cell.replica = lights_[i].replica() + kept.replica;
+        cell.error = lights_[i].variance + kept.error;
       }
     });
   }
 
  private:
+  // How much larger the noise of the details of a tile is than `Detail::variance` says. Stratified samples have less
+  // noise than their spread lets expect, and neighbours share some of theirs; the replicas know both.
+  [[nodiscard]] std::vector<float> noise_scales() const {
+    struct Noise {
+      double replicas = 0, expected = 0;
+    };
+    std::vector<Noise> noise(map_.tiles.size());
+    for_each_tile([&](std::size_t t) {
+      for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
+        const Detail& d = details_[i];
+        const float scale = relative_scale(next_[i], d);
+        noise[t].replicas += static_cast<double>(d.replica * d.replica * scale);
+        noise[t].expected += static_cast<double>(d.variance * scale);
+      }
+    });
+    std::vector<float> scales(map_.tiles.size());
+    const auto [columns, rows] = tile_grid(map_);
+    for (int y = 0; y < rows; ++y) {
+      for (int x = 0; x < columns; ++x) {
+        Noise sum;
+        for (int v = std::max(y - 1, 0); v < std::min(y + 2, rows); ++v) {
+          for (int u = std::max(x - 1, 0); u < std::min(x + 2, columns); ++u) {
+            const Noise& near = noise[static_cast<std::size_t>(v * columns + u)];
+            sum.replicas += near.replicas;
+            sum.expected += near.expected;
+          }
+        }
+        scales[static_cast<std::size_t>(y * columns + x)] =
+            sum.expected > 0 ? static_cast<float>(std::clamp(sum.replicas / sum.expected, 0.05, 4.0)) : 1.0F;
+      }
+    }
+    return scales;
+  }
+
+  // Details count in relation to the light that they belong to, so that a bright neighbour does not decide for all.
+  static float relative_scale(const CellLight& smooth, const Detail& detail) {
+    return 1.0F / (smooth.light * smooth.light + detail.variance + 1e-30F);
+  }
+
+  // Wavelet shrinkage: gives back of each detail the share that is signal (a Wiener filter), estimated from the squares
+  // of the details of the same surface near by, less those of their noise and some standard deviations of this
+  // difference.
+  void keep_details(const std::vector<TileTies>& ties) {
+    const std::vector<float> scales = noise_scales();
+    for_each_tile([&](std::size_t t) {
+      for_each_cell(ties, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t) {
+        if (begin == end) {
+          return;
+        }
+        double squares = 0;
+        double noise = 0;
+        double replicas = 0;
+        double spread = 0;
+        const auto add = [&](std::size_t j, float like) {
+          const Detail& d = details_[j];
+          const float w = like * relative_scale(next_[j], d);
+          squares += static_cast<double>(w * d.light * d.light);
+          noise += static_cast<double>(w * d.variance);
+          const auto square = static_cast<double>(w * d.replica * d.replica);
+          replicas += square;
+          spread += square * square;
+        };
+        add(i, kBinomial[0] * kBinomial[0]);
+        for (const Tie* tie = begin; tie != end; ++tie) {
+          add(tie->other, tie->like);
+        }
+        // A rare bright sample is in one of the halves only. Where there is one, the replicas are as large as the
+        // details, while what such samples add to the variance is spread over all cells around.
+        noise = std::max(noise * static_cast<double>(scales[t]), replicas);
+        const double signal = squares - noise - settings_.detail_doubt * std::sqrt(2 * spread);
+        const float share = signal > 0 ? static_cast<float>(signal / squares) : 0.0F;
+        const Detail& d = details_[i];
+        KeptDetail& kept = kept_[i];
+        const float variance = scales[t] * d.variance;
+        kept.light += share * (light_of(lights_[i]) - light_of(next_[i]));
+        kept.variance += share * share * variance;
+        kept.replica += share * d.replica;
+        const float lost = squares > 0 ? static_cast<float>(std::max(1.0 - noise / squares, 0.0)) : 0.0F;
+        kept.error += share * share * variance + (1 - share) * (1 - share) * lost * d.light * d.light;
+      });
+    });
+  }
+
   // Weights by likeness and by light, and their sums.
   void weigh(const std::vector<TileTies>& ties, std::size_t t) {
     flows_[t].resize(ties[t].ties.size());
@@ -287,6 +424,8 @@ class Smoother {
   std::vector<float> samples_, total_;  // of each cell
   std::vector<Orientation> orientations_;
   std::vector<std::vector<float>> flows_;  // of each tile's ties
+  std::vector<Detail> details_;            // of the last step
+  std::vector<KeptDetail> kept_;
 };
 
 }  // namespace

@@ -16,7 +16,11 @@ struct SmoothingSettings {
   int fewest_levels = 3;
   double samples = 512;    // wider steps are left out where the squares of 4, 16, 64 ... blocks have as many
   float light_sigmas = 6;  // differences of light up to so many standard deviations are taken for noise
-  float plane = 0.25F;     // how far off a surface's plane a neighbour may lie, over its distance
+  // What smoothing takes away is given back where its square is larger than that of its noise, by so many standard
+  // deviations of the estimate of the latter: in the steps of the smoothing, and in what guides leave out.
+  double detail_doubt = 2;
+  float residual_doubt = 3;
+  float plane = 0.25F;  // how far off a surface's plane a neighbour may lie, over its distance
 };
 
 // Smaller weights count as 0, so that their squares, which variances need, stay far from float's smallest.

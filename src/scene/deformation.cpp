@@ -8,7 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "gazetrace/scene.hpp"
-#include "scene/surface.hpp"
+#include "scene/normals_and_tangents.hpp"
 
 namespace gazetrace {
 namespace {

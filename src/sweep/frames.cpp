@@ -142,12 +142,14 @@ RasterSize scaled_size(const RasterSize& size, double scale) {
 
 FramePlan resized(const FramePlan& plan, const RasterSize& size) {
   FramePlan result = plan;
-  for (FrameRequest& request : result.frames) {
-    PlanarView& view = request.view;
-    view.step_x *= static_cast<double>(view.width_px) / size.width_px;
-    view.step_y *= static_cast<double>(view.height_px) / size.height_px;
-    view.width_px = request.width_px = size.width_px;
-    view.height_px = request.height_px = size.height_px;
+  for (std::vector<FrameRequest>* requests : {&result.frames, &result.around}) {
+    for (FrameRequest& request : *requests) {
+      PlanarView& view = request.view;
+      view.step_x *= static_cast<double>(view.width_px) / size.width_px;
+      view.step_y *= static_cast<double>(view.height_px) / size.height_px;
+      view.width_px = request.width_px = size.width_px;
+      view.height_px = request.height_px = size.height_px;
+    }
   }
   return result;
 }
@@ -159,8 +161,9 @@ const std::vector<std::string>& wrong_gazes() {
 
 std::optional<FramePlan> with_wrong_gaze(const FramePlan& plan, const std::string& wrong) {
   FramePlan result = plan;
+  result.around.clear();  // their gaze would be the right one
   if (wrong == "shuffled") {
-    result = shuffled(plan);
+    result = shuffled(result);
   } else if (wrong == "center" || wrong == "mirrored") {
     for (FrameRequest& request : result.frames) {
       if (request.gaze_direction_render) {

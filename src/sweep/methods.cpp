@@ -58,6 +58,16 @@ std::string views_of(const SweepPlan& plan) {
   return each_once(views);
 }
 
+// Said where frames use others that come after them.
+std::string not_causal(const SweepPlan& plan) {
+  const bool two_sided = std::any_of(plan.tests.begin(), plan.tests.end(), [](const SweepTest& test) {
+    return test.pipeline.accumulate.mode == AccumulateMode::two_sided;
+  });
+  return two_sided ? "Rows with `accumulate` two-sided are not causal (causal = false): their frames use frames that "
+                     "come after them, which cannot be done while somebody looks. "
+                   : "";
+}
+
 // How the light of the references was computed, which may differ from how that of the tests was.
 std::string light_of_references(const SweepPlan& plan) {
   std::vector<std::string> texts;
@@ -159,6 +169,7 @@ std::string sweep_methods(const SweepPlan& plan, const Results& results) {
       kVersion, build_description(), instruction_set(), results.build.digest.substr(0, 12), results.machine.cpu,
       results.machine.threads.value_or(0), request.width_px, request.height_px, 1 / (request.view.step_x * kDegPerRad),
       scenes_of(plan), list_of(plan.gazes), list_of(plan.stated_settings), settings_of(plan));
+  text += not_causal(plan);
   text += fmt::format("Pictures were shown and scored through the view {}. ", views_of(plan));
   text += fmt::format(
       "The reference of each scene is the mean of {} renderings of {} samples per pixel with independent scramblings "

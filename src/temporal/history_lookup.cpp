@@ -111,7 +111,7 @@ std::optional<Sharp> sharp_mean(const TemporalHistory& history, const Surface& s
 PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_view, const SurfaceMotion& motion,
                  std::size_t pixel) {
   PastSums past;
-  const Vec2d at = motion.earlier_px.pixels[pixel];
+  const Vec2d at = motion.other_px.pixels[pixel];
   const int width = history.count_sum.width_px;
   const int height = history.count_sum.height_px;
   // Written so that NaN is rejected.
@@ -122,8 +122,8 @@ PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_
   const Surface surface{was,
                         earlier_view,
                         at,
-                        static_cast<double>(motion.earlier_depth_m.pixels[pixel]),
-                        motion.earlier_normal.pixels[pixel],
+                        static_cast<double>(motion.other_depth_m.pixels[pixel]),
+                        motion.other_normal.pixels[pixel],
                         motion.object.pixels[pixel]};
   const double x = snapped(at.x - 0.5);
   const double y = snapped(at.y - 0.5);

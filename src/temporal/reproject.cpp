@@ -9,34 +9,14 @@
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "core/statistics.hpp"
-#include "foveation/sites.hpp"
 #include "gazetrace/temporal.hpp"
 #include "temporal/clip.hpp"
 #include "temporal/history_lookup.hpp"
 #include "temporal/residuals.hpp"
+#include "temporal/worth.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr float kFullRatePx = 1.5F;
-constexpr float kKnowsNoise = 2;  // from so many samples on a pixel states its own variance
-// In samples: a past that is worth less counts as none. It would show in no digit, and squares of its count would leave
-// the range of numbers.
-constexpr double kLeastWorth = 1e-9;
-
-ImageGray footprints_of(const SamplingMap& map) {
-  ImageGray footprint(map.width_px, map.height_px, 1.0F);
-  for (const Site& site : map.sites) {
-    const float side = std::sqrt(static_cast<float>(site.pixels));
-    for_each_pixel(map, site, [&](int x, int y) { footprint(x, y) = side; });
-  }
-  return footprint;
-}
-
-bool eye_forbids(const FrameRequest& request, const AccumulateSettings& settings) {
-  return (settings.reset_at_saccades && request.saccade_since_last_frame) ||
-         (settings.reset_at_blinks && request.blink_since_last_frame);
-}
 
 // Between the two passes over a frame, the next history holds only what was looked up of the past.
 void put(const PastSums& past, std::size_t i, TemporalHistory& next) {
@@ -88,7 +68,7 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
   }
   const PixelProjection earlier_view(alone ? request.camera : *history.camera, width, height);
   const ImageGray footprint = footprints_of(map);
-  const double kept = settings.frames > 0 ? 1 - 1 / std::max(settings.frames, 1.0) : 1;
+  const double kept = share_kept_a_frame(settings);
 
   TemporalHistory next;
   next.radiance_sum = Image<Vec3d>(width, height);
@@ -104,8 +84,7 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
         if (!(past.count > 0)) {
           continue;
         }
-        const double coarseness = past.footprint_px / static_cast<double>(footprint.pixels[i]);
-        scale_worth(past, kept / std::max(1.0, coarseness * coarseness));
+        scale_worth(past, kept / ratio_of_areas(past, static_cast<double>(footprint.pixels[i])));
         if (past.resampled && footprint.pixels[i] < kFullRatePx && frame.sample_count.pixels[i] >= kKnowsNoise) {
           const double seen = luminance(to_double(frame.radiance.pixels[i]));
           const double difference = luminance(past.radiance / past.count) - seen;

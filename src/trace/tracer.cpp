@@ -18,6 +18,7 @@
 #include "trace/samples/sample_list.hpp"
 #include "trace/samples/sample_sums.hpp"
 #include "trace/samples/surface_sums.hpp"
+#include "trace/samples/z_order.hpp"
 
 namespace gazetrace {
 namespace {
@@ -185,19 +186,24 @@ struct PathTracer::Impl {
   bool is_posed = true;
 
   void trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter, std::int32_t frame,
-                   const SamplingMap& map, const SiteRange& range, Workspace& work, TileResult& tile,
-                   SparseFrame& out) const;
+                   const SamplingMap& map, const ZOrder* z_order, const SiteRange& range, Workspace& work,
+                   TileResult& tile, SparseFrame& out) const;
 };
 
 void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, const PixelFilterSampler& filter,
-                                   std::int32_t frame, const SamplingMap& map, const SiteRange& range, Workspace& work,
-                                   TileResult& tile, SparseFrame& out) const {
+                                   std::int32_t frame, const SamplingMap& map, const ZOrder* z_order,
+                                   const SiteRange& range, Workspace& work, TileResult& tile, SparseFrame& out) const {
   tile.regions.resize(map.regions.size());
   const bool surfaces = context.settings.surfaces;
   const PassThrough pass_through(map, context.settings.pass_through_samples);
   SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
                        context.camera->is_perspective());
+  HalfSums halves;
   const auto finish_site = [&](std::size_t site) {
+    if (!out.half_difference.empty()) {
+      out.half_difference[site] = halves.difference();
+    }
+    halves = {};
     if (surfaces) {
       const std::size_t before = tile.surfaces.size();
       sorter.finish_site(tile.surfaces);
@@ -205,7 +211,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
     }
   };
   SampleList list(map, range.first, range.count, context.settings.seed, frame,
-                  context.settings.samples.value_or(kAllSamples));
+                  context.settings.samples.value_or(kAllSamples), z_order, context.settings.halves);
   SiteSum sum;
   std::uint32_t current = range.first;
   std::vector<std::uint64_t> in_region(map.regions.size());
@@ -245,8 +251,9 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         continue;
       }
       add_light({r, g, b}, sum.light);
+      halves.add(luminance(to_double(Vec3f{r, g, b})), work.samples.half[i]);
       if (surfaces && pass_through.needs_filtering(current)) {
-        sorter.add(work.surfaces, i, {r, g, b});
+        sorter.add(work.surfaces, i, {r, g, b}, work.samples.half[i]);
       }
     }
     const std::int64_t spent_ns = thread_cpu_ns() - begin_ns;
@@ -300,6 +307,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   out.sum_square_luminance.resize(map.sites.size());
   out.count.resize(map.sites.size());
   out.guides.resize(settings.guides ? map.sites.size() : 0);
+  out.half_difference.resize(settings.halves ? map.sites.size() : 0);
   out.unrounded.sites.resize(settings.samples ? map.sites.size() : 0);
   out.unrounded.guides.resize(settings.samples && settings.guides ? map.sites.size() : 0);
   out.first_surface.resize(settings.surfaces ? map.sites.size() + 1 : 0);
@@ -316,13 +324,18 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   }
   std::vector<TileResult> results(ranges.size());
   WorkspacePool pool;
+  std::optional<ZOrder> z_order;
+  if (settings.sample_pattern == SamplePattern::z_order) {
+    z_order.emplace(map);
+  }
   const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
   parallel_for(ranges.size(), tracer_->options.threads, [&](std::size_t i) {
     const FlushDenormals flush;
     auto work = pool.take();
-    tracer_->trace_sites(context, kernel, filter, frame, map, ranges[i], *work, results[i], out);
+    tracer_->trace_sites(context, kernel, filter, frame, map, z_order ? &*z_order : nullptr, ranges[i], *work,
+                         results[i], out);
     pool.give(std::move(work));
   });
 
@@ -355,9 +368,9 @@ Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, con
 }
 
 SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int height_px,
-                                         const EarlierView& earlier) const {
+                                         const OtherView& other) const {
   tracer_->pose(times_);
-  return trace_surface_motion(*tracer_->scene, tracer_->render_scene, camera, width_px, height_px, earlier,
+  return trace_surface_motion(*tracer_->scene, tracer_->render_scene, camera, width_px, height_px, other,
                               tracer_->options.threads);
 }
 

@@ -20,15 +20,17 @@ namespace {
 
 constexpr double kP = kVisiblePooling;
 
-// s^p of the header times E|z|^p, of one band and channel: the sustained bands first, then the transient ones.
+// s of the header, and s^p times E|z|^p, for each band and channel and each pixel of the raster: the sustained bands
+// first, then the transient ones.
 struct BandPowers {
   std::size_t sustained_bands = 0;
-  std::vector<std::vector<double>> at;  // [band and channel][pixel of the raster]
+  std::vector<std::vector<float>> deviation;
+  std::vector<std::vector<double>> at;
 };
 
 // Sensitivities change slowly over the field, so one raster serves all bands.
 int raster_cell_px(const PlanarView& view) {
-  constexpr int kMostSide = 160;
+  constexpr int kMostSide = 128;
   int cell = 1;
   while (std::max(view.width_px, view.height_px) / cell > kMostSide) {
     cell *= 2;
@@ -51,19 +53,25 @@ BandPowers band_powers(const ModelGainSettings& settings, const Vec3d& gaze_dire
   powers.sustained_bands = frequencies.size();
   for (std::size_t c = 0; c < channel_count; ++c) {
     for (std::size_t b = 0; b < frequencies.size(); ++b) {
-      const BandGeometry band = band_geometry(geometry, true, frequencies[b], width, height, settings.threads);
+      BandGeometry band = band_geometry(geometry, true, frequencies[b], width, height, settings.threads);
+      if (settings.even_resolution) {
+        std::fill(band.log2_rho.pixels.begin(), band.log2_rho.pixels.end(), band.log2_rho_centre);
+      }
       const double per_contrast =
           static_cast<double>(band_contrast_gain(b)) * std::sqrt(spectrum.gain[b] * channels.variance[c]);
       std::vector<double> power;
+      std::vector<float> deviation;
       std::vector<float> sensitivity_sustained;
       std::vector<float> sensitivity_transient;
       for (int y = 0; y < height; ++y) {
         band_sensitivity(band, gaze_deg, y, background, sensitivity_sustained, sensitivity_transient);
         for (const float s : c == 0 ? sensitivity_sustained : sensitivity_transient) {
-          power.push_back(moment * std::pow(per_contrast * static_cast<double>(s), kP));
+          deviation.push_back(static_cast<float>(per_contrast * static_cast<double>(s)));
+          power.push_back(moment * std::pow(static_cast<double>(deviation.back()), kP));
         }
       }
       powers.at.push_back(std::move(power));
+      powers.deviation.push_back(std::move(deviation));
     }
   }
   return powers;
@@ -120,38 +128,73 @@ std::vector<double> best_rates(const BandPowers& powers, const std::vector<doubl
   return rates;
 }
 
-// Q that has this JOD.
+// Q of `spp` samples a pixel on average, at these rates, with the metric's limit of each difference.
+double limited_q(const BandPowers& powers, const std::vector<double>& rates, double spp) {
+  std::vector<float> fall(rates.size());
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    fall[i] = static_cast<float>(1 / std::sqrt(spp * rates[i]));
+  }
+  std::vector<double> sustained;
+  std::vector<double> transient;
+  for (std::size_t k = 0; k < powers.deviation.size(); ++k) {
+    const bool is_sustained = k < powers.sustained_bands;
+    const MaskedMoments& moments = is_sustained ? MaskedMoments::sustained() : MaskedMoments::transient();
+    double sum = 0;
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      sum += static_cast<double>(moments(0, powers.deviation[k][i] * fall[i]));
+    }
+    (is_sustained ? sustained : transient).push_back(std::pow(sum / static_cast<double>(rates.size()), 1 / kPoolSpace));
+  }
+  return pooled_over_bands(sustained, transient);
+}
+
+// Q that has this JOD, by the metric's formula, which has no limit below.
 double q_of_jod(double jod) {
-  double low = 0;
-  double high = 1;
-  while (fovvideovdp_jod(high) > jod) {
-    high *= 2;
-  }
-  for (int step = 0; step < 100; ++step) {
+  double low = -30;
+  double high = 60;
+  constexpr int kSteps = 60;
+  for (int step = 0; step < kSteps; ++step) {
     const double middle = (low + high) / 2;
-    (fovvideovdp_jod(middle) > jod ? low : high) = middle;
+    (fovvideovdp_jod(std::exp2(middle)) > jod ? low : high) = middle;
   }
-  return (low + high) / 2;
+  return std::exp2((low + high) / 2);
+}
+
+// The samples a pixel that reach a Q (which the limit must not make impossible): without the limit, Q falls as their
+// power of -p / (2 r), and the limit only makes it fall more slowly, so that steps by that power settle from above or
+// below.
+double spp_for(const BandPowers& powers, const std::vector<double>& rates, double wanted_q) {
+  constexpr int kMostSteps = 60;
+  constexpr double kSettled = 1e-6;
+  double spp = std::pow(pooled(powers, rates).q / wanted_q, 2 * kPoolSpace / kP);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double factor = std::pow(limited_q(powers, rates, spp) / wanted_q, 2 * kPoolSpace / kP);
+    spp *= factor;
+    if (std::fabs(factor - 1) < kSettled) {
+      break;
+    }
+  }
+  return spp;
 }
 
 }  // namespace
 
 ModelGain model_gain(const ModelGainSettings& settings, const Vec3d& gaze_direction, const ErrorSpectrum& spectrum) {
+  constexpr double kLeast = 5;
   constexpr double kNone = 10;
-  if (!(settings.target_jod < kNone)) {
-    throw Error(ErrorKind::usage, "visible error",
-                fmt::format("a target of {} JOD: no noise scores 10 or more", settings.target_jod));
+  if (!(settings.target_jod >= kLeast && settings.target_jod < kNone)) {
+    throw Error(ErrorKind::usage, "visible error", fmt::format("a target of {} JOD", settings.target_jod),
+                fmt::format("it must be at least {:g} and below {:g}", kLeast, kNone));
   }
   const int cell = raster_cell_px(settings.view);
   const int width = (settings.view.width_px + cell - 1) / cell;
   const int height = (settings.view.height_px + cell - 1) / cell;
   const BandPowers powers = band_powers(settings, gaze_direction, spectrum, width, height);
   std::vector<double> rates(powers.at.front().size(), 1.0);
-  const double uniform_q = pooled(powers, rates).q;
-  double allocated_q = uniform_q;
+  double q = pooled(powers, rates).q;
   // The fixed point, approached in the mean of logarithms, which damps oscillation.
   constexpr int kMostSteps = 100;
-  constexpr double kSettled = 1e-7;  // relative change of Q
+  constexpr double kSettled = 1e-6;  // relative change of Q
   for (int step = 0; step < kMostSteps; ++step) {
     const std::vector<double> next = best_rates(powers, pooled(powers, rates).slope);
     double sum = 0;
@@ -162,19 +205,18 @@ ModelGain model_gain(const ModelGainSettings& settings, const Vec3d& gaze_direct
     for (double& rate : rates) {
       rate *= static_cast<double>(rates.size()) / sum;
     }
-    const double before = allocated_q;
-    allocated_q = pooled(powers, rates).q;
-    if (std::fabs(before - allocated_q) < kSettled * allocated_q) {
+    const double before = q;
+    q = pooled(powers, rates).q;
+    if (std::fabs(before - q) < kSettled * q) {
       break;
     }
   }
-  // Q falls as the rates to the power of -p / (2 r).
-  const double exponent = 2 * kPoolSpace / kP;
+  const std::vector<double> uniform(rates.size(), 1.0);
   const double wanted = q_of_jod(settings.target_jod);
   ModelGain result;
-  result.gain = std::pow(uniform_q / allocated_q, exponent);
-  result.uniform_spp = std::pow(uniform_q / wanted, exponent);
-  result.allocated_spp = result.uniform_spp / result.gain;
+  result.uniform_spp = spp_for(powers, uniform, wanted);
+  result.allocated_spp = spp_for(powers, rates, wanted);
+  result.gain = result.uniform_spp / result.allocated_spp;
   result.density = ImageGray(width, height);
   for (std::size_t i = 0; i < rates.size(); ++i) {
     result.density.pixels[i] = static_cast<float>(rates[i]);

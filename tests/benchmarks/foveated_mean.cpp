@@ -394,9 +394,8 @@ int run(int argc, char** argv) {
     PathTracer tracer(world.scene, {});
     const auto uniform = uniform_frames(tracer, world, options);
     for (const FalloffInfo& info : falloffs()) {
-      if (info.from_picture ||
-          (!options.models.empty() &&
-           std::find(options.models.begin(), options.models.end(), info.name) == options.models.end())) {
+      if (info.from_picture || (!options.models.empty() && std::find(options.models.begin(), options.models.end(),
+                                                                     info.name) == options.models.end())) {
         continue;
       }
       FoveationSettings settings;

@@ -75,6 +75,7 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
                                               map_context(request, settings.trace.seed));
     TraceSettings trace = settings.trace;
     trace.surfaces = filter == "guided";
+    trace.halves = filter == "guided";
     const SparseFrame sparse = by_hand.trace(request.camera, request.frame, map, trace);
     const Guides guides = by_hand.guides(request.camera, kWidth, kHeight, {.edge_rays = 4});
     const Frame frame = Reconstruction({filter, {}}).frame(sparse, map, filter == "guided" ? &guides : nullptr);

@@ -39,10 +39,10 @@ TEST(SurfaceMotion, AMovingCameraShiftsAWall) {
       tracer.at_rest().surface_motion(camera_in({0.3, 0.1, 5}), kWidth, kHeight, {camera_in({0, 0, 5}), 0});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      EXPECT_NEAR(motion.earlier_px(x, y).x, x + 0.5 + focal_px() * 0.3 / 5, 1e-4);
-      EXPECT_NEAR(motion.earlier_px(x, y).y, y + 0.5 - focal_px() * 0.1 / 5, 1e-4);
+      EXPECT_NEAR(motion.other_px(x, y).x, x + 0.5 + focal_px() * 0.3 / 5, 1e-4);
+      EXPECT_NEAR(motion.other_px(x, y).y, y + 0.5 - focal_px() * 0.1 / 5, 1e-4);
       EXPECT_NEAR(motion.depth_m(x, y), 5, 1e-5);
-      EXPECT_NEAR(motion.earlier_depth_m(x, y), 5, 1e-5);
+      EXPECT_NEAR(motion.other_depth_m(x, y), 5, 1e-5);
       EXPECT_EQ(motion.object(x, y), 1U);
       EXPECT_NEAR(motion.normal(x, y).z, 1, 1e-6);
     }
@@ -59,7 +59,7 @@ TEST(SurfaceMotion, ATurningCameraMovesWallAndSkyAlike) {
   for (const int x : {3, 20, 30, 45}) {
     // On the horizon's row the angle to the axis grows by the turn; the earlier camera looked to the left.
     const double angle = std::atan((x + 0.5 - kWidth / 2.0) / focal_px()) + turned;
-    const double between = 0.5 * (motion.earlier_px(x, kHeight / 2).x + motion.earlier_px(x, kHeight / 2 - 1).x);
+    const double between = 0.5 * (motion.other_px(x, kHeight / 2).x + motion.other_px(x, kHeight / 2 - 1).x);
     EXPECT_NEAR(between, kWidth / 2.0 + focal_px() * std::tan(angle), 2e-3);
     EXPECT_EQ(motion.object(x, 9), x < kWidth / 2 ? 1U : 0U);
     EXPECT_EQ(std::isinf(motion.depth_m(x, 9)), x >= kWidth / 2);
@@ -85,8 +85,8 @@ TEST(SurfaceMotion, TheSkyOfAShiftedOrthographicCameraStays) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = kWidth - 10; x < kWidth; ++x) {
       misses += shifted.object(x, y) == 0 ? 1 : 0;
-      EXPECT_EQ(shifted.earlier_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
-      EXPECT_TRUE(std::isnan(turned.earlier_px(x, y).x));
+      EXPECT_EQ(shifted.other_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
+      EXPECT_TRUE(std::isnan(turned.other_px(x, y).x));
     }
   }
   EXPECT_EQ(misses, 10 * kHeight);
@@ -99,7 +99,7 @@ TEST(SurfaceMotion, WhatStandsStillStaysToTheBit) {
   const SurfaceMotion motion = tracer.at_rest().surface_motion(camera, kWidth, kHeight, {camera, 0});
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      EXPECT_EQ(motion.earlier_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
+      EXPECT_EQ(motion.other_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
     }
   }
 }
@@ -109,7 +109,7 @@ TEST(SurfaceMotion, BehindTheEarlierCameraIsNowhere) {
   PathTracer tracer(scene, threads(2));
   const SurfaceMotion motion =
       tracer.at_rest().surface_motion(camera_in({0, 0, 5}), kWidth, kHeight, {camera_in({0, 0, -5}), 0});
-  EXPECT_TRUE(std::isnan(motion.earlier_px(20, 20).x));
+  EXPECT_TRUE(std::isnan(motion.other_px(20, 20).x));
 }
 
 // A small square before the wall moves by (0.4, 0, 1) and turns by 90 degrees about its own normal.
@@ -129,15 +129,15 @@ TEST(SurfaceMotion, ABodyCarriesItsSurface) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       if (motion.object(x, y) != 2) {
-        EXPECT_EQ(motion.earlier_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
+        EXPECT_EQ(motion.other_px(x, y), (Vec2d{x + 0.5, y + 0.5}));
         continue;
       }
       ++on_body;
       const double px = (x + 0.5 - kWidth / 2.0) * 3 / focal_px() - 0.4;  // on the body, in its present axes
       const double py = -(y + 0.5 - kHeight / 2.0) * 3 / focal_px();
-      EXPECT_NEAR(motion.earlier_px(x, y).x, kWidth / 2.0 + focal_px() / 4 * py, 1e-3);
-      EXPECT_NEAR(motion.earlier_px(x, y).y, kHeight / 2.0 + focal_px() / 4 * px, 1e-3);
-      EXPECT_NEAR(motion.earlier_depth_m(x, y), 4, 1e-5);
+      EXPECT_NEAR(motion.other_px(x, y).x, kWidth / 2.0 + focal_px() / 4 * py, 1e-3);
+      EXPECT_NEAR(motion.other_px(x, y).y, kHeight / 2.0 + focal_px() / 4 * px, 1e-3);
+      EXPECT_NEAR(motion.other_depth_m(x, y), 4, 1e-5);
     }
   }
   EXPECT_GT(on_body, 100);
@@ -205,8 +205,8 @@ TEST(SurfaceMotion, AShapeCarriesItsSurface) {
           py += (a * ey - c * ex) / (a * d - b * c);
         }
         const Vec2d expected = view.point(place(then_s, pu, py)).px;
-        EXPECT_NEAR(motion.earlier_px(i, j).x, expected.x, 2e-3) << u << ' ' << y;
-        EXPECT_NEAR(motion.earlier_px(i, j).y, expected.y, 2e-3) << u << ' ' << y;
+        EXPECT_NEAR(motion.other_px(i, j).x, expected.x, 2e-3) << u << ' ' << y;
+        EXPECT_NEAR(motion.other_px(i, j).y, expected.y, 2e-3) << u << ' ' << y;
         EXPECT_LT(std::hypot(expected.x - then.x, expected.y - then.y), 3);
       }
     }

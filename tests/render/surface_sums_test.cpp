@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "core/luminance.hpp"
 #include "render/tracer_scenes.hpp"
 #include "support/picture_evidence.hpp"
 #include "support/reconstruct.hpp"
@@ -103,6 +106,7 @@ TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
       make_sampling_map(foveation, view_of_perspective(50 * kRadPerDeg, kWidth, kHeight), Vec3d{0, 0, -1});
   TraceSettings settings = with_surfaces();
   settings.guides = true;
+  settings.pass_through_samples = 16;
   settings.max_bounces = 1;
   const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, settings);
   int rounded_up = 0;
@@ -114,6 +118,45 @@ TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
     }
   }
   EXPECT_GT(rounded_up, 10);
+}
+
+// Over 48 seeds, the variance of the sites' means, and the mean square of half the difference of their halves.
+TEST(SurfaceSums, HalvesTellTheVarianceOfTheMeanOfAllSamples) {
+  const Scene scene = lit_scene();
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = foveated_map();
+  TraceSettings settings = with_surfaces();
+  settings.halves = true;
+  constexpr int kSeeds = 48;
+  struct Site {
+    double sum = 0, square = 0, difference = 0, difference_square = 0;
+  };
+  std::vector<Site> sites(map.sites.size());
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed);
+    const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, settings);
+    ASSERT_EQ(sparse.half_difference.size(), map.sites.size());
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      const double mean = luminance(to_double(sparse.sum[i])) / sparse.count[i];
+      const auto difference = static_cast<double>(sparse.half_difference[i]);
+      sites[i].sum += mean;
+      sites[i].square += mean * mean;
+      sites[i].difference += difference;
+      sites[i].difference_square += difference * difference;
+    }
+  }
+  double variance = 0;
+  double replica = 0;
+  double bias = 0;
+  for (const Site& site : sites) {
+    variance += (site.square - site.sum * site.sum / kSeeds) / (kSeeds - 1);
+    replica += site.difference_square / kSeeds;
+    bias += site.difference / kSeeds;
+  }
+  // The relative standard error of both sums is about sqrt(2 / (48 seeds times thousands of sites)), 1 % at most.
+  EXPECT_NEAR(replica / variance, 1, 0.05);
+  const double of_bias = std::sqrt(replica / kSeeds);
+  EXPECT_NEAR(bias, 0, 4 * of_bias);
 }
 
 TEST(SurfaceSums, SameBitsForAnyThreadCount) {

@@ -18,12 +18,12 @@ inline SurfaceMotion wall(const Vec2d& shift = {0, 0}) {
   motion.depth_m = ImageGray(kWidth, kHeight, 2.0F);
   motion.normal = ImageRgb(kWidth, kHeight, {0, 0, 1});
   motion.object = Image<std::uint32_t>(kWidth, kHeight, 1);
-  motion.earlier_px = Image<Vec2d>(kWidth, kHeight);
-  motion.earlier_depth_m = motion.depth_m;
-  motion.earlier_normal = motion.normal;
+  motion.other_px = Image<Vec2d>(kWidth, kHeight);
+  motion.other_depth_m = motion.depth_m;
+  motion.other_normal = motion.normal;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      motion.earlier_px(x, y) = {x + 0.5 + shift.x, y + 0.5 + shift.y};
+      motion.other_px(x, y) = {x + 0.5 + shift.x, y + 0.5 + shift.y};
     }
   }
   return motion;

@@ -156,7 +156,7 @@ TEST(ExrFrame, TheHeaderSaysHowItWasMade) {
   EXPECT_EQ(text.at("gazetrace:exposure_ev"), "-0.1");
   EXPECT_EQ(text.at("gazetrace:settings_digest"), "0123456789abcdef0123456789abcdef");
   EXPECT_THAT(text.at("gazetrace:gaze_render"), testing::HasSubstr("state=held u=0.25"));
-  EXPECT_THAT(text.at("gazetrace:gaze_true"), testing::HasSubstr("state=measured u=0.5 v=0.75"));
+  EXPECT_THAT(text.at("gazetrace:gaze_true"), testing::HasSubstr("state=measured u=0.5 v=0.75 t_log_ns"));
   EXPECT_THAT(text.at("gazetrace:camera"), testing::HasSubstr("position_m=1,2,3"));
   EXPECT_THAT(text.at("gazetrace:camera"), testing::Not(testing::HasSubstr("aperture")));
   EXPECT_EQ(text.count("gazetrace:shutter_ns"), 0U);

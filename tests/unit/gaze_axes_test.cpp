@@ -89,7 +89,7 @@ TEST_F(GazeAxisFindings, WitnessesOfEachEyeTellWhichIsFlipped) {
     const GazeInspection report = inspect("a.asc", text);
     ASSERT_THAT(codes(report), ElementsAre("one-eye-flipped"));
     EXPECT_THAT(report.findings.front().what, HasSubstr(left ? "the left one has" : "the right one has"));
-    EXPECT_THAT(report.flags, ElementsAre(left ? "--gaze-eye right" : "--gaze-eye left"));
+    EXPECT_THAT(report.settings, ElementsAre(left ? "`gaze-eye` right" : "`gaze-eye` left"));
     // The good eye alone is accused of nothing, the other of its axis.
     GazeReadOptions options;
     options.eye = left ? EyeChoice::right : EyeChoice::left;
@@ -97,7 +97,7 @@ TEST_F(GazeAxisFindings, WitnessesOfEachEyeTellWhichIsFlipped) {
     EXPECT_THAT(codes(good), IsEmpty());
     EXPECT_EQ(good.axes[1].verdict, AxisVerdict::confirmed);
     options.eye = left ? EyeChoice::left : EyeChoice::right;
-    EXPECT_THAT(inspect("a.asc", text, options).flags, ElementsAre("--gaze-flip-y"));
+    EXPECT_THAT(inspect("a.asc", text, options).settings, ElementsAre("`gaze-flip-y`"));
   }
 }
 
@@ -113,7 +113,7 @@ TEST_F(GazeAxisFindings, NoEyesWitnessDecidesForTheOther) {
     const GazeInspection report = inspect("a.asc", line_of_text(flipped, "LR"));
     EXPECT_THAT(codes(report), ElementsAre("one-eye-flipped"));
     EXPECT_THAT(report.findings.front().what, HasSubstr(left ? "the left one has" : "the right one has"));
-    EXPECT_THAT(report.flags, ElementsAre(left ? "--gaze-eye right" : "--gaze-eye left"));
+    EXPECT_THAT(report.settings, ElementsAre(left ? "`gaze-eye` right" : "`gaze-eye` left"));
     EXPECT_NE(report.axes[1].verdict, AxisVerdict::confirmed);
     EXPECT_EQ(report.axes[0].verdict, AxisVerdict::confirmed);
   }
@@ -126,7 +126,7 @@ TEST_F(GazeAxisFindings, AWitnessOfOneEyeLeavesTheOtherUntested) {
     EXPECT_THAT(report.axes[1].evidence, HasSubstr("nothing tells of the right eye"));
     if (flipped == Eye::left) {
       EXPECT_THAT(codes(report), ElementsAre("y-flip", "one-eye-untested"));
-      EXPECT_THAT(report.flags, ElementsAre("--gaze-flip-y", "--gaze-eye left"));
+      EXPECT_THAT(report.settings, ElementsAre("`gaze-flip-y`", "`gaze-eye` left"));
     } else {
       EXPECT_THAT(codes(report), IsEmpty());
       EXPECT_THAT(report.verdict, HasSubstr("the direction of y could not be tested"));
@@ -156,7 +156,7 @@ TEST_F(GazeAxisFindings, WithoutAWitnessItCannotBeToldWhich) {
   const GazeInspection report = inspect("a.asc", text);
   ASSERT_THAT(codes(report), ElementsAre("one-eye-flipped"));
   EXPECT_THAT(report.findings.front().what, HasSubstr("left or right, it cannot be told"));
-  EXPECT_THAT(report.flags, IsEmpty());
+  EXPECT_THAT(report.settings, IsEmpty());
   EXPECT_THAT(report.axes[1].evidence, HasSubstr("opposite ways"));
   GazeReadOptions options;
   options.eye = EyeChoice::right;

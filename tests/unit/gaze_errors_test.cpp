@@ -86,14 +86,13 @@ TEST(GazeErrors, DisplaysThatUnitsNeed) {
   expect_errors({
       {"px.csv", "t[ms],x[px],y[px]\n1,2,3\n",
        "px.csv:1: positions are in px, and the size in pixels of the display of the recording is not known; give "
-       "--screen-px W,H, or write `# display_px W H` above the header"},
+       "`screen-px` W,H, or write `# display_px W H` above the header"},
       {"mm.csv", "t[ms],x[mm],y[mm]\n1,2,3\n",
        "mm.csv:1: positions are in mm, and the size in cm of the display of the recording is not known; give "
-       "--screen-cm "
-       "W,H, or write `# display_mm W H` above the header"},
+       "`screen-cm` W,H, or write `# display_mm W H` above the header"},
       {"deg.csv", "# display_mm 480 270\nt[ms],x[deg],y[deg]\n1,2,3\n",
        "deg.csv:2: positions are in deg, and the eye's distance of the display of the recording is not known; give "
-       "--screen-distance-cm, or write `# distance_mm D` above the header"},
+       "`screen-distance-cm`, or write `# distance_mm D` above the header"},
       {"preamble.csv", "# display_px 1920\nt[ms],x[px],y[px]\n1,2,3\n",
        "preamble.csv:1: `# display_px` needs 2 positive numbers, not '1920'"},
       {"half.csv", "# display_px 1920.5 1080\nt[ms],x[px],y[px]\n1,2,3\n",
@@ -160,7 +159,7 @@ TEST(GazeErrors, FilesAndFormats) {
   EXPECT_EQ(files.without_folder(
                 message_of(files.write("bytes.bin", std::string("a,b\0c,d\n", 8)), options, ErrorKind::input)),
             "bytes.bin: is not a gaze log of a known format; give a CSV or TSV with a header, or name the format with "
-            "--gaze-format");
+            "`gaze-format`");
   EXPECT_EQ(files.without_folder(message_of(files.write("log.tsv.gz", "\x1F\x8B\x08"), options, ErrorKind::input)),
             "log.tsv.gz: gzip data are cut off; copy the file again; gzip -t tests it");
   const std::string log = files.write("log.csv", "t[ns],u[1],v[1]\n1,.5,.5\n");

@@ -157,7 +157,7 @@ TEST_F(GazeFormats, XdfWithoutAUnit) {
   EXPECT_THAT(refusal("c.xdf", degrees, options), HasSubstr("positions in degrees cannot count from the top-left"));
   options.columns.origin = PositionOrigin::center;
   const GazeLog said = read("c.xdf", degrees, options);
-  EXPECT_THAT(said.warnings.at(1), HasSubstr("count from the top-left; --gaze-origin center was given and is used"));
+  EXPECT_THAT(said.warnings.at(1), HasSubstr("count from the top-left; `gaze-origin` center was given and is used"));
   EXPECT_NEAR(said.samples[9].u, 0.5 + std::tan(10 * kRadPerDeg), 1e-12);
 }
 
@@ -243,7 +243,7 @@ TEST_F(GazeFormats, FlagsMendWhatALogGotWrong) {
   flipped.columns.origin = PositionOrigin::bottom_left;
   const GazeLog asc_log = read("a.asc", asc("SAMPLES\tGAZE\tLEFT\tRATE\t500", "100\t0\t270\t9\t...\n"), flipped);
   EXPECT_EQ(asc_log.samples[0].v, 0.75);
-  EXPECT_THAT(asc_log.warnings.at(0), HasSubstr("--gaze-origin bottom-left was given and is used"));
+  EXPECT_THAT(asc_log.warnings.at(0), HasSubstr("`gaze-origin` bottom-left was given and is used"));
 }
 
 }  // namespace

@@ -138,14 +138,14 @@ TEST(GazeInspect, VestibuloOcularReflexTellsTheSignOfAnAxis) {
     GazeInspection report = inspect_gaze(log, {});
     EXPECT_EQ(verdict_of(report, axis), AxisVerdict::confirmed) << axis;
     EXPECT_EQ(verdict_of(report, other), AxisVerdict::undecided) << axis << ": the head does not turn about the other";
-    EXPECT_TRUE(report.flags.empty());
+    EXPECT_TRUE(report.settings.empty());
 
     for (GazeSample& sample : log.samples) {
       (axis == 'x' ? sample.direction.x : sample.direction.y) *= -1;
     }
     report = inspect_gaze(log, {});
     EXPECT_EQ(verdict_of(report, axis), AxisVerdict::flipped) << axis;
-    EXPECT_THAT(report.flags, ::testing::ElementsAre(std::string("--gaze-flip-") + axis));
+    EXPECT_THAT(report.settings, ::testing::ElementsAre(std::string("`gaze-flip-") + axis + "`"));
     EXPECT_EQ(report.findings.front().kind, FindingKind::suspicion);
   }
 }

@@ -109,7 +109,7 @@ TEST_F(GazeMissingValues, EyeLinkOfAnotherMark) {
     const GazeInspection report = inspect("a.asc", text);
     const GazeFinding* const found = finding(report, "missing-value");
     ASSERT_NE(found, nullptr) << corners;
-    EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+    EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
     options.missing_value = -1;
     EXPECT_EQ(lost_rows(read("a.asc", text, options)), 10) << corners;
     EXPECT_EQ(finding(inspect("a.asc", text, options), "missing-value"), nullptr);
@@ -120,20 +120,20 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkBesideTheDisplay) {
   const GazeInspection report = inspect("a.csv", with_marks("-1,-1"), full_hd());
   const GazeFinding* const found = finding(report, "missing-value");
   ASSERT_NE(found, nullptr);
-  EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+  EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
   EXPECT_THAT(found->what, HasSubstr("100 of 1000 rows are exactly at (-1, -1)"));
-  EXPECT_THAT(report.verdict, HasSubstr("--gaze-missing-value -1 mends it"));
+  EXPECT_THAT(report.verdict, HasSubstr("`gaze-missing-value` -1 mends it"));
   // Two different numbers no option takes; they are told all the same.
   for (const auto& [cells, place] : {std::pair("-9999,-1", "(-9999, -1)"), std::pair("-1,500", "(-1, 500)")}) {
     const GazeInspection unequal = inspect("b.csv", with_marks(cells), full_hd());
     ASSERT_NE(finding(unequal, "missing-value"), nullptr) << cells;
-    EXPECT_EQ(finding(unequal, "missing-value")->flag, "");
+    EXPECT_EQ(finding(unequal, "missing-value")->setting, "");
     EXPECT_THAT(finding(unequal, "missing-value")->what, HasSubstr(place));
   }
   // Of two the one with more rows.
   const GazeInspection two = inspect("c.csv", with_marks("-1,-1", "-9,-9"), full_hd());
   ASSERT_NE(finding(two, "missing-value"), nullptr);
-  EXPECT_EQ(finding(two, "missing-value")->flag, "--gaze-missing-value -1");
+  EXPECT_EQ(finding(two, "missing-value")->setting, "`gaze-missing-value` -1");
 }
 
 // Whole pixels repeat in a fixation beside the display; they are come to by small steps.
@@ -212,7 +212,7 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkWhereGazeIs) {
     const GazeInspection report = inspect("a.csv", text, options);
     const GazeFinding* const found = finding(report, "missing-value");
     ASSERT_NE(found, nullptr);
-    EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+    EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
     EXPECT_THAT(found->what, HasSubstr("400 of 4000 rows are exactly at (-1, -1)"));
   }
 }
@@ -228,11 +228,11 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkOfDirections) {
   const GazeInspection report = inspect("a.csv", fixations_with_marks(header, "-1,-1,-1", vector));
   const GazeFinding* const found = finding(report, "missing-value");
   ASSERT_NE(found, nullptr);
-  EXPECT_EQ(found->flag, "--gaze-missing-value -1");
+  EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
   EXPECT_THAT(found->what, HasSubstr("at (-1, -1, -1)"));
   const GazeInspection ahead = inspect("b.csv", fixations_with_marks(header, "0,0,-1", vector));
   ASSERT_NE(finding(ahead, "missing-value"), nullptr);
-  EXPECT_EQ(finding(ahead, "missing-value")->flag, "");
+  EXPECT_EQ(finding(ahead, "missing-value")->setting, "");
   GazeReadOptions options;
   options.missing_value = -1;
   EXPECT_EQ(finding(inspect("a.csv", fixations_with_marks(header, "-1,-1,-1", vector), options), "missing-value"),

@@ -179,14 +179,14 @@ TEST_F(GazeRead, UnitsFromStatisticsAreCalledGuesses) {
     EXPECT_THAT(warnings(log)[0], fmt::format("log.csv:1: guessed from its steps that 'time' is in {}; state it with "
                                               "`gaze-time-unit`",
                                               c.unit));
-    EXPECT_THAT(warnings(log)[1], HasSubstr("that the positions are in fraction; state it with --gaze-unit"));
+    EXPECT_THAT(warnings(log)[1], HasSubstr("that the positions are in fraction; state it with `gaze-unit`"));
   }
   // Rows of two eyes: every other step is zero.
   EXPECT_EQ(read("time,u,v,eye\n0,0,0,l\n0,0,0,r\n4,0,0,l\n4,0,0,r\n").samples[1].t_ns, 4'000'000);
   const GazeLog px = read(table(4, 1000), full_hd());
   EXPECT_THAT(warnings(px)[1],
               "log.csv:1: guessed from its values (x 200 to 690, y 500 to 500) that the positions are in "
-              "px; state it with --gaze-unit");
+              "px; state it with `gaze-unit`");
   EXPECT_NEAR(px.samples[0].u, 200.0 / 1920, 1e-15);
   const GazeLog deg = read("t[ms],x,y\n0,-3,2\n4,5,-1\n8,-12,8\n", full_hd());
   EXPECT_THAT(warnings(deg)[0], HasSubstr("that the positions are in deg"));
@@ -197,7 +197,7 @@ TEST_F(GazeRead, SuspiciousValuesAreNamed) {
   EXPECT_THAT(
       warnings(read("t[s],x[px],y[px]\n0,-300,200\n1,200,-80\n2,10,20\n", options)),
       ElementsAre("log.csv:1: 67 % of the positions are negative, counted from the top left: is the origin at the "
-                  "center (--gaze-origin center)?"));
+                  "center (`gaze-origin` center)?"));
   EXPECT_THAT(
       warnings(read("t[s],x[px],y[px]\n0,0,0\n1,200,80\n2,10,20\n", options)),
       ElementsAre("log.csv: 1 of 3 positions are exactly (0, 0): missing values written as zero? Name a validity "

@@ -33,9 +33,9 @@ class GazeUnitDoubts : public GazeFormats {
   GazeInspection inspect(std::string_view text) {
     return inspect_gaze(load_for_inspection(files_.write("a.csv", text), {}), {});
   }
-  void expect_flag(std::string_view text, const std::string& words, const std::string& flag) {
+  void expect_setting(std::string_view text, const std::string& words, const std::string& setting) {
     const GazeInspection report = inspect(text);
-    ASSERT_THAT(report.flags, ElementsAre(flag)) << text.substr(0, 100);
+    ASSERT_THAT(report.settings, ElementsAre(setting)) << text.substr(0, 100);
     EXPECT_EQ(report.findings.front().code, "position-unit");
     EXPECT_EQ(report.findings.front().kind, FindingKind::suspicion);
     EXPECT_THAT(report.findings.front().what, HasSubstr(words));
@@ -44,16 +44,17 @@ class GazeUnitDoubts : public GazeFormats {
 };
 
 TEST_F(GazeUnitDoubts, PixelsAreNoOtherUnit) {
-  expect_flag(all_over("deg", 0, 0, 1920, 1080), "no degrees but pixels", "--gaze-unit px");
-  expect_flag(all_over("mm", 0, 0, 1920, 1080), "no millimetres but pixels", "--gaze-unit px");
-  expect_flag(all_over("cm", 0, 0, 1920, 1080), "no centimetres but pixels", "--gaze-unit px");
-  expect_flag(all_over("deg", -960, -540, 1920, 1080), "no degrees but pixels", "--gaze-unit px --gaze-origin center");
+  expect_setting(all_over("deg", 0, 0, 1920, 1080), "no degrees but pixels", "`gaze-unit` px");
+  expect_setting(all_over("mm", 0, 0, 1920, 1080), "no millimetres but pixels", "`gaze-unit` px");
+  expect_setting(all_over("cm", 0, 0, 1920, 1080), "no centimetres but pixels", "`gaze-unit` px");
+  expect_setting(all_over("deg", -960, -540, 1920, 1080), "no degrees but pixels",
+                 "`gaze-unit` px `gaze-origin` center");
 }
 
 TEST_F(GazeUnitDoubts, MillimetresAreNoCentimetresAndFractionsNeither) {
-  expect_flag(all_over("cm", 0, 0, 530, 300), "no centimetres but millimetres", "--gaze-unit mm");
-  expect_flag(all_over("cm", 0, 0, 1, 1), "no centimetres but fractions", "--gaze-unit fraction");
-  expect_flag(all_over("mm", 0, 0, 1, 1), "no millimetres but fractions", "--gaze-unit fraction");
+  expect_setting(all_over("cm", 0, 0, 530, 300), "no centimetres but millimetres", "`gaze-unit` mm");
+  expect_setting(all_over("cm", 0, 0, 1, 1), "no centimetres but fractions", "`gaze-unit` fraction");
+  expect_setting(all_over("mm", 0, 0, 1, 1), "no millimetres but fractions", "`gaze-unit` fraction");
 }
 
 TEST_F(GazeUnitDoubts, WhatIsStatedIsBelieved) {
@@ -62,7 +63,7 @@ TEST_F(GazeUnitDoubts, WhatIsStatedIsBelieved) {
         all_over("deg", -0.7, -0.7, 1.4, 1.4), all_over("deg", -80, -60, 160, 120),
         // A display below the one looked at, now and then.
         all_over("mm", 0, 0, 530, 560)}) {
-    EXPECT_THAT(inspect(text).flags, IsEmpty()) << text.substr(0, 200);
+    EXPECT_THAT(inspect(text).settings, IsEmpty()) << text.substr(0, 200);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/resolve.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -117,6 +118,46 @@ TEST_F(Resolve, APlanNeedsNoSceneAndHashesNothing) {
   const ResolvedJob resolved = resolve(job_, options);
   EXPECT_EQ(resolved.plan.frames.size(), 2U);
   EXPECT_EQ(resolved.scene, nullptr);
+  EXPECT_TRUE(resolved.input_digests.empty());
+}
+
+TEST_F(Resolve, FramesHaveWhatTheirChannelsShow) {
+  set_option(job_, "filter", "tent");
+  for (const char* aov : {"", "albedo", "normal", "depth"}) {
+    Job job = job_;
+    if (*aov != 0) {
+      set_option(job, "aov", aov);
+    }
+    ResolvedJob resolved = resolve(job);
+    PathTracer tracer(*resolved.scene, tracer_options(resolved.job.settings));
+    const FrameRenderer renderer(tracer, resolved.pipeline);
+    const Frame frame = renderer.render(resolved.plan.frames.front(), resolved.history).frame;
+    const std::size_t pixels = *aov != 0 ? frame.radiance.pixels.size() : 0;
+    EXPECT_EQ(frame.albedo.pixels.size(), pixels) << aov;
+    EXPECT_EQ(frame.normal.pixels.size(), pixels) << aov;
+    EXPECT_EQ(frame.depth_m.pixels.size(), pixels) << aov;
+  }
+}
+
+// Pictures that exist already can be looked at without what they were rendered from.
+TEST_F(Resolve, ViewingNeedsNeitherSceneNorOutputs) {
+  set_option(job_, "scene", folder_ / "gone.gltf");
+  set_option(job_, "output", folder_ / "log.csv/f.####.exr");
+  set_option(job_, "screen", "paper");
+  set_option(job_, "frame-rect", "10,20,320,180");
+  set_option(job_, "gaze-start", fmt::format("{}ns", kFirstNs + 100'000'000));
+  EXPECT_THROW(check_job(job_), Error);
+  ResolveOptions options;
+  options.scope = ResolveScope::viewing;
+  const ResolvedJob resolved = resolve(job_, options);
+  ASSERT_TRUE(resolved.plan_settings.display);
+  EXPECT_EQ(resolved.plan_settings.display->width_px, display_by_name("paper").width_px);
+  EXPECT_EQ(resolved.plan_settings.frame_rect.y_px, 20);
+  ASSERT_TRUE(resolved.gaze);
+  EXPECT_LT(resolved.gaze->samples.front().t_ns, kFirstNs) << "a time of day";
+  // The eleventh sample, below three lines of head.
+  EXPECT_EQ(gaze_at(*resolved.gaze, resolved.plan_settings.gaze, 0).row_before, 3 + 11);
+  EXPECT_TRUE(resolved.plan.frames.empty());
   EXPECT_TRUE(resolved.input_digests.empty());
 }
 

@@ -71,8 +71,10 @@ TEST(ModelGain, ASmallFieldHasNothingToGain) {
   // Noise of low frequency hardly fades towards the periphery, so that taking it away leaves more to gain.
   EXPECT_GT(model_gain(settings, middle, cut_error(4, 0.1, 32)).gain, large.gain + 0.1);
   EXPECT_LT(model_gain(settings, middle, low_pass_error(4)).gain, large.gain);
-  settings.target_jod = 10;
-  EXPECT_THROW((void)model_gain(settings, middle, white_error()), Error);
+  for (const double impossible : {10.0, 4.9}) {
+    settings.target_jod = impossible;
+    EXPECT_THROW((void)model_gain(settings, middle, white_error()), Error);
+  }
 }
 
 }  // namespace

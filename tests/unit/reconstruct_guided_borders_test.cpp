@@ -45,12 +45,13 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
     sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
     if (pass_through.needs_filtering(i)) {
       sparse.surfaces.push_back({reflected, n * Vec3f{0.5F, 0.5F, 0.5F}, n * Vec3f{0, 0, 1},
-                                 place * (n / static_cast<float>(site.pixels)), n * light * light, site.samples,
+                                 place * (n / static_cast<float>(site.pixels)), n * light * light, 0.0F, site.samples,
                                  SurfaceKind::diffuse});
     }
     sparse.sum.push_back(reflected);
     sparse.count.push_back(site.samples);
     sparse.sum_square_luminance.push_back(0);
+    sparse.half_difference.push_back(0);
   }
   sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
   return sparse;

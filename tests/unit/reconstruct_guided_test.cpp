@@ -77,6 +77,7 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
     sparse.sum.push_back(sum);
     sparse.count.push_back(count);
     sparse.sum_square_luminance.push_back(0);
+    sparse.half_difference.push_back(0);
   }
   sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
   return sparse;

@@ -18,6 +18,7 @@ TEST(ReconstructionNeeds, OnlyGuidedFiltersNeedMoreThanSums) {
     const bool guided = info.name == "guided" || info.name == "oidn";
     EXPECT_EQ(info.needs.guides.has_value(), guided);
     EXPECT_EQ(info.needs.surfaces, guided);
+    EXPECT_EQ(info.needs.halves, guided);
     EXPECT_EQ(info.blurs_blocks, !guided && info.name != "none");
     EXPECT_EQ(Reconstruction({info.name, {}}).filter().name, info.name);
   }
@@ -29,6 +30,7 @@ TEST(ReconstructionNeeds, TheTracerIsToldThem) {
   trace.guides = true;  // of AOVs, which no filter takes away
   const TraceSettings guided = Reconstruction({"guided", 12}).trace_settings(trace);
   EXPECT_TRUE(guided.surfaces);
+  EXPECT_TRUE(guided.halves);
   EXPECT_EQ(guided.pass_through_samples, 12U);
   EXPECT_TRUE(guided.guides);
   EXPECT_EQ(guided.seed, 7U);

@@ -65,14 +65,14 @@ TEST(Reproject, WhatWasHiddenOrIsAnotherThingBeginsAnew) {
   const Refusal refusals[] = {
       {"another object", [](SurfaceMotion& m) { m.object(4, 4) = 2; }},
       {"a miss", [](SurfaceMotion& m) { m.object(4, 4) = 0; }},
-      {"nearer", [](SurfaceMotion& m) { m.earlier_depth_m(4, 4) = 1.9F; }},
-      {"farther", [](SurfaceMotion& m) { m.earlier_depth_m(4, 4) = 2.1F; }},
+      {"nearer", [](SurfaceMotion& m) { m.other_depth_m(4, 4) = 1.9F; }},
+      {"farther", [](SurfaceMotion& m) { m.other_depth_m(4, 4) = 2.1F; }},
       {"turned",
        [](SurfaceMotion& m) {
-         m.earlier_normal(4, 4) = {std::sqrt(0.5F), 0, std::sqrt(0.5F)};
+         m.other_normal(4, 4) = {std::sqrt(0.5F), 0, std::sqrt(0.5F)};
        }},
-      {"behind the camera", [](SurfaceMotion& m) { m.earlier_px(4, 4).x = std::numeric_limits<double>::quiet_NaN(); }},
-      {"beside the frame", [](SurfaceMotion& m) { m.earlier_px(4, 4).y = -3; }},
+      {"behind the camera", [](SurfaceMotion& m) { m.other_px(4, 4).x = std::numeric_limits<double>::quiet_NaN(); }},
+      {"beside the frame", [](SurfaceMotion& m) { m.other_px(4, 4).y = -3; }},
   };
   for (const Refusal& refusal : refusals) {
     TemporalHistory history;
@@ -95,9 +95,8 @@ TEST(Reproject, APlaneSeenAtASlantIsStillThatPlane) {
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       motion.depth_m(x, y) = static_cast<float>(view.depth_on_plane(center, 2, normal, {x + 0.5, y + 0.5}));
-      motion.earlier_depth_m(x, y) =
-          static_cast<float>(view.depth_on_plane(center, 2, normal, motion.earlier_px(x, y)));
-      motion.normal(x, y) = motion.earlier_normal(x, y) = to_float(normal);
+      motion.other_depth_m(x, y) = static_cast<float>(view.depth_on_plane(center, 2, normal, motion.other_px(x, y)));
+      motion.normal(x, y) = motion.other_normal(x, y) = to_float(normal);
     }
   }
   ASSERT_GT(std::fabs(motion.depth_m(9, 4) / motion.depth_m(8, 4) - 1), 0.05F);

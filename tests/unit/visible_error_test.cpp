@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <ostream>
 #include <string>
 
 #include "gazetrace/error.hpp"
@@ -33,6 +34,10 @@ struct NoiseCase {
 
 std::string case_name(const testing::TestParamInfo<NoiseCase>& info) {
   return info.param.name;
+}
+
+void PrintTo(const NoiseCase& noise, std::ostream* out) {
+  *out << noise.name;
 }
 
 Vec2d gaze_px(const PlanarView& view, const Vec2d& fraction) {

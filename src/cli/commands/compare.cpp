@@ -132,7 +132,7 @@ void check_consecutive(const CompareInputs& inputs, const std::vector<std::strin
 class PairReader {
  public:
   PairReader(const CompareJob& job, const CompareInputs& inputs)
-      : job_(job), inputs_(inputs), color_(color_settings(job, inputs)) {}
+      : job_(job), inputs_(inputs), color_(compare_color(job, inputs)) {}
 
   // Light and code values of both, the test through the reference's view and exposure.
   FramePair read(std::int32_t frame) {
@@ -176,11 +176,6 @@ class PairReader {
   [[nodiscard]] bool shows_light() const { return job_.settings.metric.response == DisplayResponse::linear_hdr; }
   [[nodiscard]] double peak_cd_m2() const { return job_.settings.photometry.peak_cd_m2; }
   [[nodiscard]] int threads() const { return job_.shared.threads; }
-  static ColorSettings color_settings(const CompareJob& job, const CompareInputs& inputs) {
-    const ColorSettings& given = job.shared.color;
-    const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
-    return any || !inputs.reference_run ? given : inputs.reference_run->color;
-  }
   const CompareJob& job_;
   const CompareInputs& inputs_;
   ColorPipeline color_;

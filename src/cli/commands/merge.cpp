@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
-#include <set>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/resolve.hpp"
+#include "gazetrace/recorded_run.hpp"
 
 namespace gazetrace {
 namespace {
@@ -21,32 +19,9 @@ struct MergeArguments {
   bool overwrite = false;
 };
 
-std::vector<std::int32_t> frames_of(const std::vector<RunPart>& parts) {
-  std::set<std::int32_t> frames;
-  for (const RunPart& part : parts) {
-    const std::vector<std::int32_t> listed = parse_frame_list(part.record.frames);
-    frames.insert(listed.begin(), listed.end());
-  }
-  return {frames.begin(), frames.end()};
-}
-
-// The settings of the parts, as their records keep them, over the same files.
 MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
-  const RunPart& first = parts.front();
-  Job job = job_of_record(first.record, first.timing_path);
-  job.settings.frames = FrameList{frames_of(parts)};
-  job.settings.trace.samples.reset();
-  job.settings.part = job.settings.resume = false;
-  job.settings.overwrite = arguments.overwrite;
-  check_job(job);
-  const ColorPipeline color(job.settings.color);
-  ResolveOptions resolving;
-  resolving.scope = ResolveScope::digests;
-  const ResolvedJob resolved = resolve(job, resolving);
-  if (resolved.pipeline.settings_digest != first.record.settings_digest) {
-    throw Error(ErrorKind::input, first.timing_path, "was rendered from other files, or by another version",
-                "start the merge where the parts were started, with the same files in place");
-  }
+  const ResolvedJob resolved = resolve_whole_of_parts(parts, arguments.overwrite);
+  const ColorPipeline color(resolved.job.settings.color);
   prepare_outputs(resolved);
   return merge_samples(parts, resolved.plan, color, resolved.pipeline);
 }

@@ -36,10 +36,6 @@ struct VideoArguments {
   bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
 };
 
-std::string path_of(const std::string& pattern, std::int32_t frame) {
-  return has_frame_number(pattern) ? frame_file_name(pattern, frame) : pattern;
-}
-
 DisplayImage display_image_of(const ImageRgb& code) {
   DisplayImage image{code.width_px, code.height_px, 8, {}};
   image.bytes.reserve(3 * code.pixels.size());
@@ -57,7 +53,7 @@ FrameRate frame_rate(const CompareJob& job, const CompareInputs& inputs) {
     return *job.fps;
   }
   if (inputs.reference_run) {
-    return inputs.reference_run->fps;
+    return inputs.reference_run->settings().fps;
   }
   const double rate = inputs.frames_per_second;
   if (!(rate > 0)) {
@@ -86,8 +82,8 @@ FrameRate thinned(const FrameRate& rate, const std::vector<std::int32_t>& frames
 
 const JobSettings* foveated_run(const CompareInputs& inputs) {
   for (const auto* const run : {&inputs.test_run, &inputs.reference_run}) {
-    if (*run && (*run)->foveation.falloff != "uniform") {
-      return &**run;
+    if (*run && (*run)->settings().foveation.falloff != "uniform") {
+      return &(*run)->settings();
     }
   }
   return nullptr;
@@ -109,7 +105,7 @@ class FrameMaker {
       : arguments_(arguments),
         inputs_(inputs),
         rings_deg_(ring_angles_deg(foveated_run(inputs))),
-        color_(color_settings(arguments.job, inputs)) {
+        color_(compare_color(arguments.job, inputs)) {
     if (arguments.show_rings && (rings_deg_.empty() || !inputs.screen)) {
       throw Error(ErrorKind::usage, "--show-rings",
                   rings_deg_.empty() ? "no run record beside the pictures tells of regions" : "the screen is not known",
@@ -119,12 +115,12 @@ class FrameMaker {
 
   DisplayImage make(std::int32_t frame) {
     const CompareJob& job = arguments_.job;
-    const std::string left_path = path_of(job.reference, frame);
+    const std::string left_path = picture_path(job.reference, frame);
     const ComparedPicture left = read_compared_picture(left_path);
     is_linear_ = left.is_linear;
     const double ev = left.facts.exposure_ev.value_or(0);
     DisplayImage image = shown(left, ev);
-    const std::string right_path = path_of(job.test, frame);
+    const std::string right_path = picture_path(job.test, frame);
     const FrameFacts right_facts = job.test == job.reference ? left.facts : read_frame_facts(right_path);
     const ComparedGaze gaze =
         compared_gaze(job, inputs_, left.facts, right_facts, frame, image.width_px, image.height_px);
@@ -138,15 +134,12 @@ class FrameMaker {
     }
     return image;
   }
-  [[nodiscard]] std::string view() const { return is_linear_ ? color_.description() : inputs_.reference_view; }
+  [[nodiscard]] std::string view() const {
+    return is_linear_ ? color_.description() : inputs_.reference_run ? inputs_.reference_run->view : "";
+  }
   [[nodiscard]] bool any_gaze() const { return any_gaze_; }
 
  private:
-  static ColorSettings color_settings(const CompareJob& job, const CompareInputs& inputs) {
-    const ColorSettings& given = job.shared.color;
-    const bool any = !given.config.empty() || !given.display.empty() || !given.view.empty();
-    return any || !inputs.reference_run ? given : inputs.reference_run->color;
-  }
   [[nodiscard]] DisplayImage shown(const ComparedPicture& picture, double ev) const {
     return picture.is_linear ? color_.apply(picture.picture.light, ev, 8, arguments_.job.shared.threads)
                              : display_image_of(picture.picture.code);

@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // The error that the flicker metric cannot see: |mean of the test - mean of the reference| / mean of the reference, of
-// the luminance of cells of 4 x 4 pixels over the last second. Frozen or smeared history and lost light show here, and
-// so does noise that does not average out within a second.
+// the luminance of patches of 4 x 4 pixels over the last second. Frozen or smeared history and lost light show here,
+// and so does noise that does not average out within a second.
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "compare/sequence_metric.hpp"
 #include "gazetrace/flicker.hpp"
-#include "metrics/luminance_cells.hpp"
+#include "metrics/luminance_patches.hpp"
 #include "metrics/metric.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr int kCellPx = 4;
+constexpr int kPatchPx = 4;
 constexpr double kLeastLuminance = 0.1;  // least divisor, cd/m2
 
-// The sum of each cell over the last frames.
+// The sum of each patch over the last frames.
 class RunningSum {
  public:
-  void add(ImageGray cells, std::size_t frames) {
-    sums_.resize(cells.pixels.size());
+  void add(ImageGray patches, std::size_t frames) {
+    sums_.resize(patches.pixels.size());
     ring_.resize(frames);
     ImageGray& slot = ring_[next_++ % frames];
     for (std::size_t i = 0; i < sums_.size(); ++i) {
-      sums_[i] += static_cast<double>(cells.pixels[i]) - (slot.empty() ? 0.0 : static_cast<double>(slot.pixels[i]));
+      sums_[i] += static_cast<double>(patches.pixels[i]) - (slot.empty() ? 0.0 : static_cast<double>(slot.pixels[i]));
     }
-    slot = std::move(cells);
+    slot = std::move(patches);
   }
   [[nodiscard]] double at(std::size_t i) const { return sums_[i]; }
 
@@ -42,9 +42,9 @@ class BiasOfFrames : public SequenceMetric {
   BiasOfFrames(int frames, int threads) : frames_(static_cast<std::size_t>(frames)), threads_(threads) {}
 
   std::optional<MetricMap> add(const LuminanceFrame& frame) override {
-    ImageGray bias = cell_means(frame.reference, kCellPx, threads_);
+    ImageGray bias = patch_means(frame.reference, kPatchPx, threads_);
     reference_.add(bias, frames_);
-    test_.add(cell_means(frame.test, kCellPx, threads_), frames_);
+    test_.add(patch_means(frame.test, kPatchPx, threads_), frames_);
     if (++added_ < frames_) {
       return std::nullopt;
     }
@@ -54,7 +54,7 @@ class BiasOfFrames : public SequenceMetric {
           static_cast<float>(std::fabs(test_.at(i) - reference_.at(i)) / std::max(reference_.at(i), least));
     }
     MetricMap map;
-    map.values = spread_cells(bias, kCellPx, frame.reference.width_px, frame.reference.height_px, threads_);
+    map.values = spread_patches(bias, kPatchPx, frame.reference.width_px, frame.reference.height_px, threads_);
     map.mean = mean_of_map(map.values, 0, threads_);
     return map;
   }

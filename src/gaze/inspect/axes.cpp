@@ -43,7 +43,7 @@ class Axes {
         add(FindingKind::fault, "swapped-axes", "the axes are exchanged",
             fmt::format("gaze x goes with y of {} (r = {:.2f}), and y with its x (r = {:.2f}), {} values", w.what, w.xy,
                         w.yx, w.count),
-            "--gaze-swap-xy");
+            "`gaze-swap-xy`");
         continue;
       }
       if (speaks_for_gaze('x')) {
@@ -61,7 +61,7 @@ class Axes {
         const bool by_vor = test.evidence.starts_with("vestibulo");
         add(by_vor ? FindingKind::suspicion : FindingKind::fault, fmt::format("{}-flip", test.axis),
             test.axis == 'x' ? "left and right are exchanged" : "top and bottom are exchanged", test.evidence,
-            fmt::format("--gaze-flip-{}", test.axis));
+            fmt::format("`gaze-flip-{}`", test.axis));
       }
     }
     one_eye_told();
@@ -70,8 +70,8 @@ class Axes {
   }
 
  private:
-  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string flag) {
-    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(flag)});
+  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string setting) {
+    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
   }
 
   static void witness(const std::string& what, std::size_t count, double r, GazeAxisTest& test) {
@@ -191,10 +191,10 @@ class Axes {
         add(FindingKind::fault, fmt::format("{}-flip", axis),
             fmt::format("{} of the {} eye are exchanged", axis == 'x' ? "left and right" : "top and bottom",
                         to_string(*told->eye)),
-            test.evidence, fmt::format("--gaze-flip-{}", axis));
+            test.evidence, fmt::format("`gaze-flip-{}`", axis));
         add(FindingKind::suspicion, "one-eye-untested",
             fmt::format("which way {} of the {} eye runs could not be tested", axis, other), test.evidence,
-            fmt::format("--gaze-eye {}", to_string(*told->eye)));
+            fmt::format("`gaze-eye` {}", to_string(*told->eye)));
       }
     }
   }
@@ -219,8 +219,8 @@ class Axes {
           fmt::format("the eyes go opposite ways along {}: {} has this axis the other way round", axis, which),
           evidence_of_opposed_eyes(axis),
           !told          ? ""
-          : left_is_good ? "--gaze-eye left"
-                         : "--gaze-eye right");
+          : left_is_good ? "`gaze-eye` left"
+                         : "`gaze-eye` right");
     }
   }
 

@@ -59,8 +59,8 @@ class Doctor {
  private:
   static constexpr std::size_t kMostLookedAt = 200'000;
 
-  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string flag = {}) {
-    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(flag)});
+  void add(FindingKind kind, std::string code, std::string what, std::string evidence, std::string setting = {}) {
+    report_.findings.push_back({kind, std::move(code), std::move(what), std::move(evidence), std::move(setting)});
   }
   // What the file would be if its numbers were interpreted under other conventions, in a few words.
   template <class Change>
@@ -95,7 +95,7 @@ class Doctor {
       return;
     }
     for (const RawFault& fault : whole_->raw.faults) {
-      add(FindingKind::fault, fault.code, fault.found, "the rows themselves", fault.flag);
+      add(FindingKind::fault, fault.code, fault.found, "the rows themselves", fault.setting);
     }
     if (!whole_->is_sorted_by_option) {
       faults_of_order();
@@ -114,36 +114,36 @@ class Doctor {
                                     : fmt::format("line {}: {}", order.first_duplicate_row, duplicate_problem(order));
     const std::string seen = fmt::format("{} of {} rows go back in time, {} stand at a time that is there already",
                                          order.backward_steps, order.rows, order.duplicates);
-    constexpr const char* kFlag = "--gaze-sort";
+    constexpr const char* kSetting = "`gaze-sort`";
     if (order.backward_steps * 50 > order.rows) {
-      add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, kFlag);
+      add(FindingKind::fault, "unordered", "the rows are not in the order of time: " + problem, seen, kSetting);
     } else if (repeats) {
       add(FindingKind::fault, "repeated-rows",
           fmt::format("{} rows are repeated, the first in line {}", order.duplicates, order.first_duplicate_row),
-          fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), kFlag);
+          fmt::format("{}; {} of these have the same position, too", seen, order.identical_duplicates), kSetting);
     } else if (order.duplicates > 0 && order.backward_steps == 0) {
       add(FindingKind::fault, "duplicates",
           fmt::format("{} rows stand at the time of another row with another position: {}", order.duplicates, problem),
-          seen, kFlag);
+          seen, kSetting);
     } else if (order.longest_backward_ns > 1'000'000'000) {
       add(FindingKind::fault, "clock-restarts",
           fmt::format("the clock starts again {} {}, the first time in line {}", order.backward_steps,
                       order.backward_steps == 1 ? "time" : "times", order.first_backward_row),
           seen + "; sorting would mix the parts: give each a file of its own");
     } else {
-      add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen, kFlag);
+      add(FindingKind::fault, "unordered", "some rows are not in the order of time: " + problem, seen, kSetting);
     }
   }
 
   // The unit of stamps whose exponent differs by `shift` powers of ten, as an option; empty where there is none.
-  [[nodiscard]] std::string time_unit_flag(int shift) const {
+  [[nodiscard]] std::string time_unit_setting(int shift) const {
     static constexpr std::array<std::pair<std::string_view, int>, 4> kUnits{
         {{"ns", 0}, {"us", 3}, {"ms", 6}, {"s", 9}}};
     const int now = log_.conventions.time_exponent.value;
     const bool is_named = std::any_of(kUnits.begin(), kUnits.end(), [&](const auto& u) { return u.second == now; });
     for (const auto& [other, wanted] : kUnits) {
       if (whole_ != nullptr && is_named && wanted == now + shift) {
-        return fmt::format("--gaze-time-unit {}", other);
+        return fmt::format("`gaze-time-unit` {}", other);
       }
     }
     return {};
@@ -158,8 +158,8 @@ class Doctor {
     // Powers of ten between the unit that was read and the unit that is meant.
     for (const int shift : {3, 6, 9, -3, -6, -9}) {
       const double meant = rate * std::pow(10.0, -shift);
-      const std::string flag = time_unit_flag(shift);
-      if (flag.empty()) {
+      const std::string setting = time_unit_setting(shift);
+      if (setting.empty()) {
         continue;
       }
       if (nominal > 0) {
@@ -167,14 +167,14 @@ class Doctor {
           add(FindingKind::fault, "time-unit",
               fmt::format("the stamps are not in {}: the log states {:.6g} Hz, and its stamps give {:.4g} Hz",
                           time_unit_text(log_.conventions.time_exponent.value), nominal, rate),
-              fmt::format("the stated rate against the median step; the two differ by 10^{}", shift), flag);
+              fmt::format("the stated rate against the median step; the two differ by 10^{}", shift), setting);
           return;
         }
       } else if ((rate > kPlausibleHighHz || rate < kPlausibleLowHz) && meant >= 20 && meant <= 2100) {
         add(FindingKind::suspicion, "time-unit",
             fmt::format("the stamps can hardly be in {}: they give {:.4g} Hz, {:.4g} Hz in the other unit",
                         time_unit_text(log_.conventions.time_exponent.value), rate, meant),
-            "statistics: the median step against the rates that eye trackers have", flag);
+            "statistics: the median step against the rates that eye trackers have", setting);
         return;
       }
     }
@@ -238,7 +238,7 @@ class Doctor {
                     log_.order.rows),
         "statistics: noise never gives exact zeros in both axes that often" +
             read_otherwise([](Conventions& c) { c.zero_is_missing = true; }),
-        "--gaze-zero-missing");
+        "`gaze-zero-missing`");
   }
 
   void recurring_place() {
@@ -258,7 +258,7 @@ class Doctor {
                     log_.order.rows, where),
         "statistics: gaze comes to this place again and again, and by jumps" +
             (option_takes_it ? read_otherwise([&](Conventions& c) { c.missing_value = x; }) : ""),
-        option_takes_it ? fmt::format("--gaze-missing-value {}", x) : "");
+        option_takes_it ? fmt::format("`gaze-missing-value` {}", x) : "");
   }
 
   // Positions that exceed the display's height but never its width suggest exchanged axes.
@@ -287,7 +287,7 @@ class Doctor {
           fmt::format("statistics: {:.0f} % of the samples lie beside the display, {:.0f} % with x and y exchanged",
                       share(beside), share(beside_swapped)) +
               read_otherwise([](Conventions& c) { c.swap_xy = !c.swap_xy; }),
-          "--gaze-swap-xy");
+          "`gaze-swap-xy`");
     }
   }
 
@@ -374,18 +374,18 @@ class Doctor {
         continue;
       }
       ++faults;
-      helpless += finding.flag.empty() ? 1 : 0;
-      if (!finding.flag.empty() &&
-          std::find(report_.flags.begin(), report_.flags.end(), finding.flag) == report_.flags.end()) {
-        report_.flags.push_back(finding.flag);
+      helpless += finding.setting.empty() ? 1 : 0;
+      if (!finding.setting.empty() &&
+          std::find(report_.settings.begin(), report_.settings.end(), finding.setting) == report_.settings.end()) {
+        report_.settings.push_back(finding.setting);
       }
     }
     if (faults == 0) {
       report_.verdict = "nothing suspicious was found" + untested_axes();
-    } else if (report_.flags.empty()) {
+    } else if (report_.settings.empty()) {
       report_.verdict = "suspicious, and no option mends it";
     } else {
-      report_.verdict = fmt::format("{}{}", fmt::join(report_.flags, " "),
+      report_.verdict = fmt::format("{}{}", fmt::join(report_.settings, " "),
                                     helpless > 0 ? " mends a part of it; the rest no option mends" : " mends it");
     }
   }

@@ -46,8 +46,8 @@ bool examine_axes(const GazeLog& log, bool unit_is_wrong, GazeInspection& inspec
 // about the display or the scene camera's picture.
 std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, const DisplayGeometry& display);
 
-// Fills axes, findings, verdict and flags from the rest of the inspection. `whole` is the log with the numbers of its
-// file, or null.
+// Fills axes, findings, verdict and settings from the rest of the inspection. `whole` is the log with the numbers of
+// its file, or null.
 void find_what_is_wrong(const GazeLog& log, const GazeUnderInspection* whole, const GazeInspectOptions& options,
                         GazeInspection& inspection);
 

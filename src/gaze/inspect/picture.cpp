@@ -424,7 +424,7 @@ double draw_figures(Svg& svg, const GazeInspection& r, double left, double top, 
   for (const GazeFinding& f : r.findings) {
     put(std::string(to_string(f.kind)), f.what, f.kind == FindingKind::note ? "#222" : "#a8281e");
   }
-  put("verdict", r.verdict, r.flags.empty() ? "#222" : "#a8281e");
+  put("verdict", r.verdict, r.settings.empty() ? "#222" : "#a8281e");
   top += 8;
   svg.add(R"(<rect x="{:.1f}" y="{:.1f}" width="14" height="11" fill="#c8463c" fill-opacity="0.20"/>)", left, top - 9);
   svg.add(R"(<text x="{:.1f}" y="{:.1f}">no usable gaze</text>)", left + 20, top);

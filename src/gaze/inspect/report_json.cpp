@@ -131,9 +131,9 @@ std::string inspection_json(const GazeInspection& r) {
                                 {"code", f.code},
                                 {"what", f.what},
                                 {"evidence", f.evidence},
-                                {"flag", f.flag.empty() ? Json() : Json(f.flag)}});
+                                {"flag", f.setting.empty() ? Json() : Json(f.setting)}});
   }
-  json["flags"] = r.flags;
+  json["flags"] = r.settings;
   json["verdict"] = r.verdict;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

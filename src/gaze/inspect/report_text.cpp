@@ -151,8 +151,8 @@ std::string inspection_text(const GazeInspection& r) {
   for (const GazeFinding& finding : r.findings) {
     text.line(to_string(finding.kind), "{} [{}]", finding.what, finding.code);
     text.plain(fmt::format("  from            {}", finding.evidence));
-    if (!finding.flag.empty()) {
-      text.plain(fmt::format("  mended by       {}", finding.flag));
+    if (!finding.setting.empty()) {
+      text.plain(fmt::format("  mended by       {}", finding.setting));
     }
   }
   text.line("verdict", "{}", r.verdict);

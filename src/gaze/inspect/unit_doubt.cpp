@@ -44,7 +44,7 @@ bool is_known(const Vec2d& size) {
 struct BetterUnit {
   std::string_view name;  // name of the unit, in the plural
   PositionUnit unit = PositionUnit::automatic;
-  std::string flag;
+  std::string setting;
   PositionOrigin origin = PositionOrigin::top_left;
 };
 
@@ -64,7 +64,7 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   const bool is_length = stated == PositionUnit::mm || stated == PositionUnit::cm;
   const bool from_center = origin == PositionOrigin::center;
   if (is_length && !from_center && most < 1.5 && spread > 0.02) {
-    return BetterUnit{"fractions of the display", PositionUnit::fraction, "--gaze-unit fraction"};
+    return BetterUnit{"fractions of the display", PositionUnit::fraction, "`gaze-unit` fraction"};
   }
   const Vec2d size = stated == PositionUnit::mm ? size_mm : size_cm;
   const Vec2d reach = from_center ? Vec2d{0.5 * size.x, 0.5 * size.y} : size;
@@ -90,13 +90,13 @@ std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionU
   };
   const PositionOrigin better_origin = centered ? PositionOrigin::center : PositionOrigin::top_left;
   const std::string_view counts_from = centered == from_center ? ""
-                                       : centered              ? " --gaze-origin center"
-                                                               : " --gaze-origin top-left";
+                                       : centered              ? " `gaze-origin` center"
+                                                               : " `gaze-origin` top-left";
   if (stated != PositionUnit::mm && fits(size_mm)) {
-    return BetterUnit{"millimetres", PositionUnit::mm, fmt::format("--gaze-unit mm{}", counts_from), better_origin};
+    return BetterUnit{"millimetres", PositionUnit::mm, fmt::format("`gaze-unit` mm{}", counts_from), better_origin};
   }
   if (fits(size_px) || (is_deg && !is_known(size_px))) {
-    return BetterUnit{"pixels", PositionUnit::px, fmt::format("--gaze-unit px{}", counts_from), better_origin};
+    return BetterUnit{"pixels", PositionUnit::px, fmt::format("`gaze-unit` px{}", counts_from), better_origin};
   }
   return is_deg ? std::optional(BetterUnit{"something else", PositionUnit::automatic, ""}) : std::nullopt;
 }
@@ -106,13 +106,13 @@ std::optional<BetterUnit> doubt_places(const Positions& p, PositionUnit unit, do
   const auto& [x, y, most, spread] = p;
   const bool both_signs = (x.low < 0 && x.high > 0) || (y.low < 0 && y.high > 0);
   if (unit == PositionUnit::px && most < 1.5 && spread > 0.02) {
-    return BetterUnit{"fractions of the display", PositionUnit::fraction, "--gaze-unit fraction"};
+    return BetterUnit{"fractions of the display", PositionUnit::fraction, "`gaze-unit` fraction"};
   }
   if (unit == PositionUnit::px && both_signs && most < 60 && most < 0.12 * width && spread > 0.5) {
-    return BetterUnit{"degrees from straight ahead", PositionUnit::deg, "--gaze-unit deg", PositionOrigin::center};
+    return BetterUnit{"degrees from straight ahead", PositionUnit::deg, "`gaze-unit` deg", PositionOrigin::center};
   }
   if (unit == PositionUnit::fraction && !(most < 5)) {
-    return BetterUnit{"pixels", PositionUnit::px, "--gaze-unit px"};
+    return BetterUnit{"pixels", PositionUnit::px, "`gaze-unit` px"};
   }
   return std::nullopt;
 }
@@ -199,14 +199,14 @@ std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, 
     return GazeFinding{FindingKind::suspicion, "position-unit",
                        fmt::format("the positions are no {} but {}", plural_of(unit), better->name),
                        "statistics: " + seen + (better->unit == PositionUnit::automatic ? "" : read_so(gaze, other)),
-                       better->flag};
+                       better->setting};
   }
   if (is_place && c.origin.value == PositionOrigin::top_left && raw.kind == GazeKind::screen &&
       count_from_center(p, size)) {
     other.origin.value = PositionOrigin::center;
     return GazeFinding{
         FindingKind::suspicion, "origin", "the positions count from the center of the display, not its top left",
-        fmt::format("statistics: {} {}{}", seen, to_string(unit), read_so(gaze, other)), "--gaze-origin center"};
+        fmt::format("statistics: {} {}{}", seen, to_string(unit), read_so(gaze, other)), "`gaze-origin` center"};
   }
   return std::nullopt;
 }

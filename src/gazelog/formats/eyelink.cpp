@@ -314,24 +314,14 @@ class AscReader {
   }
 
   RawSample eye_sample(std::int64_t t_ns, Eye eye, std::size_t column, std::string_view flags) {
-    RawSample sample;
-    sample.t_ns = t_ns;
-    sample.row = line_;
-    sample.eye = eye;
-    sample.confidence = static_cast<float>(kNan);
-    sample.at = {number(column), number(column + 1), 0};
-    const double pupil = number(column + 2);
-    sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
+    RawSample sample = position_row(t_ns, line_, eye, {number(column), number(column + 1)}, number(column + 2));
     // What the tracker says of its own sample is not believed where the user says that there is none.
     const auto both_are = [&](double value) { return sample.at.x == value && sample.at.y == value; };
     const bool is_mark =
         (options_.zero_is_missing && both_are(0)) || (options_.missing_value && both_are(*options_.missing_value));
     if (is_mark) {
       sample.validity = GazeValidity::lost;
-    } else if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
-      sample.at.x = sample.at.y = kNan;
-      sample.validity = GazeValidity::lost;
-    } else if (!flags.empty()) {
+    } else if (sample.validity == GazeValidity::ok && !flags.empty()) {
       // I..: interpolated. Then two for each eye: the corneal reflection lost, or just found again.
       const std::size_t at = flags.size() == 5 && eye == Eye::right ? 3 : 1;
       if (flags[at] == 'C' || flags[at + 1] == 'R') {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
@@ -73,7 +72,7 @@ RawGaze read_by_ticks(const GazeFile& file, const GazeReadOptions& options, cons
   RawGaze raw = read_gaze_gazepoint(file, by_ticks);
   raw.faults.push_back({"media", place_of(file, line), fmt::format("{} starts anew with another medium", time),
                         fmt::format("use `gaze-time-column` {}, which goes on, or export one medium a file", ticks),
-                        "--gaze-time-column " + ticks,
+                        "`gaze-time-column` " + ticks,
                         fmt::format("line {}: TIME starts anew with another medium", line)});
   return raw;
 }
@@ -141,19 +140,10 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
     last = t_ns;
     const bool blinks = blink && rows.number(*blink) > 0;
     for (const Point& point : points) {
-      RawSample sample;
-      sample.t_ns = t_ns;
-      sample.row = rows.line();
-      sample.eye = point.eye;
-      sample.confidence = static_cast<float>(kNan);
-      const double pupil = rows.number(point.pupil);
-      sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-      sample.at.x = rows.number(point.x);
-      sample.at.y = rows.number(point.y);
+      RawSample sample = position_row(t_ns, rows.line(), point.eye, {rows.number(point.x), rows.number(point.y)},
+                                      rows.number(point.pupil));
       const bool good = !point.valid || rows.number(*point.valid) == 1;
-      sample.validity =
-          std::isnan(sample.at.x) || std::isnan(sample.at.y) || !good ? GazeValidity::lost : GazeValidity::ok;
-      sample.validity = blinks ? GazeValidity::blink : sample.validity;
+      sample.validity = blinks ? GazeValidity::blink : good ? sample.validity : GazeValidity::lost;
       raw.rows.push_back(sample);
     }
     if (fixation && fixation_valid && rows.number(*fixation_valid) == 1) {

@@ -144,19 +144,10 @@ RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
       }
     }
     for (const SmiColumns& eye : eyes) {
-      RawSample sample;
-      sample.t_ns = t_ns;
-      sample.row = rows.line();
-      sample.eye = eye.eye;
-      sample.confidence = static_cast<float>(kNan);
-      const double pupil = rows.number(eye.pupil);
-      sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);
-      sample.at.x = rows.number(eye.x);
-      sample.at.y = rows.number(eye.y);
-      if ((sample.at.x == 0 && sample.at.y == 0) || std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
-        sample.at.x = sample.at.y = kNan;
-        sample.validity = GazeValidity::lost;
-      }
+      const Vec2d at{rows.number(eye.x), rows.number(eye.y)};
+      const bool is_zero = at.x == 0 && at.y == 0;
+      RawSample sample =
+          position_row(t_ns, rows.line(), eye.eye, is_zero ? Vec2d{kNan, kNan} : at, rows.number(eye.pupil));
       if (eye.validity && rows.number(*eye.validity) == 0) {
         sample.validity = GazeValidity::lost;
       }

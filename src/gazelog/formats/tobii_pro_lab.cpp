@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
@@ -190,19 +189,11 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
       }
     }
     for (const EyeInLab& eye : c.eyes) {
-      RawSample sample;
-      sample.t_ns = t_ns;
-      sample.row = rows.line();
-      sample.eye = eye.eye;
-      sample.confidence = static_cast<float>(kNan);
-      sample.pupil = static_cast<float>(rows.number(eye.pupil));
-      sample.at.x = rows.number(eye.x);
-      sample.at.y = rows.number(eye.y);
+      const double pupil = rows.number(eye.pupil);
+      RawSample sample = position_row(t_ns, rows.line(), eye.eye, {rows.number(eye.x), rows.number(eye.y)}, pupil);
+      sample.pupil = static_cast<float>(pupil);
       const std::string validity = to_lower(rows.cell(eye.validity));
-      if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
-        sample.at.x = sample.at.y = kNan;
-        sample.validity = GazeValidity::lost;
-      } else if (eye.validity && validity != "valid" && validity != "1") {
+      if (eye.validity && validity != "valid" && validity != "1") {
         sample.validity = GazeValidity::lost;
       }
       raw.rows.push_back(sample);

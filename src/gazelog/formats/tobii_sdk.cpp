@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
@@ -21,7 +19,7 @@ struct SdkEye {
   std::optional<std::size_t> validity, pupil, pupil_validity;
 };
 
-std::array<double, 2> pair_from(TableRows& rows, std::size_t column) {
+Vec2d pair_from(TableRows& rows, std::size_t column) {
   std::string_view text = rows.cell(column);
   if (is_missing(text)) {
     return {kNan, kNan};
@@ -101,22 +99,11 @@ RawGaze read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options
     rows.check_length();
     const std::int64_t t_ns = rows.time_ns(time, scale);
     for (const SdkEye& eye : eyes) {
-      RawSample sample;
-      sample.t_ns = t_ns;
-      sample.row = rows.line();
-      sample.eye = eye.eye;
-      sample.confidence = static_cast<float>(kNan);
       const double pupil = rows.number(eye.pupil);
       const bool pupil_good = !eye.pupil_validity || rows.number(*eye.pupil_validity) == 1;
-      sample.pupil = static_cast<float>(pupil_good && pupil > 0 ? pupil : kNan);
-      const auto at = eye.y ? std::array{rows.number(eye.x), rows.number(*eye.y)} : pair_from(rows, eye.x);
-      sample.at.x = at[0];
-      sample.at.y = at[1];
-      const bool said_bad = eye.validity && !(rows.number(*eye.validity) == 1);
-      if (std::isnan(at[0]) || std::isnan(at[1])) {
-        sample.at.x = sample.at.y = kNan;
-        sample.validity = GazeValidity::lost;
-      } else if (said_bad) {
+      const Vec2d at = eye.y ? Vec2d{rows.number(eye.x), rows.number(*eye.y)} : pair_from(rows, eye.x);
+      RawSample sample = position_row(t_ns, rows.line(), eye.eye, at, pupil_good ? pupil : kNan);
+      if (eye.validity && !(rows.number(*eye.validity) == 1)) {
         sample.validity = GazeValidity::lost;
       }
       raw.rows.push_back(sample);

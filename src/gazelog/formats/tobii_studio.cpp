@@ -200,18 +200,8 @@ class StudioReader {
   }
 
   void add(std::int64_t t_ns, Eye eye, std::size_t x, std::size_t y, double validity, double pupil) {
-    RawSample sample;
-    sample.t_ns = t_ns;
-    sample.row = rows_.line();
-    sample.eye = eye;
-    sample.confidence = static_cast<float>(kNan);
-    sample.pupil = static_cast<float>(pupil > 0 ? pupil : kNan);  // -1: none
-    sample.at.x = rows_.number(x);
-    sample.at.y = rows_.number(y);
-    if (std::isnan(sample.at.x) || std::isnan(sample.at.y)) {
-      sample.at.x = sample.at.y = kNan;
-      sample.validity = GazeValidity::lost;
-    } else if (validity > kWorstValidity) {
+    RawSample sample = position_row(t_ns, rows_.line(), eye, {rows_.number(x), rows_.number(y)}, pupil);
+    if (sample.validity == GazeValidity::ok && validity > kWorstValidity) {
       sample.validity = validity >= 4 ? GazeValidity::lost : GazeValidity::low_confidence;
     }
     raw_.rows.push_back(sample);

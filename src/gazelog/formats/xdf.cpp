@@ -154,7 +154,7 @@ std::vector<GazeChannels> find_gazes(const std::vector<Channel>& channels, const
     throw Error(ErrorKind::input, path,
                 labels.empty() ? "the gaze stream's channels have no labels"
                                : fmt::format("no channels of gaze x and y among: {}", labels.substr(0, 300)),
-                "name them with --gaze-x-column and --gaze-y-column");
+                "name them with `gaze-x-column` and `gaze-y-column`");
   }
   return gazes;
 }
@@ -195,7 +195,7 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   const std::vector<GazeChannels> gazes = find_gazes(channels, options, file.path);
   const GazeChannels& first = gazes.front();
   if (first.is_scene_camera) {
-    raw.way_out = "stream gaze on a surface, or look at it with --gaze-frame scene-camera";
+    raw.way_out = "stream gaze on a surface, or look at it with `gaze-frame` scene-camera";
   }
   raw.kind = first.is_direction      ? GazeKind::direction
              : first.is_scene_camera ? GazeKind::scene_camera
@@ -252,7 +252,7 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
     space.evidence = Evidence::statistics;
     raw.directions_grow_up = options.columns.origin != PositionOrigin::top_left;  // that origin is a guess, too
     raw.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with --gaze-unit",
+        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with `gaze-unit`",
                     file.path, evidence, to_string(space.unit)));
   }
   declare_places(raw, space, file.path);

@@ -20,9 +20,9 @@ void add_path_options(JobSchema& schema) {
                "Axes of the poses: gl looks along -z with y up, cv along +z with y down, unity left-handed along +z; "
                "default: the format's own, gl for CSV, TUM and EuRoC");
   schema.value("--camera-rotation-order", read(&CameraReadOptions::rotation_order), choices<RotationOrder>(),
-               Touch::camera, "Order in which the angles of a .chan file turn, the first letter first");
+               Touch::camera, "The order in which the rotations of a .chan file are applied, the first letter first");
   schema.value("--camera-fps", &JobSettings::camera_fps, "RATE", Touch::camera,
-               "Frames a second of paths that count frames: .chan, NeRF, COLMAP; default: --fps");
+               "Frames a second of paths that count frames (.chan, NeRF, COLMAP); default: --fps");
   schema
       .value("--camera-up", &JobSettings::camera_up, choices<WorldUp>(), Touch::camera,
              "The axis of the path's world that points up")
@@ -40,11 +40,11 @@ void add_path_options(JobSchema& schema) {
              "Moves a path or a head's poses so that the first one is here, metres")
       .need(kNeedsPath);
   schema.value("--camera-interpolation", read(&CameraReadOptions::interpolation), choices<PathInterpolation>(),
-               Touch::camera, "Between two poses of the path");
+               Touch::camera, "How the camera moves from one pose of the path to the next");
   schema.value("--camera-extrapolation", &JobSettings::camera_extrapolation, choices<CameraExtrapolation>(),
-               Touch::camera, "For frames before or after the path");
+               Touch::camera, "What frames before or after the path get: an error, or its first or last pose");
   schema.flag("--camera-keep-time", read(&CameraReadOptions::keep_time), Touch::camera,
-              "Stamps of the path are video times; otherwise its first stamp is video time 0");
+              "The path's stamps are video times; otherwise its first stamp is video time 0");
 }
 
 void add_lens_options(JobSchema& schema) {
@@ -89,7 +89,7 @@ void add_camera_options(JobSchema& schema) {
       .need("`target`");
   schema.value("--target", &JobSettings::target, "X,Y,Z", Touch::camera, "The point that --eye looks at, metres")
       .need("`eye`");
-  schema.value("--up", &JobSettings::up, "X,Y,Z", Touch::camera, "Up for --eye");
+  schema.value("--up", &JobSettings::up, "X,Y,Z", Touch::camera, "The direction that is up in the picture of --eye");
   schema.value("--yfov", &JobSettings::yfov_deg, "DEG", Touch::camera,
                "Vertical field of view in degrees for --eye and --camera-path (50 when not set), between 0 and 180; "
                "replaces that of a glTF camera when set");

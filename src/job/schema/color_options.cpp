@@ -27,17 +27,18 @@ void add_color_options(JobSchema& schema) {
   schema.group("Exposure and colour");
   schema
       .value("--exposure", &JobSettings::exposure, "STOPS|auto", Touch::color,
-             "Stops, or auto for the log-average, with a shift: auto+0.5")
+             "Exposure in stops, or auto for one that follows the log-average luminance of the frame, with a shift if "
+             "wanted: auto+0.5")
       .within(-kMaxStops, kMaxStops)
       .with(Trait::always_stated);
   schema
       .value("--exposure-key", at(&JobSettings::exposure, &ExposureSettings::key), "LUMINANCE", Touch::color,
-             "Luminance that auto brings the log-average to")
+             "The luminance to which auto brings the log-average")
       .above(0)
       .idle_when({without_automatic_exposure()});
   schema
       .value("--exposure-smoothing", &JobSettings::exposure_smoothing, "DURATION", Touch::color,
-             "Time constant over video time; 0s: off")
+             "Time constant, in video time, with which auto follows the frames; 0s: at once")
       .at_least(0)
       .idle_when({without_automatic_exposure()});
   schema.include(color_config_schema(), &JobSettings::color);

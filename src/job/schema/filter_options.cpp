@@ -13,9 +13,10 @@ void add_filter_options(JobSchema& schema) {
              "--gaze-missing uniform makes some of a log's frames uniform, they are guided as well. What guided takes "
              "from first hits shows no blur of lens and shutter")
       .with(Trait::always_stated);
-  schema.value("--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
-               "Pixels with at least so many samples keep their own mean in every filter; 0: guided and oidn smooth "
-               "all; default: in a fovea of 8 and more its full rate, at most 16; none in uniform frames");
+  schema.value(
+      "--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
+      "Pixels that have a site of their own with at least so many samples keep the mean of these samples in every "
+      "filter; 0, the default: none do, since guided and oidn themselves give back what samples know better");
   schema
       .value("--enhance-contrast", &JobSettings::enhance_contrast, "0..1", Touch::filter,
              "An enhancement, no estimate: raises what contrast blocks have left, as the eye's periphery misses "

@@ -17,14 +17,15 @@ void add_frame_options(JobSchema& schema) {
   schema.value("--start", &JobSettings::start, "DURATION", Touch::frames, "Video time at which frame 1 begins");
   schema
       .flag("--part", &JobSettings::part, Touch::frames,
-            "The frames are a part of a sequence that other runs share: timing and run record carry the range in their "
-            "names, 'gazetrace merge' joins them; frames that depend on those before need --resume-from, or --preroll")
+            "The frames are one part of a sequence, and other runs render the rest: timing and run record carry the "
+            "range of frames in their names, and 'gazetrace merge' joins them. Frames that depend on those before them "
+            "need --resume-from or --preroll")
       .decides_nothing()
       .with(Trait::one_run);
   schema
       .value("--sample-range", at(&JobSettings::trace, &TraceSettings::samples), "A:B", Touch::frames,
-             "Only samples A to B - 1 of every pixel or block: keeps their sums in place of pictures, and 'gazetrace "
-             "merge' makes the pictures once all parts are there, to the bit those of one run")
+             "Traces only the samples A to B - 1 of every pixel or block, and writes their sums instead of pictures; "
+             "once all parts are there, 'gazetrace merge' makes the pictures, to the bit those of a single run")
       .decides_nothing()
       .with(Trait::one_run);
   schema.value("--frame-rect", &JobSettings::frame_rect, "X,Y,W,H", Touch::frames,

@@ -20,9 +20,9 @@ void add_column_options(OptionSchema<GazeFileSettings>& schema) {
                "Column of the vertical position, or direction y");
   schema.value("--gaze-z-column", column(&GazeColumns::z), "NAME", Touch::gaze, "Column of direction z");
   schema.value("--gaze-validity-column", column(&GazeColumns::validity), "NAME", Touch::gaze,
-               "Column that says which samples are good");
+               "Column that says which samples are valid");
   schema.value("--gaze-valid-values", column(&GazeColumns::valid_values), "TEXT,TEXT", Touch::gaze,
-               "What good samples have in it; default: 1, true, ok, valid");
+               "Values of that column that mean a valid sample; default: 1, true, ok, valid");
   schema.value("--gaze-confidence-column", column(&GazeColumns::confidence), "NAME", Touch::gaze,
                "Column of the confidence");
   schema.value("--gaze-pupil-column", column(&GazeColumns::pupil), "NAME", Touch::gaze, "Column of the pupil's size");
@@ -54,11 +54,12 @@ void add_clock_options(JobSchema& schema) {
       .idle_when({without_gaze_log()});
   schema
       .value("--gaze-latency", &JobSettings::gaze_latency, "DURATION", Touch::gaze,
-             "Sampling follows the gaze of this long ago; measurements keep the true gaze")
+             "Sampling follows the gaze as it was this long ago; measurements use the true gaze")
       .idle_when({without_gaze_log()});
   schema
       .flag("--keep-ids", &JobSettings::keep_ids, Touch::gaze,
-            "Times of day of the log stay in plan, headers and records; otherwise time counts from its first sample")
+            "Keeps the log's times of day in plan, headers and records; otherwise time is counted from the log's first "
+            "sample")
       .decides_nothing()
       .with(Trait::one_run);
   schema
@@ -90,7 +91,8 @@ void add_time_options(JobSchema& schema) {
       .idle_when({without_gaze_log()});
   schema
       .value("--gaze-max-gap", &JobSettings::gaze_max_gap, "DURATION", Touch::gaze,
-             "A longer step between two samples is a gap: not interpolated, and held samples in it are marked so")
+             "A longer step between two samples is a gap: nothing is interpolated across it, and samples that are held "
+             "in it are marked")
       .at_least(0)
       .idle_when({without_gaze_log()});
   add_clock_options(schema);
@@ -119,7 +121,7 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
   OptionSchema<GazeFileSettings> schema;
   schema.group("Gaze log");
   schema.value("--gaze-format", read(&GazeReadOptions::format), "NAME", Touch::gaze,
-               "Default: by its content ('gazetrace list gaze-formats')");
+               "Format of the log ('gazetrace list gaze-formats'); default: found by its content");
   add_column_options(schema);
   schema.flag("--gaze-sort", &GazeFileSettings::sort, Touch::gaze,
               "Sorts unordered stamps and keeps the last of equal ones");
@@ -131,18 +133,20 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
                "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
                "left, cv along +z with y down; default: the format's own");
   schema.value("--gaze-frame", read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
-               "Of logs that know several: head takes directions from the head, scene-camera places on its picture");
-  schema.value("--gaze-eye", read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
-               "Of binocular logs: auto takes the log's combined gaze, else the mean of both eyes in angle");
+               "Which gaze is taken of a log that states several: head, directions from the head; scene-camera, places "
+               "on the scene camera's picture");
+  schema.value(
+      "--gaze-eye", read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
+      "Which gaze is taken of a log of both eyes; auto: its combined gaze, else the mean of both eyes by angle");
   schema.value("--gaze-dominant", read(&GazeReadOptions::dominant_eye), choices<Eye>(), Touch::gaze,
-               "The eye of --gaze-eye dominant");
+               "The eye that --gaze-eye dominant takes");
   schema.value("--gaze-min-confidence", &GazeFileSettings::min_confidence, "SHARE", Touch::gaze,
-               "Samples below it are not used; default: the format's own, such as 0.6 for Pupil Core");
+               "Samples of less confidence are not used; default: the format's own, such as 0.6 for Pupil Core");
   schema.flag("--gaze-zero-missing", read(&GazeReadOptions::zero_is_missing), Touch::gaze,
               "Takes positions of exactly (0, 0) for missing ones");
   schema.value("--gaze-missing-value", read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
-               "What the log has in both axes, such as -1, where it has no position; -32768, and 1e7 and beyond, are "
-               "always taken for that");
+               "The number, such as -1, that the log has in both axes where it has no position; -32768, and magnitudes "
+               "from 1e7 on, always mean that");
   schema.flag("--gaze-swap-xy", read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
   schema.flag("--gaze-flip-x", read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
   schema.flag("--gaze-flip-y", read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
@@ -156,8 +160,9 @@ OptionSchema<std::vector<std::string>> gaze_process_schema() {
   schema.group("Gaze in time");
   schema.repeated(
       "--gaze-process", [](auto& steps) -> auto& { return steps; }, "STEP[:NAME=VALUE,...]", Touch::gaze,
-      "A step of processing, one option each, in this order ('gazetrace list gaze-steps'): fill-gaps:max=75ms, "
-      "median:samples=5, noise:sd=0.5deg,seed=1. Measurements keep the gaze as it was read");
+      "A step of processing ('gazetrace list gaze-steps'), such as fill-gaps:max=75ms, median:samples=5 or "
+      "noise:sd=0.5deg,seed=1; given once for each step, in the order of the steps. Measurements use the gaze as it "
+      "was read");
   return schema;
 }
 

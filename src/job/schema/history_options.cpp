@@ -14,32 +14,41 @@ constexpr const char* kNeedsHistory = "`accumulate` or `exposure-smoothing`";
 void add_reproject_options(JobSchema& schema) {
   using A = AccumulateSettings;
   schema
+      .value("--accumulate-window", accumulate(&A::window), "N", Touch::history,
+             "two-sided: reads N frames before a frame and N after it, which are traced where they are not rendered")
+      .within(0, 100)
+      .idle_when({without_two_sided()});
+  schema
       .value("--accumulate-order", accumulate(&A::order), choices<AccumulateOrder>(), Touch::history,
              "reproject: before or after the filter fills pixels between samples; guided: after")
       .idle_when({without_reproject()});
   schema
       .value("--accumulate-frames", accumulate(&A::frames), "N", Touch::history,
-             "reproject: memory in frames; a pixel gathers N times a frame's samples; 0 forgets nothing")
+             "reproject, two-sided: memory in frames; a pixel gathers N times a frame's samples; 0 forgets nothing")
       .within(0, 1e9)
-      .idle_when({without_reproject()});
+      .idle_when({without_reprojection()});
   schema
       .value("--accumulate-blend", accumulate(&A::blend), "SHARE", Touch::history,
-             "reproject: a fixed share of the current frame where there is history, 1e-6..1; 0: by samples")
+             "reproject, two-sided: a fixed share of the current frame where there is history, 1e-6..1; 0: by samples")
       .within(0, 1)
-      .idle_when({without_reproject()});
+      .idle_when({without_reprojection()});
   schema
-      .value("--accumulate-clip", accumulate(&A::clip_sigmas), "SIGMAS", Touch::history,
-             "reproject: history stays within so many standard deviations of the current neighborhood; 0: anywhere")
+      .value(
+          "--accumulate-clip", accumulate(&A::clip_sigmas), "SIGMAS", Touch::history,
+          "reproject, two-sided: other frames stay within so many standard deviations of the current neighborhood; 0: "
+          "anywhere")
       .within(0, 1e6)
-      .idle_when({without_reproject()});
+      .idle_when({without_reprojection()});
   schema
       .flag("--accumulate-reset-saccades", accumulate(&A::reset_at_saccades), Touch::history,
-            "reproject: a frame takes nothing from those before it where the eye has jumped since the last one")
-      .idle_when({without_reproject(), without_gaze_log()});
+            "reproject, two-sided: a frame takes nothing from those before it where the eye has jumped since the last "
+            "one")
+      .idle_when({without_reprojection(), without_gaze_log()});
   schema
       .flag("--accumulate-reset-blinks", accumulate(&A::reset_at_blinks), Touch::history,
-            "reproject: a frame takes nothing from those before it where the eye was closed since the last one")
-      .idle_when({without_reproject(), without_gaze_log()});
+            "reproject, two-sided: a frame takes nothing from those before it where the eye was closed since the last "
+            "one")
+      .idle_when({without_reprojection(), without_gaze_log()});
 }
 
 void add_checkpoint_options(JobSchema& schema) {
@@ -53,7 +62,7 @@ void add_checkpoint_options(JobSchema& schema) {
       .need(kNeedsHistory);
   schema
       .value("--checkpoint-every", &JobSettings::checkpoint_every, "N", Touch::history | Touch::output,
-             "Also after every N frames; 0: only at the end")
+             "Writes the checkpoint after every N frames as well; 0: only at the end")
       .decides_nothing()
       .with(Trait::one_run)
       .within(0, 1e9)
@@ -80,7 +89,8 @@ void add_history_options(JobSchema& schema) {
   schema
       .value("--accumulate", accumulate(&AccumulateSettings::mode), choices<AccumulateMode>(), Touch::history,
              "running: mean over frames while the camera stands still; reproject: what was seen before is looked up "
-             "where camera, bodies and shapes have it now, and checked")
+             "where camera, bodies and shapes have it now, and checked; two-sided: so are the frames after it, which "
+             "nobody could do live")
       .with(Trait::always_stated);
   add_reproject_options(schema);
   add_checkpoint_options(schema);

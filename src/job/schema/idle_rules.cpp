@@ -48,6 +48,17 @@ JobIdleRule without_reproject() {
           [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::reproject; }};
 }
 
+JobIdleRule without_two_sided() {
+  return {"without `accumulate` two-sided",
+          [](const JobSettings& job) { return job.accumulate.mode != AccumulateMode::two_sided; }};
+}
+
+JobIdleRule without_reprojection() {
+  return {"without `accumulate` reproject or two-sided", [](const JobSettings& job) {
+            return job.accumulate.mode != AccumulateMode::reproject && job.accumulate.mode != AccumulateMode::two_sided;
+          }};
+}
+
 JobIdleRule without_automatic_exposure() {
   return {"without `exposure` auto",
           [](const JobSettings& job) { return job.exposure.mode != ExposureMode::log_average; }};

@@ -22,6 +22,8 @@ JobIdleRule with_uniform();
 JobIdleRule with_hard_regions();
 JobIdleRule without_regions();
 JobIdleRule without_reproject();
+JobIdleRule without_two_sided();
+JobIdleRule without_reprojection();  // neither reproject nor two-sided
 JobIdleRule without_automatic_exposure();
 // With any fall-off except these.
 JobIdleRule with_other_falloffs(const std::vector<std::string>& models);

@@ -14,10 +14,11 @@ constexpr Touches kOfPresets =
 // set_option() also sets the options that the preset consists of.
 void add_preset_option(JobSchema& schema) {
   schema.group("Presets");
-  OptionOf<JobSettings>& option = schema.value(
-      "--preset", &JobSettings::preset, "NAME", kOfPresets,
-      "A named list of settings ('gazetrace list presets'). On the command line it stands above a settings file and "
-      "below the other options of the command line; in a settings file it stands below the rest of the file");
+  OptionOf<JobSettings>& option =
+      schema.value("--preset", &JobSettings::preset, "NAME", kOfPresets,
+                   "A named list of settings ('gazetrace list presets'). Given on the command line it overrides a "
+                   "settings file, but not the other options of the command line; given in a settings file it is "
+                   "overridden by the rest of the file");
   option.decides_nothing();
   option.check = [](const auto& values, const auto& place) { (void)preset_by_name(values.at(0), place); };
 }

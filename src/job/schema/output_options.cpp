@@ -16,7 +16,7 @@ void add_exr_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema
       .value("--exr-zip-level", exr(&ExrSettings::zip_level), "1..9", Touch::output,
-             "Of zip and zips: 1 fast, 9 small; lossless at every level")
+             "Level of the compressions zip and zips, from 1 (fast) to 9 (small files); every level is lossless")
       .decides_nothing()
       .within(1, 9)
       .with(Trait::one_run);
@@ -43,10 +43,10 @@ void add_output_options(JobSchema& schema) {
       .decides_nothing()
       .with(Trait::one_run);
   schema.value("--bits", at(&JobSettings::picture, &DisplaySettings::bits), "8|16", Touch::output,
-               "Bits a channel of .png and .tif");
+               "Bits per channel of .png and .tif");
   schema.value("--jpeg-quality", at(&JobSettings::picture, &DisplaySettings::quality), "1..100", Touch::output,
                "Quality of .jpg");
-  schema.flag("--overwrite", &JobSettings::overwrite, Touch::output, "Replaces files that are there")
+  schema.flag("--overwrite", &JobSettings::overwrite, Touch::output, "Replaces files that exist already")
       .decides_nothing()
       .with(Trait::one_run);
   schema

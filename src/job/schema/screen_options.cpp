@@ -11,8 +11,10 @@ OptionSchema<ScreenSettings> screen_schema() {
       "A known screen and its distance ('gazetrace list screens'), or a .json file; default: what the gaze log "
       "states");
   schema.value("--screen-px", &ScreenSettings::size_px, "W,H", Touch::screen, "Resolution of the screen");
-  schema.value("--screen-cm", &ScreenSettings::size_cm, "W,H", Touch::screen, "Size of its active area, centimetres");
-  schema.value("--screen-distance-cm", &ScreenSettings::distance_cm, "CM", Touch::screen, "Eye to screen, centimetres");
+  schema.value("--screen-cm", &ScreenSettings::size_cm, "W,H", Touch::screen,
+               "Size of the screen's active area, centimetres");
+  schema.value("--screen-distance-cm", &ScreenSettings::distance_cm, "CM", Touch::screen,
+               "Distance from the eye to the screen, centimetres");
   schema.value("--screen-eye-cm", &ScreenSettings::eye_cm, "X,Y", Touch::screen,
                "Where the eye's perpendicular meets the screen, from its centre, right and up, centimetres");
   schema
@@ -26,10 +28,10 @@ OptionSchema<ScreenSettings> screen_schema() {
 void add_screen_options(JobSchema& schema) {
   schema.include(screen_schema(), &JobSettings::screen);
   schema.value("--recording-screen", &JobSettings::recording_screen, "NAME|FILE", Touch::screen,
-               "The screen of the recording where it is not --screen; default: what the gaze log states");
+               "The screen of the recording, where it is another one than --screen; default: what the gaze log states");
   schema.value("--gaze-transfer", &JobSettings::gaze_transfer, choices<GazeTransfer>(), Touch::screen,
-               "From the recording's screen to another: places stay (fraction) or angles do; needed where they differ "
-               "by more than 2 %");
+               "How gaze is carried from the recording's screen to another: its place on the screen stays the same "
+               "(fraction), or its angle does; needed where the angular sizes of the screens differ by more than 2 %");
 }
 
 }  // namespace gazetrace

@@ -24,20 +24,24 @@ void add_path_options(JobSchema& schema) {
       .flag("--russian-roulette", trace(&TraceSettings::russian_roulette), Touch::tracing,
             "Ends dim paths early from the third bounce on, without bias")
       .with(Trait::trade_off);
-  schema.value("--diffuse", trace(&TraceSettings::diffuse), choices<DiffuseModel>(), Touch::tracing, "Diffuse lobe")
+  schema
+      .value("--diffuse", trace(&TraceSettings::diffuse), choices<DiffuseModel>(), Touch::tracing,
+             "The model of diffuse reflection")
       .with(Trait::always_stated);
   schema
       .value("--light-sampling", trace(&TraceSettings::light_sampling), choices<LightSampling>(), Touch::tracing,
-             "Lights and surfaces together (mis), or one of them alone")
+             "What is sampled at a hit: lights and surface together (mis), or one of them alone")
       .with(Trait::trade_off)
       .with(Trait::always_stated);
   schema
       .flag("--compensate-environment", trace(&TraceSettings::compensate_environment), Touch::tracing,
-            "Light samples of the environment go where it stands out: less noise in the open, more indoors")
+            "Takes light samples of the environment only where it is brighter than half its mean: less noise in the "
+            "open, more indoors")
       .with(Trait::trade_off);
   schema
       .value("--clamp-indirect", trace(&TraceSettings::clamp_indirect), "RADIANCE", Touch::tracing,
-             "Most that a sample may add after more than one scattering event: fewer fireflies, with bias; 0: off")
+             "The most that a sample may add after more than one scattering event, which removes fireflies but is "
+             "biased; 0: off")
       .at_least(0, "give a positive number, or 0 for none")
       .with(Trait::trade_off)
       .with(Trait::always_stated);
@@ -71,6 +75,12 @@ void add_tracing_options(JobSchema& schema) {
   schema.group("Light transport");
   add_path_options(schema);
   add_texture_options(schema);
+  schema
+      .value("--sample-pattern", trace(&TraceSettings::sample_pattern), choices<SamplePattern>(), Touch::sampling,
+             "Random numbers of neighbouring pixels: independent (scrambled), or shared along a Z-curve, so that their "
+             "errors cancel over larger places (z-order)")
+      .with(Trait::trade_off)
+      .with(Trait::always_stated);
   schema
       .value("--seed", trace(&TraceSettings::seed), "N", Touch::tracing,
              "Same seed, same pictures, for any number of threads")

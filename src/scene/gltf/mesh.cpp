@@ -11,8 +11,8 @@
 #include "gazetrace/error.hpp"
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/material.hpp"
+#include "scene/normals_and_tangents.hpp"
 #include "scene/parallel_errors.hpp"
-#include "scene/surface.hpp"
 
 namespace gazetrace {
 namespace {

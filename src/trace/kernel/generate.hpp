@@ -30,8 +30,8 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
   if (camera.has_lens() || camera.moves()) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       const SampleKey key = work_.samples.key[i];
-      const std::uint32_t sample = work_.samples.sample[i];
-      const Vec2f lens = concentric_disk(sample_2d(key, sample, dimension_of(PathDimension::lens)));
+      const std::uint32_t index = work_.samples.index[i];
+      const Vec2f lens = concentric_disk(sample_2d(key, index, dimension_of(PathDimension::lens)));
       begin_path(i, camera.ray(work_.samples.x[i], work_.samples.y[i], lens, time_of(i)));
     }
   } else {

@@ -56,7 +56,7 @@ inline std::size_t PathKernel<kFeatures, kDiffuse>::choose_channel(int vertex, s
   }
   const std::size_t slot = paths.slot[k];
   const float u =
-      sample_1d(work_.samples.key[slot], work_.samples.sample[slot], dimension_of(0, BounceDimension::channel));
+      sample_1d(work_.samples.key[slot], work_.samples.index[slot], dimension_of(0, BounceDimension::channel));
   const auto chosen = std::min(static_cast<std::size_t>(3.0F * u), std::size_t{2});
   for (std::size_t c = 0; c < 3; ++c) {
     *throughput[c] *= c == chosen ? 3.0F : 0.0F;

@@ -16,8 +16,10 @@ namespace gazetrace {
 struct SampleBatch {
   BatchArray<std::uint32_t> site;    // index into SamplingMap::sites
   BatchArray<std::uint32_t> sample;  // number within the site
+  BatchArray<std::uint8_t> half;     // 0 or 1; 0 unless TraceSettings::halves
   BatchArray<SampleKey> key;
-  BatchArray<float> x, y;  // continuous pixel coordinates from the frame's centre, with the filter's offset
+  BatchArray<std::uint32_t> index;  // of the sample's point in the sequence of its key
+  BatchArray<float> x, y;           // continuous pixel coordinates from the frame's centre, with the filter's offset
   BatchArray<std::uint16_t> pixel_x, pixel_y;
 };
 

@@ -87,12 +87,12 @@ class PathKernel {
   [[nodiscard]] std::uint32_t alpha_key(std::size_t slot, std::uint32_t segment) const {
     const std::uint64_t key = work_.samples.key[slot].value;
     return hash32(static_cast<std::uint32_t>(key >> 32U) ^
-                  hash32(work_.samples.sample[slot] ^ hash32(segment + 0x9e3779b9U)));
+                  hash32(work_.samples.index[slot] ^ hash32(segment + 0x9e3779b9U)));
   }
 
   // The time of the sample in [0, 1), where 0 is the opening of the shutter.
   [[nodiscard]] float time_of(std::size_t slot) const {
-    return sample_1d(work_.samples.key[slot], work_.samples.sample[slot], dimension_of(PathDimension::time));
+    return sample_1d(work_.samples.key[slot], work_.samples.index[slot], dimension_of(PathDimension::time));
   }
 
   // Rays get the time of their sample only where something moves while the shutter is open.

@@ -26,7 +26,7 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
   for (std::size_t i = 0; i < kChunk; ++i) {
     const std::size_t slot = i < count ? paths.slot[chunk.path[i]] : 0;
     key[i] = work_.samples.key[slot];
-    index[i] = work_.samples.sample[slot];
+    index[i] = work_.samples.index[slot];
   }
   const bool lit = frame_.lights->any();
   const bool bounces = vertex + 1 < frame_.settings.max_bounces || frame_.last_ray_finds_light;
@@ -211,7 +211,7 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   Vec3f weight = Vec3f{paths.r[k], paths.g[k], paths.b[k]} * chunk.next_weight.get(i);
   if (frame_.settings.russian_roulette && vertex + 1 < frame_.settings.max_bounces && vertex > 1) {
     const float survive = std::min(std::sqrt(std::max(std::max(weight.x, weight.y), weight.z)), 0.95F);
-    if (!(sample_1d(work_.samples.key[slot], work_.samples.sample[slot],
+    if (!(sample_1d(work_.samples.key[slot], work_.samples.index[slot],
                     dimension_of(vertex, BounceDimension::roulette)) < survive)) {
       return;
     }

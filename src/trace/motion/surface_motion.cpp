@@ -21,43 +21,43 @@ constexpr int kTilePx = 32;
 static_assert(kTilePx * kTilePx == kBatchSize);
 constexpr std::uint64_t kPlaceKey = 0x6d6f74696f6e21ULL;  // keeps alpha hashes apart from those of traced samples
 
-// The state of an instance at the earlier time and now.
-struct InstancePast {
-  Affine now, before;
+// The state of an instance at the other time and now.
+struct InstancePoses {
+  Affine now, then;
   bool moved = false;
-  std::vector<DeformedVertices> shape;  // at the earlier time, one per geometry of the mesh; empty: it was the same
+  std::vector<DeformedVertices> shape;  // at the other time, one per geometry of the mesh; empty: it was the same
 };
 
-InstancePast past_of(const Scene& scene, const RenderScene& render_scene, const ShadingInstance& instance,
-                     std::int64_t t_ns, int threads) {
-  InstancePast past;
+InstancePoses poses_of(const Scene& scene, const RenderScene& render_scene, const ShadingInstance& instance,
+                       std::int64_t t_ns, int threads) {
+  InstancePoses poses;
   if (instance.scene_instance == kNoId) {
-    return past;
+    return poses;
   }
   const Instance& source = scene.instances[instance.scene_instance];
-  past.now = {to_double(instance.axes[0]), to_double(instance.axes[1]), to_double(instance.axes[2]),
-              to_double(instance.translation)};
-  past.before = past.now;
+  poses.now = {to_double(instance.axes[0]), to_double(instance.axes[1]), to_double(instance.axes[2]),
+               to_double(instance.translation)};
+  poses.then = poses.now;
   if (source.motion >= 0) {
-    const Affine then = scene.motions[static_cast<std::size_t>(source.motion)].to_world_at(t_ns);
+    const Affine to_world = scene.motions[static_cast<std::size_t>(source.motion)].to_world_at(t_ns);
     // Compared in the precision of rays, so that what stands still does so exactly.
-    past.moved = ray_transform(then) != ray_transform(past.now);
-    past.before = past.moved ? then : past.now;
+    poses.moved = ray_transform(to_world) != ray_transform(poses.now);
+    poses.then = poses.moved ? to_world : poses.now;
   }
   if (source.deformation >= 0) {
     const MeshPose pose = scene.deformations[static_cast<std::size_t>(source.deformation)].pose_at(t_ns);
     if (!render_scene.is_in_pose(instance.scene_instance, pose)) {
-      past.moved = true;
+      poses.moved = true;
       for (const Geometry& geometry : scene.meshes[static_cast<std::size_t>(source.mesh)].geometries) {
-        past.shape.push_back(deform(geometry, pose, TextureRef{}, threads));
+        poses.shape.push_back(deform(geometry, pose, TextureRef{}, threads));
       }
     }
   }
-  return past;
+  return poses;
 }
 
 struct Corners {
-  std::array<Vec3d, 3> now, before;
+  std::array<Vec3d, 3> now, then;
 };
 
 // In an orthographic view all rays have one direction, so that rays that miss see the same at every pixel. While both
@@ -71,18 +71,18 @@ bool one_sky(const Camera& a, const Camera& b) {
 class MotionTracer {
  public:
   MotionTracer(const Scene& scene, const RenderScene& render_scene, const Camera& camera, int width_px, int height_px,
-               const EarlierView& earlier, int threads)
+               const OtherView& other, int threads)
       : scene_(scene),
         render_scene_(render_scene),
         rays_(camera, height_px),
         view_(camera, width_px, height_px),
-        earlier_view_(earlier.camera, width_px, height_px),
-        same_view_(camera.pose == earlier.camera.pose && camera.projection == earlier.camera.projection),
-        misses_stay_(same_view_ || one_sky(camera, earlier.camera)),
+        other_view_(other.camera, width_px, height_px),
+        same_view_(camera.pose == other.camera.pose && camera.projection == other.camera.projection),
+        misses_stay_(same_view_ || one_sky(camera, other.camera)),
         width_px_(width_px),
         height_px_(height_px) {
     for (const ShadingInstance& instance : render_scene.instances) {
-      pasts_.push_back(past_of(scene, render_scene, instance, earlier.t_video_ns, threads));
+      poses_.push_back(poses_of(scene, render_scene, instance, other.t_video_ns, threads));
     }
   }
 
@@ -129,25 +129,25 @@ class MotionTracer {
 
   void store_miss(const Workspace& work, std::size_t k, SurfaceMotion& out) const {
     const std::size_t pixel = work.pixel[k];
-    out.earlier_px.pixels[pixel] =
-        misses_stay_ ? center_of(pixel) : earlier_view_.direction({work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]});
+    out.other_px.pixels[pixel] =
+        misses_stay_ ? center_of(pixel) : other_view_.direction({work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]});
   }
 
   void store_hit(const Workspace& work, std::size_t k, SurfaceMotion& out) const {
     const std::size_t pixel = work.pixel[k];
     const HitBatch& hits = work.hits;
     std::uint32_t record = hits.geometry[k];
-    const InstancePast* past = nullptr;
+    const InstancePoses* poses = nullptr;
     std::uint32_t scene_instance = kNoId;
     if (hits.instance[k] != kNoId) {
       const std::size_t index = hits.instance[k] - render_scene_.first_instance_id;
       record += render_scene_.instances[index].first_geometry;
       scene_instance = render_scene_.instances[index].scene_instance;
-      past = &pasts_[index];
+      poses = &poses_[index];
     }
     const GeometryRecord& geometry = render_scene_.geometries[record];
     scene_instance = scene_instance == kNoId ? geometry.scene_instance : scene_instance;
-    const Corners corners = corners_of(geometry, hits.primitive[k], past);
+    const Corners corners = corners_of(geometry, hits.primitive[k], poses);
     const double u = static_cast<double>(hits.u[k]);
     const double v = static_cast<double>(hits.v[k]);
     const auto at = [&](const std::array<Vec3d, 3>& c) { return c[0] * (1 - u - v) + c[1] * u + c[2] * v; };
@@ -156,39 +156,39 @@ class MotionTracer {
       return to_float(dot(face, toward) < 0 ? -face : face);
     };
     const Vec3d now = at(corners.now);
-    const Vec3d before = at(corners.before);
-    const PixelProjection::Place place = earlier_view_.point(before);
-    const bool still = same_view_ && (past == nullptr || !past->moved);
+    const Vec3d then = at(corners.then);
+    const PixelProjection::Place place = other_view_.point(then);
+    const bool still = same_view_ && (poses == nullptr || !poses->moved);
     out.object.pixels[pixel] = 1 + scene_instance;
     out.depth_m.pixels[pixel] = static_cast<float>(view_.point(now).depth_m);
     out.normal.pixels[pixel] = facing(corners.now, view_.toward(now));
-    out.earlier_px.pixels[pixel] = still ? center_of(pixel) : place.px;
-    out.earlier_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
-    out.earlier_normal.pixels[pixel] = facing(corners.before, earlier_view_.toward(before));
+    out.other_px.pixels[pixel] = still ? center_of(pixel) : place.px;
+    out.other_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
+    out.other_normal.pixels[pixel] = facing(corners.then, other_view_.toward(then));
   }
 
   // The corners in world space, in double.
   [[nodiscard]] Corners corners_of(const GeometryRecord& record, std::uint32_t primitive,
-                                   const InstancePast* past) const {
+                                   const InstancePoses* poses) const {
     const ShadingTriangle& triangle = render_scene_.triangles[record.first_triangle + primitive];
     Corners corners;
     for (std::size_t c = 0; c < 3; ++c) {
       corners.now[c] = to_double(triangle.position[c]);
-      corners.before[c] = corners.now[c];
-      if (past != nullptr) {
-        if (!past->shape.empty()) {
-          const auto vertex = geometry_of(record, *past).triangles[primitive][c];
-          corners.before[c] = to_double(past->shape[record.scene_geometry].positions[vertex]);
+      corners.then[c] = corners.now[c];
+      if (poses != nullptr) {
+        if (!poses->shape.empty()) {
+          const auto vertex = geometry_of(record, *poses).triangles[primitive][c];
+          corners.then[c] = to_double(poses->shape[record.scene_geometry].positions[vertex]);
         }
-        corners.now[c] = transform_point(past->now, corners.now[c]);
-        corners.before[c] = transform_point(past->before, corners.before[c]);
+        corners.now[c] = transform_point(poses->now, corners.now[c]);
+        corners.then[c] = transform_point(poses->then, corners.then[c]);
       }
     }
     return corners;
   }
 
-  [[nodiscard]] const Geometry& geometry_of(const GeometryRecord& record, const InstancePast& past) const {
-    const auto index = static_cast<std::size_t>(&past - pasts_.data());
+  [[nodiscard]] const Geometry& geometry_of(const GeometryRecord& record, const InstancePoses& poses) const {
+    const auto index = static_cast<std::size_t>(&poses - poses_.data());
     const Instance& source = scene_.instances[render_scene_.instances[index].scene_instance];
     return scene_.meshes[static_cast<std::size_t>(source.mesh)].geometries[record.scene_geometry];
   }
@@ -196,25 +196,25 @@ class MotionTracer {
   const Scene& scene_;
   const RenderScene& render_scene_;
   CameraRays rays_;
-  PixelProjection view_, earlier_view_;
+  PixelProjection view_, other_view_;
   bool same_view_, misses_stay_;
   int width_px_, height_px_;
-  std::vector<InstancePast> pasts_;
+  std::vector<InstancePoses> poses_;
 };
 
 }  // namespace
 
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
-                                   int width_px, int height_px, const EarlierView& earlier, int threads) {
+                                   int width_px, int height_px, const OtherView& other, int threads) {
   constexpr float kFar = std::numeric_limits<float>::infinity();
   SurfaceMotion out;
   out.depth_m = ImageGray(width_px, height_px, kFar);
   out.normal = ImageRgb(width_px, height_px);
   out.object = Image<std::uint32_t>(width_px, height_px);
-  out.earlier_px = Image<Vec2d>(width_px, height_px);
-  out.earlier_depth_m = ImageGray(width_px, height_px, kFar);
-  out.earlier_normal = ImageRgb(width_px, height_px);
-  const MotionTracer tracer(scene, render_scene, camera, width_px, height_px, earlier, threads);
+  out.other_px = Image<Vec2d>(width_px, height_px);
+  out.other_depth_m = ImageGray(width_px, height_px, kFar);
+  out.other_normal = ImageRgb(width_px, height_px);
+  const MotionTracer tracer(scene, render_scene, camera, width_px, height_px, other, threads);
   const int rows = (height_px + kTilePx - 1) / kTilePx;
   parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row) {
     const FlushDenormals flush;

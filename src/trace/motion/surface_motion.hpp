@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces the first hits of a whole frame, and finds where they were at an earlier time.
+// Traces the first hits of a whole frame, and finds where they are in another view, earlier or later.
 #pragma once
 
 #include "gazetrace/motion.hpp"
@@ -10,6 +10,6 @@
 namespace gazetrace {
 
 SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render_scene, const Camera& camera,
-                                   int width_px, int height_px, const EarlierView& earlier, int threads);
+                                   int width_px, int height_px, const OtherView& other, int threads);
 
 }  // namespace gazetrace

@@ -6,6 +6,21 @@
 #include "core/instruction_sets.hpp"
 
 namespace gazetrace {
+namespace {
+
+constexpr std::uint64_t kWholeFrame = 0x5a2d6f72646572ULL;  // differs from every first pixel
+
+}  // namespace
+
+SiteSequence SampleList::sequence_of_site(const Site& site, int first_x, int first_y) const {
+  if (follows_curve_) {
+    return {make_sample_key(seed_, frame_, kWholeFrame), curve_index_, halves_, 0};
+  }
+  // Every pixel belongs to one site only, so a site's first pixel identifies it.
+  return {make_sample_key(seed_, frame_,
+                          (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x)),
+          0, halves_, static_cast<std::uint8_t>((site.block_x ^ site.block_y) & 1)};
+}
 
 GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBatch& out) {
   const float half_width = 0.5F * static_cast<float>(map_->width_px);
@@ -15,6 +30,7 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
     const Site& site = map_->sites[site_];
     const std::uint32_t last = std::min(site.samples, range_.end);
     if (sample_ >= last) {
+      curve_index_ += site.samples;
       ++site_;
       sample_ = range_.begin;
       continue;
@@ -28,17 +44,16 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
       first_x = pixels_[0].x;
       first_y = pixels_[0].y;
     }
-    // Every pixel belongs to one site only, so a site's first pixel identifies it.
-    const SampleKey key = make_sample_key(
-        seed_, frame_, (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x));
+    const SiteSequence sequence = sequence_of_site(site, first_x, first_y);
     const auto left = static_cast<int>(std::min<std::uint32_t>(last - sample_, kBatchSize));
     const int count = std::min(left, kBatchSize - filled);
     const auto size = static_cast<float>(block);
     const auto pixel_count = static_cast<float>(site.pixels);
     for (int k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(filled + k);
-      const std::uint32_t index = sample_ + static_cast<std::uint32_t>(k);
-      const Vec2f u = sample_2d(key, index, dimension_of(PathDimension::pixel));
+      const std::uint32_t sample = sample_ + static_cast<std::uint32_t>(k);
+      const SamplePoint point = sample_point(sequence, sample);
+      const Vec2f u = sample_2d(point.key, point.index, dimension_of(PathDimension::pixel));
       int px = first_x;
       int py = first_y;
       Vec2f inside = u;
@@ -60,8 +75,10 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
       }
       const Vec2f offset = filter.offset(inside.x, inside.y);
       out.site[i] = site_;
-      out.sample[i] = index;
-      out.key[i] = key;
+      out.sample[i] = sample;
+      out.index[i] = point.index;
+      out.half[i] = point.half;
+      out.key[i] = point.key;
       out.x[i] = (static_cast<float>(px) - half_width) + (0.5F + offset.x);
       out.y[i] = (static_cast<float>(py) - half_height) + (0.5F + offset.y);
       out.pixel_x[i] = static_cast<std::uint16_t>(px);

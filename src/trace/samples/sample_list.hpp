@@ -11,6 +11,7 @@
 #include "gazetrace/sample_sums.hpp"
 #include "trace/kernel/path_batch.hpp"
 #include "trace/samples/pixel_filter.hpp"
+#include "trace/samples/z_order.hpp"
 
 namespace gazetrace {
 
@@ -18,28 +19,38 @@ inline constexpr SampleRange kAllSamples{0, std::numeric_limits<std::uint32_t>::
 
 // Goes through the sites [first, first + count) of a map in order, and through those of each site's samples 0, 1, 2,
 // ... that are in `range`. Neighbouring entries are neighbours in the picture, so that packets of 16 rays are coherent.
+// With `z_order` all sites share one sequence of random numbers along that curve; without, each has its own.
 class SampleList {
  public:
   SampleList(const SamplingMap& map, std::uint32_t first_site, std::uint32_t site_count, std::uint64_t seed,
-             std::int32_t frame, const SampleRange& range = kAllSamples)
+             std::int32_t frame, const SampleRange& range = kAllSamples, const ZOrder* z_order = nullptr,
+             bool halves = false)
       : map_(&map),
         site_(first_site),
         end_(first_site + site_count),
         range_(range),
         sample_(range.begin),
         seed_(seed),
-        frame_(frame) {}
+        frame_(frame),
+        halves_(halves),
+        follows_curve_(z_order != nullptr),
+        curve_index_(z_order != nullptr ? z_order->first_index(first_site) : 0) {}
 
   // Fills in up to kBatchSize samples and returns their number, which is 0 at the end.
   int next(const PixelFilterSampler& filter, SampleBatch& out);
 
  private:
+  [[nodiscard]] SiteSequence sequence_of_site(const Site& site, int first_x, int first_y) const;
+
   const SamplingMap* map_;
   std::uint32_t site_, end_;
   SampleRange range_;
   std::uint32_t sample_;
   std::uint64_t seed_;
   std::int32_t frame_;
+  bool halves_;  // as TraceSettings::halves
+  bool follows_curve_;
+  std::uint64_t curve_index_;  // of the first sample of site_
   std::vector<PixelIndex> pixels_;
 };
 

@@ -33,7 +33,8 @@ constexpr std::uint32_t dimension_of(int bounce, BounceDimension d) noexcept {
          static_cast<std::uint32_t>(d);
 }
 
-// Identifies a place (pixel or site) in a frame; make it once and keep it in the path's state.
+// Identifies a sequence of points in a frame: that of a place (pixel or site), or one that all sites share
+// (z_order.hpp). Make it once and keep it in the path's state.
 struct SampleKey {
   std::uint64_t value = 0;
 };
@@ -41,6 +42,38 @@ struct SampleKey {
 // `place` must differ between what shall be independent, such as the first pixels of sites.
 constexpr SampleKey make_sample_key(std::uint64_t seed, std::int32_t frame, std::uint64_t place) noexcept {
   return {hash_combine(hash_combine(seed, static_cast<std::uint32_t>(frame)), place)};
+}
+
+// The point of a sequence that a sample takes.
+struct SamplePoint {
+  SampleKey key;
+  std::uint32_t index = 0;
+  std::uint8_t half = 0;
+};
+
+// Where the samples of a site are in the sequences of random numbers, which is all that a sampling pattern decides.
+struct SiteSequence {
+  SampleKey key;
+  std::uint64_t first = 0;  // the index that the site's first sample takes
+  // As TraceSettings::halves: there are two sequences, and samples belong to them in turn, the first of a site to
+  // sequence (first + odd) % 2. Sites of a single sample thus are in both.
+  bool halves = false;
+  std::uint8_t odd = 0;
+};
+
+// Sequences have 2^32 points; those beyond belong to another one.
+[[gnu::always_inline]] inline constexpr SamplePoint sample_point(const SiteSequence& site,
+                                                                 std::uint32_t sample) noexcept {
+  std::uint64_t at = site.first + sample;
+  std::uint8_t half = 0;
+  SampleKey key = site.key;
+  if (site.halves) {
+    half = static_cast<std::uint8_t>((at + site.odd) & 1U);
+    at >>= 1U;
+    key = half == 0 ? key : SampleKey{hash64(key.value + 0x68616c66ULL)};
+  }
+  const std::uint64_t beyond = at >> 32U;
+  return {beyond == 0 ? key : SampleKey{hash64(key.value + beyond)}, static_cast<std::uint32_t>(at), half};
 }
 
 namespace sampler_detail {

@@ -38,7 +38,7 @@ SurfaceSorter::Surface& SurfaceSorter::surface_of(SurfaceKind kind, const Vec3f&
   return fresh;
 }
 
-void SurfaceSorter::add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance) {
+void SurfaceSorter::add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance, std::uint8_t half) {
   const SurfaceKind kind = batch.kind[slot];
   if (kind == SurfaceKind::miss || kind == SurfaceKind::unlit) {
     return;
@@ -52,7 +52,9 @@ void SurfaceSorter::add(const SurfaceBatch& batch, std::size_t slot, const Vec3d
   surface.albedo += albedo;
   surface.normal += to_double(normal);
   surface.place += to_double(place);
-  const double ratio = luminance(reflected) / luminance(albedo);
+  const double shone = luminance(reflected);
+  surface.halves.add(shone, half);
+  const double ratio = shone / luminance(albedo);
   surface.square += ratio * ratio;
   ++surface.count;
 }
@@ -62,7 +64,7 @@ void SurfaceSorter::finish_site(std::vector<SurfaceSums>& out) {
     const Surface& s = surfaces_[k];
     out.push_back({to_float(s.reflected), to_float(s.albedo), to_float(s.normal), to_float(s.place),
                    static_cast<float>(std::min(s.square, static_cast<double>(std::numeric_limits<float>::max()))),
-                   s.count, s.kind});
+                   s.halves.difference(), s.count, s.kind});
   }
   used_ = 0;
 }

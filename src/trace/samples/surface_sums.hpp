@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,13 +18,33 @@ namespace gazetrace {
 inline constexpr float kSameNormal = 0.8F;
 inline constexpr float kPlanePixels = 2.0F;
 
+// Luminance of the two halves of a site's samples.
+struct HalfSums {
+  std::array<double, 2> luminance{};
+  std::array<std::uint32_t, 2> count{};
+
+  void add(double value, std::uint8_t half) {
+    luminance[half] += value;
+    ++count[half];
+  }
+  // SparseFrame::half_difference.
+  [[nodiscard]] float difference() const {
+    if (count[0] == 0 || count[1] == 0) {
+      return 0;
+    }
+    const double a = count[0];
+    const double b = count[1];
+    return static_cast<float>((luminance[0] / a - luminance[1] / b) * std::sqrt(a * b) / (a + b));
+  }
+};
+
 class SurfaceSorter {
  public:
   // `pixel_m`: the size of a pixel at 1 m (perspective), or at any depth.
   SurfaceSorter(float pixel_m, bool perspective) : pixel_m_(pixel_m), perspective_(perspective) {}
 
   // `radiance` must be finite. Samples that miss, and those on unlit surfaces, are left out.
-  void add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance);
+  void add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance, std::uint8_t half);
   // Appends the site's surfaces and starts a new site.
   void finish_site(std::vector<SurfaceSums>& out);
 
@@ -31,6 +52,7 @@ class SurfaceSorter {
   struct Surface {
     Vec3d reflected, albedo, normal, place;
     double square = 0;
+    HalfSums halves;
     std::uint32_t count = 0;
     SurfaceKind kind = SurfaceKind::diffuse;
     Vec3f first_normal, first_place;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "temporal/bench.hpp"
 
+#include <string>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -30,6 +31,17 @@ std::vector<Variant> make_variants() {
   add("clip 2", standard.frames, 2, 0, kLater);
   add("clip 5", standard.frames, 5, 0, kLater);
   add("blend 0.1", standard.frames, standard.clip_sigmas, 0.1, kLater);
+  return variants;
+}
+
+std::vector<Variant> two_sided_variants() {
+  std::vector<Variant> variants;
+  for (const std::int32_t window : {2, 4, 8}) {
+    AccumulateSettings settings;
+    settings.mode = AccumulateMode::two_sided;
+    settings.window = window;
+    variants.push_back({"two-sided, window " + std::to_string(window), settings, false});
+  }
   return variants;
 }
 

@@ -34,6 +34,9 @@ std::vector<Variant> make_variants();
 // Without those of order for filters that need guides, which always come before accumulation.
 std::vector<Variant> variants_of(const std::string& filter);
 
+// Accumulation from both sides, which has no history: only of use where whole sequences are compared.
+std::vector<Variant> two_sided_variants();
+
 class Bench {
  public:
   explicit Bench(const Options& options) : options_(options), log_(load_gaze_log(options.gaze, {})) {}

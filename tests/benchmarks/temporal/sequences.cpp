@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 namespace gazetrace::temporal {
 namespace {
@@ -73,7 +75,11 @@ void compare_variants(PathTracer& tracer, const Bench& bench, const FramePlan& p
       "\nFilter {}\n\n| accumulation | relmse | bias | local | flicker | seen | seen beyond {} deg | ms a frame |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- |\n",
       filter, benchmark::kPeriphery_deg);
-  for (const Variant& variant : variants_of(filter)) {
+  std::vector<Variant> variants = variants_of(filter);
+  for (Variant& variant : two_sided_variants()) {
+    variants.push_back(std::move(variant));
+  }
+  for (const Variant& variant : variants) {
     double temporal_ms = 0;
     const Luminances frames = render(tracer, plan, bench.settings_of(variant.accumulate, filter), &temporal_ms);
     print_row(variant.name, plan, frames, reference, temporal_ms);

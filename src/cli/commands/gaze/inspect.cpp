@@ -27,7 +27,7 @@ struct InspectArguments {
 void write_picture(const InspectArguments& arguments, const GazeLog& log, const GazeInspection& inspection) {
   GazePictureOptions options;
   options.frame_image = arguments.frame_image;
-  const std::string text = inspection_svg(log, inspection, options);
+  const std::string text = with_flags(inspection_svg(log, inspection, options));
   std::FILE* const file = std::fopen(arguments.svg.c_str(), "wb");
   bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
   good = (file == nullptr || std::fclose(file) == 0) && good;

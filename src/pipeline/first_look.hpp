@@ -10,7 +10,7 @@
 
 namespace gazetrace {
 
-struct ContrastPrepass {
+struct FirstLook {
   ImageGray multiplier;  // of the density, in [1 - 3/4 strength, 1]
   TraceStats stats;
 };
@@ -18,8 +18,8 @@ struct ContrastPrepass {
 // Traces the request's picture at an eighth of its size with 4 samples a pixel (a sixteenth of a sample for each pixel
 // of the frame). It has a seed of its own, so that the density does not depend on the samples that it places, and
 // estimates stay unbiased.
-ContrastPrepass trace_contrast(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
-                               double strength);
+FirstLook trace_first_look(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
+                           double strength);
 
 // The settings for the frame itself: from a budget the samples of the first look are subtracted, since they count among
 // the frame's. Other settings are unchanged. Error(usage) for a budget that leaves nothing.

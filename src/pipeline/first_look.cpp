@@ -3,7 +3,7 @@
 // Tursun et al. 2019 ("Luminance-contrast-aware foveated rendering") that a picture without contrast needs less detail.
 // The shape and the constants of the multiplier are choices made here, since the models of both papers need the picture
 // at full resolution.
-#include "pipeline/contrast_prepass.hpp"
+#include "pipeline/first_look.hpp"
 
 #include <fmt/format.h>
 
@@ -116,8 +116,8 @@ FoveationSettings less_first_look(const FoveationSettings& settings, const Frame
   return rest;
 }
 
-ContrastPrepass trace_contrast(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
-                               double strength) {
+FirstLook trace_first_look(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
+                           double strength) {
   FoveationSettings uniform;
   uniform.uniform_spp = kSpp;
   const SamplingMap map = make_sampling_map(uniform, small_view(request), std::nullopt);

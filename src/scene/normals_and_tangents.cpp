@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/surface.hpp"
+#include "scene/normals_and_tangents.hpp"
 
 #include <cmath>
 #include <cstdint>

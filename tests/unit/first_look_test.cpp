@@ -7,7 +7,7 @@
 #include <optional>
 #include <random>
 
-#include "pipeline/contrast_prepass.hpp"
+#include "pipeline/first_look.hpp"
 
 namespace gazetrace {
 namespace {
@@ -53,7 +53,7 @@ double mean(const ImageGray& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-TEST(ContrastPrepass, EdgesAreSeenAndFlatPartsAreNot) {
+TEST(FirstLook, EdgesAreSeenAndFlatPartsAreNot) {
   const SamplingMap map = uniform_map();
   const ImageGray contrast = local_contrast(sample(map, 0, [](int x, int) { return x < 20 ? 0.2 : 0.6; }), map);
   EXPECT_NEAR(contrast(5, 5), 0, 1e-4);
@@ -67,7 +67,7 @@ TEST(ContrastPrepass, EdgesAreSeenAndFlatPartsAreNot) {
 }
 
 // Of pure noise of 40 % a sample, 20 % a mean of four: what is left must be far below that.
-TEST(ContrastPrepass, NoiseIsTakenOff) {
+TEST(FirstLook, NoiseIsTakenOff) {
   const SamplingMap map = uniform_map();
   const ImageGray noisy = local_contrast(sample(map, 0.4, [](int, int) { return 0.5; }), map);
   EXPECT_LT(mean(noisy), 0.08);
@@ -77,7 +77,7 @@ TEST(ContrastPrepass, NoiseIsTakenOff) {
   EXPECT_NEAR(mean(checks), 0.5 * std::sqrt(9.0 / 8) * std::sqrt(80.0 / 81), 0.06);
 }
 
-TEST(ContrastPrepass, BlackAndUnsampledFramesHaveNone) {
+TEST(FirstLook, BlackAndUnsampledFramesHaveNone) {
   const SamplingMap map = uniform_map();
   SparseFrame black = sample(map, 0, [](int, int) { return 0.0; });
   for (const float value : local_contrast(black, map).pixels) {

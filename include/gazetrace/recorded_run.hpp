@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jobs of runs that were rendered already, resolved from the records that they left beside their pictures.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/output.hpp"
+#include "gazetrace/resolve.hpp"
+
+namespace gazetrace {
+
+// The run that rendered given pictures.
+struct RecordedRun {
+  // With the scope `viewing`: settings, screen, and where the frame lies on it. Pictures carry their own gaze; the
+  // run's gaze log is read only where the screen is stated nowhere else, and only if it still exists.
+  ResolvedJob resolved;
+  std::string view;  // what the display images were shown through; empty where the record does not say
+
+  [[nodiscard]] const JobSettings& settings() const { return resolved.job.settings; }
+};
+
+// The run whose record, run.json, lies beside the pictures of a pattern. Empty where there is no record, and where it
+// is the record of other pictures: `settings_digest` is the digest that the pictures carry
+// (FrameFacts::settings_digest). Throws Error(input) for a record that cannot be read.
+std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const std::string& settings_digest);
+
+// The job that renders all samples of all frames of which `parts` hold some, for merge_samples(), with the scope
+// `digests`. Throws Error(input) where the files that the job names are not those that the parts were rendered from.
+ResolvedJob resolve_whole_of_parts(const std::vector<RunPart>& parts, bool overwrite);
+
+}  // namespace gazetrace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames in order that read their neighbours on both sides: traces ahead, and keeps what frames to come still read.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "gazetrace/frame_renderer.hpp"
+
+namespace gazetrace {
+
+// Holds at most 2 * AccumulateSettings::window + 1 reconstructed frames, which is all the memory that it takes.
+class FrameWindow {
+ public:
+  // Keeps references to both, which must outlive it.
+  FrameWindow(const FrameRenderer& renderer, const FramePlan& plan);
+
+  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render().
+  RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
+
+ private:
+  const FrameRenderer* renderer_;
+  std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included
+  std::map<std::int32_t, ReconstructedFrame> held_;
+};
+
+}  // namespace gazetrace

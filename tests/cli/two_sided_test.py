@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Frames that read those before and after them: parts, resumed runs and single frames have the bits of one run."""
+
+import json
+
+import harness
+from history_test import png_pixels
+
+JOB_TOML = """
+scene = "glide.gltf"
+gaze = "log.csv"
+size = "64x36"
+frame-rect = [0, 0, 64, 36]
+region-samples = [8, 8, 8]
+accumulate = "two-sided"
+accumulate-window = 2
+quiet = true
+"""
+JOB = ["--config", "job.toml"]
+
+
+class TwoSided(harness.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
+        self.write("log.csv", harness.moving_gaze())
+        self.write("job.toml", JOB_TOML)
+
+    def render(self, folder, *more):
+        self.run_ok("render", *JOB, "-o", f"{folder}/f.####.png", *more)
+        return {path.name: png_pixels(path) for path in (self.folder / folder).glob("f.*.png")}
+
+    def test_without_a_window_it_is_no_accumulation(self):
+        off = self.render("off", "--frames", "3,4", "--accumulate", "off")
+        self.assertEqual(self.render("alone", "--frames", "3,4", "--accumulate-window", "0"), off)
+        self.assertNotEqual(self.render("both", "--frames", "3,4"), off)
+
+    def test_a_frame_is_the_same_in_every_run(self):
+        whole = self.render("whole", "--frames", "1-8")
+        for frames in ("1-3", "4", "5-8", "2,7"):
+            part = self.render(f"part-{frames}", "--frames", frames, "--part")
+            for name, pixels in part.items():
+                self.assertEqual(pixels, whole[name], f"{frames}: {name}")
+        self.assertEqual(self.render("one-thread", "--frames", "4", "--threads", "1")["f.0004.png"],
+                         whole["f.0004.png"])
+
+    def test_parts_merge_and_a_run_resumes(self):
+        whole = self.render("whole", "--frames", "1-6")
+        self.render("parts", "--frames", "1-3", "--part")
+        self.render("parts", "--frames", "4-6", "--part")
+        self.run_ok("merge", "parts")
+        self.assertEqual({p.name: png_pixels(p) for p in (self.folder / "parts").glob("f.*.png")}, whole)
+        (self.folder / "whole" / "f.0004.png").unlink()
+        self.assertEqual(self.render("whole", "--frames", "1-6", "--resume"), whole)
+
+    def test_frames_beyond_the_camera_path_are_not_read(self):
+        # The path of one second has 24 frames.
+        last = self.render("last", "--frames", "24")
+        self.assertEqual(last, {"f.0024.png": self.render("all", "--frames", "20-24")["f.0024.png"]})
+
+    def test_smoothed_exposure_still_depends_on_the_frames_before(self):
+        auto = ["--exposure", "auto", "--exposure-smoothing", "0.2s"]
+        whole = self.render("whole", *auto, "--frames", "1-6")
+        self.render("first", *auto, "--frames", "1-3", "--checkpoint", "history.bin")
+        rest = self.render("rest", *auto, "--frames", "4-6", "--resume-from", "history.bin")
+        for name, pixels in rest.items():
+            self.assertEqual(pixels, whole[name], name)
+
+    def test_the_record_says_that_it_is_not_causal(self):
+        self.render("both", "--frames", "3")
+        facts = json.loads((self.folder / "both" / "run.json").read_text())["facts"]
+        self.assertEqual(facts["causal"], "false")
+        self.render("one", "--frames", "3", "--accumulate", "reproject")
+        self.assertNotIn("causal", json.loads((self.folder / "one" / "run.json").read_text())["facts"])
+
+    def test_what_cannot_be_is_refused(self):
+        for more, message in (
+                (["--sample-range", "0:4", "--filter", "linear"], "frames read those around them"),
+                (["--checkpoint", "history.bin"], "--checkpoint"),
+                (["--preroll", "2"], "--preroll")):
+            with self.subTest(options=more):
+                self.assert_refused(["render", *JOB, "-o", "x/f.####.png", "--frames", "3", *more], [message])
+
+
+if __name__ == "__main__":
+    harness.main()

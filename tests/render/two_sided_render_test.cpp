@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sequences whose frames read those on both sides: what they gain while nothing moves, and that a frame does not depend
+// on which others are rendered.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gazetrace/pipeline.hpp"
+#include "render/tracer_scenes.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+// A room with a body in it, which moves on request.
+Scene room(bool moves) {
+  Scene scene;
+  scene.materials = {diffuse_material({0.8F, 0.7F, 0.6F}), diffuse_material({0.2F, 0.5F, 0.8F})};
+  scene.environment = builtin_sky();
+  add_mesh(scene, {quad({{{-4, -1, -4}, {-4, -1, 4}, {4, -1, 4}, {4, -1, -4}}}, 0),
+                   quad({{{-4, -1, -4}, {4, -1, -4}, {4, 4, -4}, {-4, 4, -4}}}, 0)});
+  add_mesh(scene, box(0.6F, false, 1));
+  if (moves) {
+    scene.motions.push_back({[](std::int64_t t) {
+      return make_affine({-1 + 2 * static_cast<double>(t) / kSecond, 0, 0}, {}, {1, 1, 1});
+    }});
+    scene.instances[1].motion = 0;
+  }
+  return scene;
+}
+
+FrameRequest request_of(int frame, bool moves) {
+  FrameRequest request;
+  request.frame = frame;
+  request.t_video_ns = kSecond * (2 * frame - 1) / 48;
+  request.shutter_open_ns = request.shutter_close_ns = request.t_video_ns;
+  request.width_px = 64;
+  request.height_px = 48;
+  request.camera = camera_at({moves ? 0.05 * frame : 0.3, 0.5, 5}, {0, 0, 0});
+  request.view = view_of_perspective(50 * kRadPerDeg, 64, 48);
+  request.gaze_direction_render = request.view.direction(moves ? 8.0 + 3 * frame : 32.0, 24);
+  request.gaze_direction_true = request.gaze_direction_render;
+  return request;
+}
+
+FramePlan plan_of(const std::vector<int>& frames, const std::vector<int>& around, bool moves) {
+  FramePlan plan;
+  for (const int frame : frames) {
+    plan.frames.push_back(request_of(frame, moves));
+  }
+  for (const int frame : around) {
+    plan.around.push_back(request_of(frame, moves));
+  }
+  return plan;
+}
+
+PipelineSettings settings_of(AccumulateMode mode, int window = 4) {
+  PipelineSettings settings;
+  settings.accumulate.mode = mode;
+  settings.accumulate.window = window;
+  settings.foveation.region_samples = {8, 4, 4};
+  settings.reconstruction.filter = "linear";
+  settings.threads = 2;
+  return settings;
+}
+
+std::map<std::int32_t, Frame> render(const Scene& scene, const FramePlan& plan, const PipelineSettings& settings) {
+  PathTracer tracer(scene, threads(2));
+  const ColorPipeline color(ColorSettings{});
+  std::map<std::int32_t, Frame> frames;
+  PipelineObserver observer;
+  observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double) {
+    frames[request.frame] = frame;
+  };
+  (void)render_sequence(tracer, plan, color, settings, observer);
+  return frames;
+}
+
+std::vector<int> numbers(int first, int last) {
+  std::vector<int> list;
+  for (int k = first; k <= last; ++k) {
+    list.push_back(k);
+  }
+  return list;
+}
+
+void expect_same_bits(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.radiance, b.radiance);
+  EXPECT_EQ(a.sample_count, b.sample_count);
+  EXPECT_EQ(a.variance, b.variance);
+}
+
+TEST(TwoSidedRender, AWindowOfNothingIsNoAccumulation) {
+  const Scene scene = room(true);
+  const FramePlan plan = plan_of(numbers(1, 3), {}, true);
+  const auto off = render(scene, plan, settings_of(AccumulateMode::off));
+  const auto alone = render(scene, plan, settings_of(AccumulateMode::two_sided, 0));
+  for (const auto& [number, frame] : off) {
+    expect_same_bits(alone.at(number), frame);
+  }
+}
+
+TEST(TwoSidedRender, AFrameDoesNotDependOnWhichOthersAreRendered) {
+  const Scene scene = room(true);
+  const PipelineSettings settings = settings_of(AccumulateMode::two_sided, 2);
+  const auto whole = render(scene, plan_of(numbers(1, 9), {}, true), settings);
+  const auto middle = render(scene, plan_of({4, 6}, {2, 3, 5, 7, 8}, true), settings);
+  expect_same_bits(middle.at(4), whole.at(4));
+  expect_same_bits(middle.at(6), whole.at(6));
+  const auto end = render(scene, plan_of({8, 9}, {6, 7}, true), settings);
+  expect_same_bits(end.at(9), whole.at(9));
+  const auto alone = render(scene, plan_of({4, 6}, {}, true), settings);
+  EXPECT_NE(alone.at(4).radiance, whole.at(4).radiance) << "without the frames around it";
+}
+
+TEST(TwoSidedRender, AllSamplesOfTheWindowCountWhileNothingMoves) {
+  const Scene scene = room(false);
+  PipelineSettings settings = settings_of(AccumulateMode::two_sided, 2);
+  settings.accumulate.frames = 0;
+  settings.accumulate.clip_sigmas = 0;
+  const auto all = render(scene, plan_of(numbers(1, 5), {}, false), settings);
+  const auto off = render(scene, plan_of(numbers(1, 5), {}, false), settings_of(AccumulateMode::off));
+  const Frame& frame = all.at(3);
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    Vec3d sum;
+    double count = 0;
+    for (const auto& [number, one] : off) {
+      const auto samples = static_cast<double>(one.sample_count.pixels[i]);
+      sum += samples * to_double(one.radiance.pixels[i]);
+      count += samples;
+    }
+    ASSERT_NEAR(frame.sample_count.pixels[i], count, 1e-4 * count);
+    ASSERT_NEAR(frame.radiance.pixels[i].y, sum.y / count, 1e-5 * std::fabs(sum.y / count) + 1e-7);
+  }
+}
+
+double error_of(const Frame& frame, const Frame& reference) {
+  double squares = 0;
+  for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
+    const double difference =
+        static_cast<double>(frame.radiance.pixels[i].y) - static_cast<double>(reference.radiance.pixels[i].y);
+    squares += difference * difference;
+  }
+  return squares / static_cast<double>(frame.radiance.pixels.size());
+}
+
+// Noise falls as samples add up: 2 N + 1 frames on both sides are worth what as many are at the end of one side.
+TEST(TwoSidedRender, ErrorFallsWithTheWindowAsFromOneSide) {
+  const Scene scene = room(false);
+  PipelineSettings exact = settings_of(AccumulateMode::off);
+  exact.foveation.falloff = "uniform";
+  exact.foveation.uniform_spp = 2048;
+  exact.reconstruction.filter = "none";
+  exact.trace.seed = 99;
+  const Frame reference = render(scene, plan_of({1}, {}, false), exact).at(1);
+  const auto uniform = [&](AccumulateMode mode, int window) {
+    PipelineSettings settings = settings_of(mode, window);
+    settings.foveation.falloff = "uniform";
+    settings.foveation.uniform_spp = 4;
+    settings.reconstruction.filter = "none";
+    settings.accumulate.frames = 0;
+    return settings;
+  };
+  const auto error = [&](AccumulateMode mode, int window, int frame) {
+    return error_of(render(scene, plan_of(numbers(1, 9), {}, false), uniform(mode, window)).at(frame), reference);
+  };
+  const double off = error(AccumulateMode::off, 0, 5);
+  const double one = error(AccumulateMode::two_sided, 1, 5);
+  const double four = error(AccumulateMode::two_sided, 4, 5);
+  const double past = error(AccumulateMode::reproject, 0, 9);
+  EXPECT_LT(one, 0.5 * off);
+  EXPECT_LT(four, 0.5 * one);
+  EXPECT_LT(four, 1.2 * past);
+}
+
+// A light goes on between two frames. What shows of it before is no more than what shows after a light has gone out,
+// from one side.
+TEST(TwoSidedRender, WhatIsStillToComeDoesNotShow) {
+  const Scene dark = room(false);
+  Scene bright = room(false);
+  for (Vec3f& radiance : bright.environment.radiance.pixels) {
+    radiance = radiance * 20.0F;
+  }
+  PathTracer before(dark, threads(2));
+  PathTracer after(bright, threads(2));
+  const FrameSettings two_sided = settings_of(AccumulateMode::two_sided, 4);
+  const FrameSettings one_sided = settings_of(AccumulateMode::reproject);
+  std::vector<ReconstructedFrame> frames;
+  for (int k = 1; k <= 9; ++k) {
+    frames.push_back(FrameRenderer(k <= 5 ? before : after, two_sided).reconstruct(request_of(k, false)));
+  }
+  std::vector<const ReconstructedFrame*> window;
+  for (const ReconstructedFrame& frame : frames) {
+    window.push_back(&frame);
+  }
+  TemporalHistory unused;
+  const Frame last_dark = FrameRenderer(before, two_sided).join(window, 4, unused).frame;
+  TemporalHistory history;
+  for (int k = 1; k <= 8; ++k) {
+    (void)FrameRenderer(after, one_sided).render(request_of(k, false), history);
+  }
+  const Frame first_dark = FrameRenderer(before, one_sided).render(request_of(9, false), history).frame;
+  double leak_before = 0;
+  double leak_after = 0;
+  const Frame still_dark =
+      FrameRenderer(before, settings_of(AccumulateMode::off)).reconstruct(request_of(9, false)).frame;
+  for (std::size_t i = 0; i < last_dark.radiance.pixels.size(); ++i) {
+    leak_before += static_cast<double>(last_dark.radiance.pixels[i].y - frames[4].frame.radiance.pixels[i].y);
+    leak_after += static_cast<double>(first_dark.radiance.pixels[i].y - still_dark.radiance.pixels[i].y);
+  }
+  EXPECT_LE(std::fabs(leak_before), std::fabs(leak_after));
+}
+
+TEST(TwoSidedRender, OneFrameAloneIsRefused) {
+  const Scene scene = room(false);
+  PathTracer tracer(scene, threads(1));
+  TemporalHistory history;
+  EXPECT_THROW(
+      (void)FrameRenderer(tracer, settings_of(AccumulateMode::two_sided)).render(request_of(1, false), history), Error);
+}
+
+}  // namespace
+}  // namespace gazetrace

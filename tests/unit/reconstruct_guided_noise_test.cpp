@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the guided filter makes of noise of known strength on light that its guides do not show: it must not be worse
+// than the samples' own mean, must tend to it, and must know how far off it is.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+
+#include "support/guides_wall.hpp"
+#include "support/reconstruct.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kSize = kGuidesWallPx;
+constexpr std::uint32_t kSamples = 16;
+
+// Light that no first hit tells of: stripes of two pixels in one quarter, a soft slope in another, even elsewhere.
+double striped_light(int x, int y) {
+  if (x < kSize / 2 && y < kSize / 2) {
+    return (x / 2) % 2 == 0 ? 1.3 : 0.7;
+  }
+  return x >= kSize / 2 && y >= kSize / 2 ? 0.5 + static_cast<double>(x) / kSize : 1.0;
+}
+double even_light(int, int) {
+  return 1;
+}
+
+struct Errors {
+  double raw = 0, filtered = 0;  // mean square errors of luminance
+  double estimated = 0;          // mean of Frame::squared_error
+};
+
+// `sigma`: standard deviation of the mean of a pixel's samples.
+template <class LightAt>
+Errors errors_at(double sigma, const LightAt& light_at) {
+  const Guides guides = wall();
+  const SamplingMap map = map_with_fovea({0, kSize}, {0, kSize}, kSamples, 4);
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0, sigma * std::sqrt(2.0));  // of half the samples
+  SparseFrame sparse;
+  sparse.width_px = kSize;
+  sparse.height_px = kSize;
+  Errors errors;
+  for (const Site& site : map.sites) {
+    const int x = site.block_x;
+    const int y = site.block_y;
+    const double a = light_at(x, y) + noise(random);
+    const double b = light_at(x, y) + noise(random);
+    const double mean = (a + b) / 2;
+    const double spread = sigma * sigma * kSamples;  // of the samples
+    const auto n = static_cast<float>(kSamples);
+    const auto reflected = static_cast<float>(0.5 * mean);
+    SurfaceSums surface;
+    surface.reflected = n * Vec3f{reflected, reflected, reflected};
+    surface.albedo = n * Vec3f{0.5F, 0.5F, 0.5F};
+    surface.normal = n * Vec3f{0, 0, 1};
+    surface.place_m = n * guides.camera.place(static_cast<float>(x) + 0.5F - 0.5F * kSize,
+                                              static_cast<float>(y) + 0.5F - 0.5F * kSize, 10);
+    surface.square = static_cast<float>(kSamples * (mean * mean + spread));
+    surface.half_difference = static_cast<float>(0.5 * (a - b) / 2);
+    surface.count = kSamples;
+    sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
+    sparse.surfaces.push_back(surface);
+    sparse.sum.push_back(surface.reflected);
+    sparse.count.push_back(kSamples);
+    sparse.sum_square_luminance.push_back(0.25F * surface.square);
+    sparse.half_difference.push_back(surface.half_difference);
+    errors.raw += 0.25 * (mean - light_at(x, y)) * (mean - light_at(x, y));
+  }
+  sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
+  const Frame frame = reconstruct(sparse, map, "guided", 1, &guides);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const double off = static_cast<double>(frame.radiance(x, y).y) - 0.5 * light_at(x, y);
+      errors.filtered += off * off;
+      errors.estimated += static_cast<double>(frame.squared_error(x, y));
+    }
+  }
+  constexpr double kPixels = kSize * kSize;
+  return {errors.raw / kPixels, errors.filtered / kPixels, errors.estimated / kPixels};
+}
+
+TEST(ReconstructGuidedNoise, ItIsNeverWorseThanTheMeanOfTheSamples) {
+  for (const double sigma : {1.0, 0.3, 0.1, 0.03, 0.01, 0.001}) {
+    const Errors errors = errors_at(sigma, striped_light);
+    EXPECT_LT(errors.filtered, 1.01 * errors.raw) << sigma;
+  }
+}
+
+TEST(ReconstructGuidedNoise, EvenLightLosesMostOfItsNoise) {
+  for (const double sigma : {1.0, 0.3, 0.1, 0.01}) {
+    const Errors errors = errors_at(sigma, even_light);
+    EXPECT_LT(errors.filtered, 0.1 * errors.raw) << sigma;
+  }
+}
+
+TEST(ReconstructGuidedNoise, TheEstimateOfItsErrorIsWithinAFactorOfTwo) {
+  for (const double sigma : {0.3, 0.1, 0.03, 0.01}) {
+    const Errors errors = errors_at(sigma, striped_light);
+    EXPECT_LT(errors.estimated, 2 * errors.filtered) << sigma;
+    EXPECT_GT(errors.estimated, 0.5 * errors.filtered) << sigma;
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
