@@ -119,6 +119,10 @@ class TileMeans {
     }
   }
 
+  // So many pixels are in a mean.
+  static constexpr int kTile = 16;
+  static constexpr int kPixels = 9 * kTile * kTile;
+
   [[nodiscard]] Power at(int x, int y) const {
     const float u = (static_cast<float>(x) + 0.5F) / kTile - 0.5F;
     const float v = (static_cast<float>(y) + 0.5F) / kTile - 0.5F;
@@ -133,7 +137,6 @@ class TileMeans {
   }
 
  private:
-  static constexpr int kTile = 16;
   [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
   }
@@ -161,9 +164,8 @@ std::vector<Residual> residuals_of_sites(const FilterInput& input, const Surface
       Residual& residual = residuals[i];
       residual.radiance = input.values.value(i).radiance - share * mean;
       residual.shown = share * luminance(mean);
-      const float difference = input.sparse.half_difference[i];
-      if (difference != 0) {
-        residual.replica = difference - share * replica;
+      if (input.values.count(i) > 1) {
+        residual.replica = input.sparse.half_difference[i] - share * replica;
       } else {
         // Of a single sample nobody knows what of its residual is noise. All of it with a sign of its own: around a
         // pixel such noise cancels out as the noise of the samples does.
@@ -233,14 +235,16 @@ ImageGray relative_scale(const FilterInput& input, const SurfacePicture& picture
 }
 
 // The share of a residual that is no noise: what follows from the signal that is there on average far around and from
-// the noise near the pixel (a rare bright sample is noise there), and more where the signal near the pixel is beyond
-// doubt. `near` was smoothed twice.
-float share_to_keep(const Power& near, const Power& wide, float doubt) {
-  // The sum of the squares of the weights 1 4 6 4 1 / 16 in both directions: that many squares are independent.
+// the noise near the pixel (a rare bright sample is noise there), and more where there is more signal near the pixel.
+// Both signals must be beyond doubt. `near` was smoothed twice; `wide` is the mean of `independent` squares.
+float share_to_keep(const Power& near, const Power& wide, float independent, float doubt) {
+  // The sum of the squares of the weights 1 4 6 4 1 / 16 in both directions: one over the number of squares in `near`.
   constexpr float kWeightsSquared = 0.0748F;
-  const float deviation = std::sqrt(2 * kWeightsSquared * std::max(near.spread, wide.spread));
-  const float near_signal = near.residual - near.noise - doubt * deviation;
-  const float wide_signal = wide.residual - wide.noise;
+  // Less doubt far around: signal that is missed there costs more than noise that is kept.
+  constexpr float kWideDoubt = 2;
+  const float spread = 2 * std::max(near.spread, wide.spread);
+  const float near_signal = near.residual - near.noise - doubt * std::sqrt(kWeightsSquared * spread);
+  const float wide_signal = wide.residual - wide.noise - kWideDoubt * std::sqrt(2 * wide.spread / independent);
   return std::max(near_signal > 0 ? near_signal / near.residual : 0.0F,
                   wide_signal > 0 ? wide_signal / (wide_signal + std::max(0.5F * near.noise, wide.noise)) : 0.0F);
 }
@@ -274,13 +278,16 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
       }
     });
     const TileMeans wide(power, input.threads);
+    // Residuals of a band are alike over `step` blocks.
+    const float independent = static_cast<float>(TileMeans::kPixels) / static_cast<float>(step * step);
     smooth(map, step, input.threads, power, power_scratch);
     smooth(map, step, input.threads, power, power_scratch);
     for_each_row(map.height_px, input.threads, [&](int y) {
       for (int x = 0; x < map.width_px; ++x) {
         const Residual d = detail(x, y);
         const Power p = power(x, y);
-        const float share = share_to_keep(p, wide.at(x, y), settings.residual_doubt);
+        const auto block = static_cast<float>(map.regions[map.region(x, y)].block_px);
+        const float share = share_to_keep(p, wide.at(x, y), independent / (block * block), settings.residual_doubt);
         const std::size_t i = kept.index(x, y);
         kept.pixels[i] += share * d.radiance;
         const float rest = 1.0F - share;

@@ -253,9 +253,9 @@ class Smoother {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         SurfaceCell& cell = lattice_.cells[i];
         const KeptDetail& kept = kept_[i];
-        const Vec3f light = light_of(lights_[i]) + kept.light;
-        // With its own albedo, so that a cell that keeps every detail is what it was.
-        cell.reflected = cell.albedo * Vec3f{std::max(light.x, 0.0F), std::max(light.y, 0.0F), std::max(light.z, 0.0F)};
+        const Vec3f reflected = lights_[i].reflected + lights_[i].albedo * kept.light;
+        cell.reflected = {std::max(reflected.x, 0.0F), std::max(reflected.y, 0.0F), std::max(reflected.z, 0.0F)};
+        cell.albedo = lights_[i].albedo;
         cell.light = luminance(cell.reflected) / std::max(luminance(cell.albedo), kLeastAlbedo);
         cell.variance = lights_[i].variance + kept.variance;
         cell.replica = lights_[i].replica() + kept.replica;

@@ -10,6 +10,7 @@
 #include <random>
 #include <utility>
 
+#include "core/luminance.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
 #include "reconstruct/surface_smoothing.hpp"
@@ -77,7 +78,14 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
     sparse.sum.push_back(sum);
     sparse.count.push_back(count);
     sparse.sum_square_luminance.push_back(0);
-    sparse.half_difference.push_back(0);
+    // All light is in one half of the samples, so that all of it may be noise.
+    float reflected = 0;
+    for (std::size_t s = first; s < sparse.surfaces.size(); ++s) {
+      SurfaceSums& surface = sparse.surfaces[s];
+      surface.half_difference = luminance(surface.reflected) / static_cast<float>(surface.count);
+      reflected += luminance(surface.reflected);
+    }
+    sparse.half_difference.push_back(count > 0 ? reflected / static_cast<float>(count) : 0);
   }
   sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
   return sparse;
@@ -134,8 +142,7 @@ TEST(ReconstructGuided, NothingCrossesAnEdgeOfNormalDepthOrEmission) {
   }
 }
 
-// A fovea of 32 samples a pixel, and one of 11 that is all its map has.
-TEST(ReconstructGuided, FullRatePixelsPassBitByBit) {
+TEST(ReconstructGuided, PixelsThatAreToPassThroughPassBitByBit) {
   for (const std::uint32_t samples : {32U, 11U}) {
     const SamplingMap map = block_map(true, samples);
     const Guides guides = wall();
@@ -143,7 +150,7 @@ TEST(ReconstructGuided, FullRatePixelsPassBitByBit) {
     std::exponential_distribution<float> noise(1);
     const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
     const Frame none = reconstruct(sparse, map, "none", 1);
-    const Frame frame = guided(sparse, map, guides);
+    const Frame frame = reconstruct(sparse, map, "guided", 1, &guides, samples);
     int compared = 0;
     for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
       if (map.region.pixels[i] == 0) {
