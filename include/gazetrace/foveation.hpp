@@ -55,7 +55,8 @@ struct FalloffParameters {
 };
 
 // A quality that the fall-off `visible` spends samples for until a pilot predicts it. At most one of the members is
-// given; it takes the place of a budget.
+// given; it takes the place of a budget. Jobs have an option for `relmse` alone: against measured pictures, what is
+// predicted of JOD was off by one to two JOD, and whether times are kept was not measured.
 struct QualityTarget {
   std::optional<double> relmse;  // mean over the frame of squared error over (squared luminance + 0.01)
   std::optional<double> jod;     // predicted JOD of the clip, up to 10; see visible_error.hpp

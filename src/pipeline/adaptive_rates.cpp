@@ -19,7 +19,7 @@ namespace gazetrace {
 namespace {
 
 // A first pilot takes about this part of a budget, within these bounds of samples a pixel (of the pilot).
-constexpr double kFirstShare = 0.03;
+constexpr double kFirstShare = 0.04;
 constexpr double kLeastFirst = 2, kMostFirst = 64;
 // Further pilots take at most this part of the frame's samples, unless that would be less than kLeastRound a pixel. In
 // frames of 512 rows and more they take a sixty-fourth; only small frames have pilots that are large beside them.
@@ -31,7 +31,7 @@ constexpr double kFirstForTarget = 16;
 constexpr int kMostRounds = 3;        // after the first
 constexpr double kCloseEnough = 1.1;  // a change of the rate that needs no further round
 constexpr double kMostGrowth = 16;    // of the rate from one round to the next
-constexpr double kDefensiveShare = 0.125;
+constexpr double kDefensiveShare = 0.25;
 
 double pixels_of(const FrameRequest& request) {
   return static_cast<double>(request.width_px) * request.height_px;
@@ -165,7 +165,7 @@ class RateFinder {
 
   void predict() {
     result_.prediction.relmse = noise_.relmse_at(result_.rates);
-    if (noise_.is_seen()) {
+    if (settings_.foveation.target.jod && noise_.is_seen()) {
       result_.prediction.jod = noise_.jod_of(noise_.q_at(result_.rates));
     }
   }

@@ -61,9 +61,9 @@ ImageGray luminance_image(const ImageRgb& radiance) {
   return image;
 }
 
-// What a frame's reconstruction says of its own error.
+// What a frame's reconstruction says of its own error; of filters that make no estimate of it, what their samples say.
 ImageGray squared_error_of(const Frame& frame) {
-  return frame.variance;
+  return frame.squared_error.empty() ? frame.variance : frame.squared_error;
 }
 
 }  // namespace

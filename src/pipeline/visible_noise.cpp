@@ -11,8 +11,10 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kEpsilon = 0.01;  // that of the metric relmse
-constexpr int kLeastSidePx = 8;    // of VisibleErrorModel
+constexpr double kEpsilon = 0.01;      // that of the metric relmse
+constexpr double kWindowPixels = 25;   // of pooled()
+constexpr double kPriorSamples = 100;  // about the kurtosis of path-traced light
+constexpr int kLeastSidePx = 8;        // of VisibleErrorModel
 
 double squared(double value) {
   return value * value;
@@ -73,7 +75,20 @@ ImageGray VisibleNoise::relative_squared_error() const {
   for (std::size_t i = 0; i < relative.pixels.size(); ++i) {
     relative.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / unit_at(i));
   }
-  return pooled(relative, settings_.threads);
+  relative = pooled(relative, settings_.threads);
+  // A window that saw no firefly says little of them. Its mean counts by its samples, and that of the frame as
+  // kPriorSamples more (the credibility of actuaries: Buehlmann 1967).
+  double mean = 0;
+  double spp = 0;
+  for (std::size_t i = 0; i < relative.pixels.size(); ++i) {
+    mean += static_cast<double>(relative.pixels[i]) / static_cast<double>(relative.pixels.size());
+    spp += static_cast<double>(pilot_->spp.pixels[i]) / static_cast<double>(relative.pixels.size());
+  }
+  const double own = kWindowPixels * spp / (kWindowPixels * spp + kPriorSamples);
+  for (float& value : relative.pixels) {
+    value = static_cast<float>(own * static_cast<double>(value) + (1 - own) * mean);
+  }
+  return relative;
 }
 
 ImageGray VisibleNoise::wanted_for_relmse() const {
@@ -85,18 +100,18 @@ ImageGray VisibleNoise::wanted_for_relmse() const {
 }
 
 ImageGray VisibleNoise::wanted_by_eye() const {
-  if (!model_) {
-    return wanted_for_relmse();
+  ImageGray wanted = wanted_for_relmse();
+  if (!model_ || !request_.gaze_direction_render) {
+    return wanted;
   }
-  // Weights are those of the pilot's own pixels, in which the eye sees a relative error about alike: the pooled relative
-  // error must be taken times the same luminances. Beside a lamp, pooled ones would make a dark pixel's error huge.
+  // Weights are those of the pilot's own pixels, in which the eye sees a relative error about alike.
   const ImageGray weights = model_->weights(picture(), {error_at(pilot_->spp)});
-  ImageGray error = relative_squared_error();
-  for (std::size_t i = 0; i < error.pixels.size(); ++i) {
-    const double light = squared(static_cast<double>(pilot_->luminance.pixels[i])) + kEpsilon;
-    error.pixels[i] = static_cast<float>(static_cast<double>(error.pixels[i]) * light);
+  for (std::size_t i = 0; i < wanted.pixels.size(); ++i) {
+    const double light = std::sqrt(squared(static_cast<double>(pilot_->luminance.pixels[i])) + kEpsilon);
+    const double weight = static_cast<double>(weights.pixels[i]) * light;
+    wanted.pixels[i] = static_cast<float>(static_cast<double>(wanted.pixels[i]) * std::sqrt(weight));
   }
-  return pooled(visible_allocation(weights, error, settings_.threads), settings_.threads);
+  return pooled(wanted, settings_.threads);
 }
 
 double VisibleNoise::relmse_at(const ImageGray& rates) const {

@@ -159,20 +159,6 @@ void add_pilot_options(JobSchema& schema) {
              "excludes budgets")
       .above(0)
       .need("`falloff` visible");
-  schema
-      .value(
-          "--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
-          "visible: the same until a clip of such frames is expected to score so many JOD in FovVideoVDP, where 10 is "
-          "perfect")
-      .above(0, 10)
-      .need("`falloff` visible");
-  schema
-      .value("--time-budget", at(&JobSettings::foveation, &F::target, &QualityTarget::time_s), "SECONDS",
-             Touch::sampling,
-             "visible: as many samples as there is time for, pilot and filter included, in every frame; pictures then "
-             "depend on the machine")
-      .above(0)
-      .need("`falloff` visible");
 }
 
 void add_term_options(JobSchema& schema) {
