@@ -149,6 +149,9 @@ struct ResultMachine {
 struct ResultViewing {
   std::vector<int> size_px;  // width and height; empty: not known
   std::optional<double> pixels_per_degree, width_deg, peak_cd_m2, contrast, ambient_lux;
+  // What sampling by eccentricity alone can save here by model_gain.hpp, at 9.5 JOD, with the gaze of the first test's
+  // first frame: for white noise, and with its variance below 4 cycles a degree cut tenfold.
+  std::optional<double> model_gain, model_gain_cut_4_cpd;
 };
 
 struct Results {

@@ -114,7 +114,8 @@ struct VisiblePicture {
   // everywhere (FovVideoVDP's mode without foveation).
   std::optional<Vec3d> gaze_direction = std::nullopt;
   // Whether `luminance` contains an error like that of the components, as a noisy pilot does. Then its contrast counts
-  // as masking only so far as it exceeds what the error explains.
+  // as masking only so far as it exceeds what the error explains. Where pictures are given in cells, the value of each
+  // is taken to hold the error of a single pixel, as in a pilot that shows every cell_px-th pixel.
   bool holds_the_error = true;
   // How many frames the clip has had before this one; empty: more than 250 ms. FovVideoVDP takes a clip to have stood
   // still before its first frame, so that fresh noise appears frozen there.

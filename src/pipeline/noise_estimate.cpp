@@ -12,33 +12,35 @@ namespace gazetrace {
 namespace {
 
 constexpr int kRadius = 2;
-constexpr std::size_t kMost = (2 * kRadius + 1) * (2 * kRadius + 1);
 
 double pooled_at(const ImageGray& values, int x, int y) {
-  std::array<double, kMost> lit{};  // values above 0
+  std::array<double, (2 * kRadius + 1) * (2 * kRadius + 1)> window{};
   std::size_t count = 0;
-  std::size_t all = 0;
+  double sum = 0;
   for (int ny = std::max(y - kRadius, 0); ny <= std::min(y + kRadius, values.height_px - 1); ++ny) {
     for (int nx = std::max(x - kRadius, 0); nx <= std::min(x + kRadius, values.width_px - 1); ++nx) {
       const auto value = static_cast<double>(values(nx, ny));
-      ++all;
-      if (value > 0 && std::isfinite(value)) {
-        lit[count++] = value;
-      }
+      window.at(count) = value > 0 && std::isfinite(value) ? value : 0.0;
+      sum += window.at(count++);
     }
   }
-  if (count == 0) {
-    return 0;
+  if (count == 1) {
+    return sum;
   }
-  const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  const auto end = lit.begin() + static_cast<std::ptrdiff_t>(count);
-  std::sort(lit.begin(), end);  // sums in one order
-  const double most = kMostOfMedian * *middle;
-  double sum = 0;
-  for (auto value = lit.begin(); value != end; ++value) {
-    sum += std::min(*value, most);
+  double pool = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    // The others are added up, since the difference of two sums may have no digits left.
+    double others = 0;
+    if (window.at(i) > 0.5 * sum) {
+      for (std::size_t k = 0; k < count; ++k) {
+        others += k == i ? 0.0 : window.at(k);
+      }
+      pool += std::min(window.at(i), kMostOfOthers * others / static_cast<double>(count - 1));
+    } else {
+      pool += window.at(i);
+    }
   }
-  return sum / static_cast<double>(all);
+  return pool / static_cast<double>(count);
 }
 
 }  // namespace

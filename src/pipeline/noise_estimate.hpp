@@ -6,11 +6,11 @@
 
 namespace gazetrace {
 
-// The mean over 5 x 5 pixels of what is not negative, where a value counts as at most kMostOfMedian times the median of
-// the window (of those above 0). A single firefly raises its surroundings by less than as much as those hold already;
-// a place with many keeps them. Where noise is spread as widely as that of path tracing is, the plain mean follows
-// chance instead: rates would differ from frame to frame, and the picture would flicker with them.
-inline constexpr double kMostOfMedian = 16;
+// The mean over 5 x 5 pixels, where a single value that is more than half of the sum counts as at most kMostOfOthers
+// times the mean of the others. So one firefly raises its surroundings by less than they hold already, and a place with
+// several keeps them. By a plain mean, rates would follow chance, and the picture would flicker with them. What is
+// negative or not finite counts as 0.
+inline constexpr double kMostOfOthers = 16;
 ImageGray pooled(const ImageGray& values, int threads = 0);
 
 }  // namespace gazetrace

@@ -18,10 +18,6 @@ double squared(double value) {
   return value * value;
 }
 
-double per_luminance(const Pilot& pilot, std::size_t i) {
-  return squared(static_cast<double>(pilot.luminance.pixels[i])) + kEpsilon;
-}
-
 // The squared error that one sample would have.
 double error_of_one(const Pilot& pilot, std::size_t i) {
   return static_cast<double>(pilot.squared_error.pixels[i]) * static_cast<double>(pilot.spp.pixels[i]);
@@ -29,11 +25,10 @@ double error_of_one(const Pilot& pilot, std::size_t i) {
 
 // Two pilots differ by the noise of both; relative to the luminance and to the rates, of which they may have different
 // ones, it is of one kind everywhere.
-ImageGray relative_difference(const Pilot& a, const Pilot& b) {
+ImageGray relative_difference(const Pilot& a, const Pilot& b, const ImageGray& level) {
   ImageGray difference(a.luminance.width_px, a.luminance.height_px);
   for (std::size_t i = 0; i < difference.pixels.size(); ++i) {
-    const double light =
-        0.5 * (static_cast<double>(a.luminance.pixels[i]) + static_cast<double>(b.luminance.pixels[i]));
+    const auto light = static_cast<double>(level.pixels[i]);
     const double spread = 1 / static_cast<double>(a.spp.pixels[i]) + 1 / static_cast<double>(b.spp.pixels[i]);
     const double raw = static_cast<double>(a.luminance.pixels[i]) - static_cast<double>(b.luminance.pixels[i]);
     const double value = raw / std::sqrt((squared(light) + kEpsilon) * spread);
@@ -57,21 +52,26 @@ VisibleNoise::VisibleNoise(const FrameRequest& request, const FrameSettings& set
 }
 
 void VisibleNoise::learn(Pilot pilot) {
+  level_ = pooled(pilot.luminance, settings_.threads);
   if (model_) {
     TemporalHistory none;
     const double ev = choose_exposure_ev(pilot.radiance, request_.t_video_ns, settings_.exposure, none);
     display_ = settings_.display_curve ? settings_.display_curve(ev) : linear_display_curve({}, ev);
     if (pilot_) {
-      spectrum_ = measured_spectrum(relative_difference(*pilot_, pilot), settings_.threads);
+      spectrum_ = measured_spectrum(relative_difference(*pilot_, pilot, level_), settings_.threads);
     }
   }
   pilot_ = std::move(pilot);
 }
 
+double VisibleNoise::unit_at(std::size_t i) const {
+  return squared(static_cast<double>(level_.pixels[i])) + kEpsilon;
+}
+
 ImageGray VisibleNoise::relative_squared_error() const {
   ImageGray relative(pilot_->luminance.width_px, pilot_->luminance.height_px);
   for (std::size_t i = 0; i < relative.pixels.size(); ++i) {
-    relative.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / per_luminance(*pilot_, i));
+    relative.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / unit_at(i));
   }
   return pooled(relative, settings_.threads);
 }
@@ -88,18 +88,21 @@ ImageGray VisibleNoise::wanted_by_eye() const {
   if (!model_) {
     return wanted_for_relmse();
   }
+  // Weights are those of the pilot's own pixels, in which the eye sees a relative error about alike: the pooled relative
+  // error must be taken times the same luminances. Beside a lamp, pooled ones would make a dark pixel's error huge.
   const ImageGray weights = model_->weights(picture(), {error_at(pilot_->spp)});
   ImageGray error = relative_squared_error();
   for (std::size_t i = 0; i < error.pixels.size(); ++i) {
-    error.pixels[i] = static_cast<float>(static_cast<double>(error.pixels[i]) * per_luminance(*pilot_, i));
+    const double light = squared(static_cast<double>(pilot_->luminance.pixels[i])) + kEpsilon;
+    error.pixels[i] = static_cast<float>(static_cast<double>(error.pixels[i]) * light);
   }
-  return visible_allocation(weights, error, settings_.threads);
+  return pooled(visible_allocation(weights, error, settings_.threads), settings_.threads);
 }
 
 double VisibleNoise::relmse_at(const ImageGray& rates) const {
   double sum = 0;
   for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
-    sum += error_of_one(*pilot_, i) / per_luminance(*pilot_, i) / static_cast<double>(rates.pixels[i]);
+    sum += error_of_one(*pilot_, i) / unit_at(i) / static_cast<double>(rates.pixels[i]);
   }
   return sum / static_cast<double>(rates.pixels.size());
 }

@@ -3,6 +3,7 @@
 // samples take most of it away.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "gazetrace/visible_error.hpp"
@@ -36,7 +37,10 @@ class VisibleNoise {
   static double q_of(double jod);
 
  private:
-  [[nodiscard]] ImageGray relative_squared_error() const;  // of one sample, pooled; over (L^2 + epsilon)
+  // L^2 + epsilon, by which squared errors become relative. L is the pooled luminance: a pixel's own is as large as its
+  // fireflies are, and would hide them.
+  [[nodiscard]] double unit_at(std::size_t pixel) const;
+  [[nodiscard]] ImageGray relative_squared_error() const;  // of one sample, pooled
   [[nodiscard]] ErrorComponent error_at(const ImageGray& rates) const;
   [[nodiscard]] VisiblePicture picture() const;
 
@@ -44,6 +48,7 @@ class VisibleNoise {
   const FrameSettings& settings_;
   std::optional<VisibleErrorModel> model_;
   std::optional<Pilot> pilot_;
+  ImageGray level_;
   DisplayCurve display_;
   ErrorSpectrum spectrum_ = white_error();
 };

@@ -232,8 +232,9 @@ ImageGray relative_scale(const FilterInput& input, const SurfacePicture& picture
   return scale;
 }
 
-// The share of a residual that is no noise: as large as it is on average far around, and larger where it is beyond
-// doubt near the pixel. `near` was smoothed twice.
+// The share of a residual that is no noise: what follows from the signal that is there on average far around and from
+// the noise near the pixel (a rare bright sample is noise there), and more where the signal near the pixel is beyond
+// doubt. `near` was smoothed twice.
 float share_to_keep(const Power& near, const Power& wide, float doubt) {
   // The sum of the squares of the weights 1 4 6 4 1 / 16 in both directions: that many squares are independent.
   constexpr float kWeightsSquared = 0.0748F;
@@ -241,7 +242,7 @@ float share_to_keep(const Power& near, const Power& wide, float doubt) {
   const float near_signal = near.residual - near.noise - doubt * deviation;
   const float wide_signal = wide.residual - wide.noise;
   return std::max(near_signal > 0 ? near_signal / near.residual : 0.0F,
-                  wide_signal > 0 ? wide_signal / wide.residual : 0.0F);
+                  wide_signal > 0 ? wide_signal / (wide_signal + std::max(0.5F * near.noise, wide.noise)) : 0.0F);
 }
 
 }  // namespace

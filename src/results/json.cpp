@@ -307,6 +307,8 @@ void describe(Io& io, T& viewing) {
   io.field("peak_cd_m2", viewing.peak_cd_m2);
   io.field("contrast", viewing.contrast);
   io.field("ambient_lux", viewing.ambient_lux);
+  io.field("model_gain", viewing.model_gain);
+  io.field("model_gain_cut_4_cpd", viewing.model_gain_cut_4_cpd);
 }
 
 template <class Io, Either<ResultMetric> T>

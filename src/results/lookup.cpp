@@ -137,6 +137,8 @@ NamedValues facts_of(const ResultViewing& viewing) {
   add_fact(facts, "peak_cd_m2", viewing.peak_cd_m2);
   add_fact(facts, "contrast", viewing.contrast);
   add_fact(facts, "ambient_lux", viewing.ambient_lux);
+  add_fact(facts, "model_gain", viewing.model_gain);
+  add_fact(facts, "model_gain_cut_4_cpd", viewing.model_gain_cut_4_cpd);
   return facts;
 }
 

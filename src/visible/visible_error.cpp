@@ -56,6 +56,7 @@ struct BandPicture {
 struct BandError {
   const ImageGray* variance = nullptr;
   float spectrum_gain = 0;
+  float picture_gain = 0;  // of what the given picture holds of it
   std::array<float, 2> channel_gain{};
 };
 
@@ -129,7 +130,7 @@ ImageGray contrast_noise(const Band& band, const std::vector<BandError>& errors,
       const std::size_t i = row * static_cast<std::size_t>(noise.width_px) + x;
       float variance = 0;
       for (const BandError& error : errors) {
-        variance += error.spectrum_gain * error.variance->pixels[i];
+        variance += error.picture_gain * error.variance->pixels[i];
       }
       noise.pixels[i] = band.relative_noise(x, row) * variance / (background.pixels[i] * background.pixels[i]);
     }
@@ -280,6 +281,7 @@ struct VisibleErrorModel::Impl {
         band_errors.push_back(
             {&variances[k],
              static_cast<float>(errors[k].spectrum.gain[b]),
+             static_cast<float>(errors[k].spectrum.gain[bands[b].level]),
              {static_cast<float>(channels[k].variance[0]), static_cast<float>(channels[k].variance[1])}});
       }
       if (picture.holds_the_error && !seen.contrast.empty()) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "foveation/falloff.hpp"
+#include "foveation/sites.hpp"
 #include "gazetrace/guides.hpp"
 
 namespace gazetrace {

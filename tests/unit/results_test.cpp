@@ -89,6 +89,8 @@ Results results_with_everything() {
   results.viewing.peak_cd_m2 = 200;
   results.viewing.contrast = 1000;
   results.viewing.ambient_lux = 250;
+  results.viewing.model_gain = 1.5;
+  results.viewing.model_gain_cut_4_cpd = 1.875;
   results.view = "ACES SDR";
   results.common_settings = {{"filter", "linear"}, {"bounces", "3"}};
   results.varied = {"falloff", "spp"};
@@ -168,8 +170,8 @@ TEST(Results, TheKeysOfVersionOne) {
   EXPECT_THAT(keys_of(json.at("scenes").at(0).at("reference")),
               ElementsAre("key", "spp", "frames_rendered", "seeds", "scramblings", "directory", "png", "floor",
                           "floor_by_gaze", "band_pixel_share_by_gaze", "shares_by_gaze"));
-  EXPECT_THAT(keys_of(json.at("viewing")),
-              ElementsAre("size_px", "ppd", "width_deg", "peak_cd_m2", "contrast", "ambient_lux"));
+  EXPECT_THAT(keys_of(json.at("viewing")), ElementsAre("size_px", "ppd", "width_deg", "peak_cd_m2", "contrast",
+                                                       "ambient_lux", "model_gain", "model_gain_cut_4_cpd"));
   EXPECT_THAT(keys_of(json.at("fixed_quality").at(0)),
               ElementsAre("metric", "at", "scene", "gaze", "curve", "speed_up", "bound", "why"));
   EXPECT_THAT(keys_of(json.at("controls").at(0)),

@@ -393,6 +393,27 @@ TEST(VisibleError, CoarseCellsPredictTheSame) {
   }
 }
 
+// A pilot that shows every fourth pixel holds the noise of single pixels, which must not be taken for masking contrast.
+TEST(VisibleError, NoiseOfAPilotDoesNotMask) {
+  const int cell = 4;
+  const PlanarView view = view_of(640, 384, 20);
+  const DisplayCurve curve = luminance_as_it_is();
+  const VisibleErrorModel model({view, 24, cell});
+  const Vec3d gaze = view.direction(320, 192);
+  const ImageGray flat(model.width_px(), model.height_px(), 50.0F);
+  const ImageGray deviation(model.width_px(), model.height_px(), 10.0F);
+  const ImageGray pilot = with_noise(flat, white_noise(flat.width_px, flat.height_px, 8), deviation);
+  const std::vector<ErrorComponent> errors{{squared(deviation)}};
+  VisiblePicture picture{pilot, curve, gaze};
+  const double jod = fovvideovdp_jod(model.predict(picture, errors).q);
+  picture.holds_the_error = false;
+  const double masked = fovvideovdp_jod(model.predict(picture, errors).q);
+  const double even = fovvideovdp_jod(model.predict({flat, curve, gaze}, errors).q);
+  std::printf("even field %.3f, pilot %.3f, with its noise as masking %.3f JOD\n", even, jod, masked);
+  EXPECT_NEAR(jod, even, kJodLimit);
+  EXPECT_GT(masked, even + kJodLimit);
+}
+
 TEST(VisibleError, NothingIsSeenOfNothing) {
   const PlanarView view = view_of(64, 40, 20);
   const DisplayCurve curve = luminance_as_it_is();
