@@ -98,7 +98,8 @@ class Bench:
                     "--budget-spp", spp, "--filter", filter_name, "--sample-pattern", pattern)) for pattern in PATTERNS)
                 cells = [name, filter_name, spp]
                 for metric in ("relmse", "flip"):
-                    change = [100 * (b / a - 1) for a, b in zip(old[metric], new[metric])]
+                    level = statistics.fmean(old[metric])
+                    change = [100 * (b - a) / level for a, b in zip(old[metric], new[metric])]
                     cells.append(f"{statistics.fmean(old[metric]):.4g} {statistics.fmean(new[metric]):.4g} "
                                  f"({with_interval(change, '+.1f')} %)")
                 for ppd in self.asked.ppd.split(","):
