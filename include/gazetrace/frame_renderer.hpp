@@ -82,6 +82,7 @@ struct ReconstructedFrame {
   SamplingMap map;
   TemporalHistory alone;  // what the frame would leave as history if it were the first one
   TraceStats samples, first_look;
+  Prediction prediction;
   StageTimes times;
 };
 

@@ -55,6 +55,7 @@ ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request) const
   done.map = std::move(traced.map);
   done.samples = std::move(traced.sparse.stats);
   done.first_look = std::move(traced.first_look);
+  done.prediction = traced.prediction;
   return done;
 }
 
@@ -90,6 +91,7 @@ RenderedFrame FrameRenderer::join(const std::vector<const ReconstructedFrame*>& 
   rendered.map = frame.map;
   rendered.samples = frame.samples;
   rendered.first_look = frame.first_look;
+  rendered.prediction = frame.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
   return rendered;
