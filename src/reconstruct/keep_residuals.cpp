@@ -20,24 +20,50 @@ constexpr int kBands = 3;
 constexpr float kMostShare = 4;  // of a block's residual, in a pixel that is much brighter than the rest of it
 constexpr std::size_t kRowsPerTask = 8;
 
-// Of a site, or of a pixel between sites.
-struct Residual {
+struct SiteResidual {
   Vec3f radiance;
   float replica = 0;  // of the error of its luminance
   float shown = 0;    // mean luminance of the picture
 };
+
+// Several floats per pixel, beside each other: all of a row are smoothed in one loop, which becomes vectors.
+template <int kChannels>
+struct Channels {
+  using Pixel = std::array<float, kChannels>;
+  int width_px, height_px;
+  std::vector<float> values;
+
+  Channels(int width, int height)
+      : width_px(width),
+        height_px(height),
+        values(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * kChannels) {}
+  [[nodiscard]] float* row(int y) { return values.data() + offset(0, y); }
+  [[nodiscard]] Pixel at(int x, int y) const {
+    Pixel pixel;
+    std::copy_n(values.data() + offset(x, y), kChannels, pixel.data());
+    return pixel;
+  }
+  void put(int x, int y, const Pixel& pixel) { std::copy_n(pixel.data(), kChannels, values.data() + offset(x, y)); }
+
+ private:
+  [[nodiscard]] std::size_t offset(int x, int y) const {
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x)) * kChannels;
+  }
+};
+using Residuals = Channels<4>;  // red, green, blue, and a replica of the error of their luminance
+using Powers = Channels<3>;     // as Power
+
+Vec3f radiance_of(const Residuals::Pixel& residual) {
+  return {residual[0], residual[1], residual[2]};
+}
 
 // Mean squares, relative to the picture's own.
 struct Power {
   float residual = 0, noise = 0;
   float spread = 0;  // mean square of `noise`
 };
-
-Residual operator+(const Residual& a, const Residual& b) {
-  return {a.radiance + b.radiance, a.replica + b.replica, a.shown + b.shown};
-}
-Residual operator*(float w, const Residual& a) {
-  return {w * a.radiance, w * a.replica, w * a.shown};
+Power power_of(const Powers::Pixel& pixel) {
+  return {pixel[0], pixel[1], pixel[2]};
 }
 Power operator+(const Power& a, const Power& b) {
   return {a.residual + b.residual, a.noise + b.noise, a.spread + b.spread};
@@ -56,33 +82,68 @@ void for_each_row(int height_px, int threads, const Visit& visit) {
   });
 }
 
+// visit(begin, end, reach) for the runs of pixels of one region in row y; `reach` is `step` blocks of it.
+template <class Visit>
+void for_each_run(const SamplingMap& map, int y, int step, const Visit& visit) {
+  const std::uint8_t* regions = &map.region(0, y);
+  for (int x = 0; x < map.width_px;) {
+    const std::uint8_t region = regions[x];
+    int end = x + 1;
+    while (end < map.width_px && regions[end] == region) {
+      ++end;
+    }
+    visit(x, end, step * map.regions[region].block_px);
+    x = end;
+  }
+}
+
+// Of `count` floats: a quarter of each of two, and half of the one between.
+inline void binomial(const float* before, const float* own, const float* after, std::ptrdiff_t count, float* out) {
+  for (std::ptrdiff_t k = 0; k < count; ++k) {
+    out[k] = 0.25F * (before[k] + after[k]) + 0.5F * own[k];
+  }
+}
+
 // Binomial weights 1 2 1 in both directions, `step` blocks apart, with the blocks of the pixel's own region. Beyond the
 // frame's edge the last pixel is repeated.
-template <class T>
-void smooth(const SamplingMap& map, int step, int threads, Image<T>& image, Image<T>& scratch) {
+template <int kChannels>
+void smooth(const SamplingMap& map, int step, int threads, Channels<kChannels>& image, Channels<kChannels>& scratch) {
   const int width = map.width_px;
   const int height = map.height_px;
-  const auto reach = [&](int x, int y) { return step * map.regions[map.region(x, y)].block_px; };
   for_each_row(height, threads, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const int r = reach(x, y);
-      scratch(x, y) =
-          0.25F * (image(std::max(x - r, 0), y) + image(std::min(x + r, width - 1), y)) + 0.5F * image(x, y);
-    }
+    const float* in = image.row(y);
+    float* out = scratch.row(y);
+    const auto pixels = [&](int x, int before, int after, int count) {
+      binomial(in + std::ptrdiff_t{before} * kChannels, in + std::ptrdiff_t{x} * kChannels,
+               in + std::ptrdiff_t{after} * kChannels, std::ptrdiff_t{count} * kChannels,
+               out + std::ptrdiff_t{x} * kChannels);
+    };
+    for_each_run(map, y, step, [&](int begin, int end, int reach) {
+      const int inside = std::clamp(reach, begin, end);
+      const int inside_end = std::clamp(width - reach, inside, end);
+      for (int x = begin; x < inside; ++x) {
+        pixels(x, std::max(x - reach, 0), std::min(x + reach, width - 1), 1);
+      }
+      pixels(inside, inside - reach, inside + reach, inside_end - inside);
+      for (int x = inside_end; x < end; ++x) {
+        pixels(x, std::max(x - reach, 0), std::min(x + reach, width - 1), 1);
+      }
+    });
   });
   for_each_row(height, threads, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      const int r = reach(x, y);
-      image(x, y) =
-          0.25F * (scratch(x, std::max(y - r, 0)) + scratch(x, std::min(y + r, height - 1))) + 0.5F * scratch(x, y);
-    }
+    for_each_run(map, y, step, [&](int begin, int end, int reach) {
+      const std::ptrdiff_t at = std::ptrdiff_t{begin} * kChannels;
+      binomial(scratch.row(std::max(y - reach, 0)) + at, scratch.row(y) + at,
+               scratch.row(std::min(y + reach, height - 1)) + at, std::ptrdiff_t{end - begin} * kChannels,
+               image.row(y) + at);
+    });
   });
 }
 
 // Means over squares of kTile pixels and their eight neighbours, and between their centres.
 class TileMeans {
  public:
-  TileMeans(const Image<Power>& image, int threads)
+  TileMeans(const Powers& image, int threads)
       : columns_((image.width_px + kTile - 1) / kTile), rows_((image.height_px + kTile - 1) / kTile) {
     std::vector<Power> sums(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     parallel_for(static_cast<std::size_t>(rows_), threads, [&](std::size_t row) {
@@ -94,7 +155,7 @@ class TileMeans {
         std::array<double, 3> sum{};
         for (int y = y0; y < y1; ++y) {
           for (int x = x0; x < x1; ++x) {
-            const Power& p = image(x, y);
+            const Power p = power_of(image.at(x, y));
             sum[0] += static_cast<double>(p.residual);
             sum[1] += static_cast<double>(p.noise);
             sum[2] += static_cast<double>(p.spread);
@@ -144,9 +205,9 @@ class TileMeans {
   std::vector<Power> means_;
 };
 
-std::vector<Residual> residuals_of_sites(const FilterInput& input, const SurfacePicture& picture) {
+std::vector<SiteResidual> residuals_of_sites(const FilterInput& input, const SurfacePicture& picture) {
   const SamplingMap& map = input.map;
-  std::vector<Residual> residuals(map.sites.size());
+  std::vector<SiteResidual> residuals(map.sites.size());
   parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
     for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
@@ -161,7 +222,7 @@ std::vector<Residual> residuals_of_sites(const FilterInput& input, const Surface
         replica += picture.replica.pixels[p];
       });
       const float share = 1.0F / static_cast<float>(map.sites[i].pixels);
-      Residual& residual = residuals[i];
+      SiteResidual& residual = residuals[i];
       residual.radiance = input.values.value(i).radiance - share * mean;
       residual.shown = share * luminance(mean);
       if (input.values.count(i) > 1) {
@@ -179,15 +240,18 @@ std::vector<Residual> residuals_of_sites(const FilterInput& input, const Surface
 
 // Interpolates between the centres of blocks. The pixels of a block share its residual in proportion to what they show:
 // what is wrong with light is wrong by a factor.
-Image<Residual> residuals_of_pixels(const FilterInput& input, const SurfacePicture& picture,
-                                    const std::vector<Residual>& of_site, const Image<std::uint32_t>& site_of_pixel) {
+Residuals residuals_of_pixels(const FilterInput& input, const SurfacePicture& picture,
+                              const std::vector<SiteResidual>& of_site, const Image<std::uint32_t>& site_of_pixel) {
   const SamplingMap& map = input.map;
-  Image<Residual> residuals(map.width_px, map.height_px);
+  Residuals residuals(map.width_px, map.height_px);
+  const auto put = [&](int x, int y, float share, const SiteResidual& r) {
+    residuals.put(x, y, {share * r.radiance.x, share * r.radiance.y, share * r.radiance.z, share * r.replica});
+  };
   for_each_row(map.height_px, input.threads, [&](int y) {
     for (int x = 0; x < map.width_px; ++x) {
       const int block = map.regions[map.region(x, y)].block_px;
       if (block == 1) {
-        residuals(x, y) = of_site[site_of_pixel(x, y)];
+        put(x, y, 1, of_site[site_of_pixel(x, y)]);
         continue;
       }
       const auto size = static_cast<float>(block);
@@ -195,16 +259,22 @@ Image<Residual> residuals_of_pixels(const FilterInput& input, const SurfacePictu
       const float v = (static_cast<float>(y) + 0.5F) / size - 0.5F;
       const float fx = u - std::floor(u);
       const float fy = v - std::floor(v);
-      const auto site = [&](int dx, int dy) -> const Residual& {
+      SiteResidual sum;
+      const auto add = [&](int dx, int dy, float weight) {
         const int px = (static_cast<int>(std::floor(u)) + dx) * block + block / 2;
         const int py = (static_cast<int>(std::floor(v)) + dy) * block + block / 2;
-        return of_site[site_of_pixel(std::clamp(px, 0, map.width_px - 1), std::clamp(py, 0, map.height_px - 1))];
+        const SiteResidual& r =
+            of_site[site_of_pixel(std::clamp(px, 0, map.width_px - 1), std::clamp(py, 0, map.height_px - 1))];
+        sum.radiance += weight * r.radiance;
+        sum.replica += weight * r.replica;
+        sum.shown += weight * r.shown;
       };
-      residuals(x, y) = ((1.0F - fx) * (1.0F - fy)) * site(0, 0) + (fx * (1.0F - fy)) * site(1, 0) +
-                        ((1.0F - fx) * fy) * site(0, 1) + (fx * fy) * site(1, 1);
-      const float shown = residuals(x, y).shown;
+      add(0, 0, (1.0F - fx) * (1.0F - fy));
+      add(1, 0, fx * (1.0F - fy));
+      add(0, 1, (1.0F - fx) * fy);
+      add(1, 1, fx * fy);
       const float here = luminance(picture.radiance(x, y));
-      residuals(x, y) = (shown > 0 ? std::min(here / shown, kMostShare) : 1.0F) * residuals(x, y);
+      put(x, y, sum.shown > 0 ? std::min(here / sum.shown, kMostShare) : 1.0F, sum);
     }
   });
   return residuals;
@@ -212,14 +282,14 @@ Image<Residual> residuals_of_pixels(const FilterInput& input, const SurfacePictu
 
 // One over the mean square of the picture around each pixel. Squares are taken in relation to it, so that a bright
 // neighbour does not decide for all.
-ImageGray relative_scale(const FilterInput& input, const SurfacePicture& picture, const Image<Residual>& residuals,
-                         Image<Power>& power, Image<Power>& scratch) {
+ImageGray relative_scale(const FilterInput& input, const SurfacePicture& picture, const Residuals& residuals,
+                         Powers& power, Powers& scratch) {
   const SamplingMap& map = input.map;
   for_each_row(map.height_px, input.threads, [&](int y) {
     for (int x = 0; x < map.width_px; ++x) {
       const float light = luminance(picture.radiance(x, y));
-      const float noise = residuals(x, y).replica;
-      power(x, y) = {light * light + noise * noise, 0, 0};
+      const float noise = residuals.at(x, y)[3];
+      power.put(x, y, {light * light + noise * noise, 0, 0});
     }
   });
   for (const int step : {1, 2, 4}) {
@@ -228,7 +298,7 @@ ImageGray relative_scale(const FilterInput& input, const SurfacePicture& picture
   ImageGray scale(map.width_px, map.height_px);
   for_each_row(map.height_px, input.threads, [&](int y) {
     for (int x = 0; x < map.width_px; ++x) {
-      scale(x, y) = 1.0F / (power(x, y).residual + 1e-30F);
+      scale(x, y) = 1.0F / (power.at(x, y)[0] + 1e-30F);
     }
   });
   return scale;
@@ -254,11 +324,11 @@ float share_to_keep(const Power& near, const Power& wide, float independent, flo
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, SurfacePicture& picture) {
   const SamplingMap& map = input.map;
-  Image<Residual> finer = residuals_of_pixels(input, picture, residuals_of_sites(input, picture), site_of_pixel);
-  Image<Residual> coarser(map.width_px, map.height_px);
-  Image<Residual> scratch(map.width_px, map.height_px);
-  Image<Power> power(map.width_px, map.height_px);
-  Image<Power> power_scratch(map.width_px, map.height_px);
+  Residuals finer = residuals_of_pixels(input, picture, residuals_of_sites(input, picture), site_of_pixel);
+  Residuals coarser(map.width_px, map.height_px);
+  Residuals scratch(map.width_px, map.height_px);
+  Powers power(map.width_px, map.height_px);
+  Powers power_scratch(map.width_px, map.height_px);
   ImageRgb kept(map.width_px, map.height_px);
   const ImageGray scale = relative_scale(input, picture, finer, power, power_scratch);
   for (int band = 0; band < kBands; ++band) {
@@ -268,13 +338,22 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
     if (!last) {
       smooth(map, step, input.threads, coarser, scratch);
     }
-    const auto detail = [&](int x, int y) { return last ? finer(x, y) : finer(x, y) + -1.0F * coarser(x, y); };
+    const auto detail = [&](int x, int y) {
+      Residuals::Pixel d = finer.at(x, y);
+      if (!last) {
+        const Residuals::Pixel c = coarser.at(x, y);
+        for (std::size_t k = 0; k < d.size(); ++k) {
+          d[k] -= c[k];
+        }
+      }
+      return d;
+    };
     for_each_row(map.height_px, input.threads, [&](int y) {
       for (int x = 0; x < map.width_px; ++x) {
-        const Residual d = detail(x, y);
-        const float light = luminance(d.radiance);
-        const float noise = scale(x, y) * d.replica * d.replica;
-        power(x, y) = Power{scale(x, y) * light * light, noise, noise * noise};
+        const Residuals::Pixel d = detail(x, y);
+        const float light = luminance(radiance_of(d));
+        const float noise = scale(x, y) * d[3] * d[3];
+        power.put(x, y, {scale(x, y) * light * light, noise, noise * noise});
       }
     });
     const TileMeans wide(power, input.threads);
@@ -284,12 +363,12 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
     smooth(map, step, input.threads, power, power_scratch);
     for_each_row(map.height_px, input.threads, [&](int y) {
       for (int x = 0; x < map.width_px; ++x) {
-        const Residual d = detail(x, y);
-        const Power p = power(x, y);
+        const Residuals::Pixel d = detail(x, y);
+        const Power p = power_of(power.at(x, y));
         const auto block = static_cast<float>(map.regions[map.region(x, y)].block_px);
         const float share = share_to_keep(p, wide.at(x, y), independent / (block * block), settings.residual_doubt);
         const std::size_t i = kept.index(x, y);
-        kept.pixels[i] += share * d.radiance;
+        kept.pixels[i] += share * radiance_of(d);
         const float rest = 1.0F - share;
         const float noise = p.noise / scale(x, y);
         const float bias = std::max(p.residual - p.noise, 0.0F) / scale(x, y);
