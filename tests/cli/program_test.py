@@ -47,10 +47,12 @@ class Talk(harness.CliTest):
         self.write("table.csv", "ecc_deg,density\n0,1\n30,0.1\n")
         base = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "--quiet", "--overwrite", "-o", "f.exr", "-o", "f.png",
                 "--gaze-at", "0.5,0.5", *harness.SCREEN]
+        self.run_ok("render", "box.gltf", "--size", "4x4", "--spp", "1", "--quiet", "-o", "rates.exr")
+        needs = {"table": ["--falloff-table", "table.csv"], "map": ["--density-map", "rates.exr"], "visible": ["--budget-spp", "4"]}
         for family, option in (("falloffs", "--falloff"), ("filters", "--filter"), ("views", "--view"), ("aovs", "--aov")):
             for member in families[family]:
                 with self.subTest(option=option, name=member["name"]):
-                    more = ["--falloff-table", "table.csv"] if member["name"] == "table" else []
+                    more = needs.get(member["name"], [])
                     self.run_ok(*base, option, member["name"], *more)
 
     def test_results_on_stdout_and_the_rest_on_stderr(self):

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/hash.hpp"
 #include "foveation/falloff.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/guides.hpp"
@@ -25,6 +26,11 @@ inline Guides wall() {
   guides.material = Image<std::uint32_t>(kGuidesWallPx, kGuidesWallPx, 1);
   guides.kind = Image<SurfaceKind>(kGuidesWallPx, kGuidesWallPx, SurfaceKind::diffuse);
   return guides;
+}
+
+// Half the difference of the halves of a site: far above any light, of random sign.
+inline float planted_noise(const Site& site) {
+  return (hash32(site.block_x * 65536U + site.block_y) & 1U) != 0 ? 1e6F : -1e6F;
 }
 
 struct PixelSpan {

@@ -24,8 +24,8 @@ SamplingMap map_about_the_middle(int begin, int block_px) {
 }
 
 // All samples of a site at the middle of its pixels, under light_at(x, y) of its first pixel. As the tracer, no
-// surfaces for sites that keep their own mean. All light is in one half of the samples, so that all of it may be noise
-// and the filter smooths as much as it can.
+// surfaces for sites that keep their own mean. There is so much noise
+// that the filter smooths as much as it can.
 template <class LightAt>
 SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const LightAt& light_at,
                           const std::optional<std::uint64_t>& pass_through_samples = {}) {
@@ -42,25 +42,28 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
                                    static_cast<float>(y) + 0.5F - 0.5F * kSize, guides.depth_m(x, y));
       light = light < 0 ? static_cast<float>(light_at(x, y)) : light;
     });
+    const float noise = planted_noise(site);
     const auto n = static_cast<float>(site.samples);
     const Vec3f reflected = n * light * Vec3f{0.5F, 0.5F, 0.5F};
     sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
     if (pass_through.needs_filtering(i)) {
       sparse.surfaces.push_back({reflected, n * Vec3f{0.5F, 0.5F, 0.5F}, n * Vec3f{0, 0, 1},
-                                 place * (n / static_cast<float>(site.pixels)), n * light * light, 0.5F * light,
-                                 site.samples, SurfaceKind::diffuse});
+                                 place * (n / static_cast<float>(site.pixels)), n * light * light, noise, site.samples,
+                                 SurfaceKind::diffuse});
     }
     sparse.sum.push_back(reflected);
     sparse.count.push_back(site.samples);
     sparse.sum_square_luminance.push_back(0);
-    sparse.half_difference.push_back(0.5F * light);
+    sparse.half_difference.push_back(noise);
   }
   sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
   return sparse;
 }
 
+// The fovea keeps its own means: between blocks of one size no light is lost.
+constexpr std::uint64_t kPassThrough = 16;
 Frame guided(const SparseFrame& sparse, const SamplingMap& map, const Guides& guides) {
-  return reconstruct(sparse, map, "guided", 1, &guides);
+  return reconstruct(sparse, map, "guided", 1, &guides, kPassThrough);
 }
 
 // The same from the left and from the right, from above and from below: blocks are, where a side of the fovea cuts
@@ -69,11 +72,14 @@ TEST(ReconstructGuidedBorders, AMirroredFrameIsFilteredToItsMirrorImage) {
   const Guides guides = wall();
   for (const int begin : {20, 21}) {
     const SamplingMap map = map_about_the_middle(begin, 2);
-    const SparseFrame sparse = trace_planted(map, guides, [](int x, int y) {
-      const int bx = std::min(x / 2, kSize / 2 - 1 - x / 2);
-      const int by = std::min(y / 2, kSize / 2 - 1 - y / 2);
-      return 1 + (bx * 7 + by * 13) % 5;
-    });
+    const SparseFrame sparse = trace_planted(
+        map, guides,
+        [](int x, int y) {
+          const int bx = std::min(x / 2, kSize / 2 - 1 - x / 2);
+          const int by = std::min(y / 2, kSize / 2 - 1 - y / 2);
+          return 1 + (bx * 7 + by * 13) % 5;
+        },
+        kPassThrough);
     const Frame frame = guided(sparse, map, guides);
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {
@@ -95,9 +101,12 @@ TEST(ReconstructGuidedBorders, WhatIsLeftOfACutBlockCountsAndLosesNoLight) {
     SCOPED_TRACE(cut.block_px);
     const SamplingMap map = map_about_the_middle(cut.begin, cut.block_px);
     const int by = 30 / cut.block_px;
-    const SparseFrame sparse = trace_planted(map, guides, [&](int x, int y) {
-      return x / cut.block_px == cut.x / cut.block_px && y / cut.block_px == by && map.region(x, y) == 1 ? 100 : 0;
-    });
+    const SparseFrame sparse = trace_planted(
+        map, guides,
+        [&](int x, int y) {
+          return x / cut.block_px == cut.x / cut.block_px && y / cut.block_px == by && map.region(x, y) == 1 ? 100 : 0;
+        },
+        kPassThrough);
     SurfaceCells cells = make_surface_cells(sparse, map, guides.camera, 1);
     const auto light = [&] {
       double sum = 0;

@@ -10,7 +10,6 @@
 #include <random>
 #include <utility>
 
-#include "core/luminance.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
 #include "reconstruct/surface_smoothing.hpp"
@@ -78,14 +77,12 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
     sparse.sum.push_back(sum);
     sparse.count.push_back(count);
     sparse.sum_square_luminance.push_back(0);
-    // All light is in one half of the samples, so that all of it may be noise.
-    float reflected = 0;
+    // So much noise that the filter smooths as much as it can.
+    const float noise = planted_noise(site);
     for (std::size_t s = first; s < sparse.surfaces.size(); ++s) {
-      SurfaceSums& surface = sparse.surfaces[s];
-      surface.half_difference = luminance(surface.reflected) / static_cast<float>(surface.count);
-      reflected += luminance(surface.reflected);
+      sparse.surfaces[s].half_difference = noise;
     }
-    sparse.half_difference.push_back(count > 0 ? reflected / static_cast<float>(count) : 0);
+    sparse.half_difference.push_back(noise);
   }
   sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));
   return sparse;
@@ -243,7 +240,11 @@ TEST(ReconstructGuided, RareLightIsNotLost) {
 TEST(ReconstructGuided, SitesWithoutSamplesTakeFromLikeSurfacesAndNoSamplesAtAllLeaveWhatShines) {
   const SamplingMap map = block_map();
   Guides guides = wall();
-  guides.emission(3, 3) = {7, 7, 7};
+  for (int y = 0; y < 4; ++y) {  // a block that has samples
+    for (int x = 0; x < 4; ++x) {
+      guides.emission(x, y) = {7, 7, 7};
+    }
+  }
   SparseFrame sparse = trace_planted(map, guides, [](int, int) { return 4; });
   SparseFrame holes = sparse;
   holes.surfaces.clear();
