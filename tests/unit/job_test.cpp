@@ -211,7 +211,8 @@ TEST(JobSchema, WhatPresetsSetExists) {
 TEST(IdleOptions, AreThoseThatWereGivenAndDoNothing) {
   Job job;
   set_option(job, "accumulate-blend", "0.2");
-  EXPECT_EQ(idle_option_warnings(job), Warnings{"`accumulate-blend` does nothing without `accumulate` reproject or two-sided"});
+  EXPECT_EQ(idle_option_warnings(job),
+            Warnings{"`accumulate-blend` does nothing without `accumulate` reproject or two-sided"});
   set_option(job, "accumulate", "reproject");
   EXPECT_TRUE(idle_option_warnings(job).empty());
   Job of_preset;
