@@ -28,6 +28,13 @@ ResolvedJob resolve_for_viewing(Job job) {
   }
   ResolveOptions options;
   options.scope = ResolveScope::viewing;
+  if (!settings.gaze.path.empty()) {
+    try {
+      return resolve(job, options);
+    } catch (const Error&) {
+      settings.gaze.path.clear();  // another file has the log's name today: it says nothing of the screen
+    }
+  }
   return resolve(job, options);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -121,6 +122,12 @@ std::string sampling_without_gaze(const FoveationSettings& foveation) {
   return rate + " everywhere: there is no gaze";
 }
 
+// Whether there are rates for a frame that nobody asked for.
+bool has_density_map(const FoveationSettings& foveation, std::int64_t frame) {
+  return foveation.falloff != "map" || !has_frame_number(foveation.density_map) ||
+         std::filesystem::exists(frame_file_name(foveation.density_map, static_cast<std::int32_t>(frame)));
+}
+
 // For accumulation from both sides: the frames that those of the plan read beside each other. They exist from frame 1
 // on and as far as the camera's path goes, whether or not they are rendered, so that a frame is the same in every run.
 void add_frames_around(const JobSettings& job, const CameraPath& camera, ResolvedJob& resolved) {
@@ -130,7 +137,8 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   std::set<std::int32_t> all = asked;
   for (const std::int32_t frame : asked) {
     for (std::int32_t apart = -job.accumulate.window; apart <= job.accumulate.window; ++apart) {
-      if (has_frame(camera, settings, std::int64_t{frame} + apart)) {
+      const std::int64_t near = std::int64_t{frame} + apart;
+      if (has_frame(camera, settings, near) && has_density_map(job.foveation, near)) {
         all.insert(frame + apart);
       }
     }
@@ -198,10 +206,12 @@ void load_viewing(ResolvedJob& resolved) {
 
 // A single picture is the same for every frame.
 void check_density_maps(const FoveationSettings& foveation, const FramePlan& plan) {
-  for (const FrameRequest& request : plan.frames) {
-    read_density_map(foveation, request.frame);
-    if (!has_frame_number(foveation.density_map)) {
-      return;
+  for (const std::vector<FrameRequest>* frames : {&plan.frames, &plan.around}) {
+    for (const FrameRequest& request : *frames) {
+      read_density_map(foveation, request.frame);
+      if (!has_frame_number(foveation.density_map)) {
+        return;
+      }
     }
   }
 }

@@ -27,11 +27,13 @@ constexpr double kRoundShare = 1.0 / 32;
 constexpr double kLeastRound = 4;
 // On a budget a second pilot is left out where it would take more than this part.
 constexpr double kMostSecond = 0.1;
+constexpr double kMostOfRest = 0.25;  // nor where it would take more than this part of what the first one left
 constexpr double kFirstForTarget = 16;
 constexpr int kMostRounds = 3;        // after the first
 constexpr double kCloseEnough = 1.1;  // a change of the rate that needs no further round
 constexpr double kMostGrowth = 16;    // of the rate from one round to the next
 constexpr double kDefensiveShare = 0.25;
+constexpr double kLeastRate = 1e-3;  // samples a pixel: below, nothing can be extrapolated
 
 double pixels_of(const FrameRequest& request) {
   return static_cast<double>(request.width_px) * request.height_px;
@@ -130,7 +132,10 @@ class RateFinder {
     const double cell = pilot_cell_px(request_);
     look(std::clamp(std::round(kFirstShare * spp * cell * cell), kLeastFirst, kMostFirst));
     set_rates(left_of(spp));
-    if (share_of_round() * mean_of(result_.rates) < kMostSecond * spp * cell * cell) {
+    // One of too few samples would tell less than the first, and one that is large beside what is left leaves no frame.
+    const double second = share_of_round() * mean_of(result_.rates);
+    const double most = std::min(kMostSecond * spp, kMostOfRest * (spp - pilot_spp())) * cell * cell;
+    if (second >= 0.999 * kLeastRound && second < most) {
       look_again();
       set_rates(left_of(spp));
     }
@@ -201,7 +206,10 @@ class RateFinder {
     constexpr int kMostSteps = 12;
     constexpr double kTolerance = 0.004;
     const FoveationSettings& foveation = settings_.foveation;
-    const ImageGray wanted = wanted_rates();
+    ImageGray wanted = wanted_rates();
+    if (!(mean_of(wanted) > 0)) {
+      wanted = ImageGray(wanted.width_px, wanted.height_px, 1);  // nothing is noisy, as in a black frame
+    }
     const double start = std::log(before / std::max(mean_of(wanted), 1e-30));
     const double reach = std::log(kMostGrowth);
     double at = start;
@@ -209,7 +217,7 @@ class RateFinder {
     double last_at = 0;
     double last_excess = 0;
     for (int step = 0; step < kMostSteps; ++step) {
-      result_.rates = clamped(wanted, std::exp(at), foveation.min_spp, foveation.max_spp);
+      result_.rates = clamped(wanted, std::exp(at), std::max(foveation.min_spp, kLeastRate), foveation.max_spp);
       const double excess = std::log(std::max(excess_at(result_.rates), 1e-12));
       if (step > 0 && at != last_at) {
         slope = std::clamp((last_excess - excess) / (at - last_at), 0.3, 3.0);

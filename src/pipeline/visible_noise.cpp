@@ -73,7 +73,8 @@ double VisibleNoise::unit_at(std::size_t i) const {
 ImageGray VisibleNoise::relative_squared_error() const {
   ImageGray relative(pilot_->luminance.width_px, pilot_->luminance.height_px);
   for (std::size_t i = 0; i < relative.pixels.size(); ++i) {
-    relative.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / unit_at(i));
+    const double of_one = error_of_one(*pilot_, i) / unit_at(i);
+    relative.pixels[i] = of_one > 0 && std::isfinite(of_one) ? static_cast<float>(of_one) : 0.0F;
   }
   relative = pooled(relative, settings_.threads);
   // A window that saw no firefly says little of them. Its mean counts by its samples, and that of the frame as
@@ -117,7 +118,9 @@ ImageGray VisibleNoise::wanted_by_eye() const {
 double VisibleNoise::relmse_at(const ImageGray& rates) const {
   double sum = 0;
   for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
-    sum += error_of_one(*pilot_, i) / unit_at(i) / static_cast<double>(rates.pixels[i]);
+    const double of_one = error_of_one(*pilot_, i) / unit_at(i);
+    // Light near the end of float's range has no finite square: such pixels are left out.
+    sum += of_one > 0 && std::isfinite(of_one) ? of_one / static_cast<double>(rates.pixels[i]) : 0.0;
   }
   return sum / static_cast<double>(rates.pixels.size());
 }
@@ -126,7 +129,9 @@ ErrorComponent VisibleNoise::error_at(const ImageGray& rates) const {
   ErrorComponent error;
   error.squared_error = ImageGray(rates.width_px, rates.height_px);
   for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
-    error.squared_error.pixels[i] = static_cast<float>(error_of_one(*pilot_, i) / static_cast<double>(rates.pixels[i]));
+    const double of_one = error_of_one(*pilot_, i);
+    error.squared_error.pixels[i] =
+        of_one > 0 && std::isfinite(of_one) ? static_cast<float>(of_one / static_cast<double>(rates.pixels[i])) : 0.0F;
   }
   error.spectrum = spectrum_;
   return error;

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kBands = 3;
 constexpr float kMostShare = 4;  // of a block's residual, in a pixel that is much brighter than the rest of it
+constexpr float kMostLight = 1e18F;
 constexpr std::size_t kRowsPerTask = 8;
 
 struct SiteResidual {
@@ -287,8 +288,9 @@ ImageGray relative_scale(const FilterInput& input, const SurfacePicture& picture
   const SamplingMap& map = input.map;
   for_each_row(map.height_px, input.threads, [&](int y) {
     for (int x = 0; x < map.width_px; ++x) {
-      const float light = luminance(picture.radiance(x, y));
-      const float noise = residuals.at(x, y)[3];
+      // Without a limit, squares of light near the end of float's range would not be finite.
+      const float light = std::min(luminance(picture.radiance(x, y)), kMostLight);
+      const float noise = std::clamp(residuals.at(x, y)[3], -kMostLight, kMostLight);
       power.put(x, y, {light * light + noise * noise, 0, 0});
     }
   });
@@ -315,8 +317,10 @@ float share_to_keep(const Power& near, const Power& wide, float independent, flo
   const float spread = 2 * std::max(near.spread, wide.spread);
   const float near_signal = near.residual - near.noise - doubt * std::sqrt(kWeightsSquared * spread);
   const float wide_signal = wide.residual - wide.noise - kWideDoubt * std::sqrt(2 * wide.spread / independent);
-  return std::max(near_signal > 0 ? near_signal / near.residual : 0.0F,
-                  wide_signal > 0 ? wide_signal / (wide_signal + std::max(0.5F * near.noise, wide.noise)) : 0.0F);
+  const float share =
+      std::max(near_signal > 0 ? near_signal / near.residual : 0.0F,
+               wide_signal > 0 ? wide_signal / (wide_signal + std::max(0.5F * near.noise, wide.noise)) : 0.0F);
+  return share > 0 ? std::min(share, 1.0F) : 0.0F;  // no number where squares were infinite
 }
 
 }  // namespace
@@ -370,8 +374,9 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
         const std::size_t i = kept.index(x, y);
         kept.pixels[i] += share * radiance_of(d);
         const float rest = 1.0F - share;
-        const float noise = p.noise / scale(x, y);
-        const float bias = std::max(p.residual - p.noise, 0.0F) / scale(x, y);
+        constexpr float kMost = kMostLight * kMostLight;
+        const float noise = std::min(kMost, p.noise / scale(x, y));  // kMost also for what is no number
+        const float bias = std::min(kMost, std::max(0.0F, p.residual - p.noise) / scale(x, y));
         if (band == 0) {
           picture.variance.pixels[i] *= rest * rest;
           picture.error.pixels[i] *= rest * rest;

@@ -276,7 +276,7 @@ class Smoother {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         const Detail& d = details_[i];
         const float scale = relative_scale(next_[i], d);
-        noise[t].replicas += static_cast<double>(d.replica * d.replica * scale);
+        noise[t].replicas += static_cast<double>(d.replica * scale * d.replica);
         noise[t].expected += static_cast<double>(d.variance * scale);
       }
     });
@@ -292,8 +292,10 @@ class Smoother {
             sum.expected += near.expected;
           }
         }
+        // Light near the end of float's range has no finite square.
+        const bool is_known = sum.expected > 0 && std::isfinite(sum.replicas / sum.expected);
         scales[static_cast<std::size_t>(y * columns + x)] =
-            sum.expected > 0 ? static_cast<float>(std::clamp(sum.replicas / sum.expected, 0.05, 4.0)) : 1.0F;
+            is_known ? static_cast<float>(std::clamp(sum.replicas / sum.expected, 0.05, 4.0)) : 1.0F;
       }
     }
     return scales;
@@ -321,9 +323,9 @@ class Smoother {
         const auto add = [&](std::size_t j, float like) {
           const Detail& d = details_[j];
           const float w = like * relative_scale(next_[j], d);
-          squares += static_cast<double>(w * d.light * d.light);
+          squares += static_cast<double>(d.light * w * d.light);
           noise += static_cast<double>(w * d.variance);
-          const auto square = static_cast<double>(w * d.replica * d.replica);
+          const auto square = static_cast<double>(d.replica * w * d.replica);
           replicas += square;
           spread += square * square;
         };

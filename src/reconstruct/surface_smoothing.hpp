@@ -51,8 +51,9 @@ inline float facing_power(float cosine) {
   return like >= kLeastLikeness ? like : 0.0F;
 }
 
-// No light is lost: the sums over all cells of samples times reflected, and times albedo, stay what they are, where all
-// blocks are of one size; at borders between sizes, nearly so.
+// Where no detail is kept, no light is lost: the sums over all cells of samples times reflected, and times albedo, stay
+// what they are where all blocks are of one size, and nearly so at borders between sizes. Details that are kept come on
+// top, and what would be negative then is cut.
 void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const SmoothingSettings& settings, int threads);
 
 }  // namespace gazetrace

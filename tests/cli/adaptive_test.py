@@ -30,6 +30,25 @@ class Adaptive(harness.CliTest):
             samples.append(int(row["samples"]) - int(row["pilot_samples"]))
         self.assertGreater(samples[1], 3 * samples[0])
 
+    def test_pilots_leave_a_frame(self):
+        # The budgets where a second pilot would have taken what the first one left.
+        for budget in ("2.05", "2.1", "2.2", "2.5"):
+            row, = self.render(f"small-{budget}", "--budget-spp", budget)
+            self.assertLessEqual(int(row["pilot_samples"]), 2 * 64 * 40, budget)
+            self.assertAlmostEqual(int(row["samples"]), float(budget) * 64 * 40, delta=2)
+        # Errors fall with the budget: about as one over it, and never the other way.
+        errors = []
+        for budget in ("1", "4", "16"):
+            self.run_ok("render", "box.gltf", *VIEW[2:], "--size", "320x256", "--budget-spp", budget, "--filter", "none", "-o",
+                        f"error-{budget}/f.exr")
+            errors.append(float(self.rows(f"error-{budget}")[0]["predicted_relmse"]))
+        for more, fewer in zip(errors[1:], errors):
+            self.assertLess(more, 0.6 * fewer)
+
+    def test_a_black_frame_meets_any_target(self):
+        row, = self.render("black", "--env", "none", "--bounces", "0", "--target-relmse", "0.01", "--min-spp", "0")
+        self.assertEqual(float(row["predicted_relmse"]), 0)
+
     def test_the_same_bytes_by_threads_parts_and_resuming(self):
         common = ["--target-relmse", "0.02", "--frames", "1-3"]
         self.render("one", *common, "--threads", "1")
