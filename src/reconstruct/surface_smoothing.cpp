@@ -282,20 +282,22 @@ class Smoother {
     });
     std::vector<float> scales(map_.tiles.size());
     const auto [columns, rows] = tile_grid(map_);
+    const auto index = [width = columns](int x, int y) {
+      return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
     for (int y = 0; y < rows; ++y) {
       for (int x = 0; x < columns; ++x) {
         Noise sum;
         for (int v = std::max(y - 1, 0); v < std::min(y + 2, rows); ++v) {
           for (int u = std::max(x - 1, 0); u < std::min(x + 2, columns); ++u) {
-            const Noise& near = noise[static_cast<std::size_t>(v * columns + u)];
+            const Noise& near = noise[index(u, v)];
             sum.replicas += near.replicas;
             sum.expected += near.expected;
           }
         }
         // Light near the end of float's range has no finite square.
         const bool is_known = sum.expected > 0 && std::isfinite(sum.replicas / sum.expected);
-        scales[static_cast<std::size_t>(y * columns + x)] =
-            is_known ? static_cast<float>(std::clamp(sum.replicas / sum.expected, 0.05, 4.0)) : 1.0F;
+        scales[index(x, y)] = is_known ? static_cast<float>(std::clamp(sum.replicas / sum.expected, 0.05, 4.0)) : 1.0F;
       }
     }
     return scales;
