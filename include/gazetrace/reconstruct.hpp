@@ -83,7 +83,6 @@ class Reconstruction {
 // What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
   bool foveated = true;            // a gaze steers where the samples go, under another fall-off than "uniform"
-  bool blurs = false;              // the lens is open, or the shutter stays open for a while
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
   bool enhances_contrast = false;  // enhance_contrast() is applied
   bool part_of_samples = false;    // TraceSettings::samples
@@ -93,8 +92,8 @@ struct FilterChoice {
   std::string reason;  // the end of a sentence that begins "... because"
 };
 // "guided" for foveated jobs, since it shows edges and texture of the periphery at full resolution. "linear" wherever
-// "guided" would not work (it needs all samples), would take a blur away (its first hits are those of a pinhole at one
-// instant), or leaves nothing to enhance; and for uniform frames, whose single pixels "linear" does not change.
+// "guided" would not work (it needs all samples) or leaves nothing to enhance; and for uniform frames, whose single
+// pixels "linear" does not change.
 FilterChoice choose_filter(const FilterFacts& facts);
 
 // Contrast preservation where samples are sparse: an enhancement, not an estimate of radiance.

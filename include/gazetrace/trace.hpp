@@ -108,8 +108,23 @@ struct SurfaceSums {
   float half_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `reflected`
   std::uint32_t count = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
+  // As SparseFrame::half_difference, of the luminance of `albedo` over *all* samples of the site: what chance does to
+  // the surface's texture and to the share of the site that it covers. 0 without SparseFrame::first_hits.
+  float albedo_difference = 0;
 };
 inline constexpr std::size_t kMostSurfaces = 3;
+
+// What all samples of a site saw first, through lens, shutter and transparency, and how far that is from what a pinhole
+// sees at the middle of the frame's time.
+struct FirstHitSums {
+  Vec3f shone;                 // sum of the radiance that is seen directly: emission, unlit surfaces, the environment
+  float shone_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `shone`
+  // Sum of the squared distances (px^2) between where a sample is in the frame and where the pinhole sees what it hit.
+  // In focus and at rest this is 0, apart from rounding. A single distance counts as kMostShiftPx at most.
+  float square_shift_px2 = 0;
+  std::uint32_t blended = 0;  // how many samples hit a surface of AlphaMode::blend
+};
+inline constexpr float kMostShiftPx = 1000;
 
 struct BadSample {
   std::int32_t frame = 0;
@@ -149,6 +164,9 @@ struct SparseFrame {
   // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
+  // Of each site that filters change, beside its surfaces; empty where no sample can see anything else than a pinhole
+  // at one instant: without lens, motion while the shutter is open, and blended surfaces.
+  std::vector<FirstHitSums> first_hits;
   SampleSums unrounded;  // empty unless TraceSettings::samples
   TraceStats stats;
 };

@@ -161,7 +161,6 @@ FilterChoice filter_of(const JobSettings& job) {
   const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;
   const bool foveated = follows_picture(job.foveation) || (has_gaze && job.foveation.falloff != "uniform");
   return choose_filter({.foveated = foveated,
-                        .blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs(),
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,
                         .enhances_contrast = job.enhance_contrast > 0,

@@ -74,21 +74,6 @@ void check_screen(const PlanSettings& settings, const GazeLog* log) {
   }
 }
 
-// The blur that is lost because filters with guides take the first hits through a pinhole in the middle of the frame's
-// time, in words; empty where there is none.
-std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
-  if (!Reconstruction({job.filter, {}}).needs().guides) {
-    return {};
-  }
-  const bool moves =
-      !camera.is_static || (scene != nullptr && !(scene->motions.empty() && scene->deformations.empty()));
-  const bool motion = job.shutter.blurs() && moves;
-  if (camera.lens.radius_m > 0) {
-    return motion ? "blur of lens and shutter" : "blur of the lens";
-  }
-  return motion ? "blur of the shutter" : "";
-}
-
 bool moves(const Scene& scene) {
   return !(scene.motions.empty() && scene.deformations.empty());
 }
@@ -178,13 +163,7 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   }
 }
 
-void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene, Warnings& warnings) {
-  if (const std::string lost = blur_lost_by_filter(job, camera, scene); !lost.empty()) {
-    warnings.push_back(fmt::format(
-        "`filter` {} takes edges, texture, what shines and the background from a pinhole at one instant: {} is missing "
-        "there, `filter` linear or tent keep it",
-        job.filter, lost));
-  }
+void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter, {}}).needs().guides) {
     warnings.push_back(
         fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
@@ -254,7 +233,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     check_density_maps(job.foveation, resolved.plan);
   }
   append(resolved.warnings, camera.warnings);
-  warn_of_filter(job, camera, scene, resolved.warnings);
+  warn_of_filter(job, resolved.warnings);
   if (log != nullptr) {
     append(resolved.warnings, log->warnings);
   }

@@ -7,9 +7,6 @@ FilterChoice choose_filter(const FilterFacts& facts) {
   if (!facts.foveated) {
     return {"linear", "frames are uniform, and single pixels keep their samples' mean"};
   }
-  if (facts.blurs) {
-    return {"linear", "the first hits that guided filters show have no blur of lens and shutter"};
-  }
   if (facts.accumulates_sites) {
     return {"linear", "accumulation before the filter leaves sites, which cannot be taken apart by surfaces"};
   }

@@ -37,6 +37,11 @@ struct Detail {
   float replica = 0;
 };
 
+// Of a detail, relative to the light that it belongs to.
+struct Squares {
+  float detail = 0, noise = 0, replica = 0;
+};
+
 // What is added to the light that is smoothed most.
 struct KeptDetail {
   Vec3f light;
@@ -150,6 +155,7 @@ class Smoother {
         orientations_(cells.cells.size()),
         flows_(map.tiles.size()),
         details_(cells.cells.size()),
+        squares_(cells.cells.size()),
         kept_(cells.cells.size()) {
     for_each_tile([&](std::size_t t) {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
@@ -160,6 +166,15 @@ class Smoother {
         orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
       }
     });
+  }
+
+  // So many steps does the region that smooths most take.
+  [[nodiscard]] int most_levels() const {
+    int most = settings_.fewest_levels;
+    for (const MapRegion& region : map_.regions) {
+      most = region.sites > 0 ? std::max(most, levels_of(region, settings_)) : most;
+    }
+    return most;
   }
 
   // The surfaces of blocks that lie `step` blocks apart, eight of them and the own. `found`: what it holds is lost.
@@ -265,9 +280,10 @@ class Smoother {
   }
 
  private:
-  // How much larger the noise of the details of a tile is than `Detail::variance` says. Stratified samples have less
-  // noise than their spread lets expect, and neighbours share some of theirs; the replicas know both.
-  [[nodiscard]] std::vector<float> noise_scales() const {
+  // Squares of all details, and by how much larger the noise of a tile's details is than `Detail::variance` says.
+  // Stratified samples have less noise than their spread lets expect, and neighbours share some of theirs; the replicas
+  // know both.
+  [[nodiscard]] std::vector<float> measure_details() {
     struct Noise {
       double replicas = 0, expected = 0;
     };
@@ -276,8 +292,9 @@ class Smoother {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         const Detail& d = details_[i];
         const float scale = relative_scale(next_[i], d);
-        noise[t].replicas += static_cast<double>(d.replica * scale * d.replica);
-        noise[t].expected += static_cast<double>(d.variance * scale);
+        squares_[i] = {d.light * scale * d.light, d.variance * scale, d.replica * scale * d.replica};
+        noise[t].replicas += static_cast<double>(squares_[i].replica);
+        noise[t].expected += static_cast<double>(squares_[i].noise);
       }
     });
     std::vector<float> scales(map_.tiles.size());
@@ -312,7 +329,7 @@ class Smoother {
   // of the details of the same surface near by, less those of their noise and some standard deviations of this
   // difference.
   void keep_details(const std::vector<TileTies>& ties) {
-    const std::vector<float> scales = noise_scales();
+    const std::vector<float> scales = measure_details();
     for_each_tile([&](std::size_t t) {
       for_each_cell(ties, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t) {
         if (begin == end) {
@@ -323,11 +340,10 @@ class Smoother {
         double replicas = 0;
         double spread = 0;
         const auto add = [&](std::size_t j, float like) {
-          const Detail& d = details_[j];
-          const float w = like * relative_scale(next_[j], d);
-          squares += static_cast<double>(d.light * w * d.light);
-          noise += static_cast<double>(w * d.variance);
-          const auto square = static_cast<double>(d.replica * w * d.replica);
+          const Squares& s = squares_[j];
+          squares += static_cast<double>(like * s.detail);
+          noise += static_cast<double>(like * s.noise);
+          const auto square = static_cast<double>(like * s.replica);
           replicas += square;
           spread += square * square;
         };
@@ -429,6 +445,7 @@ class Smoother {
   std::vector<Orientation> orientations_;
   std::vector<std::vector<float>> flows_;  // of each tile's ties
   std::vector<Detail> details_;            // of the last step
+  std::vector<Squares> squares_;           // of these details
   std::vector<KeptDetail> kept_;
 };
 
@@ -441,7 +458,7 @@ void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const Smoothin
   smoother.estimate_variance(near);
   smoother.exchange(near);
   std::vector<TileTies> wide;
-  for (int level = 1; level < settings.levels; ++level) {
+  for (int level = 1; level < smoother.most_levels(); ++level) {
     smoother.find_ties(1 << level, wide);
     smoother.exchange(wide);
   }

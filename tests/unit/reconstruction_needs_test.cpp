@@ -66,11 +66,10 @@ TEST(ChooseFilter, GuidedForWhatIsFoveatedAndNothingElse) {
   EXPECT_EQ(choose_filter({}).name, "guided");
   for (const FilterFacts& facts :
        std::vector<FilterFacts>{{.foveated = false},
-                                {.blurs = true},
                                 {.accumulates_sites = true},
                                 {.enhances_contrast = true},
                                 {.part_of_samples = true},
-                                {.foveated = false, .blurs = true, .part_of_samples = true}}) {
+                                {.foveated = false, .part_of_samples = true}}) {
     const FilterChoice choice = choose_filter(facts);
     EXPECT_EQ(choice.name, "linear");
     EXPECT_NE(choice.reason, choose_filter({}).reason);
