@@ -323,6 +323,14 @@ float share_to_keep(const Power& near, const Power& wide, float independent, flo
   return share > 0 ? std::min(share, 1.0F) : 0.0F;  // no number where squares were infinite
 }
 
+// Of a residual whose replica is far beyond what residuals and noise are far around, one half of the samples knows
+// nothing: a rare bright sample. It fades by the square of the excess, and the smoothed light around it keeps what the
+// sample brought. `replica`: relative, as squares are in `wide`.
+float share_of_confirmed(float replica_squared, const Power& wide, float most_deviations) {
+  const float most = most_deviations * most_deviations * std::max(wide.residual, wide.noise);
+  return replica_squared > most ? most / replica_squared : 1.0F;
+}
+
 }  // namespace
 
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
@@ -370,7 +378,10 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
         const Residuals::Pixel d = detail(x, y);
         const Power p = power_of(power.at(x, y));
         const auto block = static_cast<float>(map.regions[map.region(x, y)].block_px);
-        const float share = share_to_keep(p, wide.at(x, y), independent / (block * block), settings.residual_doubt);
+        const Power around = wide.at(x, y);
+        const float doubt = doubt_of_few(static_cast<float>(input.values.count(site_of_pixel(x, y))), settings);
+        const float share = share_of_confirmed(scale(x, y) * d[3] * d[3], around, settings.most_deviations) *
+                            share_to_keep(p, around, independent / (block * block), doubt * settings.residual_doubt);
         const std::size_t i = kept.index(x, y);
         kept.pixels[i] += share * radiance_of(d);
         const float rest = 1.0F - share;
