@@ -15,12 +15,13 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kReach = 2;  // blocks
-constexpr std::array<float, kReach + 1> kBinomial{6.0F / 16, 4.0F / 16, 1.0F / 16};
+// Binomial weights by the distance in blocks: wide for what decides, narrow for what is shown.
+constexpr std::array<float, 3> kWide{6.0F / 16, 4.0F / 16, 1.0F / 16};
+constexpr std::array<float, 2> kNarrow{0.5F, 0.25F};
 // The guides count alone where hits are shifted by less than the first of these shares of a block (root mean square),
 // and nothing where they are by more than the second.
-constexpr float kLeastShift = 0.25F;
-constexpr float kFullShift = 0.75F;
+constexpr float kLeastShift = 0.5F;
+constexpr float kFullShift = 1;
 constexpr float kFullyBlended = 0.125F;  // from this share of samples on blended surfaces on, the guides count nothing
 
 // Of a site, or of several in the proportions of their weights.
@@ -124,8 +125,9 @@ class SampledFirstHits {
   }
 
   // visit(site, weight) for the sites around, the own one among them, that filters change.
-  template <class Visit>
-  void for_each_around(std::size_t site, const Visit& visit) const {
+  template <std::size_t kWeights, class Visit>
+  void for_each_around(std::size_t site, const std::array<float, kWeights>& weights, const Visit& visit) const {
+    constexpr int kReach = static_cast<int>(kWeights) - 1;
     const Site& own = map_.sites[site];
     const int block = map_.regions[own.region].block_px;
     for (int dy = -kReach; dy <= kReach; ++dy) {
@@ -137,8 +139,8 @@ class SampledFirstHits {
         }
         const std::size_t other = dx == 0 && dy == 0 ? site : cells_.site_of_pixel(x, y);
         if (is_known(other)) {
-          visit(other, kBinomial[static_cast<std::size_t>(std::abs(dx))] *
-                           kBinomial[static_cast<std::size_t>(std::abs(dy))] *
+          visit(other, weights[static_cast<std::size_t>(std::abs(dx))] *
+                           weights[static_cast<std::size_t>(std::abs(dy))] *
                            static_cast<float>(input_.values.count(other)));
         }
       }
@@ -150,7 +152,7 @@ class SampledFirstHits {
     float samples = 0;
     float square_shift = 0;
     float blended = 0;
-    for_each_around(site, [&](std::size_t other, float weight) {
+    for_each_around(site, kWide, [&](std::size_t other, float weight) {
       const FirstHitSums& hits = input_.sparse.first_hits[other];
       const float per_sample = weight / static_cast<float>(input_.values.count(other));
       samples += weight;
@@ -174,7 +176,7 @@ class SampledFirstHits {
     }
     Seen sum;
     float weights = 0;
-    for_each_around(site, [&](std::size_t other, float weight) {
+    for_each_around(site, kNarrow, [&](std::size_t other, float weight) {
       const float w = weight * seen_[other].share;
       weights += w;
       sum.radiance += w * seen_[other].radiance;

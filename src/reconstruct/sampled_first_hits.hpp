@@ -11,9 +11,9 @@ namespace gazetrace {
 //   seen = shone / n + sum over its surfaces of (albedo / n) (smoothed reflected / smoothed albedo),
 // has the noise of texture and coverage, but not that of light. It counts where the samples' hits lie off the place at
 // which the pinhole sees them, by a good part of a block, or are on blended surfaces (FirstHitSums), both averaged over
-// five by five blocks, so that no sample decides for itself. There the picture becomes the mean of `seen` over these
-// blocks, between the centres of blocks, and what that lacks of `seen` is given back as far as it is more than noise
-// (keep_residuals.hpp).
+// five by five blocks, so that no sample decides for itself. There the picture becomes the mean of `seen` over three by
+// three blocks, between the centres of blocks, and what that lacks of `seen` is given back as far as it is more than
+// noise (keep_residuals.hpp).
 //
 // `input.sparse` has first hits. `picture` is filled from the guides. `cells` are smoothed.
 void show_what_samples_saw(const FilterInput& input, const SurfaceCells& cells, const SmoothingSettings& settings,
