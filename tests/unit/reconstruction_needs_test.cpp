@@ -62,11 +62,12 @@ TEST(ReconstructionNeeds, AFilterMustBeNamed) {
   }
 }
 
-TEST(ChooseFilter, GuidedForWhatIsFoveatedAndNothingElse) {
+TEST(ChooseFilter, GuidedWhereItsFirstHitsAreRightAndAllSamplesAreThere) {
   EXPECT_EQ(choose_filter({}).name, "guided");
+  EXPECT_EQ(choose_filter({.foveated = false}).name, "guided");
+  EXPECT_NE(choose_filter({.foveated = false}).reason, choose_filter({}).reason);
   for (const FilterFacts& facts :
-       std::vector<FilterFacts>{{.foveated = false},
-                                {.blurs = true},
+       std::vector<FilterFacts>{{.blurs = true},
                                 {.accumulates_sites = true},
                                 {.enhances_contrast = true},
                                 {.part_of_samples = true},

@@ -6,12 +6,11 @@ namespace gazetrace {
 void add_filter_options(JobSchema& schema) {
   schema.group("Between the samples");
   schema
-      .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
-             "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which "
-             "passes single pixels through, for uniform ones (without gaze all are), with --aperture or --shutter, "
-             "--sample-range, --enhance-contrast and --accumulate-order before. All frames have one filter: where "
-             "--gaze-missing uniform makes some of a log's frames uniform, they are guided as well. What guided takes "
-             "from first hits shows no blur of lens and shutter")
+      .value(
+          "--filter", &JobSettings::filter, "NAME", Touch::filter,
+          "Fills pixels between samples and takes noise away ('gazetrace list filters'). auto: guided; linear, which "
+          "passes single pixels through, with --aperture or --shutter, --sample-range, --enhance-contrast and "
+          "--accumulate-order before. What guided takes from first hits shows no blur of lens and shutter")
       .with(Trait::always_stated);
   schema.value(
       "--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
