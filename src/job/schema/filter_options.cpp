@@ -7,10 +7,9 @@ void add_filter_options(JobSchema& schema) {
   schema.group("Between the samples");
   schema
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
-             "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which "
-             "passes single pixels through, for uniform ones (without gaze all are), with --sample-range, "
-             "--enhance-contrast and --accumulate-order before. All frames have one filter: where --gaze-missing "
-             "uniform makes some of a log's frames uniform, they are guided as well")
+             "Fills pixels between samples and takes noise away ('gazetrace list filters'). auto: guided; linear, "
+             "which passes single pixels through, with --sample-range, --enhance-contrast and "
+             "--accumulate-order before")
       .with(Trait::always_stated);
   schema.value("--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
                "A pixel with at least this many samples of its own keeps their mean, whatever the filter; 0: no pixel "
