@@ -231,6 +231,14 @@ float share_to_keep(const Power& near, const Power& wide, float independent, flo
   return share > 0 ? std::min(share, 1.0F) : 0.0F;  // no number where squares were infinite
 }
 
+// Of a residual whose replica is far beyond what residuals and noise are far around, one half of the samples knows
+// nothing: a rare bright sample. It fades by the square of the excess, and the smoothed light around it keeps what the
+// sample brought. `replica_squared`: relative, as squares are in `wide`.
+float share_of_confirmed(float replica_squared, const Power& wide, float most_deviations) {
+  const float most = most_deviations * most_deviations * std::max(wide.residual, wide.noise);
+  return replica_squared > most ? most / replica_squared : 1.0F;
+}
+
 // The residuals of the blocks of one region, and what is kept of them.
 class RegionResiduals {
  public:
@@ -238,10 +246,11 @@ class RegionResiduals {
                   const std::vector<SiteResidual>& of_site, const Image<std::uint32_t>& site_of_pixel,
                   const SurfacePicture& picture)
       : window_(window),
-        doubt_(settings.residual_doubt),
+        most_deviations_(settings.most_deviations),
         threads_(input.threads),
         finer_(window.width, window.height),
         light_(window.width, window.height),
+        doubt_(static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height)),
         kept_(static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height)) {
     const std::vector<std::uint32_t> sites = sites_of_blocks(input, window, site_of_pixel);
     for_each_row(window.height, threads_, [&](int y) {
@@ -250,6 +259,8 @@ class RegionResiduals {
         const SiteResidual& r = of_site[site];
         finer_.put(x, y, {r.radiance.x, r.radiance.y, r.radiance.z, r.replica});
         kept_[index(x, y)].shown = r.shown;
+        doubt_[index(x, y)] =
+            settings.residual_doubt * doubt_of_few(static_cast<float>(input.values.count(site)), settings);
         light_.put(x, y, {shown_by_site(input.map, site, r, picture)});
       }
     });
@@ -348,7 +359,9 @@ class RegionResiduals {
         const Residuals::Value d = detail(coarser, x, y);
         const Power p = power_of(power.at(x, y));
         const float scale = scales.at(x, y)[0];
-        const float share = share_to_keep(p, wide.at(x, y), independent, doubt_);
+        const Power around = wide.at(x, y);
+        const float share = share_of_confirmed(scale * d[3] * d[3], around, most_deviations_) *
+                            share_to_keep(p, around, independent, doubt_[index(x, y)]);
         KeptResidual& kept = kept_[index(x, y)];
         kept.radiance += share * radiance_of(d);
         const float rest = 1.0F - share;
@@ -363,10 +376,11 @@ class RegionResiduals {
   }
 
   BlockWindow window_;
-  float doubt_;
+  float most_deviations_;
   int threads_;
   Residuals finer_;
-  Plane light_;  // mean luminance of the picture
+  Plane light_;               // mean luminance of the picture
+  std::vector<float> doubt_;  // of each block's residual
   std::vector<KeptResidual> kept_;
 };
 

@@ -206,24 +206,28 @@ class Smoother {
     for_each_tile([&](std::size_t t) {
       for_each_cell(near, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t) {
         const SurfaceCell& own = lattice_.cells[i];
-        double weight = static_cast<double>(kBinomial[0] * kBinomial[0] * own.samples);
+        double samples = static_cast<double>(own.samples);
+        double weight = static_cast<double>(kBinomial[0] * kBinomial[0]) * samples;
         double light = weight * static_cast<double>(own.light);
         double square = weight * static_cast<double>(own.square);
         for (const Tie* tie = begin; tie != end; ++tie) {
           const SurfaceCell& other = lattice_.cells[tie->other];
           const double w = static_cast<double>(tie->like * other.samples);
           weight += w;
+          samples += static_cast<double>(other.samples);
           light += w * static_cast<double>(other.light);
           square += w * static_cast<double>(other.square);
         }
         const double mean = light / weight;
-        lights_[i].variance = static_cast<float>(std::max(square / weight - mean * mean, 0.0)) / own.samples;
+        // Of a single sample nobody knows the spread: it counts as large as the light.
+        const double spread = samples > 1 ? (square / weight - mean * mean) * samples / (samples - 1) : mean * mean;
+        lights_[i].variance = static_cast<float>(std::max(spread, 0.0)) / own.samples;
         if (lights_[i].reflected_replica == 0) {
-          // One of the halves has no sample here. The error of a single sample is as large as the spread, and has
-          // either sign.
+          // One of the halves has no sample here, so that nothing confirms what the other one saw. The error is as
+          // large as the spread, or as all that this light is off the others', and has either sign.
           const float sign = (hash32(static_cast<std::uint32_t>(i)) & 1U) != 0 ? 1.0F : -1.0F;
-          lights_[i].reflected_replica =
-              sign * std::sqrt(lights_[i].variance) * std::max(luminance(own.albedo), kLeastAlbedo);
+          const float off = std::max(std::sqrt(lights_[i].variance), std::fabs(own.light - static_cast<float>(mean)));
+          lights_[i].reflected_replica = sign * off * std::max(luminance(own.albedo), kLeastAlbedo);
         }
       });
     });
@@ -354,7 +358,8 @@ class Smoother {
         // A rare bright sample is in one of the halves only. Where there is one, the replicas are as large as the
         // details, while what such samples add to the variance is spread over all cells around.
         noise = std::max(noise * static_cast<double>(scales[t]), replicas);
-        const double signal = squares - noise - settings_.detail_doubt * std::sqrt(2 * spread);
+        const double doubt = settings_.detail_doubt * static_cast<double>(doubt_of_few(samples_[i], settings_));
+        const double signal = squares - noise - doubt * std::sqrt(2 * spread);
         const float share = signal > 0 ? static_cast<float>(signal / squares) : 0.0F;
         const Detail& d = details_[i];
         KeptDetail& kept = kept_[i];

@@ -22,7 +22,7 @@ void add_exr_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema
       .value("--aov", exr(&ExrSettings::aovs), "NAME,NAME", Touch::output,
-             "More channels of the .exr ('gazetrace list aovs')")
+             "Further channels of the .exr ('gazetrace list aovs')")
       .with(Trait::one_run);
 }
 
