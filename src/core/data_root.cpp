@@ -77,14 +77,14 @@ std::vector<fs::path> data_roots(const std::string& path) {
 }
 
 void check_within(const std::vector<fs::path>& roots, const std::string& named, const std::string& words,
-                  const std::string& place) {
+                  const std::string& place, const std::string& remedy) {
   const fs::path file = resolved(fs::absolute(named));
   if (std::any_of(roots.begin(), roots.end(), [&](const fs::path& root) { return lies_in(file, root); })) {
     return;
   }
   throw Error(ErrorKind::input, place,
               "'" + bounded(words, 200) + "' leads outside of '" + roots.front().string() + "', where the data lies",
-              "copy the file there, or give `allow-outside` where you trust the data");
+              remedy);
 }
 
 }  // namespace gazetrace

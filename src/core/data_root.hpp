@@ -17,6 +17,7 @@ std::vector<std::filesystem::path> data_roots(const std::string& path);
 // Error(input) at `place` where the file `named`, with all symbolic links followed, lies outside of these roots.
 // `words` is what the data says. The file need not exist, and is not opened.
 void check_within(const std::vector<std::filesystem::path>& roots, const std::string& named, const std::string& words,
-                  const std::string& place);
+                  const std::string& place,
+                  const std::string& remedy = "copy the file there, or give `allow-outside` where you trust the data");
 
 }  // namespace gazetrace

@@ -94,7 +94,7 @@ class MergeLooksAtFiles(Farm):
     def test_sums_of_samples(self):
         for samples in ("0:4", "4:8"):
             self.run_ok("render", "glide.gltf", "--falloff", "uniform", "--spp", "8", "--filter", "none", "--size", "32x18",
-                        "--quiet", "-o", "out/f.exr", "--sample-range", samples)
+                        "--quiet", "--frames", "1", "-o", "out/f.exr", "--sample-range", samples)
         sums = self.folder / "out/samples.0001.4-8.sums"
         content = bytearray(sums.read_bytes())
         content[-50] ^= 1
@@ -150,7 +150,7 @@ class ResumeLosesNothing(Farm):
         self.render("out", "--frames", "1-2", *history, "--checkpoint", "after-2")
         self.render("out", "--frames", "3-4", *history)
         joined = ["render", *JOB, *outputs("out"), "--frames", "3-4", *history, "--resume-from", "after-2", "--resume"]
-        self.assert_refused(joined, ["2 finished frames, 3-4", "other frames came before them"])
+        self.assert_refused(joined, ["2 finished frames, 3-4", "after-2 was not read then"])
         self.run_ok(*joined, "--overwrite")
         self.run_ok("merge", "out")
 
@@ -372,7 +372,7 @@ class Locks(Running):
 class Signals(Running):
     """The frame in hand is finished or given up, the run says what is left, and goes on to the same bits."""
 
-    LONG = ["--frames", "1-30", "--size", "160x90", "--region-samples", "60,60,60", "--threads", "1"]
+    LONG = ["--frames", "1-24", "--size", "160x90", "--region-samples", "60,60,60", "--threads", "1"]
 
     def interrupt(self, folder_ready, number, *more):
         process = self.start(*more)
@@ -467,7 +467,7 @@ class Bombs(Farm):
     def test_memory_is_told_and_kept(self):
         told = json.loads(self.run_ok("scene", "glide.gltf", "--estimate", "--json").stdout)
         self.assertEqual((told["triangles"], told["nodes"]), (12, 4))
-        self.assertIn("will take about", self.run_ok("scene", "glide.gltf").stdout)
+        self.assertIn("will take    about", self.run_ok("scene", "glide.gltf").stdout)
         refusal = ["glide.gltf", "will take about", "the limit is 0 MiB", "--max-memory"]
         self.assert_refused(["scene", "glide.gltf", "--max-memory", "1K"], refusal)
         self.assert_refused(["render", *JOB, "-o", "o/f.exr", "--max-memory", "1K"], refusal)
