@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,6 +70,9 @@ struct TraceSettings {
   // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
   // slower.
   std::optional<SampleRange> samples;
+  // Asked before every piece of work, from several threads: once it is true, tracing ends with Error(interrupted), and
+  // the frame is lost. Empty: never.
+  std::function<bool()> stop;
 };
 
 // How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light can

@@ -111,6 +111,21 @@ void check_sample_range(const JobSettings& job) {
   }
 }
 
+void check_chunk(const JobSettings& job) {
+  if (job.chunk_frames > 0 && !job.chunk) {
+    throw Error(ErrorKind::usage, "`chunk-frames`", "which chunk is it?", "give `chunk` K");
+  }
+  if (job.chunk && (job.chunk->count == 0) != (job.chunk_frames > 0)) {
+    throw Error(ErrorKind::usage, "`chunk`",
+                job.chunk_frames > 0 ? "the length of chunks says how many there are" : "of how many chunks is it one?",
+                "give `chunk` K/N, or `chunk` K with `chunk-frames`");
+  }
+  if (job.chunk && job.trace.samples) {
+    throw Error(ErrorKind::usage, "`chunk`", "`sample-range` divides the samples, and this the frames",
+                "give one of them");
+  }
+}
+
 }  // namespace
 
 void check_job(const Job& whole, const JobSchema& schema) {
@@ -130,6 +145,7 @@ void check_job(const Job& whole, const JobSchema& schema) {
   check_ranges(job, schema);
   check_history_options(job);
   check_sample_range(job);
+  check_chunk(job);
   if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
     throw Error(ErrorKind::usage, "`gaze-at`",
                 fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
@@ -148,9 +164,6 @@ void check_job(const Job& whole, const JobSchema& schema) {
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);
   check_display_image_size(output.display, job.size.width, job.size.height);
-  if (job.overwrite && job.resume) {
-    throw Error(ErrorKind::usage, "`resume`", "`overwrite` starts over and `resume` goes on", "give one of them");
-  }
   check_output_folders(output, job.checkpoint);
 }
 

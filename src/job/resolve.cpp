@@ -11,6 +11,7 @@
 
 #include "gazetrace/error.hpp"
 #include "job/choose_frames.hpp"
+#include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/scene_camera.hpp"
 
@@ -83,9 +84,7 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
     throw Error(ErrorKind::usage, "", "no scene was given", "name a .gltf or .glb file");
   }
   const auto begin = std::chrono::steady_clock::now();
-  SceneReadOptions reading;
-  reading.animation = job.animation;
-  reading.threads = job.threads;
+  SceneReadOptions reading = scene_read_options(job);
   reading.progress = options.progress;
   resolved.scene = std::make_unique<Scene>(load_scene(job.scene, reading));
   if (options.scope == ResolveScope::render) {
@@ -163,6 +162,19 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   }
 }
 
+// Takes the frames of the job's chunk out of those of the whole sequence.
+void choose_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  Decisions unused;
+  const FramePlan whole =
+      plan_frames(camera, log, plan_settings(job, resolved.frames, log, taken_off_ns, unused), nullptr);
+  std::string decision;
+  std::vector<std::int32_t> frames = frames_of_chunk(job, whole, decision);
+  resolved.chunk_borders = chunk_borders(job, whole);
+  resolved.frames = std::move(frames);
+  resolved.decisions.emplace_back("chunk", decision);
+}
+
 void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter, {}}).needs().guides) {
     warnings.push_back(
@@ -224,6 +236,9 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   if (log == nullptr && !follows_picture(job.foveation)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
+  if (job.chunk) {
+    choose_chunk(job, camera, taken_off_ns, resolved);
+  }
   make_plan(job, camera, taken_off_ns, resolved);
   const auto& aovs = job.exr.aovs;
   if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
@@ -268,7 +283,7 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   resolved.pipeline.preroll = static_cast<std::int32_t>(resolved.plan.frames.size() - resolved.frames.size());
   if (options.scope != ResolveScope::plan) {
     resolved.input_digests = digest_job_files(settings);
-    digest_job(settings, resolved.frames, resolved.input_digests, resolved.pipeline);
+    resolved.pipeline.settings_digest = digest_job(settings, resolved.input_digests);
   }
   if (options.scope == ResolveScope::render) {
     resolved.history = starting_history(resolved.plan, resolved.pipeline, resolved.warnings);

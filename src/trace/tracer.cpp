@@ -340,6 +340,9 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
   parallel_for(ranges.size(), tracer_->options.threads, [&](std::size_t i) {
+    if (settings.stop && settings.stop()) {
+      throw Error(ErrorKind::interrupted, "", "the frame was given up");
+    }
     const FlushDenormals flush;
     auto work = pool.take();
     tracer_->trace_sites(context, kernel, filter, frame, map, z_order ? &*z_order : nullptr, ranges[i], *work,

@@ -249,7 +249,6 @@ class BadOptions(harness.CliTest):
         self.assert_refused(["render", "box.gltf", "more.gltf"], ["more.gltf"])
         self.assert_refused(["render", "box.gltf", "--size"], ["--size"])
         self.assert_refused(["render", "box.gltf", "--size", "1x1", "--size", "2x2"], ["--size"])
-        self.assert_refused(["render", "box.gltf", *OUT, "--overwrite", "--resume"], ["--resume"])
         self.assert_refused(["scene"], ["scene"])
         self.assert_refused(["gaze", "inspect"], ["log"])
         self.assert_refused(["gaze"], ["subcommand", "gazetrace gaze --help"])

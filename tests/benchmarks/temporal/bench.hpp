@@ -71,7 +71,7 @@ class Bench {
     PipelineSettings settings;
     settings.reconstruction.filter = filter;
     settings.accumulate = accumulate;
-    settings.history_digest = "none";
+    settings.settings_digest = "none";
     settings.trace.seed = 1;
     return settings;
   }
