@@ -267,6 +267,12 @@ class RegionResiduals {
     keep_bands();
   }
 
+  [[nodiscard]] int first_column() const { return window_.x; }
+  [[nodiscard]] int columns() const { return window_.width; }
+  [[nodiscard]] bool has_row(int block_y) const { return block_y >= window_.y && block_y < window_.y + window_.height; }
+  // has_row(block_y) must be true.
+  [[nodiscard]] const KeptResidual* row(int block_y) const { return &kept_[index(0, block_y - window_.y)]; }
+  // Beyond the window the last block is repeated.
   [[nodiscard]] const KeptResidual& at(int block_x, int block_y) const {
     return kept_[index(std::clamp(block_x - window_.x, 0, window_.width - 1),
                        std::clamp(block_y - window_.y, 0, window_.height - 1))];
@@ -384,39 +390,75 @@ class RegionResiduals {
   std::vector<KeptResidual> kept_;
 };
 
-// Between the centres of blocks. The pixels of a block share its residual in proportion to what they show: what is
-// wrong with light is wrong by a factor.
-KeptResidual kept_at_pixel(const RegionResiduals& residuals, int block_px, int x, int y, float light) {
-  if (block_px == 1) {
-    return residuals.at(x, y);
-  }
-  const auto size = static_cast<float>(block_px);
-  const float u = (static_cast<float>(x) + 0.5F) / size - 0.5F;
-  const float v = (static_cast<float>(y) + 0.5F) / size - 0.5F;
-  const int column = static_cast<int>(std::floor(u));
-  const int row = static_cast<int>(std::floor(v));
-  const float fx = u - std::floor(u);
-  const float fy = v - std::floor(v);
-  KeptResidual sum;
-  sum.rest = 0;
-  const auto add = [&](int dx, int dy, float weight) {
-    const KeptResidual& kept = residuals.at(column + dx, row + dy);
-    sum.radiance += weight * kept.radiance;
-    sum.rest += weight * kept.rest;
-    sum.variance += weight * kept.variance;
-    sum.error += weight * kept.error;
-    sum.shown += weight * kept.shown;
-  };
-  add(0, 0, (1.0F - fx) * (1.0F - fy));
-  add(1, 0, fx * (1.0F - fy));
-  add(0, 1, (1.0F - fx) * fy);
-  add(1, 1, fx * fy);
-  const float share = sum.shown > 0 ? std::min(light / sum.shown, kMostShare) : 1.0F;
-  sum.radiance = share * sum.radiance;
-  sum.variance *= share * share;
-  sum.error *= share * share;
-  return sum;
+void add(float weight, const KeptResidual& kept, KeptResidual& sum) {
+  sum.radiance += weight * kept.radiance;
+  sum.rest += weight * kept.rest;
+  sum.variance += weight * kept.variance;
+  sum.error += weight * kept.error;
+  sum.shown += weight * kept.shown;
 }
+
+// Where a pixel lies between the centres of two blocks.
+struct Between {
+  int block;       // the first of them
+  float fraction;  // of the way to the other
+};
+Between between_blocks(int pixel, int block_px) {
+  const float at = (static_cast<float>(pixel) + 0.5F) / static_cast<float>(block_px) - 0.5F;
+  const float block = std::floor(at);
+  return {static_cast<int>(block), at - block};
+}
+
+// What is kept of the residuals of a region in the pixels of one row; nothing where the region has none there.
+class RowOfResiduals {
+ public:
+  RowOfResiduals(const RegionResiduals& residuals, int block_px, int y)
+      : block_px_(block_px), first_(residuals.first_column() - 1) {
+    if (!residuals.has_row(y / block_px)) {
+      return;
+    }
+    if (block_px == 1) {
+      first_ = residuals.first_column();
+      of_blocks_ = residuals.row(y);
+      return;
+    }
+    // First between the rows of blocks, for the blocks of the row and one on each side.
+    const auto [row, fraction] = between_blocks(y, block_px);
+    interpolated_.resize(static_cast<std::size_t>(residuals.columns()) + 2);
+    for (std::size_t k = 0; k < interpolated_.size(); ++k) {
+      const int column = first_ + static_cast<int>(k);
+      KeptResidual& kept = interpolated_[k];
+      kept.rest = 0;
+      add(1.0F - fraction, residuals.at(column, row), kept);
+      add(fraction, residuals.at(column, row + 1), kept);
+    }
+    of_blocks_ = interpolated_.data();
+  }
+  RowOfResiduals(RowOfResiduals&&) = default;
+
+  // The pixels of a block share its residual in proportion to what they show (`light`): what is wrong with light is
+  // wrong by a factor.
+  [[nodiscard]] KeptResidual at(int x, float light) const {
+    if (block_px_ == 1) {
+      return of_blocks_[x - first_];
+    }
+    const auto [column, fraction] = between_blocks(x, block_px_);
+    KeptResidual sum;
+    sum.rest = 0;
+    add(1.0F - fraction, of_blocks_[column - first_], sum);
+    add(fraction, of_blocks_[column + 1 - first_], sum);
+    const float share = sum.shown > 0 ? std::min(light / sum.shown, kMostShare) : 1.0F;
+    sum.radiance = share * sum.radiance;
+    sum.variance *= share * share;
+    sum.error *= share * share;
+    return sum;
+  }
+
+ private:
+  int block_px_, first_;
+  std::vector<KeptResidual> interpolated_;
+  const KeptResidual* of_blocks_ = nullptr;  // from block `first_` on
+};
 
 }  // namespace
 
@@ -440,13 +482,16 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
     of_region.emplace_back(input, settings, window, residuals, site_of_pixel, picture);
   }
   for_each_row(map.height_px, input.threads, [&](int y) {
+    std::vector<RowOfResiduals> rows;
+    for (std::size_t r = 0; r < of_region.size(); ++r) {
+      rows.emplace_back(of_region[r], map.regions[r].block_px, y);
+    }
     for (int x = 0; x < map.width_px; ++x) {
       const std::uint8_t region = map.region(x, y);
-      const int block = map.regions[region].block_px;
-      const bool filtered = block > 1 || input.pass_through.needs_filtering(site_of_pixel(x, y));
+      const bool filtered = map.regions[region].block_px > 1 || input.pass_through.needs_filtering(site_of_pixel(x, y));
       const std::size_t i = picture.radiance.index(x, y);
       Vec3f& radiance = picture.radiance.pixels[i];
-      const KeptResidual kept = kept_at_pixel(of_region[region], block, x, y, luminance(radiance));
+      const KeptResidual kept = rows[region].at(x, luminance(radiance));
       if (filtered) {
         const Vec3f value = radiance + kept.radiance;
         radiance = {std::max(value.x, 0.0F), std::max(value.y, 0.0F), std::max(value.z, 0.0F)};
