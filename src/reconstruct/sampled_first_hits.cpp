@@ -22,7 +22,10 @@ constexpr std::array<float, 2> kNarrow{0.5F, 0.25F};
 // and nothing where they are by more than the second.
 constexpr float kLeastShift = 0.5F;
 constexpr float kFullShift = 1;
-constexpr float kFullyBlended = 0.125F;  // from this share of samples on blended surfaces on, the guides count nothing
+// From this share of samples on blended surfaces on, the guides count only as what they are there: so many samples more
+// in each pixel, and these in their places, while those of a site are spread over all of its pixels.
+constexpr float kFullyBlended = 0.125F;
+constexpr float kRaysOfGuides = 2;
 
 // Of a site, or of several in the proportions of their weights.
 struct Seen {
@@ -164,8 +167,12 @@ class SampledFirstHits {
     }
     const auto block = static_cast<float>(map_.regions[map_.sites[site].region].block_px);
     const float shift = std::sqrt(square_shift / samples) / block;
-    return std::clamp(std::max((shift - kLeastShift) / (kFullShift - kLeastShift), blended / samples / kFullyBlended),
-                      0.0F, 1.0F);
+    const auto pixels = static_cast<float>(map_.sites[site].pixels);
+    const float density = static_cast<float>(input_.values.count(site)) / pixels;
+    const float blurred = std::clamp((shift - kLeastShift) / (kFullShift - kLeastShift), 0.0F, 1.0F);
+    const float seen_through =
+        std::min(blended / samples / kFullyBlended, 1.0F) * density / (density + kRaysOfGuides * pixels);
+    return std::max(blurred, seen_through);
   }
 
   // Of those sites that are to be believed.
