@@ -49,6 +49,7 @@ struct SequenceResult {
   std::vector<std::int32_t> skipped;  // frames that were complete before this run began
   std::vector<BadSample> bad_samples;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
+  std::vector<std::pair<std::string, std::string>> facts;  // decided while rendering; for RunRecord::facts
   Warnings warnings;
 };
 
