@@ -71,6 +71,9 @@ struct RenderedFrame {
   double exposure_ev = 0;  // stops; the radiance is not multiplied by it
   SamplingMap map;
   TraceStats samples, first_look;  // as SparseFrame::stats and TracedFrame::first_look
+  // Of frames that were traced only because this one reads them (AccumulateMode::two_sided), their pilots among them.
+  // Their time is part of `times`. Empty from FrameRenderer.
+  TraceStats others;
   Prediction prediction;
   StageTimes times;
 };

@@ -58,6 +58,7 @@ struct SequenceResult {
   bool interrupted = false;
   std::vector<std::int32_t> left;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
+  std::vector<std::pair<std::string, std::string>> facts;  // decided while rendering; for RunRecord::facts
   Warnings warnings;
 };
 

@@ -105,11 +105,20 @@ struct GazeAges {
   double half_frame_ns = 0;
 };
 
+// The frames by which the quality of a whole sequence is judged before it is rendered. They follow from the sequence
+// and not from the frames that a run renders, so that all parts of it come to the same judgement.
+struct JudgedFrames {
+  // Each run is of consecutive frames; the first one begins the sequence. Empty: nothing is to be judged.
+  std::vector<std::vector<FrameRequest>> runs;
+  std::int32_t sequence_frames = 0;  // how many frames the whole sequence has; 1: a still
+};
+
 struct FramePlan {
   std::vector<FrameRequest> frames;
   // Further frames in ascending order, none of them among `frames`, that are traced only because those read them
   // (AccumulateMode::two_sided).
   std::vector<FrameRequest> around;
+  JudgedFrames judged;                       // for QualityTarget::jod
   std::optional<GazeAges> ages;              // empty: no frame has gaze from a log
   std::int64_t gaze_latency_ns = 0;          // that of the settings
   std::vector<std::string> gaze_processing;  // what was done to the log that steers, one line per step

@@ -101,7 +101,7 @@ void check_rates(const FoveationSettings& settings) {
   require(int{target.relmse.has_value()} + int{target.jod.has_value()} + int{target.time_s.has_value()} == 1,
           "`target-jod`", "there are several targets", "give one of `target-relmse`, `target-jod` and `time-budget`");
   const std::string_view place = target.relmse ? "`target-relmse`" : target.jod ? "`target-jod`" : "`time-budget`";
-  require(by_pilot, place, "the fall-off '" + settings.falloff + "' does not know a frame's error",
+  require(by_pilot || target.jod, place, "the fall-off '" + settings.falloff + "' does not know a frame's error",
           "give `falloff` visible");
   require(!settings.budget_spp && !settings.budget_samples, place, "there is a budget, too",
           "give a target, or `budget-spp` or `budget-samples`");

@@ -11,6 +11,7 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/resolve.hpp"
 #include "job/outputs.hpp"
+#include "pipeline/adaptive_rates.hpp"
 
 namespace gazetrace {
 namespace {
@@ -87,6 +88,28 @@ void check_history_options(const JobSettings& job) {
   }
 }
 
+void check_target(const JobSettings& job) {
+  if (!job.foveation.target.jod) {
+    return;
+  }
+  if (job.gaze.path.empty() && !job.gaze_at) {
+    throw Error(ErrorKind::usage, "`target-jod`", "what is seen depends on where the eye looks",
+                "give `gaze` or `gaze-at`, and the `screen`");
+  }
+  const std::string filter = filter_of(job).name;
+  if (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear")) {
+    throw Error(ErrorKind::usage, "`target-jod`",
+                fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see",
+                            job.foveation.falloff, filter),
+                "give `falloff` uniform and `filter` none, or a budget");
+  }
+  if (job.accumulate.mode != AccumulateMode::off) {
+    throw Error(ErrorKind::usage, "`target-jod`",
+                "frames that are accumulated have more frames before them than a pilot looks at",
+                "leave `accumulate` out, or give a budget");
+  }
+}
+
 void check_sample_range(const JobSettings& job) {
   if (!job.trace.samples) {
     return;
@@ -142,8 +165,15 @@ void check_job(const Job& whole, const JobSchema& schema) {
                 fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
                 "give `filter` linear, push-pull or tent");
   }
+  if (job.foveation.falloff == "visible" && !job.foveation.target.is_given()) {
+    FrameRequest request;
+    request.width_px = job.size.width;
+    request.height_px = job.size.height;
+    check_pilot_budget(job.foveation, request);
+  }
   check_ranges(job, schema);
   check_history_options(job);
+  check_target(job);
   check_sample_range(job);
   check_chunk(job);
   if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {

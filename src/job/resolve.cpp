@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -13,6 +15,7 @@
 #include "job/choose_frames.hpp"
 #include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
+#include "job/judged_frames.hpp"
 #include "job/scene_camera.hpp"
 
 namespace gazetrace {
@@ -136,6 +139,40 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   }
 }
 
+// For a target in JOD. The sequence is as long as the job is without `frames`; where nothing moves, it is a still or,
+// if there are `frames`, a second of rest.
+void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, const Scene* scene,
+                       ResolvedJob& resolved) {
+  if (!camera.is_static || (scene != nullptr && moves(*scene))) {
+    throw Error(ErrorKind::usage, "`target-jod`", "the view moves, and is only judged at rest",
+                "give a budget, or hold camera and scene still");
+  }
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  JobSettings whole = job;
+  whole.frames.reset();
+  std::string decision;
+  auto length = static_cast<std::int32_t>(choose_frames(whole, camera, log, taken_off_ns, scene, decision).size());
+  const bool gaze_moves = length > 1;
+  if (!gaze_moves && job.frames) {
+    length = static_cast<std::int32_t>(
+        std::max(1.0, std::round(static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator))));
+  }
+  const JudgedNumbers judged = judged_numbers(length, gaze_moves, job.fps);
+  PlanSettings settings = resolved.plan_settings;
+  settings.frames.clear();
+  for (const std::vector<std::int32_t>& run : judged.runs) {
+    settings.frames.insert(settings.frames.end(), run.begin(), run.end());
+  }
+  FramePlan plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
+  resolved.plan.judged.sequence_frames = judged.sequence_frames;
+  auto next = plan.frames.begin();
+  for (const std::vector<std::int32_t>& run : judged.runs) {
+    const auto end = next + static_cast<std::ptrdiff_t>(run.size());
+    resolved.plan.judged.runs.emplace_back(std::make_move_iterator(next), std::make_move_iterator(end));
+    next = end;
+  }
+}
+
 void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
@@ -240,6 +277,9 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     choose_chunk(job, camera, taken_off_ns, resolved);
   }
   make_plan(job, camera, taken_off_ns, resolved);
+  if (job.foveation.target.jod) {
+    add_judged_frames(job, camera, taken_off_ns, scene, resolved);
+  }
   const auto& aovs = job.exr.aovs;
   if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
     throw Error(ErrorKind::usage, "`aov`", "there is no eccentricity without gaze", "give `gaze` or `gaze-at`");

@@ -53,6 +53,7 @@ void finish_run_record(RunRecord& record, const SequenceResult& result, const Fr
   record.facts["peak_memory_mib"] = fmt::format("{:.1f}", peak_memory_mib());
   const Warnings late = result_warnings(result, plan);
   record.warnings.insert(record.warnings.end(), late.begin(), late.end());
+  record.facts.insert(result.facts.begin(), result.facts.end());
   record.bad_samples = result.bad_samples;
   record.files = result.files;
 }

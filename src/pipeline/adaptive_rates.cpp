@@ -13,6 +13,7 @@
 #include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
 #include "pipeline/noise_estimate.hpp"
+#include "pipeline/trace_counts.hpp"
 #include "pipeline/visible_noise.hpp"
 
 namespace gazetrace {
@@ -37,6 +38,17 @@ constexpr double kLeastRate = 1e-3;  // samples a pixel: below, nothing can be e
 
 double pixels_of(const FrameRequest& request) {
   return static_cast<double>(request.width_px) * request.height_px;
+}
+
+// Samples a pixel, the pilot's among them.
+double budget_spp_of(const FoveationSettings& foveation, const FrameRequest& request) {
+  return foveation.budget_samples ? static_cast<double>(*foveation.budget_samples) / pixels_of(request)
+                                  : foveation.budget_spp.value_or(foveation.uniform_spp);
+}
+
+// Of the first pilot on a budget, in samples a pixel of its own.
+double first_pilot_spp(double spp, double cell_px) {
+  return std::clamp(std::round(kFirstShare * spp * cell_px * cell_px), kLeastFirst, kMostFirst);
 }
 
 double mean_of(const ImageGray& image) {
@@ -64,17 +76,6 @@ ImageGray defended(ImageGray wanted) {
   return wanted;
 }
 
-void add_counts(const TraceStats& from, TraceStats& to) {
-  to.samples += from.samples;
-  to.rays_primary += from.rays_primary;
-  to.rays_bounce += from.rays_bounce;
-  to.rays_shadow += from.rays_shadow;
-  to.rejected_rays += from.rejected_rays;
-  to.non_finite_samples += from.non_finite_samples;
-  to.regions.insert(to.regions.end(), from.regions.begin(), from.regions.end());
-  to.kernel = from.kernel;
-}
-
 class RateFinder {
  public:
   RateFinder(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings)
@@ -82,29 +83,23 @@ class RateFinder {
 
   AdaptiveRates find() {
     const QualityTarget& target = settings_.foveation.target;
-    if (target.relmse || target.jod) {
+    if (target.relmse) {
       meet_target();
     } else if (target.time_s) {
       spend_time(*target.time_s);
     } else {
-      spend(budget());
+      check_pilot_budget(settings_.foveation, request_);
+      spend(budget_spp_of(settings_.foveation, request_));
     }
     result_.spp = mean_of(result_.rates);
     return std::move(result_);
   }
 
  private:
-  // Samples a pixel, the pilot's among them.
-  [[nodiscard]] double budget() const {
-    const FoveationSettings& foveation = settings_.foveation;
-    return foveation.budget_samples ? static_cast<double>(*foveation.budget_samples) / pixels_of(request_)
-                                    : foveation.budget_spp.value_or(foveation.uniform_spp);
-  }
-
   void look(const ImageGray& rates) {
     Pilot pilot = trace_pilot(scene_, request_, settings_, rates, static_cast<std::uint64_t>(result_.rounds));
     ++result_.rounds;
-    add_counts(pilot.stats, result_.pilot);
+    add_traces(pilot.stats, result_.pilot);
     noise_.learn(std::move(pilot));
   }
   // At `rates`, or in proportion to them. As many samples a pixel as the frame would be the best to learn from.
@@ -130,29 +125,16 @@ class RateFinder {
   // A second pilot looks at the frame at the rates that the first one asks for.
   void spend(double spp) {
     const double cell = pilot_cell_px(request_);
-    look(std::clamp(std::round(kFirstShare * spp * cell * cell), kLeastFirst, kMostFirst));
-    set_rates(left_of(spp));
+    look(first_pilot_spp(spp, cell));
+    set_rates(spp - pilot_spp());
     // One of too few samples would tell less than the first, and one that is large beside what is left leaves no frame.
     const double second = share_of_round() * mean_of(result_.rates);
     const double most = std::min(kMostSecond * spp, kMostOfRest * (spp - pilot_spp())) * cell * cell;
     if (second >= 0.999 * kLeastRound && second < most) {
       look_again();
-      set_rates(left_of(spp));
+      set_rates(spp - pilot_spp());
     }
     predict();
-  }
-
-  [[nodiscard]] double left_of(double spp) const {
-    const double left = spp - pilot_spp();
-    if (!(left > 0)) {
-      throw Error(
-          ErrorKind::usage, settings_.foveation.budget_samples ? "`budget-samples`" : "`budget-spp`",
-          fmt::format("the pilot of `falloff` visible takes {} samples of a frame of {} x {} pixels, the budget "
-                      "is {:.0f}",
-                      result_.pilot.samples, request_.width_px, request_.height_px, spp * pixels_of(request_)),
-          "give more");
-    }
-    return left;
   }
 
   // The time of a sample, of first hits and of the filter is that of the pilot, which has as many pixels less.
@@ -168,18 +150,12 @@ class RateFinder {
     predict();
   }
 
-  void predict() {
-    result_.prediction.relmse = noise_.relmse_at(result_.rates);
-    if (settings_.foveation.target.jod && noise_.is_seen()) {
-      result_.prediction.jod = noise_.jod_of(noise_.q_at(result_.rates));
-    }
-  }
+  void predict() { result_.prediction.relmse = noise_.relmse_at(result_.rates); }
 
   // How far the frame is from the target at these rates: 1 where it is met, more where it is noisier. About a power of
   // the rate.
   [[nodiscard]] double excess_at(const ImageGray& rates) const {
-    const QualityTarget& target = settings_.foveation.target;
-    return target.relmse ? noise_.relmse_at(rates) / *target.relmse : noise_.q_at(rates) / noise_.q_of(*target.jod);
+    return noise_.relmse_at(rates) / *settings_.foveation.target.relmse;
   }
 
   // Each round looks at the frame at the rates that the one before asks for. So the filter's gain is seen where it will
@@ -259,6 +235,21 @@ ImageGray rates_between(const ImageGray& wanted, double spp, double least, doubl
     (mean_of(clamped(wanted, middle, least, most)) < spp ? low : high) = middle;
   }
   return clamped(wanted, high, least, most);
+}
+
+void check_pilot_budget(const FoveationSettings& settings, const FrameRequest& request) {
+  const double spp = budget_spp_of(settings, request);
+  const int cell_px = pilot_cell_px(request);
+  const PlanarView view = pilot_view(request, cell_px);
+  const double pilot = first_pilot_spp(spp, cell_px) * view.width_px * view.height_px;
+  if (!(pilot < spp * pixels_of(request))) {
+    throw Error(
+        ErrorKind::usage, settings.budget_samples ? "`budget-samples`" : "`budget-spp`",
+        fmt::format("the pilot of `falloff` visible takes {:.0f} samples of a frame of {} x {} pixels, the budget "
+                    "is {:.0f}",
+                    pilot, request.width_px, request.height_px, spp * pixels_of(request)),
+        "give more");
+  }
 }
 
 AdaptiveRates adaptive_rates(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings) {

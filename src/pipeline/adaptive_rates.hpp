@@ -28,8 +28,11 @@ struct AdaptiveRates {
 // that lies outside of them, which is kept).
 ImageGray rates_between(const ImageGray& wanted, double spp, double least, double most);
 
-// A function of request and settings alone, unless FoveationSettings::target is a time. Error(usage) for a budget that
-// the pilot would use up.
+// Error(usage) for a budget that the first pilot would use up. Traces nothing.
+void check_pilot_budget(const FoveationSettings& settings, const FrameRequest& request);
+
+// A function of request and settings alone, unless FoveationSettings::target is a time. Error(usage) as
+// check_pilot_budget().
 AdaptiveRates adaptive_rates(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings);
 
 }  // namespace gazetrace

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "gazetrace/frame_renderer.hpp"
@@ -13,15 +14,18 @@ namespace gazetrace {
 // Holds at most 2 * AccumulateSettings::window + 1 reconstructed frames, which is all the memory that it takes.
 class FrameWindow {
  public:
-  // Keeps references to both, which must outlive it.
-  FrameWindow(const FrameRenderer& renderer, const FramePlan& plan);
+  // Keeps references to both, which must outlive it. `counted` are the frames whose own samples and times are counted
+  // where they themselves are rendered.
+  FrameWindow(const FrameRenderer& renderer, const FramePlan& plan, std::set<std::int32_t> counted);
 
-  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render().
+  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render(). Frames beside `counted`
+  // ones are counted in RenderedFrame::others of the first frame that reads them.
   RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
 
  private:
   const FrameRenderer* renderer_;
   std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included
+  std::set<std::int32_t> counted_;
   std::map<std::int32_t, ReconstructedFrame> held_;
 };
 

@@ -118,6 +118,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind
     return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);
   }
+  if (settings.foveation.target.jod) {
+    return "the rate needs a pilot of the sequence";
+  }
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";
   }

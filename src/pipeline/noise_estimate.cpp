@@ -20,11 +20,13 @@ double pooled_at(const ImageGray& values, int x, int y) {
   for (int ny = std::max(y - kRadius, 0); ny <= std::min(y + kRadius, values.height_px - 1); ++ny) {
     for (int nx = std::max(x - kRadius, 0); nx <= std::min(x + kRadius, values.width_px - 1); ++nx) {
       const auto value = static_cast<double>(values(nx, ny));
-      window.at(count) = value > 0 && std::isfinite(value) ? value : 0.0;
-      sum += window.at(count++);
+      if (std::isfinite(value)) {
+        window.at(count) = std::max(value, 0.0);
+        sum += window.at(count++);
+      }
     }
   }
-  if (count == 1) {
+  if (count < 2) {
     return sum;
   }
   double pool = 0;

@@ -2,7 +2,6 @@
 #include "pipeline/pilot.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -28,22 +27,6 @@ SamplingMap pilot_map(const PlanarView& view, const ImageGray& rates, const MapC
   MapContext own = context;
   own.density = &rates;
   return make_sampling_map(settings, view, std::nullopt, own);
-}
-
-// The spread within the pixels that have two samples or more, by Bessel's correction; 0 elsewhere.
-ImageGray variance_of_samples(const SparseFrame& sparse, const SamplingMap& map) {
-  ImageGray variance(map.width_px, map.height_px);
-  for (std::size_t i = 0; i < map.sites.size(); ++i) {
-    const double n = sparse.count[i];
-    if (n < 2) {
-      continue;
-    }
-    const double mean = luminance(to_double(sparse.sum[i])) / n;
-    const double square = static_cast<double>(sparse.sum_square_luminance[i]) / n;
-    variance(map.sites[i].block_x, map.sites[i].block_y) =
-        static_cast<float>(std::max(0.0, square - mean * mean) * n / (n - 1));
-  }
-  return variance;
 }
 
 ImageGray expected_spp(const SamplingMap& map) {
@@ -115,7 +98,6 @@ Pilot trace_pilot(const PosedScene& scene, const FrameRequest& request, const Fr
   });
   pilot.radiance = frame.radiance;
   pilot.luminance = luminance_image(frame.radiance);
-  pilot.sample_variance = variance_of_samples(sparse, map);
   pilot.squared_error = squared_error_of(frame);
   pilot.spp = expected_spp(map);
   pilot.stats = std::move(sparse.stats);

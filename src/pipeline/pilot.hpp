@@ -16,11 +16,9 @@ namespace gazetrace {
 
 struct Pilot {
   int cell_px = 1;
-  PlanarView view;      // of the pilot's size
-  ImageRgb radiance;    // after the filter
-  ImageGray luminance;  // of it
-  // Of the luminance of one sample, from the spread within each pixel.
-  ImageGray sample_variance;
+  PlanarView view;          // of the pilot's size
+  ImageRgb radiance;        // after the filter
+  ImageGray luminance;      // of it
   ImageGray squared_error;  // estimated, of the luminance after the filter, at these rates
   ImageGray spp;            // what the pixels expected
   TraceStats stats;

@@ -3,6 +3,7 @@
 // history and the timing log outlive a frame.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -15,8 +16,10 @@
 #include "gazetrace/pipeline.hpp"
 #include "output/aovs.hpp"
 #include "output/written_file.hpp"
+#include "pipeline/clip_rate.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/frame_files.hpp"
+#include "pipeline/frame_stages.hpp"
 #include "pipeline/frame_window.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/timing_log.hpp"
@@ -34,17 +37,27 @@ FrameSettings frame_settings(const PipelineSettings& settings, const ColorPipeli
   return frame;
 }
 
-void count_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row,
-                   SequenceResult& result) {
-  add_samples(samples, first_look, map, row);
+void keep_bad_samples(const TraceStats& samples, SequenceResult& result) {
   result.bad_samples.insert(result.bad_samples.end(), samples.bad_samples.begin(), samples.bad_samples.end());
+}
+
+// Those that get rows of their own in timing.csv.
+std::set<std::int32_t> rendered_frames(const FramePlan& plan, const ResumePlan& resume) {
+  std::set<std::int32_t> frames;
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    if (resume.work[i] == FrameWork::render) {
+      frames.insert(plan.frames[i].frame);
+    }
+  }
+  return frames;
 }
 
 // A part of the samples: their sums are all that becomes of the frame.
 void render_samples(const FrameRenderer& renderer, const FrameRequest& request, const PipelineSettings& settings,
                     TimingRow& row, SequenceResult& result) {
   const TracedFrame traced = renderer.trace(request);
-  count_samples(traced.sparse.stats, traced.first_look, traced.map, row, result);
+  add_samples(traced.sparse.stats, traced.first_look, traced.map, row);
+  keep_bad_samples(traced.sparse.stats, result);
   add_times(traced.times, row);
   const Stopwatch watch;
   const std::string path = samples_file_name(settings.output.run_directory, request.frame, *settings.trace.samples);
@@ -80,6 +93,32 @@ bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::
   return done == total ||
          (settings.checkpoint_every > 0 && done % static_cast<std::size_t>(settings.checkpoint_every) == 0);
 }
+
+// The rate of the whole sequence, and what choosing it took: it is counted in the first row that is rendered.
+class JudgedRate {
+ public:
+  void choose(PathTracer& tracer, const JudgedFrames& judged, const ColorPipeline& color, FrameSettings& settings) {
+    rate_ = timed(ms_, [&] { return clip_rate(tracer, judged, settings, color); });
+    settings.foveation.target = {};
+    settings.foveation.budget_spp = rate_->spp;
+  }
+  [[nodiscard]] std::string text() const { return rate_->text(); }
+  void enter(TimingRow& row) {
+    if (!rate_) {
+      return;
+    }
+    add_prediction({{}, rate_->predicted_jod}, row);
+    add_pilot(rate_->pilot, row);
+    row.pilot_ms += ms_;
+    row.total_ms += ms_;
+    rate_->pilot = {};
+    ms_ = 0;
+  }
+
+ private:
+  std::optional<ClipRate> rate_;
+  double ms_ = 0;
+};
 
 }  // namespace
 
@@ -122,17 +161,24 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history) {
   SequenceResult result;
-  const FrameRenderer renderer(tracer, frame_settings(settings, color));
-  std::optional<FrameWindow> window;
-  if (settings.accumulate.mode == AccumulateMode::two_sided) {
-    window.emplace(renderer, plan);
-  }
   const RunPaths paths = paths_of(plan, settings);
   ResumePlan resume = plan_resume(plan, settings, paths, history);
   if (resume.taken_up) {
     history = std::move(*resume.taken_up);
   }
   result.warnings = resume.warnings;
+  FrameSettings own = frame_settings(settings, color);
+  JudgedRate judged;
+  if (own.foveation.target.jod &&
+      std::any_of(resume.work.begin(), resume.work.end(), [](FrameWork work) { return work != FrameWork::skip; })) {
+    judged.choose(tracer, plan.judged, color, own);
+    result.facts.emplace_back("rate", judged.text());
+  }
+  const FrameRenderer renderer(tracer, own);
+  std::optional<FrameWindow> window;
+  if (settings.accumulate.mode == AccumulateMode::two_sided) {
+    window.emplace(renderer, plan, rendered_frames(plan, resume));
+  }
   TimingLog timing(paths.timing, resume.kept_rows);
   FileJournal journal(paths.record, resume.kept_files);
   if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
@@ -150,9 +196,12 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     } else {
       const std::string behind = uses_history(settings) ? history_text(history.passed) : std::string();
       const RenderedFrame rendered = window ? window->render(request, history) : renderer.render(request, history);
-      count_samples(rendered.samples, rendered.first_look, rendered.map, row, result);
+      add_samples(rendered.samples, rendered.first_look, rendered.map, row);
+      add_others(rendered.others, row);
+      keep_bad_samples(rendered.samples, result);
       add_times(rendered.times, row);
       add_prediction(rendered.prediction, row);
+      judged.enter(row);
       row.exposure_ev = rendered.exposure_ev;
       if (observer.frame_ready) {
         observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
@@ -161,7 +210,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         write_frame_files(request, plan, rendered, color, settings, behind, row, result);
       }
     }
-    row.total_ms = total.elapsed_ms();
+    row.total_ms += total.elapsed_ms();
     if (work == FrameWork::render) {
       journal.add(result.files);
       row.peak_memory_mib = peak_memory_mib();

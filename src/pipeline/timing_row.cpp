@@ -10,16 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/trace_counts.hpp"
+
 namespace gazetrace {
 namespace {
 
-void add_counts(const TraceStats& stats, TimingRow& row) {
-  row.samples += stats.samples;
-  row.rays_primary += stats.rays_primary;
-  row.rays_bounce += stats.rays_bounce;
-  row.rays_shadow += stats.rays_shadow;
-  row.rejected_rays += stats.rejected_rays;
-  row.non_finite_samples += stats.non_finite_samples;
+void add_trace(const TraceStats& stats, TimingRow& row) {
+  add_counts(stats, row);
   for (const RegionTraceStats& region : stats.regions) {
     row.trace_cpu_ms += static_cast<double>(region.cpu_ns) * 1e-6;
   }
@@ -72,14 +69,26 @@ void add_prediction(const Prediction& prediction, TimingRow& row) {
   const auto text = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : std::string();
   };
-  row.predicted_relmse = text(prediction.relmse);
-  row.predicted_jod = text(prediction.jod);
+  if (prediction.relmse) {
+    row.predicted_relmse = text(prediction.relmse);
+  }
+  if (prediction.jod) {
+    row.predicted_jod = text(prediction.jod);
+  }
+}
+
+void add_pilot(const TraceStats& pilot, TimingRow& row) {
+  add_trace(pilot, row);
+  row.pilot_samples += pilot.samples;
+}
+
+void add_others(const TraceStats& others, TimingRow& row) {
+  add_trace(others, row);
 }
 
 void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row) {
-  add_counts(samples, row);
-  add_counts(first_look, row);
-  row.pilot_samples += first_look.samples;
+  add_trace(samples, row);
+  add_pilot(first_look, row);
   const std::vector<std::string>& names = timing_regions();
   for (std::size_t i = 0; i < map.regions.size(); ++i) {
     const auto name = std::find(names.begin(), names.end(), map.regions[i].name);
@@ -96,12 +105,7 @@ void add_traced(const TimingRow& part, TimingRow& whole) {
   whole.trace_ms += part.trace_ms;
   whole.trace_cpu_ms += part.trace_cpu_ms;
   whole.total_ms += part.total_ms;
-  whole.samples += part.samples;
-  whole.rays_primary += part.rays_primary;
-  whole.rays_bounce += part.rays_bounce;
-  whole.rays_shadow += part.rays_shadow;
-  whole.rejected_rays += part.rejected_rays;
-  whole.non_finite_samples += part.non_finite_samples;
+  add_counts(part, whole);
   whole.region_pixels = part.region_pixels;
   for (std::size_t i = 0; i < kTimingRegions; ++i) {
     whole.region_samples.at(i) += part.region_samples.at(i);

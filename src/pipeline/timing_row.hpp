@@ -19,6 +19,9 @@ void add_times(const StageTimes& times, TimingRow& row);
 void add_prediction(const Prediction& prediction, TimingRow& row);
 // `samples` are those of the map's sites; those of the first look or pilot belong to no region.
 void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row);
+// Samples that decided where those of frames belong, and were discarded; add_samples() adds the frame's own.
+void add_pilot(const TraceStats& pilot, TimingRow& row);
+void add_others(const TraceStats& others, TimingRow& row);  // RenderedFrame::others
 // Adds what a part of the samples says of its tracing: times, samples and rays.
 void add_traced(const TimingRow& part, TimingRow& whole);
 

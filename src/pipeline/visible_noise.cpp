@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "pipeline/noise_estimate.hpp"
@@ -70,11 +71,15 @@ double VisibleNoise::unit_at(std::size_t i) const {
   return squared(static_cast<double>(level_.pixels[i])) + kEpsilon;
 }
 
+double VisibleNoise::relative_error_of_one(std::size_t i) const {
+  const auto of_one = static_cast<float>(error_of_one(*pilot_, i) / unit_at(i));
+  return std::isfinite(of_one) ? static_cast<double>(of_one) : std::numeric_limits<double>::quiet_NaN();
+}
+
 ImageGray VisibleNoise::relative_squared_error() const {
   ImageGray relative(pilot_->luminance.width_px, pilot_->luminance.height_px);
   for (std::size_t i = 0; i < relative.pixels.size(); ++i) {
-    const double of_one = error_of_one(*pilot_, i) / unit_at(i);
-    relative.pixels[i] = of_one > 0 && std::isfinite(of_one) ? static_cast<float>(of_one) : 0.0F;
+    relative.pixels[i] = static_cast<float>(relative_error_of_one(i));
   }
   relative = pooled(relative, settings_.threads);
   // A window that saw no firefly says little of them. Its mean counts by its samples, and that of the frame as
@@ -117,12 +122,14 @@ ImageGray VisibleNoise::wanted_by_eye() const {
 
 double VisibleNoise::relmse_at(const ImageGray& rates) const {
   double sum = 0;
+  double known = 0;
   for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
-    const double of_one = error_of_one(*pilot_, i) / unit_at(i);
-    // Light near the end of float's range has no finite square: such pixels are left out.
-    sum += of_one > 0 && std::isfinite(of_one) ? of_one / static_cast<double>(rates.pixels[i]) : 0.0;
+    if (const double of_one = relative_error_of_one(i); !std::isnan(of_one)) {
+      sum += std::max(of_one, 0.0) / static_cast<double>(rates.pixels[i]);
+      known += 1;
+    }
   }
-  return sum / static_cast<double>(rates.pixels.size());
+  return known > 0 ? sum / known : 0;
 }
 
 ErrorComponent VisibleNoise::error_at(const ImageGray& rates) const {
@@ -139,28 +146,6 @@ ErrorComponent VisibleNoise::error_at(const ImageGray& rates) const {
 
 VisiblePicture VisibleNoise::picture() const {
   return {pilot_->luminance, display_, request_.gaze_direction_render};
-}
-
-double VisibleNoise::q_at(const ImageGray& rates) const {
-  return model_->predict(picture(), {error_at(rates)}).q;
-}
-
-double VisibleNoise::jod_of(double q) {
-  return visible_jod({q});
-}
-
-double VisibleNoise::q_of(double jod) {
-  // fovvideovdp_jod() falls with q.
-  double low = 0;
-  double high = 1;
-  while (fovvideovdp_jod(high) > jod && high < 1e12) {
-    high *= 2;
-  }
-  for (int step = 0; step < 80; ++step) {
-    const double middle = 0.5 * (low + high);
-    (fovvideovdp_jod(middle) > jod ? low : high) = middle;
-  }
-  return high;
 }
 
 }  // namespace gazetrace

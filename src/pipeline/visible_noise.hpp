@@ -34,17 +34,14 @@ class VisibleNoise {
   [[nodiscard]] ImageGray wanted_by_eye() const;
 
   [[nodiscard]] double relmse_at(const ImageGray& rates) const;
-  // Whether the frame is large enough for the model of what the eye sees.
-  [[nodiscard]] bool is_seen() const { return model_.has_value(); }
-  [[nodiscard]] double q_at(const ImageGray& rates) const;  // VisibleFrame::q
-  // JOD of a clip of such frames, and back.
-  static double jod_of(double q);
-  static double q_of(double jod);
 
  private:
   // L^2 + epsilon, by which squared errors become relative. L is the pooled luminance: a pixel's own is as large as its
   // fireflies are, and would hide them.
   [[nodiscard]] double unit_at(std::size_t pixel) const;
+  // The relative squared error of one sample. Light near the end of float's range has no finite square: of such a pixel
+  // nothing is known, and the value is NaN.
+  [[nodiscard]] double relative_error_of_one(std::size_t pixel) const;
   [[nodiscard]] ImageGray relative_squared_error() const;  // of one sample, pooled
   [[nodiscard]] ErrorComponent error_at(const ImageGray& rates) const;
   [[nodiscard]] VisiblePicture picture() const;

@@ -62,6 +62,21 @@ void steer_to(const Vec2d& pixel, FrameRequest& request) {
   request.gaze_render.direction = normalize(*request.gaze_direction_render);
 }
 
+// Of frames that are not rendered: those that are read around others, and those that are judged.
+std::vector<std::vector<FrameRequest>*> requests_beside(FramePlan& plan) {
+  std::vector<std::vector<FrameRequest>*> all{&plan.around};
+  for (std::vector<FrameRequest>& run : plan.judged.runs) {
+    all.push_back(&run);
+  }
+  return all;
+}
+
+std::vector<std::vector<FrameRequest>*> all_requests(FramePlan& plan) {
+  std::vector<std::vector<FrameRequest>*> all = requests_beside(plan);
+  all.push_back(&plan.frames);
+  return all;
+}
+
 FramePlan shuffled(const FramePlan& plan) {
   std::vector<std::size_t> order(plan.frames.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -70,6 +85,13 @@ FramePlan shuffled(const FramePlan& plan) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     // Each frame takes the gaze of the next one in a cycle through all frames, so that none keeps its own.
     steer_by(plan.frames[order[(i + 1) % order.size()]], result.frames[order[i]]);
+  }
+  // The others have no place in the cycle.
+  std::size_t next = 0;
+  for (std::vector<FrameRequest>* requests : requests_beside(result)) {
+    for (FrameRequest& request : *requests) {
+      steer_by(plan.frames[order[next++ % order.size()]], request);
+    }
   }
   return result;
 }
@@ -142,7 +164,7 @@ RasterSize scaled_size(const RasterSize& size, double scale) {
 
 FramePlan resized(const FramePlan& plan, const RasterSize& size) {
   FramePlan result = plan;
-  for (std::vector<FrameRequest>* requests : {&result.frames, &result.around}) {
+  for (std::vector<FrameRequest>* requests : all_requests(result)) {
     for (FrameRequest& request : *requests) {
       PlanarView& view = request.view;
       view.step_x *= static_cast<double>(view.width_px) / size.width_px;
@@ -161,15 +183,16 @@ const std::vector<std::string>& wrong_gazes() {
 
 std::optional<FramePlan> with_wrong_gaze(const FramePlan& plan, const std::string& wrong) {
   FramePlan result = plan;
-  result.around.clear();  // their gaze would be the right one
   if (wrong == "shuffled") {
     result = shuffled(result);
   } else if (wrong == "center" || wrong == "mirrored") {
-    for (FrameRequest& request : result.frames) {
-      if (request.gaze_direction_render) {
-        const Vec2d middle{request.view.width_px / 2.0, request.view.height_px / 2.0};
-        const Vec2d at = request.view.pixel(*request.gaze_direction_render);
-        steer_to(wrong == "center" ? middle : Vec2d{2 * middle.x - at.x, 2 * middle.y - at.y}, request);
+    for (std::vector<FrameRequest>* requests : all_requests(result)) {
+      for (FrameRequest& request : *requests) {
+        if (request.gaze_direction_render) {
+          const Vec2d middle{request.view.width_px / 2.0, request.view.height_px / 2.0};
+          const Vec2d at = request.view.pixel(*request.gaze_direction_render);
+          steer_to(wrong == "center" ? middle : Vec2d{2 * middle.x - at.x, 2 * middle.y - at.y}, request);
+        }
       }
     }
   } else {

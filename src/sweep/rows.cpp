@@ -17,6 +17,11 @@ bool is_whole(double value) {
   return value == std::floor(value) && value >= 1 && value < 4e9;
 }
 
+bool has_gaze(const FramePlan& plan) {
+  return std::any_of(plan.frames.begin(), plan.frames.end(),
+                     [](const FrameRequest& request) { return request.gaze_direction_render.has_value(); });
+}
+
 PlannedRow beside(const PlannedRow& test, RowRole role, const std::string& suffix, const std::string& label) {
   PlannedRow result = test;
   result.row.id = test.row.id + "-" + suffix;
@@ -82,9 +87,8 @@ const char* suffix_of(RowRole role) {
 }  // namespace
 
 bool is_foveated(const SweepTest& test) {
-  return test.pipeline.foveation.falloff != "uniform" &&
-         std::any_of(test.plan.frames.begin(), test.plan.frames.end(),
-                     [](const FrameRequest& request) { return request.gaze_direction_render.has_value(); });
+  return follows_picture(test.pipeline.foveation) ||
+         (test.pipeline.foveation.falloff != "uniform" && has_gaze(test.plan));
 }
 
 PlannedRow test_row(const SweepPlan& plan, std::size_t test) {
@@ -149,7 +153,8 @@ std::vector<PlannedRow> baselines_known_before(const SweepPlan& plan, const Plan
       rows.push_back(uniform_row(plan, test, RowRole::uniform_rate, spp));
     }
   }
-  for (const std::string& wrong : wanted.wrong_gaze ? wrong_gazes() : std::vector<std::string>()) {
+  for (const std::string& wrong :
+       wanted.wrong_gaze&& has_gaze(test.plan) ? wrong_gazes() : std::vector<std::string>()) {
     if (const auto other = with_wrong_gaze(test.plan, wrong)) {
       PlannedRow row = beside(test, RowRole::wrong_gaze, wrong, test.row.label + ", gaze " + wrong);
       row.row.wrong = wrong;

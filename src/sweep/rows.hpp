@@ -26,7 +26,8 @@ struct PlannedRow {
 };
 
 PlannedRow test_row(const SweepPlan& plan, std::size_t test);
-bool is_foveated(const SweepTest& test);  // only foveated tests have baselines
+// Whether samples go where gaze or a picture says; only such tests have baselines.
+bool is_foveated(const SweepTest& test);
 
 // The rows that are known before anything is measured: the full rate, the ladder of rates, and wrong gazes. A note is
 // added to `notes` for each wrong gaze that is left out.

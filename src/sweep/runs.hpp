@@ -35,7 +35,7 @@ struct SweepRun {
 // A row of the results while it is being measured. Its frames know their gaze; times, scores and what follows from
 // them are concluded from the runs at the end (conclude.hpp).
 struct MeasuredRow : ResultRow {
-  bool is_foveated = false;    // its samples follow a gaze
+  bool is_foveated = false;    // its samples go where gaze or a picture says
   double compared_pixels = 0;  // of all frames
   std::string png;             // pattern of its pictures, relative to the directory; empty: none
   std::vector<SweepRun> runs;  // by repeat

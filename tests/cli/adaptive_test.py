@@ -2,9 +2,12 @@
 """--falloff visible: rates by a pilot, on a budget or until a target is expected to be met."""
 
 import csv
+import json
 
 import harness
 
+GAZE = ["--gaze-at", "0.5,0.5", "--screen", "paper"]
+RAW = [*GAZE, "--falloff", "uniform", "--filter", "none"]
 VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--falloff", "visible"]
 
 
@@ -12,6 +15,9 @@ class Adaptive(harness.CliTest):
     def rows(self, folder):
         with open(self.folder / folder / "timing.csv", newline="") as file:
             return list(csv.DictReader(file))
+
+    def record(self, folder):
+        return json.loads((self.folder / folder / "run.json").read_text())
 
     def render(self, folder, *more):
         self.run_ok("render", "box.gltf", *VIEW, *more, "-o", f"{folder}/f.####.exr")
@@ -66,6 +72,31 @@ class Adaptive(harness.CliTest):
         self.render("other", *common, "--seed", "5")
         self.assertNotEqual(whole, self.pictures("other"))
 
+    def test_a_stated_quality_of_a_clip(self):
+        def clip(folder, target, *more):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", "1-8", "--target-jod", target, *more, "-o", f"{folder}/f.####.exr")
+            return self.rows(folder)
+
+        spp = {}
+        for target in ("9", "9.5"):
+            rows = clip(target, target)
+            self.assertAlmostEqual(float(rows[0]["predicted_jod"]), float(target), delta=0.02)
+            self.assertGreater(int(rows[0]["pilot_samples"]), 0)
+            self.assertEqual([int(row["pilot_samples"]) for row in rows[1:]], [0] * 7)
+            spp[target] = int(rows[1]["samples"])
+            self.assertIn("samples a pixel", self.record(target)["facts"]["rate"])
+        self.assertGreater(spp["9.5"], 1.5 * spp["9"])
+        whole = self.pictures("9")
+        clip("threads", "9", "--threads", "1")
+        self.assertEqual(whole, self.pictures("threads"))
+        for part in ("1-3", "4-8"):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", part, "--part", "--target-jod", "9", "-o", "parts/f.####.exr")
+        self.run_ok("merge", "parts")
+        self.assertEqual(whole, self.pictures("parts"))
+        (self.folder / "9/f.0002.exr").unlink()
+        clip("9", "9", "--resume")
+        self.assertEqual(whole, self.pictures("9"))
+
     def test_what_is_refused(self):
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
         for words, *arguments in [
@@ -76,6 +107,14 @@ class Adaptive(harness.CliTest):
             (["--contrast-strength"], "--falloff", "visible", "--contrast-strength", "1"),
             (["--sample-range", "pilot"], "--falloff", "visible", "--sample-range", "0:2", "--filter", "none"),
             (["--budget-spp", "pilot"], "--falloff", "visible", "--budget-spp", "0.01"),
+            (["--target-jod", "eye"], "--target-jod", "9"),
+            (["--target-jod", "bias"], *RAW, "--filter", "guided", "--target-jod", "9"),
+            (["--target-jod", "9.5"], *RAW, "--target-jod", "10"),
+            (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
+            (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
+            (["--sample-range", "pilot"], *RAW, "--target-jod", "9", "--sample-range", "0:2"),
+            (["--target-jod", "--max-spp"], *RAW, "--target-jod", "9.9", "--max-spp", "0.1", "--min-spp", "0.1"),
+            (["--target-jod", "moves"], *RAW, "--target-jod", "9", "--camera-path", "path.csv"),
         ]:
             with self.subTest(arguments=arguments):
                 result = self.run_program(*render, *arguments)

@@ -120,6 +120,26 @@ TEST(TwoSidedRender, AFrameDoesNotDependOnWhichOthersAreRendered) {
   EXPECT_NE(alone.at(4).radiance, whole.at(4).radiance) << "without the frames around it";
 }
 
+// Whatever is traced is counted once: in the row of the frame itself or, of frames that are only read, in that of the
+// first frame that reads them.
+TEST(TwoSidedRender, WhatIsTracedOnlyToBeReadIsCounted) {
+  const Scene scene = room(false);
+  const PipelineSettings settings = settings_of(AccumulateMode::two_sided, 2);
+  const auto samples = [&](const FramePlan& plan, const PipelineSettings& with) {
+    PathTracer tracer(scene, threads(2));
+    std::vector<std::uint64_t> counts;
+    for (const TimingRow& row : render_sequence(tracer, plan, ColorPipeline(ColorSettings{}), with, {}).rows) {
+      EXPECT_GT(row.rays_primary, 0U);
+      EXPECT_EQ(row.pilot_samples, 0U);
+      counts.push_back(row.samples);
+    }
+    return counts;
+  };
+  const std::uint64_t alone = samples(plan_of({4}, {}, false), settings_of(AccumulateMode::off)).front();
+  EXPECT_EQ(samples(plan_of({4, 5}, {2, 3, 6, 7}, false), settings),
+            (std::vector<std::uint64_t>{4 * alone, 2 * alone}));
+}
+
 TEST(TwoSidedRender, AllSamplesOfTheWindowCountWhileNothingMoves) {
   const Scene scene = room(false);
   PipelineSettings settings = settings_of(AccumulateMode::two_sided, 2);

@@ -7,6 +7,7 @@
 
 #include "sweep/frames.hpp"
 #include "sweep/pictures.hpp"
+#include "sweep/rows.hpp"
 
 namespace gazetrace {
 namespace {
@@ -102,6 +103,43 @@ TEST(SweepFrames, AWrongGazeSteersAndTheTrueOneStays) {
     after.insert(pixel_x(shuffled->frames[i]));
   }
   EXPECT_EQ(before, after);
+}
+
+TEST(SweepFrames, AWrongGazeSteersTheFramesAroundAndTheJudgedOnesAsWell) {
+  FramePlan plan = plan_of(9);
+  plan.around = {plan.frames[8]};
+  plan.frames.pop_back();
+  plan.judged.runs = {{plan.frames[0], plan.frames[1]}};
+  for (const std::string& wrong : wrong_gazes()) {
+    const auto other = with_wrong_gaze(plan, wrong);
+    ASSERT_TRUE(other);
+    ASSERT_EQ(other->around.size(), 1U) << wrong;
+    EXPECT_NE(pixel_x(other->around[0]), 90) << wrong;
+    EXPECT_NE(pixel_x(other->judged.runs[0][0]), 10) << wrong;
+  }
+  EXPECT_NEAR(pixel_x(with_wrong_gaze(plan, "mirrored")->around[0]), 10, 1e-9);
+  const FramePlan small = resized(plan, {50, 30});
+  EXPECT_EQ(small.around[0].width_px, 50);
+  EXPECT_EQ(small.judged.runs[0][1].view.width_px, 50);
+}
+
+TEST(SweepRows, RatesThatFollowAPictureHaveBaselinesWithoutGaze) {
+  SweepPlan plan;
+  plan.scenes.resize(1);
+  SweepTest test;
+  test.plan = plan_of(1);
+  test.plan.frames[0].gaze_direction_render.reset();
+  test.pipeline.foveation.falloff = "visible";
+  plan.tests = {test};
+  plan.measure.baselines.reference_rate = true;
+  plan.measure.baselines.wrong_gaze = true;
+  std::vector<std::string> notes;
+  const std::vector<PlannedRow> rows = baselines_known_before(plan, test_row(plan, 0), notes);
+  ASSERT_EQ(rows.size(), 1U);  // there is no gaze that could be wrong
+  EXPECT_EQ(rows[0].row.role, RowRole::uniform_reference_rate);
+  EXPECT_TRUE(notes.empty());
+  plan.tests[0].pipeline.foveation.falloff = "regions";
+  EXPECT_TRUE(baselines_known_before(plan, test_row(plan, 0), notes).empty());
 }
 
 TEST(SweepFrames, AWrongGazeThatIsTheRightOneIsNoControl) {

@@ -169,6 +169,17 @@ void add_pilot_options(JobSchema& schema) {
       .need("`falloff` visible");
 }
 
+void add_target_options(JobSchema& schema) {
+  using F = FoveationSettings;
+  schema
+      .value(
+          "--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
+          "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until the "
+          "sequence scores so much by FovVideoVDP, as 'gazetrace compare' measures it")
+      .within(0, 10)
+      .need("gaze, `falloff` uniform and `filter` none");
+}
+
 void add_term_options(JobSchema& schema) {
   using F = FoveationSettings;
   schema
@@ -206,6 +217,7 @@ void add_sampling_options(JobSchema& schema) {
       .within(1, kMostSamples);
   add_region_options(schema);
   add_budget_options(schema);
+  add_target_options(schema);
   schema.group("Density models ('gazetrace list falloffs')");
   add_model_options(schema);
   add_pilot_options(schema);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/judged_frames.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "metrics/temporal_channels.hpp"
+
+namespace gazetrace {
+namespace {
+
+std::vector<std::int32_t> run_of(std::int32_t first, std::int32_t count) {
+  std::vector<std::int32_t> run(static_cast<std::size_t>(count));
+  std::iota(run.begin(), run.end(), first);
+  return run;
+}
+
+}  // namespace
+
+JudgedNumbers judged_numbers(std::int32_t frames, bool moves, const FrameRate& fps) {
+  JudgedNumbers judged;
+  judged.sequence_frames = frames;
+  if (frames == 1) {
+    judged.runs = {{1}, {2}, {3}, {4}};
+    return judged;
+  }
+  const double rate = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
+  const auto taps = static_cast<std::int32_t>(temporal_filters(rate).sustained.size());
+  const std::int32_t first = std::min(frames, taps + 2);
+  judged.runs.push_back(run_of(1, first));
+  if (!moves) {
+    return judged;
+  }
+  // A run tells of its last frame or two: those before them are what the metric has in view.
+  const std::int32_t length = taps + 1;
+  const std::int32_t last = frames - length + 1;
+  for (const std::int32_t begin : {(1 + last) / 2, last}) {
+    const std::int32_t after = judged.runs.back().back() + 1;
+    if (begin >= after) {
+      judged.runs.push_back(run_of(begin, length));
+    }
+  }
+  return judged;
+}
+
+}  // namespace gazetrace

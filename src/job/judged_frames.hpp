@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Chooses the frames by which the quality of a sequence is judged before it is rendered.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/plan.hpp"
+
+namespace gazetrace {
+
+// Numbers of the frames to judge, in runs of consecutive ones.
+struct JudgedNumbers {
+  std::vector<std::vector<std::int32_t>> runs;
+  std::int32_t sequence_frames = 0;
+};
+
+// FovVideoVDP sees 250 ms at a time, and takes a sequence to have stood still before its first frame. So the first run
+// begins the sequence, and is two frames longer than that time: its last frames show what later ones look like, as far
+// as the gaze does not move. Where it does, further runs look at the middle and at the end. `frames` is the length of
+// the whole sequence. A single frame is judged as a still, by four of its kind.
+JudgedNumbers judged_numbers(std::int32_t frames, bool moves, const FrameRate& fps);
+
+}  // namespace gazetrace

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rate of a sequence that is to reach QualityTarget::jod: one budget for all of its frames.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "gazetrace/color.hpp"
+#include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/plan.hpp"
+
+namespace gazetrace {
+
+struct ClipRate {
+  double spp = 0;            // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
+  double predicted_jod = 0;  // of the sequence, at this rate
+  TraceStats pilot;          // samples that were discarded
+  int rounds = 0;
+  std::size_t frames = 0;  // renderings of judged frames
+
+  [[nodiscard]] std::string text() const;  // for the run record
+};
+
+// By pilots (replica_clip.hpp) at lower rates. Each says what would be seen if its squared error were smaller, and that
+// falls as one over the rate. A function of the judged frames, settings and seed alone. Error(usage) where the target
+// would take more than FoveationSettings::max_spp.
+ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
+                   const ColorPipeline& color);
+
+}  // namespace gazetrace

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Does `--target-jod` come out? Clips are rendered to a stated quality, and then measured against a reference.
+
+  target_jod.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--targets 8.5,9] [--filters none]
+                [--falloffs uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28] [--frames 24]
+                [--reference-spp 4096] [--seed 1]
+
+OPTIONS are those of `gazetrace render`. Views are at rest, so that one reference stands for all frames; it is rendered in
+two halves of other seeds, and what the halves score against each other, as a still, is printed.
+Every line is a pair of clip and target: JOD stated, predicted and measured by `gazetrace compare`, by pyfvvdp where it is
+installed, by how much that is off, the rate,
+and the share of the pilot in the time of all frames. Pictures that OUT_FOLDER holds
+already are used again; a line is printed as soon as it is measured. The last lines count the pairs within 0.1 and 0.2.
+"""
+
+import argparse
+import csv
+import json
+import pathlib
+import re
+import shlex
+import shutil
+import statistics
+import subprocess
+import sys
+
+
+def run(*arguments):
+    done = subprocess.run([str(a) for a in arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr else f"{arguments[:2]}: {done.returncode}")
+    return done.stdout
+
+
+class Bench:
+    def __init__(self, asked):
+        self.asked = asked
+        self.out = pathlib.Path(asked.out)
+        width, height = asked.size.split("x")
+        self.screen = ["--screen-px", f"{width},{height}", "--screen-ppd", asked.ppd]
+
+    def render(self, folder, scene, gaze, *options):
+        if not (folder / "done").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            run(self.asked.program, "render", *scene, "--size", self.asked.size, "--gaze-at", gaze, *self.screen,
+                "--exr-pixels", "float", "--quiet", "-o", folder / "f.####.exr", *options)
+            (folder / "done").touch()
+        return folder
+
+    def reference(self, name, scene):
+        folder = self.out / name / "reference"
+        half = str(self.asked.reference_spp // 2)
+        for k, seed in enumerate((700001, 700002)):
+            self.render(self.out / name / f"half{k}", scene, "0.5,0.5", "--frames", "1", "--falloff", "uniform", "--filter",
+                        "none", "--spp", half, "--seed", str(seed))
+        if not folder.exists():
+            folder.mkdir()
+            mean_of_exr(*(self.out / name / f"half{k}" / "f.0001.exr" for k in range(2)), folder / "f.0001.exr")
+            for frame in range(2, self.asked.frames + 1):
+                (folder / f"f.{frame:04d}.exr").symlink_to("f.0001.exr")
+        return folder
+
+    def score(self, reference, test, gaze, frames, exposure):
+        scores = self.out / "scores.json"
+        run(self.asked.program, "compare", reference / "f.####.exr", test / "f.####.exr", "--metrics", "fovvideovdp", "--fps",
+            "24", "--frames", frames, "--anyway", *self.screen, "--gaze-at", gaze, "--exposure", exposure, "--overwrite",
+            "--json", scores)
+        return json.loads(scores.read_text())["sequence"][0]["scores"][0]["value"]
+
+
+def read_exr(path):
+    import numpy
+    import OpenEXR
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return numpy.stack([file.channels()[c].pixels for c in "RGB"], -1)
+
+
+def mean_of_exr(a, b, to):
+    import numpy
+    import OpenEXR
+    mean = 0.5 * (read_exr(a) + read_exr(b))
+    channels = {c: numpy.ascontiguousarray(mean[..., i], dtype=numpy.float32) for i, c in enumerate("RGB")}
+    with OpenEXR.File({"type": OpenEXR.scanlineimage}, channels) as file:
+        file.write(str(to))
+
+
+def exposure_of(scene):
+    return scene[scene.index("--exposure") + 1] if "--exposure" in scene else "0"
+
+
+def judge(bench, name, scene, gaze, falloff, filter_name, target):
+    asked = bench.asked
+    folder = bench.out / name / f"{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
+    bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--falloff", falloff, "--filter", filter_name,
+                 "--target-jod", target, "--seed", str(asked.seed))
+    with open(folder / "timing.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    rate = json.loads((folder / "run.json").read_text())["facts"]["rate"]
+    predicted = float(rows[0]["predicted_jod"])
+    whole = sum(float(row["total_ms"]) for row in rows)
+    pilot = sum(float(row["pilot_ms"]) for row in rows)
+    measured = bench.score(bench.reference(name, scene), folder, gaze, f"1-{asked.frames}", exposure_of(scene))
+    return predicted, measured, float(re.match(r"[\d.e+]+", rate)[0]), pilot / whole
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("out")
+    parser.add_argument("--scene", action="append", required=True)
+    parser.add_argument("--targets", default="8.5,9")
+    parser.add_argument("--filters", default="none")
+    parser.add_argument("--falloffs", default="uniform")
+    parser.add_argument("--gazes", default="0.5,0.5 0.25,0.6")
+    parser.add_argument("--size", default="256x144")
+    parser.add_argument("--ppd", default="28")
+    parser.add_argument("--frames", type=int, default=24)
+    parser.add_argument("--reference-spp", type=int, default=4096)
+    parser.add_argument("--seed", type=int, default=1)
+    asked = parser.parse_args()
+    bench = Bench(asked)
+    print(f"{'scene':<14}{'gaze':>10} {'falloff':<9}{'filter':<8}{'stated':>7}{'predicted':>10}{'measured':>9}{'off':>7}"
+          f"{'spp':>9}{'pilot':>7}")
+    off = {}
+    pilots = []
+    for text in asked.scene:
+        name, *scene = shlex.split(text)
+        bench.reference(name, scene)
+        floor = bench.score(*(bench.out / name / f"half{k}" for k in range(2)), "0.5,0.5", "1", exposure_of(scene))
+        print(f"{name}: the halves of the reference score {floor:.2f} JOD against each other, as a still")
+        for gaze in asked.gazes.split():
+            for falloff in asked.falloffs.split(","):
+                for filter_name in asked.filters.split(","):
+                    for target in asked.targets.split(","):
+                        place = f"{name:<14}{gaze:>10} {falloff:<9}{filter_name:<8}{float(target):7.2f}"
+                        try:
+                            predicted, measured, spp, pilot = judge(bench, name, scene, gaze, falloff, filter_name, target)
+                        except RuntimeError as problem:
+                            print(f"{place} {problem}", flush=True)
+                            continue
+                        off.setdefault(filter_name, []).append(measured - float(target))
+                        pilots.append(pilot)
+                        print(f"{place}{predicted:10.3f}{measured:9.3f}{measured - float(target):+7.3f}{spp:9.2f}{pilot:7.1%}",
+                              flush=True)
+    for filter_name, values in off.items():
+        near = [sum(abs(v) <= most for v in values) for most in (0.1, 0.2)]
+        print(f"{filter_name}: {near[0]} of {len(values)} within 0.1, {near[1]} within 0.2; mean {statistics.fmean(values):+.3f}")
+    if pilots:
+        print(f"pilot: median {statistics.median(pilots):.1%} of the time, most {max(pilots):.1%}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
