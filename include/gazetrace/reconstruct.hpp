@@ -92,7 +92,8 @@ struct FilterChoice {
   std::string reason;  // the end of a sentence that begins "... because"
 };
 // "guided", since it shows edges and texture at full resolution, takes noise away, and tends to the samples' own mean
-// as they grow in number. "linear" wherever "guided" would not work (it needs all samples) or leaves nothing to enhance.
+// as they grow in number. "linear" wherever "guided" would not work (it needs all samples) or leaves nothing to
+// enhance.
 FilterChoice choose_filter(const FilterFacts& facts);
 
 // Contrast preservation where samples are sparse: an enhancement, not an estimate of radiance.

@@ -107,7 +107,7 @@ struct SurfaceSums {
   Vec3f reflected;            // sum of the radiance, without what the first hit itself emits
   Vec3f albedo;               // sum, as Guides::albedo
   Vec3f normal;               // sum of the shading normals
-  Vec3f place_m;              // sum of the hit points, relative to the camera, in world axes
+  Vec3f position_m;           // sum of the hit points, relative to the camera, in world axes
   float square = 0;           // sum over the samples of (luminance of `reflected` / luminance of `albedo`)^2
   float half_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `reflected`
   std::uint32_t count = 0;

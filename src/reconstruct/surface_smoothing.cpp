@@ -68,7 +68,7 @@ struct TileTies {
 
 // The part of a SurfaceCell that says where it lies and how it faces: half a cache line.
 struct alignas(32) Orientation {
-  Vec3f normal, place_m;
+  Vec3f normal, position_m;
   float footprint_m = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
 };
@@ -93,9 +93,9 @@ struct Candidates {
     normal_x[k] = surface.normal.x;
     normal_y[k] = surface.normal.y;
     normal_z[k] = surface.normal.z;
-    place_x[k] = surface.place_m.x;
-    place_y[k] = surface.place_m.y;
-    place_z[k] = surface.place_m.z;
+    place_x[k] = surface.position_m.x;
+    place_y[k] = surface.position_m.y;
+    place_z[k] = surface.position_m.z;
     footprint[k] = surface.footprint_m;
     like[k] = kernel;
     cell[k] = index;
@@ -106,7 +106,7 @@ struct Candidates {
 // Multiplies `like` by likeness(), on lanes.
 GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& settings, Candidates& near) {
   const Vec3f n = own.normal;
-  const Vec3f p = own.place_m;
+  const Vec3f p = own.position_m;
   const std::size_t lanes = (near.count + Candidates::kLanes - 1) / Candidates::kLanes * Candidates::kLanes;
   for (std::size_t first = 0; first < lanes; first += Candidates::kLanes) {
     for (std::size_t i = first; i < first + Candidates::kLanes; ++i) {
@@ -163,7 +163,7 @@ class Smoother {
         lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance,
                       cell.replica * std::max(luminance(cell.albedo), kLeastAlbedo)};
         samples_[i] = cell.samples;
-        orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
+        orientations_[i] = {cell.normal, cell.position_m, cell.footprint_m, cell.kind};
       }
     });
   }
