@@ -7,11 +7,10 @@
                 [--reference-spp 4096] [--seed 1]
 
 OPTIONS are those of `gazetrace render`. Views are at rest, so that one reference stands for all frames; it is rendered in
-two halves of other seeds, and what the halves score against each other, as a still, is printed.
-Every line is a pair of clip and target: JOD stated, predicted and measured by `gazetrace compare`, by pyfvvdp where it is
-installed, by how much that is off, the rate,
-and the share of the pilot in the time of all frames. Pictures that OUT_FOLDER holds
-already are used again; a line is printed as soon as it is measured. The last lines count the pairs within 0.1 and 0.2.
+two halves of other seeds, and what the halves score against each other, as a still, is printed. Every line is a pair of clip and
+target: JOD stated, predicted and measured by `gazetrace compare`, by how much that is off, the rate, and the share of the pilot
+in the time of all frames. Pictures that OUT_FOLDER holds already are used again; a line is printed as soon as it is measured.
+The last lines count the pairs within 0.1 and 0.2. It needs the Python packages numpy and OpenEXR.
 """
 
 import argparse
@@ -145,7 +144,8 @@ def main():
                               flush=True)
     for filter_name, values in off.items():
         near = [sum(abs(v) <= most for v in values) for most in (0.1, 0.2)]
-        print(f"{filter_name}: {near[0]} of {len(values)} within 0.1, {near[1]} within 0.2; mean {statistics.fmean(values):+.3f}")
+        print(f"{filter_name}: {near[0]} of {len(values)} within 0.1, {near[1]} within 0.2; mean "
+              f"{statistics.fmean(values):+.3f}")
     if pilots:
         print(f"pilot: median {statistics.median(pilots):.1%} of the time, most {max(pilots):.1%}")
 

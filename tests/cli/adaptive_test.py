@@ -6,7 +6,7 @@ import json
 
 import harness
 
-GAZE = ["--gaze-at", "0.5,0.5", "--screen", "paper"]
+GAZE = ["--gaze-at", "0.5,0.5", "--screen-px", "64,40", "--screen-ppd", "12"]
 RAW = [*GAZE, "--falloff", "uniform", "--filter", "none"]
 VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--falloff", "visible"]
 
@@ -74,7 +74,8 @@ class Adaptive(harness.CliTest):
 
     def test_a_stated_quality_of_a_clip(self):
         def clip(folder, target, *more):
-            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", "1-8", "--target-jod", target, *more, "-o", f"{folder}/f.####.exr")
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", "1-8", "--target-jod", target, *more, "-o",
+                        f"{folder}/f.####.exr")
             return self.rows(folder)
 
         spp = {}
@@ -90,12 +91,20 @@ class Adaptive(harness.CliTest):
         clip("threads", "9", "--threads", "1")
         self.assertEqual(whole, self.pictures("threads"))
         for part in ("1-3", "4-8"):
-            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", part, "--part", "--target-jod", "9", "-o", "parts/f.####.exr")
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", part, "--part", "--target-jod", "9", "-o",
+                        "parts/f.####.exr")
         self.run_ok("merge", "parts")
         self.assertEqual(whole, self.pictures("parts"))
         (self.folder / "9/f.0002.exr").unlink()
         clip("9", "9", "--resume")
         self.assertEqual(whole, self.pictures("9"))
+
+    def test_a_moving_view_is_not_judged(self):
+        self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
+        result = self.run_program("render", "glide.gltf", "--size", "64x40", *RAW, "--target-jod", "9", "--quiet", "-o",
+                                  "x/x.####.exr")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("moves", result.stderr)
 
     def test_what_is_refused(self):
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
@@ -108,13 +117,12 @@ class Adaptive(harness.CliTest):
             (["--sample-range", "pilot"], "--falloff", "visible", "--sample-range", "0:2", "--filter", "none"),
             (["--budget-spp", "pilot"], "--falloff", "visible", "--budget-spp", "0.01"),
             (["--target-jod", "eye"], "--target-jod", "9"),
-            (["--target-jod", "bias"], *RAW, "--filter", "guided", "--target-jod", "9"),
+            (["--target-jod", "bias"], *GAZE, "--falloff", "uniform", "--filter", "guided", "--target-jod", "9"),
             (["--target-jod", "9.5"], *RAW, "--target-jod", "10"),
             (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
             (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
             (["--sample-range", "pilot"], *RAW, "--target-jod", "9", "--sample-range", "0:2"),
-            (["--target-jod", "--max-spp"], *RAW, "--target-jod", "9.9", "--max-spp", "0.1", "--min-spp", "0.1"),
-            (["--target-jod", "moves"], *RAW, "--target-jod", "9", "--camera-path", "path.csv"),
+            (["--target-jod", "--max-spp"], *RAW, "--target-jod", "9.9", "--max-spp", "0.1"),
         ]:
             with self.subTest(arguments=arguments):
                 result = self.run_program(*render, *arguments)

@@ -150,6 +150,10 @@ void add_model_options(JobSchema& schema) {
 
 void add_pilot_options(JobSchema& schema) {
   using F = FoveationSettings;
+  JobIdleRule without_rates_to_limit = with_other_falloffs({"visible"});
+  without_rates_to_limit.holds = [elsewhere = without_rates_to_limit.holds](const JobSettings& job) {
+    return elsewhere(job) && !job.foveation.target.jod;
+  };
   schema
       .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
              "visible: the lowest rate anywhere in the frame, in samples a pixel")
@@ -157,9 +161,10 @@ void add_pilot_options(JobSchema& schema) {
       .idle_when({with_other_falloffs({"visible"})});
   schema
       .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
-             "visible: the highest rate anywhere in the frame, in samples a pixel")
+             "visible: the highest rate anywhere in the frame, in samples a pixel; with a target in JOD, the highest "
+             "rate of the whole frame")
       .above(0, kMostSamples)
-      .idle_when({with_other_falloffs({"visible"})});
+      .idle_when({without_rates_to_limit});
   schema
       .value("--target-relmse", at(&JobSettings::foveation, &F::target, &QualityTarget::relmse), "ERROR",
              Touch::sampling,
