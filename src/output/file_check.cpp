@@ -121,7 +121,7 @@ void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& 
   std::string named;
   constexpr std::size_t kNamed = 4;
   for (std::size_t i = 0; i < std::min(kNamed, bad.size()); ++i) {
-    named += fmt::format("{}{} {}", i == 0 ? "" : ", ", bad[i].path, bad[i].problem);
+    named += fmt::format("{}{}: {}", i == 0 ? "" : ", ", bad[i].path, bad[i].problem);
   }
   if (bad.size() > kNamed) {
     named += fmt::format(", and {} more", bad.size() - kNamed);

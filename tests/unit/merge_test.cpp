@@ -279,7 +279,7 @@ TEST_F(MergeFiles, BadFilesAreFoundAndNothingIsJoined) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(),
                 testing::AllOf(testing::HasSubstr("3 files are"), testing::HasSubstr("frames 1-2,4"),
-                               testing::HasSubstr("f.2.png has another content"), testing::HasSubstr("`resume`")));
+                               testing::HasSubstr("f.2.png: has another content"), testing::HasSubstr("`resume`")));
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "run.json"));
   MergeOptions some;

@@ -22,10 +22,11 @@ struct MergeArguments {
   int threads = 0;
 };
 
-// Every bad file has its own line, then one error says what to do.
+// The error names a few bad files; of more, every one has a line of its own before.
 void check_files(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
+  constexpr std::size_t kNamedByError = 4;
   const std::vector<BadFile> bad = find_bad_files(parts, arguments.threads);
-  for (const BadFile& file : bad) {
+  for (const BadFile& file : bad.size() > kNamedByError ? bad : std::vector<BadFile>()) {
     std::fprintf(stderr, "gazetrace: bad file: %s: %s\n", bounded(file.path).c_str(), bounded(file.problem).c_str());
   }
   refuse_bad_files(arguments.directory, bad);
