@@ -104,7 +104,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
     {R"(tbb/|oneapi/)", R"(src/core/parallel\.cpp)"},
     {R"(CLI/)", R"(src/cli/.*)"},
     {R"(toml\+\+/|toml\.hpp)", R"(src/job/toml_tree\.cpp)"},
-    {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp))"},
+    {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp|results/json_node\.hpp))"},
     {R"(pugixml)", R"(src/gazelog/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
     {R"(zlib\.h)", R"(src/(gazelog/gzip|core/png_file)\.cpp)"},

@@ -143,7 +143,7 @@ class Foveation(harness.CliTest):
     def test_the_filter_by_itself_suits_the_frame(self):
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for i, (expected, *more) in enumerate([
-                ("guided",), ("guided", "--falloff", "uniform", "--spp", "1"), ("linear", "--shutter", "0.5"),
+                ("guided",), ("guided", "--falloff", "uniform", "--spp", "1"), ("guided", "--shutter", "0.5"),
                 ("linear", "--sample-range", "0:4"), ("linear", "--enhance-contrast", "1"), ("none", "--filter", "none")]):
             self.run_ok("render", "box.gltf", *GAZE, *more, "-o", f"{i}/f.exr", "--quiet")
             record = json.loads(next((self.folder / str(i)).glob("run*.json")).read_text())
