@@ -10,6 +10,7 @@
 #include "gazetrace/camera.hpp"
 #include "gazetrace/option_values.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "gazetrace/scene.hpp"
 
 namespace gazetrace {
 
@@ -40,6 +41,9 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::string environment = "auto";
   double environment_rotation_deg = 0;
   double environment_ev = 0;
+  ByteCount max_memory;  // 0: most_memory_bytes()
+  SceneLimits limits;    // all but its memory
+  bool allow_outside = false;
 
   // Scene camera
   std::string camera;
@@ -87,6 +91,8 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::optional<FrameList> frames;
   DurationNs start;
   bool part = false;
+  std::optional<Chunk> chunk;
+  int chunk_frames = 0;  // 0: chunks are balanced by what their frames cost
 
   // How it is rendered
   FoveationSettings foveation;
@@ -111,6 +117,9 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::string map_pattern;
   bool overwrite = false;
   bool resume = false;
+  bool trust_files = false;
+  DurationNs grace{25'000'000'000};  // for the frame in hand, once a run is asked to stop
+  std::optional<DurationNs> max_time;
 
   // What the program says
   std::string progress = "auto";

@@ -26,6 +26,14 @@ namespace gazetrace {
 struct DurationNs {
   std::int64_t ns = 0;
 };
+// "8G", "500M", "4096": powers of 1024, with or without "B" or "iB" behind.
+struct ByteCount {
+  std::uint64_t bytes = 0;
+};
+// The K-th chunk, counted from 1, of N: "2/5"; "2" alone leaves N open (0).
+struct Chunk {
+  std::uint32_t number = 1, count = 0;
+};
 // The axis that points up.
 enum class WorldUp : std::uint8_t { y, z };
 
@@ -49,6 +57,8 @@ void parse_value(std::string_view text, const std::string& place, std::uint64_t&
 void parse_value(std::string_view text, const std::string& place, double& value);
 void parse_value(std::string_view text, const std::string& place, std::string& value);
 void parse_value(std::string_view text, const std::string& place, DurationNs& value);
+void parse_value(std::string_view text, const std::string& place, ByteCount& value);
+void parse_value(std::string_view text, const std::string& place, Chunk& value);
 void parse_value(std::string_view text, const std::string& place, SizePx& value);
 void parse_value(std::string_view text, const std::string& place, FrameList& value);
 void parse_value(std::string_view text, const std::string& place, FrameRate& value);
@@ -74,6 +84,8 @@ std::string format_value(std::uint64_t value);
 std::string format_value(double value);
 std::string format_value(const std::string& value);
 std::string format_value(const DurationNs& value);
+std::string format_value(const ByteCount& value);
+std::string format_value(const Chunk& value);
 std::string format_value(const SizePx& value);
 std::string format_value(const FrameList& value);
 std::string format_value(const FrameRate& value);

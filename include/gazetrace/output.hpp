@@ -19,10 +19,14 @@
 namespace gazetrace {
 
 // The file name for a frame, from a pattern such as "beauty.####.exr", "beauty.%04d.exr" or "beauty.<frame>.exr"; %% is
-// a percent sign. Only the last part of the path is looked at, so folders keep their # and %. Error(usage) for a
-// pattern with two places for the number, or with none where `require_number`.
+// a percent sign. Folders keep their # and %, except that %04d and <frame> stand for the number there, too, where the
+// file's name has it: "out/%04d/%04d.exr". Error(usage) for a file's name with two places for the number, and for one
+// with none where `require_number`.
 std::string frame_file_name(const std::string& pattern, std::int32_t frame, bool require_number = false);
 bool has_frame_number(const std::string& pattern);
+// The folder in which the files of all frames lie: that of the pattern, or of its folders the one above the first that
+// has the frame's number in its name; "." where there is none.
+std::string folder_of_frames(const std::string& pattern);
 // The frames for which a file of this pattern exists, ascending; {0} for the name of a single picture that exists.
 // Error(input) where there is none.
 std::vector<std::int32_t> find_frames(const std::string& pattern);
@@ -58,10 +62,22 @@ struct OutputSettings {
   std::string run_directory;  // where timing.csv and run.json are written; empty: nowhere
   bool overwrite = false;
   bool resume = false;
+  bool trust_files = false;  // `resume` believes the headers of finished files, and does not compare their content
 };
 
 // Error(usage) for everything that is known to fail before the first ray: patterns, suffixes, compression, AOVs, bits.
 void check_output_settings(const OutputSettings& settings, bool several_frames);
+
+// A file as it was written: what proves later that it is still the same.
+struct WrittenFile {
+  std::int32_t frame = 0;
+  std::uint64_t bytes = 0;
+  std::string digest;  // of the content, hex
+
+  friend bool operator==(const WrittenFile&, const WrittenFile&) = default;
+};
+// Files of a run by their names, relative to the folder of its record, or absolute where they lie elsewhere.
+using WrittenFiles = std::map<std::string, WrittenFile>;
 
 // What the header of a frame's file states. It contains no time of day, so that a resumed run writes the same bytes.
 struct FrameHeader {
@@ -76,27 +92,37 @@ struct FrameHeader {
   double enhance_contrast = 0;  // above 0: contrast was enhanced, and the picture no longer estimates radiance
   std::uint64_t seed = 0;
   std::string settings_digest;  // hex
+  std::string history;          // history_text() of the frames behind this one; empty: it depends on no other
   std::string software;         // "gazetrace 0.1.0"
 };
 
-// Writes a scene-linear EXR with OpenEXR; the file appears under its name only when it is complete. Returns the number
-// of values that were clamped to half's range. Without `eccentricity_deg` (a frame without gaze) that AOV is NaN.
-std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
-                              const FrameHeader& header, const ExrSettings& settings, int threads = 0);
-void write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg);
+struct WrittenExr {
+  std::uint64_t clamped_values = 0;  // values that were clamped to half's range
+  WrittenFile file;
+};
+// Writes a scene-linear EXR with OpenEXR; the file appears under its name only when it is complete. Without
+// `eccentricity_deg` (a frame without gaze) that AOV is NaN.
+WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
+                           const FrameHeader& header, const ExrSettings& settings, int threads = 0);
+WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg);
 // Writes a PNG, JPEG, TIFF or DPX, by the suffix, with OpenImageIO; the file is complete or absent.
-void write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
-                         const DisplaySettings& settings);
+WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
+                                const DisplaySettings& settings);
 ImageRgb read_exr_rgb(const std::string& path);
-// The settings digest in the header of an EXR or display image of gazetrace; empty where there is none, and for files
-// that are unreadable or incomplete.
+// What the header of an EXR or display image of gazetrace says of the run it is of. The digest is empty where there is
+// none, and for files that are unreadable or incomplete.
+struct FrameStamp {
+  std::string settings_digest;
+  std::optional<std::int32_t> frame;  // empty: not stated
+  std::string history;                // as in FrameHeader
+  std::optional<double> exposure_ev;
+};
+FrameStamp read_frame_stamp(const std::string& path);
 std::string read_settings_digest(const std::string& path);
+// The frames that went into a frame's history, as its header states them: "1-30", a digest of a long list, or "none".
+std::string history_text(const std::vector<std::int32_t>& passed);
 // One digest, in hex, of everything that can change pixels, given as (name, value) pairs in a fixed order.
 std::string digest_settings(const std::vector<std::pair<std::string, std::string>>& settings);
-// The same for frames that depend on those before them. It also covers the list of frames, and where the history comes
-// from: a number of frames that are rendered before, or the content of a checkpoint. `settings_digest` covers the rest.
-std::string digest_of_sequence(const std::string& settings_digest, const std::string& frames, std::int32_t preroll,
-                               const std::string& checkpoint);
 
 constexpr std::size_t kTimingRegions = 11;
 
@@ -154,6 +180,7 @@ struct RunRecord {
   std::map<std::string, std::string> facts;          // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
   Warnings warnings;
   std::vector<BadSample> bad_samples;
+  WrittenFiles files;  // pictures, maps and sums of samples, as they were written
 };
 std::string run_record_json(const RunRecord& record);
 RunRecord read_run_record(const std::string& path);  // Error(input)
@@ -169,17 +196,42 @@ std::string samples_file_name(const std::string& directory, std::int32_t frame, 
 
 // What the run over one part left in a directory.
 struct RunPart {
-  std::string timing_path;
+  std::string timing_path, record_path;
   RunRecord record;
   std::map<std::int32_t, TimingRow> rows;
 };
 // All parts in a directory, ordered by name. Error(input) where there are none, where records are missing, and where
-// settings or inputs differ.
+// settings or inputs differ. The files of a part that was killed are those in its journal.
 std::vector<RunPart> read_run_parts(const std::string& directory);
+
+// The files of a run that is going on or was killed: beside its record, which takes them over at the end, a line for
+// each as it was written.
+std::string file_journal_name(const std::string& record_path);
+WrittenFiles read_file_journal(const std::string& path);  // empty where there is none; what is damaged is passed over
+
+// A file that is not what the record of its run says.
+struct BadFile {
+  std::string path;
+  std::int32_t frame = 0;
+  std::string problem;  // "is missing", "holds frame 30", "has 1000 bytes in place of 48213", ...
+};
+// Compares files with a record, on several threads; in the order of frames. `directory`: that of the record.
+std::vector<BadFile> find_bad_files(const std::string& directory, const WrittenFiles& files,
+                                    const std::string& settings_digest, int threads = 0);
+// The same of all parts. A frame with a row in its part's timing of which the record lists no file is bad as well.
+std::vector<BadFile> find_bad_files(const std::vector<RunPart>& parts, int threads = 0);
+// Error(input) that counts bad files, and names the first of them and their frames; nothing where there are none.
+void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& bad);
 // Whether these are parts of the samples, for merge_samples() of pipeline.hpp, rather than parts of the frames.
 // Error(input) where both occur.
 bool are_parts_of_samples(const std::vector<RunPart>& parts);
 
+struct MergeOptions {
+  bool allow_missing = false;  // join what is there; frames whose files are bad count as missing
+  bool overwrite = false;
+  bool trust_files = false;  // do not look at the files that the parts' records list
+  int threads = 0;           // for looking at them
+};
 struct MergeResult {
   std::vector<std::string> parts;
   std::string frames;
@@ -188,11 +240,11 @@ struct MergeResult {
 // The record of the whole run. Where the parts differ, the record lists what each says, or a warning is added.
 RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings);
 // Joins the parts found in a directory into timing.csv and run.json. Error(input) where the settings digests of parts
-// differ, where parts overlap, and where frames are missing (unless allowed); Error(usage) where the files exist and
-// may not be overwritten. Where frames depend on those before them, each part must have had the history of all frames
-// before it, for instance from another part's checkpoint; a history of only the last few frames (`preroll`) gives a
-// warning.
-MergeResult merge_runs(const std::string& directory, bool allow_missing, bool overwrite);
+// differ, where parts overlap, where files are not those that the parts wrote, and where frames are missing (unless
+// allowed); Error(usage) where timing.csv or run.json exist and may not be overwritten. Where frames depend on those
+// before them, each part must have had the history of all frames before it, for instance from another part's
+// checkpoint; a history of only the last few frames (`preroll`) gives a warning.
+MergeResult merge_runs(const std::string& directory, const MergeOptions& options = {});
 
 // Writes the text to a temporary file beside `path`, and renames that.
 void write_text_atomically(const std::string& path, const std::string& text);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,8 +25,9 @@ namespace gazetrace {
 struct PipelineSettings : FrameSettings {
   OutputSettings output;  // without any pattern nothing is written, not even timing and run record
   FrameRate fps;
+  // Of everything that decides about pixels, except which frames there are and how a sequence was cut into parts: what
+  // a frame found of history is in its own header.
   std::string settings_digest;
-  std::string history_digest;  // the same without the list of frames; checkpoints carry it
   // History (accumulation, smoothed exposure) that is kept in files and taken up again.
   std::string checkpoint;             // a file for the history after the last frame; empty: none
   std::int32_t checkpoint_every = 0;  // also write it after every so many frames; 0: only at the end
@@ -42,12 +44,19 @@ struct PipelineObserver {
   // The dense linear frame after accumulation and its exposure in stops, before anything is written.
   std::function<void(const FrameRequest&, const Frame&, double exposure_ev)> frame_ready;
   std::function<void(const TimingRow&, bool skipped)> frame_done;
+  // Asked before a frame, with the mean time of those before it, ms (0: there was none): true ends the sequence there.
+  // TraceSettings::stop gives up a frame in the middle.
+  std::function<bool(double frame_ms)> stop_before_frame;
 };
 
 struct SequenceResult {
   std::vector<TimingRow> rows;        // of this run, skipped frames left out
   std::vector<std::int32_t> skipped;  // frames that were complete before this run began
   std::vector<BadSample> bad_samples;
+  WrittenFiles files;  // of all finished frames, those of earlier runs included
+  // Whether it was stopped, and which frames were then neither rendered nor finished before.
+  bool interrupted = false;
+  std::vector<std::int32_t> left;
   std::uint64_t clamped_half_values = 0, clamped_view_pixels = 0;
   std::vector<std::pair<std::string, std::string>> facts;  // decided while rendering; for RunRecord::facts
   Warnings warnings;
@@ -58,24 +67,53 @@ struct SequenceResult {
 // of the frames before it.
 TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings);
 
-// Renders the frames of a plan in order. With OutputSettings::resume, frames whose files carry this settings digest are
-// skipped. Where history (accumulation, exposure smoothing) needs them they are rendered again without being written,
-// and so are all frames where a checkpoint is asked for that is not there.
-// timing.csv grows by a row with each finished frame, so that a killed run keeps what it measured. `history` is that of
-// the frames before, see starting_history().
+// Renders the frames of a plan in order. With OutputSettings::resume, frames are skipped whose files carry this
+// settings digest and history, and have the content that was written. Where history (accumulation, exposure smoothing)
+// needs them they are rendered again without being written, and so are all frames where a checkpoint is asked for that
+// is not there. timing.csv grows by a row with each finished frame, so that a killed run keeps what it measured.
+// `history` is that of the frames before, see starting_history(). A sequence that is stopped leaves its checkpoint
+// after the last finished frame.
 SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color,
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history = {});
+
+// Removes the journal of a run, once its record lists the files.
+void finish_files(const std::string& record_path);
+
+// Frames of the plan that were finished under other settings, from other inputs or with another history, and that
+// rendering would replace.
+std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const PipelineSettings& settings,
+                                           const TemporalHistory& history);
 
 // For the run record; `history` is what the plan's first frame finds.
 RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
                                  const TemporalHistory& history);
 
+// A run's claim to the files it writes: a file beside its record that says host, process and since when, and whose time
+// is renewed while the run lives. Runs of other parts in the folder hold it up only where their frames overlap.
+class RunLock {
+ public:
+  // Error(usage) where another run lives that writes some of these files. A lock that nobody holds any more is taken
+  // over; `waiting` is told where that takes a while to find out, since the other was on another machine.
+  RunLock(const RunRecord& record, const std::string& record_path,
+          const std::function<void(const std::string& text)>& waiting = {});
+  ~RunLock();
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+  // What became of earlier locks, in words.
+  [[nodiscard]] const Warnings& taken_over() const { return taken_over_; }
+
+ private:
+  struct Heart;
+  Warnings taken_over_;
+  std::unique_ptr<Heart> heart_;
+};
+
 // Writes the history after a frame, to the bit, with the digest of the settings that it was made under. The file
 // appears under its name only when it is complete. Error(runtime) where it cannot be written.
-void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& history_digest);
+void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& settings_digest);
 // Error(input) for a file that is not a checkpoint, is damaged, or was made under other settings.
-TemporalHistory load_checkpoint(const std::string& path, const std::string& history_digest);
+TemporalHistory load_checkpoint(const std::string& path, const std::string& settings_digest);
 
 // Every file that rendering these frames would write, in order; run record and timing come first.
 std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
@@ -88,11 +126,12 @@ std::string needs_all_samples(const PipelineSettings& settings);
 MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
                           const PipelineSettings& settings);
 // The sums of one frame's samples in a file, to the bit, in the manner of save_checkpoint and load_checkpoint.
-void save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest);
+WrittenFile save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest);
 SampleSums load_samples(const std::string& path, const std::string& settings_digest);
 
-// The scene file and every buffer and image it names, in the order of the file; Error(input) when the file is missing.
-std::vector<std::string> scene_files(const std::string& path);
+// The scene file and every buffer and image it names, in the order of the file. Error(input) when the file is missing,
+// and where it names files outside of its data set, see SceneReadOptions.
+std::vector<std::string> scene_files(const std::string& path, bool allow_outside = false);
 // Content hash of each file. Error(input) for one that cannot be read.
 std::map<std::string, std::string> digest_files(const std::vector<std::string>& paths, int threads = 0);
 

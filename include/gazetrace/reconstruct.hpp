@@ -18,7 +18,7 @@ namespace gazetrace {
 struct Frame {
   ImageRgb radiance;       // linear Rec.709
   ImageGray sample_count;  // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
-  ImageGray variance;      // of the pixel's mean luminance, from the samples' spread; 0 for a single sample
+  ImageGray variance;      // of the pixel's mean luminance, from the spread of its samples, or of those around one
   // Estimate of the squared error of the pixel's luminance: its variance, and the square of what the filter changed
   // beside noise. Empty for filters that make no estimate of it (all but those that need halves).
   ImageGray squared_error;
@@ -83,7 +83,6 @@ class Reconstruction {
 // What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
   bool foveated = true;            // a gaze steers where the samples go, under another fall-off than "uniform"
-  bool blurs = false;              // the lens is open, or the shutter stays open for a while
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
   bool enhances_contrast = false;  // enhance_contrast() is applied
   bool part_of_samples = false;    // TraceSettings::samples
@@ -92,9 +91,9 @@ struct FilterChoice {
   std::string name;
   std::string reason;  // the end of a sentence that begins "... because"
 };
-// "guided" for foveated jobs, since it shows edges and texture of the periphery at full resolution. "linear" wherever
-// "guided" would not work (it needs all samples), would take a blur away (its first hits are those of a pinhole at one
-// instant), or leaves nothing to enhance; and for uniform frames, whose single pixels "linear" does not change.
+// "guided", since it shows edges and texture at full resolution, takes noise away, and tends to the samples' own mean
+// as they grow in number. "linear" wherever "guided" would not work (it needs all samples) or leaves nothing to
+// enhance.
 FilterChoice choose_filter(const FilterFacts& facts);
 
 // Contrast preservation where samples are sparse: an enhancement, not an estimate of radiance.

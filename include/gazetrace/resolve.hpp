@@ -51,6 +51,11 @@ struct ResolveOptions {
   bool tell_idle = true;
 };
 
+// What the tasks of an array job share: how the frames are divided, for the first task to write down.
+struct ChunkBorders {
+  std::string path, text;  // empty: there is nothing to write
+};
+
 struct ResolvedJob {
   Job job;  // with the filter that "auto" stands for
   std::unique_ptr<Scene> scene;
@@ -59,7 +64,8 @@ struct ResolvedJob {
   PlanSettings plan_settings;
   FramePlan plan;                                    // with the frames of `preroll` at its beginning
   std::vector<std::int32_t> frames;                  // those that are wanted
-  PipelineSettings pipeline;                         // with its digests, from the scope `digests` on
+  ChunkBorders chunk_borders;                        // prepare_outputs() writes them
+  PipelineSettings pipeline;                         // with its digest, from the scope `digests` on
   TemporalHistory history;                           // what the first frame starts from; with the scope render
   std::map<std::string, std::string> input_digests;  // path -> content hash
   // What was decided where the settings left a choice, such as "environment" -> "the built-in sky, ...", and which
@@ -83,8 +89,9 @@ FilterChoice filter_of(const JobSettings& job);
 
 TracerOptions tracer_options(const JobSettings& job);
 
-// Throws Error(input) naming the first output that exists, unless the job overwrites or resumes. Then makes the folders
-// and tests whether files can be created in them.
+// Throws Error(input) naming the first output that exists, unless the job overwrites or resumes; and Error(usage) where
+// it resumes and would render over finished frames of other settings or inputs, unless it overwrites as well. Then
+// makes the folders and tests whether files can be created in them.
 void prepare_outputs(const ResolvedJob& resolved);
 
 // The record of a run that begins now, whose state is "running"; finish_run_record() states how it ended. The record
@@ -99,16 +106,23 @@ Warnings result_warnings(const SequenceResult& result, const FramePlan& plan);
 
 // ---- Parts of resolve(), for commands that need no more
 
+// A share of a sequence's frames.
+struct FrameChunk {
+  std::vector<std::int32_t> frames;
+  double samples = 0;  // that the plan expects of them; 0: not known before they are rendered
+};
+// Divides the frames of a plan so that all chunks cost about the same, by the samples of their maps and their pixels,
+// or by their number where a pilot decides the samples. The same for every task, since nothing is measured.
+std::vector<FrameChunk> balanced_chunks(const JobSettings& job, const FramePlan& plan, std::uint32_t count);
+
 // The pipeline settings of a job, without digests. Patterns of file names are not checked against the number of frames.
 PipelineSettings pipeline_settings(const JobSettings& job);
 // Content hashes of all files that the job reads.
 std::map<std::string, std::string> digest_job_files(const JobSettings& job);
-// Sets the two digests of `settings`. One covers everything that affects pixels (options, file contents, version). The
-// other adds the frame list and the source of the history where frames depend on those before them. The same files
-// under other names give the same digests.
-void digest_job(const JobSettings& job, const std::vector<std::int32_t>& frames,
-                const std::map<std::string, std::string>& files, PipelineSettings& settings,
-                const JobSchema& schema = job_schema());
+// The digest of everything that affects pixels: options, file contents, version. The same files under other names give
+// the same digest, and so do the parts of a sequence, however it is cut.
+std::string digest_job(const JobSettings& job, const std::map<std::string, std::string>& files,
+                       const JobSchema& schema = job_schema());
 
 std::optional<DisplayGeometry> screen_geometry(const ScreenSettings& screen);
 GazeColumns merged_columns(const GazeFileSettings& gaze);  // the column map, overridden by the options
@@ -125,6 +139,8 @@ std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts);
 bool camera_needs_scene(const JobSettings& job);
 // Sets the environment of the scene, which also decides what "auto" stands for; returns in words what was chosen.
 std::string set_environment(const JobSettings& job, Scene& scene);
+// How the scene of a job is read: its animation, threads and limits.
+SceneReadOptions scene_read_options(const JobSettings& job);
 // The scene of the job with its environment.
 Scene load_job_scene(const JobSettings& job,
                      const std::function<void(std::size_t done, std::size_t total)>& progress = {});

@@ -146,6 +146,21 @@ struct MaterialExtensionInfo {
 };
 std::vector<MaterialExtensionInfo> material_extensions();
 
+// What a scene may ask for, whatever its few bytes claim. Every refusal names the limit and the setting that moves it.
+struct SceneLimits {
+  // What the loaded scene may take with its tracing structures, as estimate_scene() reckons it; 0: most_memory_bytes().
+  std::uint64_t memory_bytes = 0;
+  int texture_side_px = 16384;
+  // Decoded bytes of a picture for each byte of its file, beyond the first kFreeDecodedBytes: pictures of one colour
+  // pack a thousand to one, and small ones may.
+  double expansion = 200;
+  std::uint64_t nodes = 500'000;
+  int nesting = 200;  // of the JSON
+};
+inline constexpr std::uint64_t kFreeDecodedBytes = std::uint64_t{64} << 20U;
+// Three quarters of the memory that the machine, or the control group that the process is in, lets it have.
+std::uint64_t most_memory_bytes();
+
 struct SceneReadOptions {
   int threads = 0;  // for decoding textures and reading meshes, which overlap; 0: all cores
   // The animation that plays, by name or number ("2", counted from 0). Empty: for each node, camera and skin the first
@@ -153,7 +168,27 @@ struct SceneReadOptions {
   std::string animation;
   // Called with the number of textures and meshes that are ready; from several threads, but never at the same time.
   std::function<void(std::size_t done, std::size_t total)> progress;
+  SceneLimits limits;
+  // The scene may name files outside of its data set. Otherwise buffers and pictures must lie, symbolic links followed,
+  // in the scene's folder or in the data set that it belongs to, see core/data_root.hpp.
+  bool allow_outside = false;
 };
+
+// What a scene will take in memory, from its JSON and the headers of its pictures: no picture is decoded.
+struct SceneEstimate {
+  std::uint64_t file_bytes = 0;      // the scene's file with its buffers, held while it is loaded
+  std::uint64_t geometry_bytes = 0;  // vertices and triangles
+  std::uint64_t texture_bytes = 0;   // with their mip levels
+  std::uint64_t picture_bytes = 0;   // the largest picture as it is decoded, held while it becomes a texture
+  std::uint64_t node_bytes = 0;      // nodes and instances
+  std::uint64_t tree_bytes = 0;      // for tracing: trees over the triangles, and triangles prepared for shading
+  std::uint64_t triangles = 0, pictures = 0, nodes = 0;
+  [[nodiscard]] std::uint64_t total_bytes() const {
+    return file_bytes + geometry_bytes + texture_bytes + picture_bytes + node_bytes + tree_bytes;
+  }
+};
+// Error(input) as load_scene() would throw for what the JSON and the headers of pictures say; not for its memory.
+SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& options = {});
 
 // Reads a .gltf or .glb file. Error(input) names the file, the place in its JSON
 // ("meshes[3].primitives[0].attributes.NORMAL") and what is wrong; an unknown extension in extensionsRequired is such

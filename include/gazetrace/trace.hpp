@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -69,6 +70,9 @@ struct TraceSettings {
   // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
   // slower.
   std::optional<SampleRange> samples;
+  // Asked before every piece of work, from several threads: once it is true, tracing ends with Error(interrupted), and
+  // the frame is lost. Empty: never.
+  std::function<bool()> stop;
 };
 
 // How one of many small lights is chosen: in proportion to its power, or by a tree of bounds on what each light can
@@ -103,13 +107,28 @@ struct SurfaceSums {
   Vec3f reflected;            // sum of the radiance, without what the first hit itself emits
   Vec3f albedo;               // sum, as Guides::albedo
   Vec3f normal;               // sum of the shading normals
-  Vec3f place_m;              // sum of the hit points, relative to the camera, in world axes
+  Vec3f position_m;           // sum of the hit points, relative to the camera, in world axes
   float square = 0;           // sum over the samples of (luminance of `reflected` / luminance of `albedo`)^2
   float half_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `reflected`
   std::uint32_t count = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
+  // As SparseFrame::half_difference, of the luminance of `albedo` over *all* samples of the site: what chance does to
+  // the surface's texture and to the share of the site that it covers. 0 without SparseFrame::first_hits.
+  float albedo_difference = 0;
 };
 inline constexpr std::size_t kMostSurfaces = 3;
+
+// What all samples of a site saw first, through lens, shutter and transparency, and how far that is from what a pinhole
+// sees at the middle of the frame's time.
+struct FirstHitSums {
+  Vec3f shone;                 // sum of the radiance that is seen directly: emission, unlit surfaces, the environment
+  float shone_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `shone`
+  // Sum of the squared distances (px^2) between where a sample is in the frame and where the pinhole sees what it hit.
+  // In focus and at rest this is 0, apart from rounding. A single distance counts as kMostShiftPx at most.
+  float square_shift_px2 = 0;
+  std::uint32_t blended = 0;  // how many samples hit a surface of AlphaMode::blend
+};
+inline constexpr float kMostShiftPx = 1000;
 
 struct BadSample {
   std::int32_t frame = 0;
@@ -149,6 +168,9 @@ struct SparseFrame {
   // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
+  // Of each site that filters change, beside its surfaces; empty where no sample can see anything else than a pinhole
+  // at one instant: without lens, motion while the shutter is open, and blended surfaces.
+  std::vector<FirstHitSums> first_hits;
   SampleSums unrounded;  // empty unless TraceSettings::samples
   TraceStats stats;
 };

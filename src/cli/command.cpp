@@ -95,9 +95,11 @@ std::vector<std::string> with_flags(std::vector<std::string> texts) {
   return texts;
 }
 
+constexpr std::size_t kLongestWarning = 3000;
+
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) {
-    std::fprintf(stderr, "gazetrace: warning: %s\n", with_flags(warning).c_str());
+    std::fprintf(stderr, "gazetrace: warning: %s\n", bounded(with_flags(warning), kLongestWarning).c_str());
   }
 }
 

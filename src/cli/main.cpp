@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: parse, run one command, turn the one exception type into one line and an exit code.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -19,10 +18,10 @@
 namespace gazetrace {
 namespace {
 
+constexpr std::size_t kLongestLine = 3000;
+
 int report(const std::string& message, int exit_code) {
-  std::string line = with_flags(message);
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  std::fprintf(stderr, "gazetrace: error: %s\n", line.c_str());
+  std::fprintf(stderr, "gazetrace: error: %s\n", bounded(with_flags(message), kLongestLine).c_str());
   return exit_code;
 }
 
@@ -135,7 +134,13 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const Error& error) {
-    return report(error.what(), error.kind() == ErrorKind::runtime ? exit_failed : exit_bad_input);
+    if (error.kind() == ErrorKind::nothing_to_do) {
+      std::fprintf(stderr, "gazetrace: %s: nothing to do\n", bounded(with_flags(error.what())).c_str());
+      return exit_done;
+    }
+    return report(error.what(), error.kind() == ErrorKind::runtime       ? exit_failed
+                                : error.kind() == ErrorKind::interrupted ? exit_interrupted
+                                                                         : exit_bad_input);
   } catch (const std::bad_alloc&) {
     return report("out of memory", exit_failed);
   } catch (const std::exception& error) {

@@ -83,6 +83,8 @@ std::string summary_json(const SequenceResult& result, const ResolvedJob& resolv
   json["frames"] = format_frame_list(resolved.frames);
   json["rendered"] = result.rows.size();
   json["skipped"] = result.skipped.size();
+  json["interrupted"] = result.interrupted;
+  json["left"] = result.left.empty() ? "" : format_frame_list(result.left);
   json["settings_digest"] = resolved.pipeline.settings_digest;
   json["wall_s"] = wall_s;
   json["load_s"] = resolved.load_s;

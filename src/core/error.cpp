@@ -8,17 +8,23 @@
 namespace gazetrace {
 namespace {
 
+// Lists of known names are long; what files say need not be.
+constexpr std::size_t kMostOfProblem = 1500;
+
 std::string one_line(std::string_view place, std::string_view problem, std::string_view remedy) {
   std::string line;
   if (!place.empty()) {
-    line.append(place).append(": ");
+    line.append(bounded(place, 600)).append(": ");
   }
-  line.append(problem);
+  line.append(bounded(problem, kMostOfProblem));
   if (!remedy.empty()) {
-    line.append("; ").append(remedy);
+    line.append("; ").append(bounded(remedy, 600));
   }
-  std::replace(line.begin(), line.end(), '\n', ' ');
   return line;
+}
+
+bool is_inside_character(char c) {
+  return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // of UTF-8
 }
 
 // Levenshtein distance, one row at a time.
@@ -38,6 +44,25 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+std::string bounded(std::string_view text, std::size_t most) {
+  std::string line(text);
+  if (text.size() > most) {
+    std::size_t head = most * 2 / 3;
+    std::size_t tail = text.size() - most / 3;
+    while (head > 0 && is_inside_character(text[head])) {
+      --head;
+    }
+    while (tail < text.size() && is_inside_character(text[tail])) {
+      ++tail;
+    }
+    line.assign(text.substr(0, head)).append("... (").append(std::to_string(tail - head));
+    line.append(" more bytes) ...").append(text.substr(tail));
+  }
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
+  return line;
+}
 
 Error::Error(ErrorKind kind, std::string_view place, std::string_view problem, std::string_view remedy)
     : std::runtime_error(one_line(place, problem, remedy)), kind_(kind) {}

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -53,7 +54,8 @@ std::uint64_t most_pixels_a_byte(std::string_view format) {
 }
 
 // Called before any memory is allocated, since the size is only the claim of a header of a few bytes.
-const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string& place) {
+const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string& place,
+                                  const PictureLimits& limits = {}) {
   const OIIO::ImageSpec& spec = picture.input->spec();
   const std::string size = std::to_string(spec.width) + " x " + std::to_string(spec.height);
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.width > kMaxSidePx || spec.height > kMaxSidePx ||
@@ -68,12 +70,29 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
         "a picture of " + size + " pixels is too large; at most " + std::to_string(kMaxPixels) + " are possible",
         "make it smaller");
   }
+  if (spec.width > limits.side_px || spec.height > limits.side_px) {
+    throw Error(
+        ErrorKind::input, place,
+        "a picture of " + size + " pixels is larger than the limit of " + std::to_string(limits.side_px) + " a side",
+        "make it smaller, or raise `max-texture`");
+  }
   const std::uint64_t a_byte = most_pixels_a_byte(picture.input->format_name());
   if (a_byte > 0 && pixels > kPixelsOfAnyFile + a_byte * picture.file_size) {
     throw Error(ErrorKind::input, place,
                 "the picture is damaged: a file of " + std::to_string(picture.file_size) + " bytes cannot hold " +
                     size + " pixels",
                 "export it again");
+  }
+  const auto decoded = static_cast<double>(pixels * (spec.format.size() == 1 ? 4 : 16));
+  const auto allowed =
+      static_cast<double>(limits.free_bytes) + limits.expansion * static_cast<double>(picture.file_size);
+  if (limits.expansion > 0 && decoded > allowed) {
+    throw Error(ErrorKind::input, place,
+                "a file of " + std::to_string(picture.file_size) + " bytes unpacks to " +
+                    std::to_string(static_cast<std::uint64_t>(decoded) >> 20U) + " MiB; the limit is " +
+                    std::to_string(limits.free_bytes >> 20U) + " MiB and " +
+                    std::to_string(static_cast<std::uint64_t>(limits.expansion)) + " times the file",
+                "make the picture smaller, or raise `max-expansion`");
   }
   return spec;
 }
@@ -133,8 +152,8 @@ std::vector<T> read_channels(OIIO::ImageInput& input, OIIO::TypeDesc type, int c
   }
 }
 
-ImageRgba read_rgba(const OpenPicture& picture, const std::string& place) {
-  const OIIO::ImageSpec& spec = check_size(picture, place);
+ImageRgba read_rgba(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
+  const OIIO::ImageSpec& spec = check_size(picture, place, limits);
   OIIO::ImageInput& input = *picture.input;
   input.threads(1);  // since callers decode many pictures at once
   ImageRgba image;
@@ -238,22 +257,23 @@ OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, co
   return picture;
 }
 
-}  // namespace
+std::string place_of(const std::string& path, const std::string& place) {
+  return place + " ('" + path + "')";
+}
 
-ImageRgba read_image_rgba(const std::string& path, const std::string& place) {
+OpenPicture open_picture(const std::string& path, const std::string& place) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw Error(ErrorKind::input, place, "the picture '" + path + "' does not exist", "put it there or fix the uri");
   }
-  const std::string full_place = place + " ('" + path + "')";
-  const OpenPicture picture = open_file(path, keep_alpha_unassociated(), full_place);
+  OpenPicture picture = open_file(path, keep_alpha_unassociated(), place_of(path, place));
   if (!picture.input) {
     throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(OIIO::geterror()));
   }
-  return read_rgba(picture, full_place);
+  return picture;
 }
 
-ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place) {
+OpenPicture open_picture(std::span<const std::uint8_t> file_bytes, const std::string& place) {
   const char* name = name_by_content(file_bytes);
   if (name == nullptr) {
     throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
@@ -268,7 +288,46 @@ ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::s
   if (!picture.input) {
     throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(OIIO::geterror()));
   }
-  return read_rgba(picture, place);
+  return picture;
+}
+
+// After the checks of its size, since it unpacks all pixels once: what is damaged in them would be printed by the
+// library that reads them, and data beyond them unpacked to the end.
+void check_pixels_of_png(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
+  check_size(picture, place, limits);
+  if (is_png(picture.bytes)) {
+    check_png_pixels(picture.bytes, place);
+  }
+}
+
+PictureSize size_of(const OpenPicture& picture, const std::string& place, const PictureLimits& limits) {
+  const OIIO::ImageSpec& spec = check_size(picture, place, limits);
+  return {spec.width, spec.height, spec.format.size() > 1, 1};
+}
+
+}  // namespace
+
+ImageRgba read_image_rgba(const std::string& path, const std::string& place, const PictureLimits& limits) {
+  const std::string full_place = place_of(path, place);
+  const OpenPicture picture = open_picture(path, place);
+  check_pixels_of_png(picture, full_place, limits);
+  return read_rgba(picture, full_place, limits);
+}
+
+ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place,
+                          const PictureLimits& limits) {
+  const OpenPicture picture = open_picture(file_bytes, place);
+  check_pixels_of_png(picture, place, limits);
+  return read_rgba(picture, place, limits);
+}
+
+PictureSize read_picture_size(const std::string& path, const std::string& place, const PictureLimits& limits) {
+  return size_of(open_picture(path, place), place_of(path, place), limits);
+}
+
+PictureSize read_picture_size(std::span<const std::uint8_t> file_bytes, const std::string& place,
+                              const PictureLimits& limits) {
+  return size_of(open_picture(file_bytes, place), place, limits);
 }
 
 ImageRgb read_image_rgb_float(const std::string& path) {
@@ -280,7 +339,8 @@ ImageRgb read_image_rgb_float(const std::string& path) {
   if (!picture.input) {
     throw Error(ErrorKind::input, path, "cannot be read: " + reason(OIIO::geterror()));
   }
-  const OIIO::ImageSpec& spec = check_size(picture, path);
+  check_pixels_of_png(picture, path, {});
+  const OIIO::ImageSpec& spec = picture.input->spec();
   try {
     return read_rgb_float(*picture.input, path);
   } catch (const std::bad_alloc&) {
@@ -344,6 +404,9 @@ std::vector<std::uint8_t> encode_image(const std::string& path, int width_px, in
 }
 
 std::string read_image_note(const std::string& path) {
+  if (const std::optional<std::string> note = png_description(path)) {
+    return *note;
+  }
   const auto input = OIIO::ImageInput::open(path);
   if (!input) {
     OIIO::geterror();  // clears the error, which would otherwise be printed when the program ends

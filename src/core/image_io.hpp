@@ -22,11 +22,30 @@ struct ImageRgba {
   bool is_linear = false;  // the file holds floats, which are linear light
 };
 
+// What a picture may ask for; `setting`s are named where it asks for more.
+struct PictureLimits {
+  int side_px = 65536;
+  // Decoded bytes for each byte of the file, beyond the first `free_bytes`; 0: any number.
+  double expansion = 0;
+  std::uint64_t free_bytes = 0;
+};
+
+struct PictureSize {
+  int width_px = 0, height_px = 0;
+  bool is_deep = false;    // more than 8 bits a channel
+  std::uint64_t uses = 1;  // textures that are made of it
+};
+// From the header alone. Error(input) as the functions below.
+PictureSize read_picture_size(const std::string& path, const std::string& place, const PictureLimits& limits = {});
+PictureSize read_picture_size(std::span<const std::uint8_t> file_bytes, const std::string& place,
+                              const PictureLimits& limits = {});
+
 // Grey, grey with alpha, RGB and RGBA all become RGBA; values stay encoded as in the file. Error(input) that names
 // `place`, also for values that are not finite.
-ImageRgba read_image_rgba(const std::string& path, const std::string& place);
+ImageRgba read_image_rgba(const std::string& path, const std::string& place, const PictureLimits& limits = {});
 // The same from a file's bytes in memory.
-ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place);
+ImageRgba read_image_rgba(std::span<const std::uint8_t> file_bytes, const std::string& place,
+                          const PictureLimits& limits = {});
 
 // The floats of an .hdr, .exr or other picture; grey is repeated into RGB, alpha and further channels are left out.
 ImageRgb read_image_rgb_float(const std::string& path);

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <span>
 #include <string_view>
 
 #include "gazetrace/error.hpp"
@@ -155,6 +158,94 @@ class PngCheck {
   std::size_t palette_size_ = 0;
 };
 
+// The rows of a picture in the order in which they are stored, each with a byte for its filter before it. ISO/IEC
+// 15948, sections 7.2 and 8.2 (seven passes over an interlaced picture).
+class RowCheck {
+ public:
+  explicit RowCheck(Bytes header) : width_(big_endian_u32(header)), height_(big_endian_u32(header.subspan(4))) {
+    constexpr std::array<unsigned, 7> kChannels{1, 0, 3, 1, 2, 0, 4};
+    bits_ = std::uint64_t{header[8]} * kChannels.at(header[9]);
+    passes_ = header[12] == 0 ? std::span(&kWhole, 1) : std::span<const Pass>(kAdam7);
+    begin_pass();
+  }
+  [[nodiscard]] bool is_complete() const { return passes_.empty(); }
+
+  // False where a row has a filter that does not exist. Bytes beyond the last row are counted.
+  bool take(Bytes bytes) {
+    while (!bytes.empty() && !is_complete()) {
+      if (left_in_row_ == row_bytes_ && bytes.front() > kLastFilter) {
+        return false;
+      }
+      const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left_in_row_, bytes.size()));
+      bytes = bytes.subspan(count);
+      left_in_row_ -= count;
+      if (left_in_row_ == 0) {
+        left_in_row_ = row_bytes_;
+        if (--rows_ == 0) {
+          passes_ = passes_.subspan(1);
+          begin_pass();
+        }
+      }
+    }
+    beyond_ += bytes.size();
+    return true;
+  }
+  [[nodiscard]] std::uint64_t beyond() const { return beyond_; }
+
+ private:
+  struct Pass {
+    std::uint32_t x, y, step_x, step_y;
+  };
+  static constexpr Pass kWhole{0, 0, 1, 1};
+  static constexpr std::array<Pass, 7> kAdam7{
+      {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}}};
+  static constexpr std::uint8_t kLastFilter = 4;
+
+  // Passes without pixels have no rows.
+  void begin_pass() {
+    for (; !passes_.empty(); passes_ = passes_.subspan(1)) {
+      const Pass& pass = passes_.front();
+      if (width_ > pass.x && height_ > pass.y) {
+        const std::uint64_t columns = (width_ - pass.x + pass.step_x - 1) / pass.step_x;
+        rows_ = (height_ - pass.y + pass.step_y - 1) / pass.step_y;
+        row_bytes_ = left_in_row_ = 1 + (columns * bits_ + 7) / 8;
+        return;
+      }
+    }
+  }
+
+  std::uint32_t width_, height_;
+  std::uint64_t bits_ = 0;  // of a pixel
+  std::span<const Pass> passes_;
+  std::uint64_t rows_ = 0, row_bytes_ = 0, left_in_row_ = 0, beyond_ = 0;
+};
+
+struct Inflater {
+  Inflater() { ready = inflateInit(&stream) == Z_OK; }
+  ~Inflater() { inflateEnd(&stream); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+  z_stream stream{};
+  bool ready = false;
+};
+
+// Calls take(type, data) for each chunk until it returns false; whether the end of the file came in order.
+template <class Take>
+bool each_chunk(Bytes rest, const Take& take) {
+  while (rest.size() >= 12) {
+    const std::uint32_t length = big_endian_u32(rest);
+    if (length > rest.size() - 12) {
+      return false;
+    }
+    const std::string_view type(reinterpret_cast<const char*>(&rest[4]), 4);
+    if (type == "IEND" || !take(type, rest.subspan(8, length))) {
+      return true;
+    }
+    rest = rest.subspan(length + std::size_t{12});
+  }
+  return false;
+}
+
 }  // namespace
 
 bool is_png(Bytes file_bytes) {
@@ -163,6 +254,73 @@ bool is_png(Bytes file_bytes) {
 
 std::vector<std::uint8_t> essential_png(Bytes file_bytes, const std::string& place) {
   return PngCheck(file_bytes, place).essential();
+}
+
+void check_png_pixels(Bytes essential, const std::string& place) {
+  constexpr std::uint64_t kMostBeyond = 65536;  // some writers leave a little
+  const auto fail = [&](const std::string& problem) {
+    throw Error(ErrorKind::input, place, "the picture is damaged: " + problem, "export it again");
+  };
+  Inflater inflater;
+  if (!inflater.ready) {
+    throw Error(ErrorKind::runtime, place, "there is no memory to unpack the picture");
+  }
+  RowCheck rows(essential.subspan(kSignature.size() + 8, 13));
+  std::array<std::uint8_t, 32768> buffer{};
+  int status = Z_OK;
+  each_chunk(essential.subspan(kSignature.size()), [&](std::string_view type, Bytes data) {
+    if (type != "IDAT") {
+      return true;
+    }
+    z_stream& stream = inflater.stream;
+    stream.next_in = const_cast<std::uint8_t*>(data.data());  // zlib only reads through it
+    stream.avail_in = static_cast<uInt>(data.size());
+    do {
+      stream.next_out = buffer.data();
+      stream.avail_out = static_cast<uInt>(buffer.size());
+      status = inflate(&stream, Z_NO_FLUSH);
+      if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
+        fail(std::string("its pixels cannot be unpacked: ") + (stream.msg == nullptr ? "no reason known" : stream.msg));
+      }
+      if (!rows.take(Bytes(buffer).first(buffer.size() - stream.avail_out))) {
+        fail("a row has a filter that does not exist");
+      }
+      if (rows.beyond() > kMostBeyond) {
+        fail("it holds more data than its pixels");
+      }
+    } while (status == Z_OK && (stream.avail_in > 0 || stream.avail_out == 0));
+    return status != Z_STREAM_END;
+  });
+  if (!rows.is_complete()) {
+    fail("its pixels end early");
+  }
+  if (status != Z_STREAM_END) {
+    fail("the packed stream of its pixels does not end");
+  }
+}
+
+std::optional<std::string> png_description(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes(kSignature.size());
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())) || !is_png(bytes)) {
+    return std::nullopt;
+  }
+  bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  std::string title;
+  std::string description;
+  const bool complete = each_chunk(bytes, [&](std::string_view type, Bytes data) {
+    const std::string_view text(reinterpret_cast<const char*>(data.data()), data.size());
+    const std::size_t end = text.find('\0');
+    if (type == "tEXt" && end != std::string_view::npos) {
+      if (text.substr(0, end) == "Title") {
+        title = text.substr(end + 1);
+      } else if (text.substr(0, end) == "Description") {
+        description = text.substr(end + 1);
+      }
+    }
+    return true;
+  });
+  return !complete ? std::string() : !title.empty() ? title : description;
 }
 
 }  // namespace gazetrace

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/data_root.hpp"
 #include "core/text.hpp"
 
 namespace gazetrace {
@@ -65,7 +66,10 @@ Sidecars::Sidecars(const BidsName& name, std::string_view suffix) {
       }
     }
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<fs::path> roots = data_roots((folder / "any").string());
+    roots.push_back(fs::weakly_canonical(folder, code));
     for (const auto& [entities, path] : found) {
+      check_within(roots, path, fs::path(path).filename().string(), path, "put the file itself there");
       files_.push_back({path, JsonLeaves(read_text_file(path), path)});
     }
     if (fs::exists(folder / "dataset_description.json", code) || folder == folder.root_path()) {

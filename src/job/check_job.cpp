@@ -134,6 +134,21 @@ void check_sample_range(const JobSettings& job) {
   }
 }
 
+void check_chunk(const JobSettings& job) {
+  if (job.chunk_frames > 0 && !job.chunk) {
+    throw Error(ErrorKind::usage, "`chunk-frames`", "which chunk is it?", "give `chunk` K");
+  }
+  if (job.chunk && (job.chunk->count == 0) != (job.chunk_frames > 0)) {
+    throw Error(ErrorKind::usage, "`chunk`",
+                job.chunk_frames > 0 ? "the length of chunks says how many there are" : "of how many chunks is it one?",
+                "give `chunk` K/N, or `chunk` K with `chunk-frames`");
+  }
+  if (job.chunk && job.trace.samples) {
+    throw Error(ErrorKind::usage, "`chunk`", "`sample-range` divides the samples, and this the frames",
+                "give one of them");
+  }
+}
+
 }  // namespace
 
 void check_job(const Job& whole, const JobSchema& schema) {
@@ -160,6 +175,7 @@ void check_job(const Job& whole, const JobSchema& schema) {
   check_history_options(job);
   check_target(job);
   check_sample_range(job);
+  check_chunk(job);
   if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
     throw Error(ErrorKind::usage, "`gaze-at`",
                 fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
@@ -178,9 +194,6 @@ void check_job(const Job& whole, const JobSchema& schema) {
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);
   check_display_image_size(output.display, job.size.width, job.size.height);
-  if (job.overwrite && job.resume) {
-    throw Error(ErrorKind::usage, "`resume`", "`overwrite` starts over and `resume` goes on", "give one of them");
-  }
   check_output_folders(output, job.checkpoint);
 }
 
@@ -191,7 +204,6 @@ FilterChoice filter_of(const JobSettings& job) {
   const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;
   const bool foveated = follows_picture(job.foveation) || (has_gaze && job.foveation.falloff != "uniform");
   return choose_filter({.foveated = foveated,
-                        .blurs = job.aperture.f_number > 0 || job.aperture.radius_m > 0 || job.shutter.blurs(),
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,
                         .enhances_contrast = job.enhance_contrast > 0,

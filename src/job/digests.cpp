@@ -47,7 +47,7 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
                                              job.gaze.columns_file, job.screen.name, job.recording_screen,
                                              ocio_file(job), job.foveation.parameters.table.path, job.resume_from});
   if (!job.scene.empty()) {
-    const std::vector<std::string> scene = scene_files(job.scene);
+    const std::vector<std::string> scene = scene_files(job.scene, job.allow_outside);
     files.insert(files.end(), scene.begin(), scene.end());
   }
   const std::vector<std::string> densities = density_files(job);
@@ -55,8 +55,8 @@ std::map<std::string, std::string> digest_job_files(const JobSettings& job) {
   return digest_files(files, job.threads);
 }
 
-void digest_job(const JobSettings& job, const std::vector<std::int32_t>& frames,
-                const std::map<std::string, std::string>& files, PipelineSettings& settings, const JobSchema& schema) {
+std::string digest_job(const JobSettings& job, const std::map<std::string, std::string>& files,
+                       const JobSchema& schema) {
   std::vector<std::pair<std::string, std::string>> parts{{"version", kVersion}};
   const auto digest_of = [&](const std::string& path) {
     const auto found = files.find(path);
@@ -71,7 +71,8 @@ void digest_job(const JobSettings& job, const std::vector<std::int32_t>& frames,
       parts.emplace_back(option.name, text);
     }
   }
-  for (const std::string& path : job.scene.empty() ? std::vector<std::string>() : scene_files(job.scene)) {
+  for (const std::string& path :
+       job.scene.empty() ? std::vector<std::string>() : scene_files(job.scene, job.allow_outside)) {
     parts.emplace_back("scene file", digest_of(path));
   }
   // Of a sequence all files count, whatever frames are wanted: the parts of a run have one digest.
@@ -79,11 +80,7 @@ void digest_job(const JobSettings& job, const std::vector<std::int32_t>& frames,
     parts.emplace_back("density map " + fs::path(path).filename().string(), digest_of(path));
   }
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
-  settings.history_digest = digest_settings(parts);
-  settings.settings_digest = uses_history(settings)
-                                 ? digest_of_sequence(settings.history_digest, format_frame_list(frames), job.preroll,
-                                                      job.resume_from.empty() ? "" : digest_of(job.resume_from))
-                                 : settings.history_digest;
+  return digest_settings(parts);
 }
 
 }  // namespace gazetrace

@@ -17,8 +17,8 @@ struct JudgedNumbers {
 
 // FovVideoVDP sees 250 ms at a time, and takes a sequence to have stood still before its first frame. So the first run
 // begins the sequence, and is two frames longer than that time: its last frames show what later ones look like, as far
-// as the gaze does not move. Where it does, further runs look at the middle and at the end. `frames` is the length of the
-// whole sequence. A single frame is judged as a still, by four of its kind.
+// as the gaze does not move. Where it does, further runs look at the middle and at the end. `frames` is the length of
+// the whole sequence. A single frame is judged as a still, by four of its kind.
 JudgedNumbers judged_numbers(std::int32_t frames, bool moves, const FrameRate& fps);
 
 }  // namespace gazetrace

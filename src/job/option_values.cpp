@@ -72,15 +72,22 @@ std::array<std::string_view, N> split_exactly(std::string_view text, const std::
 
 constexpr std::string_view kTwoNumbers = "two numbers with a comma between";
 constexpr std::string_view kThreeNumbers = "three numbers with commas between";
-constexpr std::string_view kDuration = "a duration with its unit, such as 50ms, 1.5s, 12000us or 3ns";
+constexpr std::string_view kDuration = "a duration with its unit, such as 50ms, 1.5s, 12000us, 3ns, 55m or 2h";
 
 struct DurationUnit {
   std::string_view name;
   std::int64_t ns;
   int digits;  // the number of decimals that are still whole nanoseconds
 };
+// Texts are canonical in seconds at most, since digests are made of them.
 constexpr std::array<DurationUnit, 4> kDurationUnits = {
     {{"ns", 1, 0}, {"us", 1'000, 3}, {"ms", 1'000'000, 6}, {"s", 1'000'000'000, 9}}};
+struct LongUnit {
+  std::string_view name;
+  std::int64_t seconds;
+};
+constexpr std::array<LongUnit, 3> kLongUnits = {{{"min", 60}, {"m", 60}, {"h", 3600}}};
+constexpr std::string_view kByteUnits = "KMGT";
 
 }  // namespace
 
@@ -124,6 +131,21 @@ void parse_value(std::string_view text, const std::string& place, DurationNs& va
       unit = &candidate;
     }
   }
+  for (const LongUnit& candidate : kLongUnits) {
+    if (unit == nullptr && rest.ends_with(candidate.name)) {
+      const std::string number(rest.substr(0, rest.size() - candidate.name.size()));
+      if (number.empty() || number.find_first_not_of("0123456789.") != std::string::npos) {
+        reject(text, place, kDuration);
+      }
+      DurationNs of_one;
+      parse_value(number + "s", place, of_one);
+      if (of_one.ns > std::numeric_limits<std::int64_t>::max() / candidate.seconds) {
+        throw Error(ErrorKind::usage, place, fmt::format("'{}' is longer than 292 years", text));
+      }
+      value.ns = (negative ? -1 : 1) * of_one.ns * candidate.seconds;
+      return;
+    }
+  }
   if (unit != nullptr) {
     rest.remove_suffix(unit->name.size());
   } else if (rest == "0") {
@@ -150,6 +172,38 @@ void parse_value(std::string_view text, const std::string& place, DurationNs& va
     throw Error(ErrorKind::usage, place, fmt::format("'{}' is longer than 292 years", text));
   }
   value.ns = negative ? -ns : ns;
+}
+
+void parse_value(std::string_view text, const std::string& place, ByteCount& value) {
+  constexpr std::string_view kWanted = "a number of bytes, such as 4096, 500M, 1.5G or 2T";
+  std::string_view rest = text;
+  for (const std::string_view suffix : {"iB", "B"}) {
+    if (rest.ends_with(suffix)) {
+      rest.remove_suffix(suffix.size());
+      break;
+    }
+  }
+  const std::size_t unit = rest.empty() ? std::string_view::npos : kByteUnits.find(rest.back());
+  if (unit != std::string_view::npos) {
+    rest.remove_suffix(1);
+  }
+  const double bytes = parse_finite(rest, place, kWanted) *
+                       std::exp2(unit == std::string_view::npos ? 0.0 : 10.0 * static_cast<double>(unit + 1));
+  if (!(bytes >= 0 && bytes < 1e18)) {
+    reject(text, place, kWanted);
+  }
+  value.bytes = static_cast<std::uint64_t>(bytes);
+}
+
+void parse_value(std::string_view text, const std::string& place, Chunk& value) {
+  constexpr std::string_view kWanted = "a chunk such as 2/5, the second of five, or 2 beside a length";
+  const std::size_t slash = text.find('/');
+  value.number = parse_number<std::uint32_t>(text.substr(0, slash), place, kWanted);
+  value.count =
+      slash == std::string_view::npos ? 0 : parse_number<std::uint32_t>(text.substr(slash + 1), place, kWanted);
+  if (value.number == 0 || (slash != std::string_view::npos && value.number > value.count)) {
+    reject(text, place, kWanted);
+  }
 }
 
 void parse_value(std::string_view text, const std::string& place, SizePx& value) {
@@ -311,6 +365,20 @@ std::string format_value(const DurationNs& value) {
     }
   }
   return "0s";
+}
+
+std::string format_value(const ByteCount& value) {
+  std::uint64_t bytes = value.bytes;
+  std::size_t unit = 0;
+  while (bytes > 0 && bytes % 1024 == 0 && unit < kByteUnits.size()) {
+    bytes /= 1024;
+    ++unit;
+  }
+  return std::to_string(bytes) + (unit == 0 ? std::string() : std::string(1, kByteUnits[unit - 1]));
+}
+
+std::string format_value(const Chunk& value) {
+  return value.count == 0 ? std::to_string(value.number) : fmt::format("{}/{}", value.number, value.count);
 }
 
 std::string format_value(const SizePx& value) {

@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "gazetrace/error.hpp"
+#include "job/changed_inputs.hpp"
 #include "output/aovs.hpp"
 
 namespace gazetrace {
@@ -58,11 +59,14 @@ void prove_writable(const fs::path& folder) {
 
 std::set<fs::path> output_folders(const OutputSettings& output, const std::string& checkpoint) {
   std::set<fs::path> folders;
-  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern, checkpoint}) {
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
     if (!pattern.empty()) {
-      const fs::path parent = fs::path(pattern).parent_path();
-      folders.insert(parent.empty() ? fs::path(".") : parent);
+      folders.insert(folder_of_frames(pattern));
     }
+  }
+  if (!checkpoint.empty()) {
+    const fs::path parent = fs::path(checkpoint).parent_path();
+    folders.insert(parent.empty() ? fs::path(".") : parent);
   }
   return folders;
 }
@@ -94,21 +98,21 @@ void check_names_differ(const PipelineSettings& settings, std::vector<std::strin
   }
 }
 
-// The history from which a resumed run continues, read before anything is rendered or written.
+// A run that goes on must go on with all frames of the run so far.
 void check_earlier_run(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
   const std::vector<std::string> files = output_files(settings, frames);
   if (files.size() < 2) {
     return;
   }
   const std::string& record_path = files[0];
-  const std::string& timing_path = files[1];
-  if (fs::exists(timing_path)) {
-    read_timing_csv(timing_path);
+  std::vector<std::int32_t> before;
+  try {
+    if (fs::exists(record_path)) {
+      before = parse_frame_list(read_run_record(record_path).frames);
+    }
+  } catch (const Error&) {
+    return;  // a damaged record is made anew
   }
-  if (!fs::exists(record_path)) {
-    return;
-  }
-  const std::vector<std::int32_t> before = parse_frame_list(read_run_record(record_path).frames);
   for (const std::int32_t frame : before) {
     if (std::find(frames.begin(), frames.end(), frame) == frames.end()) {
       throw Error(ErrorKind::usage, "`resume`",
@@ -128,7 +132,12 @@ OutputSettings output_settings(const JobSettings& job) {
   output.map_pattern = job.map_pattern;
   output.overwrite = job.overwrite;
   output.resume = job.resume;
+  output.trust_files = job.trust_files;
   for (const std::string& pattern : job.outputs) {
+    if (pattern.empty()) {
+      throw Error(ErrorKind::usage, "`output`", "the name of a picture is empty",
+                  "give a name such as out/frame.####.exr");
+    }
     std::string& place = pattern.ends_with(".exr") ? output.exr.pattern : output.display.pattern;
     if (!place.empty()) {
       throw Error(ErrorKind::usage, "`output`", fmt::format("'{}' and '{}' are of one kind", place, pattern),
@@ -137,10 +146,7 @@ OutputSettings output_settings(const JobSettings& job) {
     place = pattern;
   }
   const std::string& first = !job.outputs.empty() ? job.outputs.front() : job.map_pattern;
-  output.run_directory = first.empty() ? std::string() : fs::path(first).parent_path().string();
-  if (!first.empty() && output.run_directory.empty()) {
-    output.run_directory = ".";
-  }
+  output.run_directory = first.empty() ? std::string() : folder_of_frames(first);
   return output;
 }
 
@@ -167,7 +173,7 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.output = output_settings(job);
   settings.fps = job.fps;
   settings.threads = job.threads;
-  settings.is_part = job.part;
+  settings.is_part = job.part || job.chunk.has_value();
   return settings;
 }
 
@@ -177,6 +183,10 @@ void prepare_outputs(const ResolvedJob& resolved) {
   check_names_differ(settings, output_files(settings, frames), resolved.input_digests);
   if (settings.output.resume) {
     check_earlier_run(settings, frames);
+    const std::vector<std::string> files = output_files(settings, frames);
+    if (!settings.output.overwrite && !files.empty()) {
+      refuse_to_lose_frames(resolved, files.front());
+    }
   }
   if (!settings.output.overwrite && !settings.output.resume) {
     for (const std::string& path : output_files(settings, frames)) {
@@ -191,6 +201,14 @@ void prepare_outputs(const ResolvedJob& resolved) {
   }
   for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
     prove_writable(folder);
+  }
+  if (!resolved.chunk_borders.path.empty()) {
+    write_text_atomically(resolved.chunk_borders.path, resolved.chunk_borders.text);
+  }
+  for (const std::string& path : output_files(settings, frames)) {
+    if (const fs::path folder = fs::path(path).parent_path(); !folder.empty() && !fs::exists(folder)) {
+      prove_writable(folder);  // a frame's own
+    }
   }
 }
 

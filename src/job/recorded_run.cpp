@@ -41,7 +41,7 @@ ResolvedJob resolve_for_viewing(Job job) {
 }  // namespace
 
 std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const std::string& settings_digest) {
-  const std::string path = (fs::path(pattern).parent_path() / "run.json").string();
+  const std::string path = (fs::path(folder_of_frames(pattern)) / "run.json").string();
   if (!fs::is_regular_file(path)) {
     return std::nullopt;
   }
@@ -62,6 +62,8 @@ ResolvedJob resolve_whole_of_parts(const std::vector<RunPart>& parts, bool overw
   job.settings.frames = FrameList{frames_of(parts)};
   job.settings.trace.samples.reset();
   job.settings.part = job.settings.resume = false;
+  job.settings.chunk.reset();
+  job.settings.chunk_frames = 0;
   job.settings.overwrite = overwrite;
   ResolveOptions options;
   options.scope = ResolveScope::digests;

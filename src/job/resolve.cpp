@@ -13,6 +13,7 @@
 
 #include "gazetrace/error.hpp"
 #include "job/choose_frames.hpp"
+#include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/judged_frames.hpp"
 #include "job/scene_camera.hpp"
@@ -77,21 +78,6 @@ void check_screen(const PlanSettings& settings, const GazeLog* log) {
   }
 }
 
-// The blur that is lost because filters with guides take the first hits through a pinhole in the middle of the frame's
-// time, in words; empty where there is none.
-std::string blur_lost_by_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene) {
-  if (!Reconstruction({job.filter, {}}).needs().guides) {
-    return {};
-  }
-  const bool moves =
-      !camera.is_static || (scene != nullptr && !(scene->motions.empty() && scene->deformations.empty()));
-  const bool motion = job.shutter.blurs() && moves;
-  if (camera.lens.radius_m > 0) {
-    return motion ? "blur of lens and shutter" : "blur of the lens";
-  }
-  return motion ? "blur of the shutter" : "";
-}
-
 bool moves(const Scene& scene) {
   return !(scene.motions.empty() && scene.deformations.empty());
 }
@@ -101,9 +87,7 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
     throw Error(ErrorKind::usage, "", "no scene was given", "name a .gltf or .glb file");
   }
   const auto begin = std::chrono::steady_clock::now();
-  SceneReadOptions reading;
-  reading.animation = job.animation;
-  reading.threads = job.threads;
+  SceneReadOptions reading = scene_read_options(job);
   reading.progress = options.progress;
   resolved.scene = std::make_unique<Scene>(load_scene(job.scene, reading));
   if (options.scope == ResolveScope::render) {
@@ -215,13 +199,20 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   }
 }
 
-void warn_of_filter(const JobSettings& job, const CameraPath& camera, const Scene* scene, Warnings& warnings) {
-  if (const std::string lost = blur_lost_by_filter(job, camera, scene); !lost.empty()) {
-    warnings.push_back(fmt::format(
-        "`filter` {} takes edges, texture, what shines and the background from a pinhole at one instant: {} is missing "
-        "there, `filter` linear or tent keep it",
-        job.filter, lost));
-  }
+// Takes the frames of the job's chunk out of those of the whole sequence.
+void choose_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  Decisions unused;
+  const FramePlan whole =
+      plan_frames(camera, log, plan_settings(job, resolved.frames, log, taken_off_ns, unused), nullptr);
+  std::string decision;
+  std::vector<std::int32_t> frames = frames_of_chunk(job, whole, decision);
+  resolved.chunk_borders = chunk_borders(job, whole);
+  resolved.frames = std::move(frames);
+  resolved.decisions.emplace_back("chunk", decision);
+}
+
+void warn_of_filter(const JobSettings& job, Warnings& warnings) {
   if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter, {}}).needs().guides) {
     warnings.push_back(
         fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
@@ -282,6 +273,9 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   if (log == nullptr && !follows_picture(job.foveation)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
+  if (job.chunk) {
+    choose_chunk(job, camera, taken_off_ns, resolved);
+  }
   make_plan(job, camera, taken_off_ns, resolved);
   if (job.foveation.target.jod) {
     add_judged_frames(job, camera, taken_off_ns, scene, resolved);
@@ -294,7 +288,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     check_density_maps(job.foveation, resolved.plan);
   }
   append(resolved.warnings, camera.warnings);
-  warn_of_filter(job, camera, scene, resolved.warnings);
+  warn_of_filter(job, resolved.warnings);
   if (log != nullptr) {
     append(resolved.warnings, log->warnings);
   }
@@ -329,7 +323,7 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   resolved.pipeline.preroll = static_cast<std::int32_t>(resolved.plan.frames.size() - resolved.frames.size());
   if (options.scope != ResolveScope::plan) {
     resolved.input_digests = digest_job_files(settings);
-    digest_job(settings, resolved.frames, resolved.input_digests, resolved.pipeline);
+    resolved.pipeline.settings_digest = digest_job(settings, resolved.input_digests);
   }
   if (options.scope == ResolveScope::render) {
     resolved.history = starting_history(resolved.plan, resolved.pipeline, resolved.warnings);

@@ -6,6 +6,7 @@
 
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/version.hpp"
+#include "pipeline/file_journal.hpp"
 
 namespace gazetrace {
 
@@ -23,6 +24,10 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   record.history = recorded_history(resolved.plan, settings, resolved.history);
   record.input_digests = resolved.input_digests;
   record.frames = format_frame_list(resolved.frames);
+  const std::vector<std::string> outputs = output_files(settings, resolved.frames);
+  if (settings.output.resume && !outputs.empty()) {
+    record.files = read_earlier_files(outputs.front());  // the file of the record is about to be replaced
+  }
   record.is_part = settings.is_part || settings.trace.samples.has_value();
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = resolved.warnings;
@@ -43,13 +48,14 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
 }
 
 void finish_run_record(RunRecord& record, const SequenceResult& result, const FramePlan& plan, double wall_s) {
-  record.facts["state"] = "done";
+  record.facts["state"] = result.interrupted ? "interrupted" : "done";
   record.facts["wall_s"] = fmt::format("{:.3f}", wall_s);
   record.facts["peak_memory_mib"] = fmt::format("{:.1f}", peak_memory_mib());
   const Warnings late = result_warnings(result, plan);
   record.warnings.insert(record.warnings.end(), late.begin(), late.end());
   record.facts.insert(result.facts.begin(), result.facts.end());
   record.bad_samples = result.bad_samples;
+  record.files = result.files;
 }
 
 Warnings result_warnings(const SequenceResult& result, const FramePlan& plan) {

@@ -38,10 +38,18 @@ std::string set_environment(const JobSettings& job, Scene& scene) {
   return wanted;
 }
 
-Scene load_job_scene(const JobSettings& job, const std::function<void(std::size_t, std::size_t)>& progress) {
+SceneReadOptions scene_read_options(const JobSettings& job) {
   SceneReadOptions options;
   options.animation = job.animation;
   options.threads = job.threads;
+  options.limits = job.limits;
+  options.limits.memory_bytes = job.max_memory.bytes;
+  options.allow_outside = job.allow_outside;
+  return options;
+}
+
+Scene load_job_scene(const JobSettings& job, const std::function<void(std::size_t, std::size_t)>& progress) {
+  SceneReadOptions options = scene_read_options(job);
   options.progress = progress;
   Scene scene = load_scene(job.scene, options);
   set_environment(job, scene);

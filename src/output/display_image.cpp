@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/atomic_file.hpp"
 #include "core/image_io.hpp"
 #include "gazetrace/output.hpp"
 #include "output/gaze_text.hpp"
+#include "output/written_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -69,15 +69,18 @@ void check_display_image_size(const DisplaySettings& settings, int width_px, int
   }
 }
 
-void write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
-                         const DisplaySettings& settings) {
+WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
+                                const DisplaySettings& settings) {
   const Format& format = format_of(path);
   EncodeOptions options;
   options.file_bits = std::clamp(image.bits, format.min_bits, format.max_bits);
   options.quality = settings.quality;
   options.software = header.software;
-  options.note = fmt::format("gazetrace:settings_digest={} frame={} t_video_ns={} exposure_ev={}",
-                             header.settings_digest, header.frame, header.t_video_ns, header.exposure_ev);
+  options.note = fmt::format("gazetrace:settings_digest={} frame={}", header.settings_digest, header.frame);
+  if (!header.history.empty()) {
+    options.note += " history=" + header.history;
+  }
+  options.note += fmt::format(" t_video_ns={} exposure_ev={}", header.t_video_ns, header.exposure_ev);
   if (header.enhance_contrast > 0) {
     options.note += fmt::format(" enhance_contrast={}", header.enhance_contrast);
   }
@@ -86,7 +89,7 @@ void write_display_image(const std::string& path, const DisplayImage& image, con
   }
   const std::vector<std::uint8_t> bytes =
       encode_image(path, image.width_px, image.height_px, image.bits, image.bytes, options);
-  write_bytes_atomically(path, std::as_bytes(std::span(bytes)));
+  return write_frame_file(path, header.frame, std::as_bytes(std::span(bytes)));
 }
 
 }  // namespace gazetrace

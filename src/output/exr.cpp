@@ -28,10 +28,10 @@
 #include <limits>
 #include <mutex>
 
-#include "core/atomic_file.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/output.hpp"
 #include "output/gaze_text.hpp"
+#include "output/written_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -135,7 +135,7 @@ class ExrPicture {
     }
   }
 
-  void write(const std::string& path) {
+  WrittenFile write(const std::string& path, std::int32_t frame) {
     want_exr_threads(threads_);
     MemoryStream stream(path);
     try {
@@ -145,7 +145,7 @@ class ExrPicture {
     } catch (const std::exception& e) {
       throw Error(ErrorKind::runtime, path, std::string("cannot encode the EXR: ") + e.what());
     }
-    write_bytes_atomically(path, stream.bytes());
+    return write_frame_file(path, frame, stream.bytes());
   }
 
  private:
@@ -262,6 +262,9 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   add_text(header, "t_video_ns", std::to_string(frame.t_video_ns));
   add_text(header, "seed", std::to_string(frame.seed));
   add_text(header, "settings_digest", frame.settings_digest);
+  if (!frame.history.empty()) {
+    add_text(header, "history", frame.history);
+  }
   if (frame.enhance_contrast > 0) {
     add_text(header, "enhanced", fmt::format("contrast by {}: no estimate of radiance", frame.enhance_contrast));
   }
@@ -355,8 +358,8 @@ const std::vector<std::string>& exr_compression_names() {
   return names;
 }
 
-std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
-                              const FrameHeader& header, const ExrSettings& settings, int threads) {
+WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
+                           const FrameHeader& header, const ExrSettings& settings, int threads) {
   ExrPicture picture(frame.radiance.width_px, frame.radiance.height_px, resolve_threads(threads));
   picture.header().compression() = compression_by_name(settings.compression);
   picture.header().zipCompressionLevel() = settings.zip_level;
@@ -369,11 +372,11 @@ std::uint64_t write_frame_exr(const std::string& path, const Frame& frame, const
   for (const std::string& aov : settings.aovs) {
     add_aov(picture, aov, frame, eccentricity_deg);
   }
-  picture.write(path);
-  return picture.clamped();
+  WrittenFile file = picture.write(path, header.frame);
+  return {picture.clamped(), std::move(file)};
 }
 
-void write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg) {
+WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg) {
   ImageGray region(map.width_px, map.height_px);
   std::copy(map.region.pixels.begin(), map.region.pixels.end(), region.pixels.begin());
   const ImageGray density = samples_per_pixel(map);
@@ -387,7 +390,7 @@ void write_sampling_map_exr(const std::string& path, const SamplingMap& map, con
   if (eccentricity_deg != nullptr) {
     picture.add_float("eccentricity", *eccentricity_deg);
   }
-  picture.write(path);
+  return picture.write(path, 0);
 }
 
 ImageRgb read_exr_rgb(const std::string& path) {
@@ -452,6 +455,18 @@ std::optional<double> read_exr_number(const std::string& path, const std::string
     }
     if (const auto* fraction = file.header().findTypedAttribute<Imf::RationalAttribute>(attribute)) {
       return static_cast<double>(fraction->value());
+    }
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::int32_t> read_exr_integer(const std::string& path, const std::string& attribute) {
+  try {
+    Imf::InputFile file(path.c_str(), 0);
+    if (const auto* number = file.header().findTypedAttribute<Imf::IntAttribute>(attribute)) {
+      return number->value();
     }
   } catch (const std::exception&) {
     return std::nullopt;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,5 +20,7 @@ ImageGray read_exr_gray(const std::string& path);
 std::string read_exr_text(const std::string& path, const std::string& attribute);
 // A number in the header, stored as a double or as a fraction; empty where there is none.
 std::optional<double> read_exr_number(const std::string& path, const std::string& attribute);
+// A whole number in the header; empty where there is none.
+std::optional<std::int32_t> read_exr_integer(const std::string& path, const std::string& attribute);
 
 }  // namespace gazetrace

@@ -71,29 +71,45 @@ FrameOwners all_frames(const std::vector<RunPart>& parts, FrameOwners owners,
   return owners;
 }
 
-// Sets history and digest as if a single run, which began as the first part did, had made all frames.
+// Sets the history as if a single run, which began as the first part did, had made all frames.
 void continue_history(RunRecord& whole, const RunPart& first) {
   whole.history = first.record.history;
   const auto checkpoint = first.record.input_digests.find(whole.history.checkpoint);
   if (checkpoint != first.record.input_digests.end()) {
     whole.input_digests.insert(*checkpoint);
   }
-  whole.settings_digest = whole.history.frames.empty()
-                              ? digest_of_sequence(whole.history.settings_digest, whole.frames, 0, "")
-                              : digest_settings({{"parts", fmt::format("{}", fmt::join(whole.part_digests, " "))}});
+}
+
+// Frames of which a file is bad count as missing.
+void leave_out(const std::vector<BadFile>& bad, std::vector<RunPart>& parts, Warnings& warnings) {
+  for (const BadFile& file : bad) {
+    warnings.push_back(fmt::format("{} {}; frame {} is left out", file.path, file.problem, file.frame));
+    for (RunPart& part : parts) {
+      part.rows.erase(file.frame);
+      std::erase_if(part.record.files, [&](const auto& entry) { return entry.second.frame == file.frame; });
+    }
+  }
 }
 
 }  // namespace
 
-MergeResult merge_runs(const std::string& directory, bool allow_missing, bool overwrite) {
+MergeResult merge_runs(const std::string& directory, const MergeOptions& options) {
   const std::string timing_path = timing_file_name(directory, "", false);
   const std::string record_path = run_record_file_name(directory, "", false);
   for (const std::string& path : {timing_path, record_path}) {
-    if (!overwrite && std::filesystem::exists(path)) {
+    if (!options.overwrite && std::filesystem::exists(path)) {
       throw Error(ErrorKind::usage, path, "exists already", "give `overwrite` to replace it");
     }
   }
-  const std::vector<RunPart> parts = read_run_parts(directory);
+  std::vector<RunPart> parts = read_run_parts(directory);
+  MergeResult result;
+  if (!options.trust_files) {
+    const std::vector<BadFile> bad = find_bad_files(parts, options.threads);
+    if (!options.allow_missing) {
+      refuse_bad_files(directory, bad);
+    }
+    leave_out(bad, parts, result.warnings);
+  }
 
   FrameOwners owners;
   std::vector<TimingRow> rows;
@@ -110,11 +126,10 @@ MergeResult merge_runs(const std::string& directory, bool allow_missing, bool ov
   }
   std::sort(rows.begin(), rows.end(), [](const TimingRow& a, const TimingRow& b) { return a.frame < b.frame; });
 
-  MergeResult result;
   const std::vector<std::int32_t> missing = missing_frames(parts, owners);
   if (!missing.empty()) {
     const std::string problem = "frames are missing: " + format_frame_list(missing);
-    if (!allow_missing) {
+    if (!options.allow_missing) {
       throw Error(ErrorKind::input, directory, problem, "render them, or give `allow-missing`");
     }
     result.warnings.push_back(problem);

@@ -27,7 +27,11 @@ RunPart read_part(const std::filesystem::path& timing) {
     throw Error(ErrorKind::input, part.timing_path, "its run record " + record_path + " is missing",
                 "finish or remove this part");
   }
+  part.record_path = record_path;
   part.record = read_run_record(record_path);
+  for (const auto& [listed, file] : read_file_journal(file_journal_name(record_path))) {
+    part.record.files.insert_or_assign(listed, file);
+  }
   for (TimingRow& row : read_timing_csv(part.timing_path)) {
     part.rows.insert_or_assign(row.frame, std::move(row));  // a resumed run may have written a frame twice
   }
@@ -122,10 +126,12 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
   whole.bad_samples.clear();
   whole.part_digests.clear();
   whole.input_digests.clear();
+  whole.files.clear();
   for (const RunPart& part : parts) {
     const RunRecord& record = part.record;
     append_new(whole.warnings, record.warnings);
     whole.part_digests.push_back(record.settings_digest);
+    whole.files.insert(record.files.begin(), record.files.end());
     whole.bad_samples.insert(whole.bad_samples.end(), record.bad_samples.begin(), record.bad_samples.end());
     for (const auto& [path, digest] : record.input_digests) {
       if (path != record.history.checkpoint) {

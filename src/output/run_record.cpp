@@ -56,6 +56,10 @@ std::string run_record_json(const RunRecord& record) {
     bad_samples.push_back(
         {{"frame", bad.frame}, {"x_px", bad.x_px}, {"y_px", bad.y_px}, {"sample", bad.sample}, {"what", bad.what}});
   }
+  Json files = Json::object();
+  for (const auto& [name, file] : record.files) {
+    files[name] = {{"frame", file.frame}, {"bytes", file.bytes}, {"digest", file.digest}};
+  }
   const Json json{{"version", record.version},
                   {"build", record.build},
                   {"instruction_set", record.instruction_set},
@@ -74,6 +78,7 @@ std::string run_record_json(const RunRecord& record) {
                   {"facts", record.facts},
                   {"warnings", record.warnings},
                   {"bad_samples", bad_samples},
+                  {"files", files},
                   {"config_toml", record.config_toml}};
   // Paths need not be UTF-8; invalid bytes become replacement characters instead of an exception.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
@@ -95,7 +100,7 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    // Records of earlier versions have no samples, parts and history.
+    // Records of earlier versions have no samples, parts, history and files.
     record.samples = json.value("samples", "");
     record.part_digests = json.value("part_digests", record.part_digests);
     if (const auto history = json.find("history"); history != json.end()) {
@@ -110,9 +115,15 @@ RunRecord read_run_record(const std::string& path) {
     for (const Json& bad : json.at("bad_samples")) {
       record.bad_samples.push_back({bad.at("frame"), bad.at("x_px"), bad.at("y_px"), bad.at("sample"), bad.at("what")});
     }
+    if (const auto files = json.find("files"); files != json.end()) {
+      for (const auto& [name, written] : files->items()) {
+        record.files[name] = {written.at("frame"), written.at("bytes"), written.at("digest")};
+      }
+    }
     return record;
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, path, std::string("is not a run record: ") + e.what());
+    throw Error(ErrorKind::input, path, "is not a run record, or is cut: " + bounded(e.what(), 200),
+                "remove it, or render with `resume`, which makes it anew");
   }
 }
 

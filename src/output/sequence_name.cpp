@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of a sequence's files. The place of the number is searched in the last part of the path only, so folders keep
-// their # and %.
+// Names of a sequence's files. The place of the number is in the last part of the path. Folders keep their # and %, but
+// where the last part has the number, %04d and <frame> stand for it in folders as well.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +19,8 @@ namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kDigits = "0123456789";
 
 struct Placeholder {
   std::size_t length = 0;  // of the placeholder in the pattern, in characters
@@ -56,10 +58,29 @@ struct Expanded {
   int numbers = 0;
 };
 
+// The placeholder of a folder's name that begins here.
+std::optional<Placeholder> folder_placeholder_at(const std::string& folders, std::size_t at) {
+  return folders[at] == '#' ? std::nullopt : placeholder_at(folders, at);
+}
+
+std::string expand_folders(const std::string& folders, std::int32_t frame) {
+  std::string result;
+  for (std::size_t at = 0; at < folders.size();) {
+    if (const auto placeholder = folder_placeholder_at(folders, at)) {
+      result += fmt::format("{:0{}}", frame, placeholder->min_digits);
+      at += placeholder->length;
+    } else {
+      result += folders[at++];
+    }
+  }
+  return result;
+}
+
 Expanded expand(const std::string& pattern, std::int32_t frame) {
   const std::size_t slash = pattern.find_last_of('/');
   std::size_t at = slash == std::string::npos ? 0 : slash + 1;
-  Expanded result{pattern.substr(0, at), 0};
+  const std::string folders = pattern.substr(0, at);
+  Expanded result;
   while (at < pattern.size()) {
     if (pattern.compare(at, 2, "%%") == 0) {
       result.name += '%';
@@ -75,6 +96,7 @@ Expanded expand(const std::string& pattern, std::int32_t frame) {
       result.name += pattern[at++];
     }
   }
+  result.name.insert(0, result.numbers == 0 ? folders : expand_folders(folders, frame));
   return result;
 }
 
@@ -92,6 +114,28 @@ std::optional<std::int32_t> frame_of(const std::string& pattern, const std::stri
     at = end;
   }
   return std::nullopt;
+}
+
+// Of a pattern whose folders have the number, too: the numbers in the names of the first such folders whose files
+// exist.
+std::vector<std::int32_t> frames_in_folders(const std::string& pattern, const fs::path& folder) {
+  std::vector<std::int32_t> frames;
+  std::error_code problem;
+  for (const auto& entry : fs::directory_iterator(folder, problem)) {
+    const std::string name = entry.path().filename().string();
+    for (std::size_t at = name.find_first_of(kDigits); at != std::string::npos; at = name.find_first_of(kDigits, at)) {
+      const std::size_t end = std::min(name.find_first_not_of(kDigits, at), name.size());
+      std::int32_t frame = 0;
+      const auto [rest, bad] = std::from_chars(&name[at], name.data() + end, frame);
+      if (bad == std::errc() && fs::is_regular_file(frame_file_name(pattern, frame), problem)) {
+        frames.push_back(frame);
+      }
+      at = end;
+    }
+  }
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
 }
 
 }  // namespace
@@ -115,6 +159,17 @@ bool has_frame_number(const std::string& pattern) {
   return expand(pattern, 1).numbers > 0;
 }
 
+std::string folder_of_frames(const std::string& pattern) {
+  std::string folder = fs::path(pattern).parent_path().string();
+  for (std::size_t at = 0; has_frame_number(pattern) && at < folder.size(); ++at) {
+    if (folder_placeholder_at(folder, at)) {
+      const std::size_t slash = folder.find_last_of('/', at);
+      folder = slash == std::string::npos ? std::string() : folder.substr(0, std::max<std::size_t>(slash, 1));
+    }
+  }
+  return folder.empty() ? "." : folder;
+}
+
 std::vector<std::int32_t> find_frames(const std::string& pattern) {
   if (!has_frame_number(pattern)) {
     if (!fs::is_regular_file(pattern)) {
@@ -126,6 +181,9 @@ std::vector<std::int32_t> find_frames(const std::string& pattern) {
   const fs::path folder = fs::path(pattern).parent_path();
   std::vector<std::int32_t> frames;
   std::error_code problem;
+  if (const fs::path all = folder_of_frames(pattern); all != (folder.empty() ? fs::path(".") : folder)) {
+    frames = frames_in_folders(pattern, all);
+  }
   for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, problem)) {
     const std::string path = (folder / entry.path().filename()).string();
     if (const auto frame = frame_of((folder / fs::path(pattern).filename()).string(), path)) {

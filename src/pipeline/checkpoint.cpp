@@ -41,8 +41,8 @@ void each_field(History& history, bool& has_camera, bool& has_ev, auto& camera, 
 
 }  // namespace
 
-void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& history_digest) {
-  SealedWriter writer(kCheckpoint, history_digest);
+void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& settings_digest) {
+  SealedWriter writer(kCheckpoint, settings_digest);
   bool has_camera = history.camera.has_value();
   bool has_ev = history.smoothed_ev.has_value();
   const Camera camera = history.camera.value_or(Camera{});
@@ -51,8 +51,8 @@ void save_checkpoint(const std::string& path, const TemporalHistory& history, co
   writer.save(path);
 }
 
-TemporalHistory load_checkpoint(const std::string& path, const std::string& history_digest) {
-  SealedReader reader(kCheckpoint, path, history_digest);
+TemporalHistory load_checkpoint(const std::string& path, const std::string& settings_digest) {
+  SealedReader reader(kCheckpoint, path, settings_digest);
   TemporalHistory history;
   bool has_camera = false;
   bool has_ev = false;

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "gazetrace/version.hpp"
+#include "output/written_file.hpp"
 #include "pipeline/frame_stages.hpp"
 
 namespace gazetrace {
 namespace {
 
 FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const PipelineSettings& settings,
-                      double exposure_ev) {
+                      double exposure_ev, const std::string& history) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
@@ -29,6 +30,7 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.enhance_contrast = settings.enhance_contrast;
   header.seed = settings.trace.seed;
   header.settings_digest = settings.settings_digest;
+  header.history = history;
   header.software = std::string("gazetrace ") + kVersion;
   return header;
 }
@@ -40,10 +42,14 @@ bool writes_anything(const OutputSettings& output) {
 }  // namespace
 
 void write_frame_files(const FrameRequest& request, const FramePlan& plan, const RenderedFrame& rendered,
-                       const ColorPipeline& color, const PipelineSettings& settings, TimingRow& row,
-                       SequenceResult& result) {
+                       const ColorPipeline& color, const PipelineSettings& settings, const std::string& history,
+                       TimingRow& row, SequenceResult& result) {
   const OutputSettings& output = settings.output;
-  const FrameHeader header = header_of(request, plan, settings, rendered.exposure_ev);
+  const FrameHeader header = header_of(request, plan, settings, rendered.exposure_ev, history);
+  const auto list = [&](const std::string& path, WrittenFile file) {
+    file.frame = request.frame;
+    result.files.insert_or_assign(name_in_record(output.run_directory, path), std::move(file));
+  };
   const auto& aovs = output.exr.aovs;
   const bool wants_eccentricity =
       !output.map_pattern.empty() || std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end();
@@ -57,7 +63,8 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   }
   const ImageGray* eccentricity_deg = eccentricity ? &*eccentricity : nullptr;
   if (!output.map_pattern.empty()) {
-    write_sampling_map_exr(frame_file_name(output.map_pattern, request.frame), rendered.map, eccentricity_deg);
+    const std::string path = frame_file_name(output.map_pattern, request.frame);
+    list(path, write_sampling_map_exr(path, rendered.map, eccentricity_deg));
   }
   row.write_ms += map_watch.elapsed_ms();
   if (!output.display.pattern.empty()) {
@@ -67,15 +74,18 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
                          settings.threads, &clamped);
     });
     const Stopwatch watch;
-    write_display_image(frame_file_name(output.display.pattern, request.frame), image, header, output.display);
+    const std::string path = frame_file_name(output.display.pattern, request.frame);
+    list(path, write_display_image(path, image, header, output.display));
     row.write_ms += watch.elapsed_ms();
     result.clamped_view_pixels += clamped;
   }
   if (!output.exr.pattern.empty()) {
-    result.clamped_half_values += timed(row.write_ms, [&] {
-      return write_frame_exr(frame_file_name(output.exr.pattern, request.frame), rendered.frame, eccentricity_deg,
-                             header, output.exr, settings.threads);
+    const std::string path = frame_file_name(output.exr.pattern, request.frame);
+    WrittenExr written = timed(row.write_ms, [&] {
+      return write_frame_exr(path, rendered.frame, eccentricity_deg, header, output.exr, settings.threads);
     });
+    result.clamped_half_values += written.clamped_values;
+    list(path, std::move(written.file));
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which files a run reads, and digests of their content.
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/hash.hpp"
+#include "core/data_root.hpp"
+#include "core/file_digest.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/pipeline.hpp"
 
@@ -22,8 +21,6 @@ namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kChunkBytes = std::size_t{8} << 20U;
 
 std::ifstream open_for_reading(const std::string& path) {
   if (fs::is_directory(path)) {
@@ -43,38 +40,6 @@ std::string read_bytes(std::ifstream& file, std::size_t count) {
   file.read(bytes.data(), static_cast<std::streamsize>(count));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   return bytes;
-}
-
-// Takes eight bytes a step: scenes are hundreds of megabytes, and every run begins with this.
-std::uint64_t hash_chunk(const std::string& bytes) {
-  std::array<std::uint64_t, 4> lanes{1, 2, 3, 4};
-  std::size_t at = 0;
-  for (std::size_t i = 0; at + 8 <= bytes.size(); at += 8, ++i) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + at, 8);
-    std::uint64_t& lane = lanes[i % lanes.size()];
-    lane = std::rotl((lane ^ word) * 0x9e3779b97f4a7c15ULL, 31);
-  }
-  std::uint64_t hash = bytes.size();
-  for (; at < bytes.size(); ++at) {
-    hash = hash_combine(hash, static_cast<unsigned char>(bytes[at]));
-  }
-  for (const std::uint64_t lane : lanes) {
-    hash = hash_combine(hash, lane);
-  }
-  return hash;
-}
-
-std::string digest_file(const std::string& path) {
-  std::ifstream file = open_for_reading(path);
-  Digest digest;
-  for (std::string bytes = read_bytes(file, kChunkBytes); !bytes.empty(); bytes = read_bytes(file, kChunkBytes)) {
-    digest.add(std::to_string(hash_chunk(bytes)) + ";");
-  }
-  if (file.bad()) {
-    throw Error(ErrorKind::input, path, "reading failed");
-  }
-  return digest.hex();
 }
 
 int hex_value(char c) {
@@ -119,8 +84,9 @@ std::string json_text(const std::string& path) {
 
 }  // namespace
 
-std::vector<std::string> scene_files(const std::string& path) {
+std::vector<std::string> scene_files(const std::string& path, bool allow_outside) {
   std::vector<std::string> files{path};
+  const std::vector<fs::path> roots = data_roots(path);
   const auto json = nlohmann::json::parse(json_text(path), nullptr, false);
   if (!json.is_object()) {
     return files;
@@ -140,6 +106,9 @@ std::vector<std::string> scene_files(const std::string& path) {
         continue;
       }
       const std::string file = (fs::path(path).parent_path() / percent_decoded(text)).string();
+      if (!allow_outside) {
+        check_within(roots, file, text, path + ": " + kind);
+      }
       // A missing image is the scene reader's business: it may go on with a warning.
       if (fs::is_regular_file(file) && std::find(files.begin(), files.end(), file) == files.end()) {
         files.push_back(file);

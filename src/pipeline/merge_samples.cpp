@@ -163,7 +163,7 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
     expose(request, settings, none, rendered);
     row.exposure_ev = rendered.exposure_ev;
     add_times(rendered.times, row);
-    write_frame_files(request, plan, rendered, color, settings, row, written);
+    write_frame_files(request, plan, rendered, color, settings, "", row, written);
     row.total_ms += total.elapsed_ms();
     row.peak_memory_mib = peak_memory_mib();
   }
@@ -180,7 +180,8 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
     result.warnings.push_back(
         fmt::format("{} pixels were clamped before the viewing transform", written.clamped_view_pixels));
   }
-  const RunRecord record = join_records(parts, result.frames, result.warnings);
+  RunRecord record = join_records(parts, result.frames, result.warnings);
+  record.files = std::move(written.files);
   write_text_atomically(timing_file_name(settings.output.run_directory, "", false), timing_csv_text(rows));
   write_text_atomically(run_record_file_name(settings.output.run_directory, "", false), run_record_json(record));
   return result;

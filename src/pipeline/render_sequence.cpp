@@ -15,7 +15,9 @@
 #include "core/stopwatch.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "output/aovs.hpp"
+#include "output/written_file.hpp"
 #include "pipeline/clip_rate.hpp"
+#include "pipeline/file_journal.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/frame_stages.hpp"
 #include "pipeline/frame_window.hpp"
@@ -58,18 +60,33 @@ void render_samples(const FrameRenderer& renderer, const FrameRequest& request, 
   keep_bad_samples(traced.sparse.stats, result);
   add_times(traced.times, row);
   const Stopwatch watch;
-  save_samples(samples_file_name(settings.output.run_directory, request.frame, *settings.trace.samples),
-               traced.sparse.unrounded, settings.settings_digest);
+  const std::string path = samples_file_name(settings.output.run_directory, request.frame, *settings.trace.samples);
+  WrittenFile file = save_samples(path, traced.sparse.unrounded, settings.settings_digest);
+  file.frame = request.frame;
+  result.files.insert_or_assign(name_in_record(settings.output.run_directory, path), std::move(file));
   row.write_ms += watch.elapsed_ms();
 }
 
-std::string timing_path_of(const FramePlan& plan, const PipelineSettings& settings) {
+RunPaths paths_of(const FramePlan& plan, const PipelineSettings& settings) {
   std::vector<std::int32_t> frames;
   for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
     frames.push_back(plan.frames[i].frame);
   }
   const std::vector<std::string> files = output_files(settings, frames);
-  return files.empty() ? std::string() : files[1];
+  return files.empty() ? RunPaths() : RunPaths{files[0], files[1]};
+}
+
+// What is left when a sequence was stopped: the frames that were to be rendered and were not.
+void list_what_is_left(const FramePlan& plan, const ResumePlan& resume, SequenceResult& result) {
+  std::set<std::int32_t> made;
+  for (const TimingRow& row : result.rows) {
+    made.insert(row.frame);
+  }
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    if (resume.work[i] == FrameWork::render && !made.contains(plan.frames[i].frame)) {
+      result.left.push_back(plan.frames[i].frame);
+    }
+  }
 }
 
 bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
@@ -119,11 +136,11 @@ TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& 
     }
     return {};
   }
-  if (settings.history_digest.empty()) {
+  if (settings.settings_digest.empty()) {
     throw Error(ErrorKind::usage, "`resume-from`", "no digest tells a history of these settings from others",
-                "resolve the job, or set PipelineSettings::history_digest");
+                "resolve the job, or set PipelineSettings::settings_digest");
   }
-  TemporalHistory history = load_checkpoint(settings.resume_from, settings.history_digest);
+  TemporalHistory history = load_checkpoint(settings.resume_from, settings.settings_digest);
   const std::int32_t last = history.passed.empty() ? 0 : history.passed.back();
   if (last >= first) {
     throw Error(ErrorKind::usage, "`resume-from`",
@@ -144,8 +161,11 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
                                const PipelineSettings& settings, const PipelineObserver& observer,
                                TemporalHistory history) {
   SequenceResult result;
-  const std::string timing_path = timing_path_of(plan, settings);
-  const ResumePlan resume = plan_resume(plan, settings, timing_path, history);
+  const RunPaths paths = paths_of(plan, settings);
+  ResumePlan resume = plan_resume(plan, settings, paths, history);
+  if (resume.taken_up) {
+    history = std::move(*resume.taken_up);
+  }
   result.warnings = resume.warnings;
   FrameSettings own = frame_settings(settings, color);
   JudgedRate judged;
@@ -159,50 +179,79 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   if (settings.accumulate.mode == AccumulateMode::two_sided) {
     window.emplace(renderer, plan, rendered_frames(plan, resume));
   }
-  TimingLog timing(timing_path, resume.kept_rows);
+  TimingLog timing(paths.timing, resume.kept_rows);
+  FileJournal journal(paths.record, resume.kept_files);
   if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
     const FrameRequest& first = plan.frames.front();
     color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
   }
 
-  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+  // The frame's files and its row. Error(interrupted) leaves both as they were, and the history as well: a frame is
+  // given up only while it is traced.
+  const auto make_frame = [&](const FrameRequest& request, FrameWork work, TimingRow& row) {
+    const Stopwatch total;
+    result.files.clear();
+    if (settings.trace.samples) {
+      render_samples(renderer, request, settings, row, result);
+    } else {
+      const std::string behind = uses_history(settings) ? history_text(history.passed) : std::string();
+      const RenderedFrame rendered = window ? window->render(request, history) : renderer.render(request, history);
+      add_samples(rendered.samples, rendered.first_look, rendered.map, row);
+      add_others(rendered.others, row);
+      keep_bad_samples(rendered.samples, result);
+      add_times(rendered.times, row);
+      add_prediction(rendered.prediction, row);
+      judged.enter(row);
+      row.exposure_ev = rendered.exposure_ev;
+      if (observer.frame_ready) {
+        observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
+      }
+      if (work == FrameWork::render) {
+        write_frame_files(request, plan, rendered, color, settings, behind, row, result);
+      }
+    }
+    row.total_ms += total.elapsed_ms();
+    if (work == FrameWork::render) {
+      journal.add(result.files);
+      row.peak_memory_mib = peak_memory_mib();
+      timing.add(row);
+      result.rows.push_back(row);
+    }
+  };
+
+  bool checkpoint_is_old = false;  // frames have passed since it was written
+  double made_ms = 0;
+  int made = 0;
+  for (std::size_t i = 0; i < plan.frames.size() && !result.interrupted; ++i) {
     const FrameRequest& request = plan.frames[i];
+    const FrameWork work = resume.work[i];
     TimingRow row = timing_row(request);
-    if (resume.work[i] != FrameWork::skip) {
+    if (work != FrameWork::skip) {
+      if (observer.stop_before_frame && observer.stop_before_frame(made == 0 ? 0 : made_ms / made)) {
+        result.interrupted = true;
+        break;
+      }
       if (observer.frame_begins) {
         observer.frame_begins(request);
       }
-      const Stopwatch total;
-      if (settings.trace.samples) {
-        render_samples(renderer, request, settings, row, result);
-      } else {
-        const RenderedFrame rendered = window ? window->render(request, history) : renderer.render(request, history);
-        add_samples(rendered.samples, rendered.first_look, rendered.map, row);
-        add_others(rendered.others, row);
-        keep_bad_samples(rendered.samples, result);
-        add_times(rendered.times, row);
-        add_prediction(rendered.prediction, row);
-        judged.enter(row);
-        row.exposure_ev = rendered.exposure_ev;
-        if (observer.frame_ready) {
-          observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
+      try {
+        make_frame(request, work, row);
+      } catch (const Error& error) {
+        if (error.kind() != ErrorKind::interrupted) {
+          throw;
         }
-        if (resume.work[i] == FrameWork::render) {
-          write_frame_files(request, plan, rendered, color, settings, row, result);
-        }
+        result.interrupted = true;
+        break;
       }
-      if (resume.work[i] == FrameWork::render) {
-        row.total_ms += total.elapsed_ms();
-        row.peak_memory_mib = peak_memory_mib();
-        timing.add(row);
-        result.rows.push_back(row);
-      }
+      made_ms += row.total_ms;
+      ++made;
+      checkpoint_is_old = true;
     }
-    if (resume.writes_checkpoint && resume.work[i] != FrameWork::skip &&
-        checkpoint_is_due(settings, i + 1, plan.frames.size())) {
-      save_checkpoint(settings.checkpoint, history, settings.history_digest);
+    if (resume.writes_checkpoint && checkpoint_is_old && checkpoint_is_due(settings, i + 1, plan.frames.size())) {
+      save_checkpoint(settings.checkpoint, history, settings.settings_digest);
+      checkpoint_is_old = false;
     }
-    const bool skipped = resume.work[i] != FrameWork::render;
+    const bool skipped = work != FrameWork::render;
     if (skipped && i >= static_cast<std::size_t>(settings.preroll)) {
       result.skipped.push_back(request.frame);
     }
@@ -210,7 +259,14 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       observer.frame_done(row, skipped);
     }
   }
+  if (result.interrupted) {
+    if (resume.writes_checkpoint && checkpoint_is_old) {
+      save_checkpoint(settings.checkpoint, history, settings.settings_digest);
+    }
+    list_what_is_left(plan, resume, result);
+  }
   timing.finish();
+  result.files = journal.files();
   return result;
 }
 

@@ -4,12 +4,17 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gazetrace/pipeline.hpp"
 
 namespace gazetrace {
+
+struct RunPaths {
+  std::string record, timing;
+};
 
 enum class FrameWork : std::uint8_t {
   render,  // trace it and write its files
@@ -20,13 +25,21 @@ enum class FrameWork : std::uint8_t {
 struct ResumePlan {
   std::vector<FrameWork> work;                  // one entry per frame of the plan
   std::map<std::int32_t, TimingRow> kept_rows;  // of frames that are not rendered again
+  WrittenFiles kept_files;                      // the same of files
   bool writes_checkpoint = false;               // one is asked for, and the file is missing or another one
+  // The history after the last frame of `work` that is skipped from the beginning on, from the checkpoint that an
+  // interrupted run left; empty: it is made anew where it is needed.
+  std::optional<TemporalHistory> taken_up;
   Warnings warnings;
 };
 
-// `history` is what the plan's first frame finds. Where a checkpoint is asked for that is missing, or that belongs to
-// other frames, every frame is traced anew.
-ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const std::string& timing_path,
+// `paths`: of the run record and of the timing; empty where nothing is written. `history` is what the plan's first
+// frame finds. Where frames or a checkpoint need a history that no file holds, the frames behind it are traced anew.
+ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const RunPaths& paths,
                        const TemporalHistory& history);
+
+// history_text() of what each frame of the plan finds; empty texts where frames do not depend on each other.
+std::vector<std::string> expected_histories(const FramePlan& plan, const PipelineSettings& settings,
+                                            const TemporalHistory& history);
 
 }  // namespace gazetrace

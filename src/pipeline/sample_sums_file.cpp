@@ -15,11 +15,11 @@ constexpr SealedKind kSums{"gazetrace samples 1", "file of samples", "give the f
 
 }  // namespace
 
-void save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest) {
+WrittenFile save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest) {
   SealedWriter writer(kSums, settings_digest);
   writer(sums.sites);
   writer(sums.guides);
-  writer.save(path);
+  return writer.save(path);
 }
 
 SampleSums load_samples(const std::string& path, const std::string& settings_digest) {

@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
-#include "core/atomic_file.hpp"
 #include "core/hash.hpp"
 #include "gazetrace/error.hpp"
+#include "output/written_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -56,10 +56,10 @@ void SealedWriter::add(const void* from, std::size_t size) {
   bytes_.insert(bytes_.end(), bytes, bytes + size);
 }
 
-void SealedWriter::save(const std::string& path) {
+WrittenFile SealedWriter::save(const std::string& path) {
   const std::string seal = digest_of(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
   add(seal.data(), seal.size());
-  write_bytes_atomically(path, bytes_);
+  return write_frame_file(path, 0, bytes_);
 }
 
 SealedReader::SealedReader(const SealedKind& kind, std::string path, const std::string& digest)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gazetrace/image.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 
@@ -45,8 +46,9 @@ class SealedWriter {
     (*this)(image.height_px);
     (*this)(image.pixels);
   }
-  // The file appears under its name only when it is complete. Error(runtime) where it cannot be written.
-  void save(const std::string& path);
+  // The file appears under its name only when it is complete. Error(runtime) where it cannot be written. Its frame is
+  // left to the caller.
+  WrittenFile save(const std::string& path);
 
  private:
   void add(const void* from, std::size_t size);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,19 @@ TimingRow timing_row(const FrameRequest& request) {
     row.gaze_effective_age_ms = fmt::format("{:.3f}", static_cast<double>(*request.gaze_effective_age_ns) * 1e-6);
   }
   row.no_gaze = gaze.no_gaze ? 1 : 0;
+  return row;
+}
+
+TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  TimingRow row = timing_row(request);
+  for (double* ms :
+       {&row.plan_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms, &row.temporal_ms,
+        &row.exposure_ms, &row.color_ms, &row.write_ms, &row.total_ms, &row.trace_cpu_ms, &row.peak_memory_mib}) {
+    *ms = kUnknown;
+  }
+  row.region_cpu_ms.fill(kUnknown);
+  row.exposure_ev = exposure_ev.value_or(kUnknown);
   return row;
 }
 

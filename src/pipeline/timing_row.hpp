@@ -2,6 +2,8 @@
 // A frame's row of timing.csv, from what the stages say of themselves.
 #pragma once
 
+#include <optional>
+
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/output.hpp"
 
@@ -9,6 +11,9 @@ namespace gazetrace {
 
 // The frame's number, its size, and where the eye was.
 TimingRow timing_row(const FrameRequest& request);
+
+// The row of a frame that is finished, whose own was lost: times are not known (NaN), and counts are 0.
+TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev);
 
 void add_times(const StageTimes& times, TimingRow& row);
 void add_prediction(const Prediction& prediction, TimingRow& row);

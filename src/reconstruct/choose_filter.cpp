@@ -4,12 +4,6 @@
 namespace gazetrace {
 
 FilterChoice choose_filter(const FilterFacts& facts) {
-  if (!facts.foveated) {
-    return {"linear", "frames are uniform, and single pixels keep their samples' mean"};
-  }
-  if (facts.blurs) {
-    return {"linear", "the first hits that guided filters show have no blur of lens and shutter"};
-  }
   if (facts.accumulates_sites) {
     return {"linear", "accumulation before the filter leaves sites, which cannot be taken apart by surfaces"};
   }
@@ -18,6 +12,10 @@ FilterChoice choose_filter(const FilterFacts& facts) {
   }
   if (facts.part_of_samples) {
     return {"linear", "guided filters need every sample of a frame, and this is a part of them"};
+  }
+  if (!facts.foveated) {
+    return {"guided",
+            "noise is smoothed along surfaces as far as it is noise, and samples are kept where they know better"};
   }
   return {"guided", "frames are foveated, and first hits show edges and texture at full resolution"};
 }

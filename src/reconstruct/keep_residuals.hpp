@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The last step of guided filters: what their picture lacks of the samples' own mean is given back as far as it is more
-// than noise. First hits through pinholes, one or a few per pixel, miss the blur of lens and shutter, transparency,
-// and light that changes faster than surfaces do; with enough samples their mean knows better.
+// than noise. First hits, one or a few per pixel, miss reflections, what is behind glass, and light that changes faster
+// than surfaces do; with enough samples their mean knows better.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "reconstruct/surface_lookup.hpp"
 
@@ -18,5 +19,21 @@ namespace gazetrace {
 // mean. Pixels that PassThrough keeps are not changed.
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, SurfacePicture& picture);
+
+// What the picture lacks of a better one over the pixels of a site.
+struct SiteResidual {
+  Vec3f radiance;
+  float replica = 0;  // of the error of its luminance
+  float shown = 0;    // mean luminance of the picture
+};
+// The same for residuals of any kind, one for each site of the map. The picture's variance and error stay what they
+// were unless `estimates`.
+void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
+                    const Image<std::uint32_t>& site_of_pixel, const std::vector<SiteResidual>& residuals,
+                    bool estimates, SurfacePicture& picture);
+
+// The replica of a residual of a single sample. Nobody knows what of it is noise: all of it, with a sign of its own, so
+// that around a pixel such noise cancels out as the noise of the samples does.
+float replica_of_single_sample(std::size_t site, const Vec3f& residual);
 
 }  // namespace gazetrace

@@ -105,7 +105,7 @@ std::optional<GuideSettings> Reconstruction::guide_settings(const TraceSettings&
 
 Frame Reconstruction::frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides,
                             int threads) const {
-  const SiteValues values(sparse, map);
+  const SiteValues values(sparse, map, threads);
   check_needs(filter_.needs, sparse, map, guides);
   const PassThrough pass_through(map, pass_through_samples_);
   return definition_->frame({sparse, values, map, pass_through, guides, threads});

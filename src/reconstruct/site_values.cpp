@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr std::uint32_t kNoSite = 0xffffffffU;
 
 // A weighted mean of sites. Variances are averaged and not divided by the number of sites, since a place that was never
 // sampled is known no better than its neighbours.
@@ -55,9 +54,20 @@ void for_each_neighbor(const SamplingMap& map, const Image<std::uint32_t>& site_
   }
 }
 
+Image<std::uint32_t> sites_of_pixels(const SamplingMap& map, int threads) {
+  Image<std::uint32_t> site_of_pixel(map.width_px, map.height_px);
+  parallel_for(map.tiles.size(), threads, [&](std::size_t t) {
+    const MapTile& tile = map.tiles[t];
+    for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
+      for_each_pixel(map, map.sites[i], [&](int x, int y) { site_of_pixel(x, y) = static_cast<std::uint32_t>(i); });
+    }
+  });
+  return site_of_pixel;
+}
+
 }  // namespace
 
-SiteValues::SiteValues(const SparseFrame& sparse, const SamplingMap& map) : sparse_(&sparse) {
+SiteValues::SiteValues(const SparseFrame& sparse, const SamplingMap& map, int threads) : sparse_(&sparse) {
   const std::size_t sites = map.sites.size();
   if (sparse.width_px != map.width_px || sparse.height_px != map.height_px || sparse.sum.size() != sites ||
       sparse.sum_square_luminance.size() != sites || sparse.count.size() != sites ||
@@ -65,9 +75,57 @@ SiteValues::SiteValues(const SparseFrame& sparse, const SamplingMap& map) : spar
     throw Error(ErrorKind::runtime, "reconstruct", "the samples were not traced with this sampling map",
                 "pass the map that the tracer was given");
   }
-  if (std::find(sparse.count.begin(), sparse.count.end(), 0U) != sparse.count.end()) {
-    fill_empty_sites(map);
+  const auto some_have = [&](std::uint32_t count) {
+    return std::find(sparse.count.begin(), sparse.count.end(), count) != sparse.count.end();
+  };
+  const bool some_empty = some_have(0);
+  const bool some_single = some_have(1);
+  if (!some_empty && !some_single) {
+    return;
   }
+  const Image<std::uint32_t> site_of_pixel = sites_of_pixels(map, threads);
+  if (some_single) {
+    estimate_single_variances(map, site_of_pixel, threads);
+  }
+  if (some_empty) {
+    fill_empty_sites(map, site_of_pixel);
+  }
+}
+
+// The spread of all samples in and around the site: its own one says nothing of it. What differs between places is in
+// it, so that it is rather too large. Where there is no other sample, the spread counts as large as the light.
+// `around`: what it holds is lost.
+float SiteValues::variance_of_single(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel,
+                                     std::uint32_t site, std::vector<std::uint32_t>& around) const {
+  around.assign(1, site);
+  for_each_neighbor(map, site_of_pixel, site, [&](std::uint32_t neighbor) {
+    if (std::find(around.begin(), around.end(), neighbor) == around.end()) {
+      around.push_back(neighbor);
+    }
+  });
+  double samples = 0;
+  double light = 0;
+  double squares = 0;
+  for (const std::uint32_t i : around) {
+    samples += static_cast<double>(count(i));
+    light += luminance(to_double(sparse_->sum[i]));
+    squares += static_cast<double>(sparse_->sum_square_luminance[i]);
+  }
+  return static_cast<float>(samples > 1 ? std::max(squares - light * light / samples, 0.0) / (samples - 1) : squares);
+}
+
+void SiteValues::estimate_single_variances(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel,
+                                           int threads) {
+  single_variances_.resize(map.sites.size());
+  parallel_for(map.tiles.size(), threads, [&](std::size_t t) {
+    const MapTile& tile = map.tiles[t];
+    std::vector<std::uint32_t> around;
+    for (std::uint32_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
+      if (count(i) == 1) {
+        single_variances_[i] = variance_of_single(map, site_of_pixel, i, around);
+      }
+    }
+  });
 }
 
 SiteGuides SiteValues::guides_from_sums(std::size_t site) const {
@@ -86,15 +144,13 @@ SiteGuides SiteValues::guides_from_sums(std::size_t site) const {
 
 // Ring by ring outwards from the sampled sites: each empty site takes the mean of the neighbouring pixels whose values
 // were known a ring earlier, weighted by samples per pixel. Each site is visited twice, however large the hole is.
-void SiteValues::fill_empty_sites(const SamplingMap& map) {
+void SiteValues::fill_empty_sites(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel) {
   const std::size_t sites = map.sites.size();
   filled_.resize(sites);
   filled_guides_.resize(has_guides() ? sites : 0);
-  Image<std::uint32_t> site_of_pixel(map.width_px, map.height_px, kNoSite);
   std::vector<float> weight(sites, 0.0F);  // samples per pixel; 0: not known yet
   std::vector<std::uint32_t> known;
   for (std::size_t i = 0; i < sites; ++i) {
-    for_each_pixel(map, map.sites[i], [&](int x, int y) { site_of_pixel(x, y) = static_cast<std::uint32_t>(i); });
     if (count(i) != 0) {
       filled_[i] = value_from_sums(i);
       if (has_guides()) {

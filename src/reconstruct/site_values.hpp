@@ -27,7 +27,7 @@ struct SiteGuides {
 // Keeps a reference to `sparse`, which must outlive it.
 class SiteValues {
  public:
-  SiteValues(const SparseFrame& sparse, const SamplingMap& map);
+  SiteValues(const SparseFrame& sparse, const SamplingMap& map, int threads);
 
   [[nodiscard]] SiteValue value(std::size_t site) const {
     return filled_.empty() ? value_from_sums(site) : filled_[site];
@@ -41,9 +41,14 @@ class SiteValues {
  private:
   [[nodiscard]] SiteValue value_from_sums(std::size_t site) const;
   [[nodiscard]] SiteGuides guides_from_sums(std::size_t site) const;
-  void fill_empty_sites(const SamplingMap& map);
+  [[nodiscard]] float variance_of_single(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel,
+                                         std::uint32_t site, std::vector<std::uint32_t>& around) const;
+  void estimate_single_variances(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel, int threads);
+  void fill_empty_sites(const SamplingMap& map, const Image<std::uint32_t>& site_of_pixel);
 
   const SparseFrame* sparse_;
+  // Of the sites with a single sample; empty unless there are any.
+  std::vector<float> single_variances_;
   // Empty unless some site has no samples.
   std::vector<SiteValue> filled_;
   std::vector<SiteGuides> filled_guides_;
@@ -65,6 +70,8 @@ inline SiteValue SiteValues::value_from_sums(std::size_t site) const {
     const double spread =
         (static_cast<double>(sparse_->sum_square_luminance[site]) - shone * shone / samples) / (samples - 1.0);
     value.variance = spread > 0 ? static_cast<float>(spread / samples) : 0.0F;
+  } else {
+    value.variance = single_variances_[site];
   }
   return value;
 }

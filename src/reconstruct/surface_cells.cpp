@@ -19,9 +19,9 @@ SurfaceCell cell_of(const SurfaceSums& sums, float block_px, float pixel_m, bool
   cell.albedo = sums.albedo / n;
   const float squared = dot(sums.normal, sums.normal);
   cell.normal = squared > 0 ? sums.normal * (1.0F / std::sqrt(squared)) : Vec3f{};
-  cell.place_m = sums.place_m / n;
+  cell.position_m = sums.position_m / n;
   cell.samples = n;
-  const float distance = perspective ? std::sqrt(dot(cell.place_m, cell.place_m)) : 1.0F;
+  const float distance = perspective ? std::sqrt(dot(cell.position_m, cell.position_m)) : 1.0F;
   cell.footprint_m = block_px * pixel_m * distance;
   cell.light = luminance(cell.reflected) / std::max(luminance(cell.albedo), kLeastAlbedo);
   cell.square = sums.square / n;

@@ -17,7 +17,7 @@ namespace gazetrace {
 struct SurfaceCell {
   Vec3f reflected, albedo;  // means over the samples
   Vec3f normal;             // unit, or zero where normals cancel
-  Vec3f place_m;            // relative to the eye
+  Vec3f position_m;         // relative to the eye
   float samples = 0;
   float footprint_m = 0;  // what the site's block covers there
   float light = 0;        // luminance of reflected / albedo

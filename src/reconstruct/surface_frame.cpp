@@ -9,6 +9,7 @@
 #include "reconstruct/blend_edges.hpp"
 #include "reconstruct/fill_squares.hpp"
 #include "reconstruct/keep_residuals.hpp"
+#include "reconstruct/sampled_first_hits.hpp"
 #include "reconstruct/surface_lookup.hpp"
 
 namespace gazetrace {
@@ -43,6 +44,9 @@ Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
   const SurfaceLookup lookup(input, lattice, settings);
   fill_squares(input, lattice, settings, lookup, picture);
   blend_edges(input, lookup, lattice.site_of_pixel, picture);
+  if (!input.sparse.first_hits.empty()) {
+    show_what_samples_saw(input, lattice, settings, picture);
+  }
   keep_residuals(input, settings, lattice.site_of_pixel, picture);
   frame.radiance = std::move(picture.radiance);
   frame.variance = std::move(picture.variance);

@@ -16,7 +16,7 @@ template <std::size_t kWidth>
                                                 const SurfaceLanes& pixels, const SmoothingSettings& settings,
                                                 LightLanes& __restrict sums) {
   const Vec3f n = cell.normal;
-  const Vec3f p = cell.place_m;
+  const Vec3f p = cell.position_m;
   const float slack = 0.5F * cell.footprint_m;
   const auto kind = static_cast<std::int32_t>(cell.kind);
   for (std::size_t i = 0; i < kWidth; ++i) {

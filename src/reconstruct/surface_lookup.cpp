@@ -37,7 +37,7 @@ void SurfaceLookup::add_block(std::size_t region, int bx, int by, float tent, co
       light.add(w, cell);
     } else if (cell.kind == pixel.kind) {
       const float like =
-          likeness(pixel.normal, cell.normal, cell.place_m - pixel.place_m, 0.5F * cell.footprint_m, settings_);
+          likeness(pixel.normal, cell.normal, cell.position_m - pixel.position_m, 0.5F * cell.footprint_m, settings_);
       if (like > 0) {
         light.add(w * like, cell);
       }

@@ -37,7 +37,7 @@ inline bool enough_alike(float weight, float all) {
 }
 
 struct PixelSurface {
-  Vec3f normal, place_m;
+  Vec3f normal, position_m;
   SurfaceKind kind = SurfaceKind::diffuse;
 };
 

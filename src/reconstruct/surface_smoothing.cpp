@@ -37,6 +37,11 @@ struct Detail {
   float replica = 0;
 };
 
+// Of a detail, relative to the light that it belongs to.
+struct Squares {
+  float detail = 0, noise = 0, replica = 0;
+};
+
 // What is added to the light that is smoothed most.
 struct KeptDetail {
   Vec3f light;
@@ -63,7 +68,7 @@ struct TileTies {
 
 // The part of a SurfaceCell that says where it lies and how it faces: half a cache line.
 struct alignas(32) Orientation {
-  Vec3f normal, place_m;
+  Vec3f normal, position_m;
   float footprint_m = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
 };
@@ -88,9 +93,9 @@ struct Candidates {
     normal_x[k] = surface.normal.x;
     normal_y[k] = surface.normal.y;
     normal_z[k] = surface.normal.z;
-    place_x[k] = surface.place_m.x;
-    place_y[k] = surface.place_m.y;
-    place_z[k] = surface.place_m.z;
+    place_x[k] = surface.position_m.x;
+    place_y[k] = surface.position_m.y;
+    place_z[k] = surface.position_m.z;
     footprint[k] = surface.footprint_m;
     like[k] = kernel;
     cell[k] = index;
@@ -101,7 +106,7 @@ struct Candidates {
 // Multiplies `like` by likeness(), on lanes.
 GAZETRACE_CLONES void compare(const Orientation& own, const SmoothingSettings& settings, Candidates& near) {
   const Vec3f n = own.normal;
-  const Vec3f p = own.place_m;
+  const Vec3f p = own.position_m;
   const std::size_t lanes = (near.count + Candidates::kLanes - 1) / Candidates::kLanes * Candidates::kLanes;
   for (std::size_t first = 0; first < lanes; first += Candidates::kLanes) {
     for (std::size_t i = first; i < first + Candidates::kLanes; ++i) {
@@ -150,6 +155,7 @@ class Smoother {
         orientations_(cells.cells.size()),
         flows_(map.tiles.size()),
         details_(cells.cells.size()),
+        squares_(cells.cells.size()),
         kept_(cells.cells.size()) {
     for_each_tile([&](std::size_t t) {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
@@ -157,9 +163,18 @@ class Smoother {
         lights_[i] = {cell.reflected, cell.albedo, cell.light, cell.variance,
                       cell.replica * std::max(luminance(cell.albedo), kLeastAlbedo)};
         samples_[i] = cell.samples;
-        orientations_[i] = {cell.normal, cell.place_m, cell.footprint_m, cell.kind};
+        orientations_[i] = {cell.normal, cell.position_m, cell.footprint_m, cell.kind};
       }
     });
+  }
+
+  // So many steps does the region that smooths most take.
+  [[nodiscard]] int most_levels() const {
+    int most = settings_.fewest_levels;
+    for (const MapRegion& region : map_.regions) {
+      most = region.sites > 0 ? std::max(most, levels_of(region, settings_)) : most;
+    }
+    return most;
   }
 
   // The surfaces of blocks that lie `step` blocks apart, eight of them and the own. `found`: what it holds is lost.
@@ -191,24 +206,28 @@ class Smoother {
     for_each_tile([&](std::size_t t) {
       for_each_cell(near, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t) {
         const SurfaceCell& own = lattice_.cells[i];
-        double weight = static_cast<double>(kBinomial[0] * kBinomial[0] * own.samples);
+        double samples = static_cast<double>(own.samples);
+        double weight = static_cast<double>(kBinomial[0] * kBinomial[0]) * samples;
         double light = weight * static_cast<double>(own.light);
         double square = weight * static_cast<double>(own.square);
         for (const Tie* tie = begin; tie != end; ++tie) {
           const SurfaceCell& other = lattice_.cells[tie->other];
           const double w = static_cast<double>(tie->like * other.samples);
           weight += w;
+          samples += static_cast<double>(other.samples);
           light += w * static_cast<double>(other.light);
           square += w * static_cast<double>(other.square);
         }
         const double mean = light / weight;
-        lights_[i].variance = static_cast<float>(std::max(square / weight - mean * mean, 0.0)) / own.samples;
+        // Of a single sample nobody knows the spread: it counts as large as the light.
+        const double spread = samples > 1 ? (square / weight - mean * mean) * samples / (samples - 1) : mean * mean;
+        lights_[i].variance = static_cast<float>(std::max(spread, 0.0)) / own.samples;
         if (lights_[i].reflected_replica == 0) {
-          // One of the halves has no sample here. The error of a single sample is as large as the spread, and has
-          // either sign.
+          // One of the halves has no sample here, so that nothing confirms what the other one saw. The error is as
+          // large as the spread, or as all that this light is off the others', and has either sign.
           const float sign = (hash32(static_cast<std::uint32_t>(i)) & 1U) != 0 ? 1.0F : -1.0F;
-          lights_[i].reflected_replica =
-              sign * std::sqrt(lights_[i].variance) * std::max(luminance(own.albedo), kLeastAlbedo);
+          const float off = std::max(std::sqrt(lights_[i].variance), std::fabs(own.light - static_cast<float>(mean)));
+          lights_[i].reflected_replica = sign * off * std::max(luminance(own.albedo), kLeastAlbedo);
         }
       });
     });
@@ -265,9 +284,10 @@ class Smoother {
   }
 
  private:
-  // How much larger the noise of the details of a tile is than `Detail::variance` says. Stratified samples have less
-  // noise than their spread lets expect, and neighbours share some of theirs; the replicas know both.
-  [[nodiscard]] std::vector<float> noise_scales() const {
+  // Squares of all details, and by how much larger the noise of a tile's details is than `Detail::variance` says.
+  // Stratified samples have less noise than their spread lets expect, and neighbours share some of theirs; the replicas
+  // know both.
+  [[nodiscard]] std::vector<float> measure_details() {
     struct Noise {
       double replicas = 0, expected = 0;
     };
@@ -276,8 +296,9 @@ class Smoother {
       for (std::size_t i = first_cell(t); i < end_cell(t); ++i) {
         const Detail& d = details_[i];
         const float scale = relative_scale(next_[i], d);
-        noise[t].replicas += static_cast<double>(d.replica * scale * d.replica);
-        noise[t].expected += static_cast<double>(d.variance * scale);
+        squares_[i] = {d.light * scale * d.light, d.variance * scale, d.replica * scale * d.replica};
+        noise[t].replicas += static_cast<double>(squares_[i].replica);
+        noise[t].expected += static_cast<double>(squares_[i].noise);
       }
     });
     std::vector<float> scales(map_.tiles.size());
@@ -312,7 +333,7 @@ class Smoother {
   // of the details of the same surface near by, less those of their noise and some standard deviations of this
   // difference.
   void keep_details(const std::vector<TileTies>& ties) {
-    const std::vector<float> scales = noise_scales();
+    const std::vector<float> scales = measure_details();
     for_each_tile([&](std::size_t t) {
       for_each_cell(ties, t, [&](std::size_t i, const Tie* begin, const Tie* end, std::size_t) {
         if (begin == end) {
@@ -323,11 +344,10 @@ class Smoother {
         double replicas = 0;
         double spread = 0;
         const auto add = [&](std::size_t j, float like) {
-          const Detail& d = details_[j];
-          const float w = like * relative_scale(next_[j], d);
-          squares += static_cast<double>(d.light * w * d.light);
-          noise += static_cast<double>(w * d.variance);
-          const auto square = static_cast<double>(d.replica * w * d.replica);
+          const Squares& s = squares_[j];
+          squares += static_cast<double>(like * s.detail);
+          noise += static_cast<double>(like * s.noise);
+          const auto square = static_cast<double>(like * s.replica);
           replicas += square;
           spread += square * square;
         };
@@ -338,7 +358,8 @@ class Smoother {
         // A rare bright sample is in one of the halves only. Where there is one, the replicas are as large as the
         // details, while what such samples add to the variance is spread over all cells around.
         noise = std::max(noise * static_cast<double>(scales[t]), replicas);
-        const double signal = squares - noise - settings_.detail_doubt * std::sqrt(2 * spread);
+        const double doubt = settings_.detail_doubt * static_cast<double>(doubt_of_few(samples_[i], settings_));
+        const double signal = squares - noise - doubt * std::sqrt(2 * spread);
         const float share = signal > 0 ? static_cast<float>(signal / squares) : 0.0F;
         const Detail& d = details_[i];
         KeptDetail& kept = kept_[i];
@@ -429,6 +450,7 @@ class Smoother {
   std::vector<Orientation> orientations_;
   std::vector<std::vector<float>> flows_;  // of each tile's ties
   std::vector<Detail> details_;            // of the last step
+  std::vector<Squares> squares_;           // of these details
   std::vector<KeptDetail> kept_;
 };
 
@@ -441,7 +463,7 @@ void smooth_surfaces(SurfaceCells& cells, const SamplingMap& map, const Smoothin
   smoother.estimate_variance(near);
   smoother.exchange(near);
   std::vector<TileTies> wide;
-  for (int level = 1; level < settings.levels; ++level) {
+  for (int level = 1; level < smoother.most_levels(); ++level) {
     smoother.find_ties(1 << level, wide);
     smoother.exchange(wide);
   }

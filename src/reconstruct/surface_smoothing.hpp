@@ -20,8 +20,15 @@ struct SmoothingSettings {
   // deviations of the estimate of the latter: in the steps of the smoothing, and in what guides leave out.
   double detail_doubt = 2;
   float residual_doubt = 3;
-  float plane = 0.25F;  // how far off a surface's plane a neighbour may lie, over its distance
+  float few_samples = 8;  // with so many samples in a mean both doubts are twice as large: few say little of rare light
+  float most_deviations = 4;  // of a residual's noise, in those of all around; what is beyond is a rare bright sample
+  float plane = 0.25F;        // how far off a surface's plane a neighbour may lie, over its distance
 };
+
+// What a doubt is multiplied by where means are of so many samples.
+inline float doubt_of_few(float samples, const SmoothingSettings& settings) {
+  return 1 + settings.few_samples / std::max(samples, 1.0F);
+}
 
 // Smaller weights count as 0, so that their squares, which variances need, stay far from float's smallest.
 constexpr float kLeastLikeness = 1e-6F;

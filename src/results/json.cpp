@@ -13,117 +13,21 @@
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/results.hpp"
+#include "results/json_node.hpp"
 
 namespace gazetrace {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "gazetrace-sweep-1";
 
 template <class T, class Of>
 concept Either = std::same_as<std::remove_const_t<T>, Of>;  // constant when written
 
-// A value and where it stands. Every complaint names the place as a path of keys.
-class Node {
- public:
-  Node(const Json& json, std::string file, std::string path)
-      : json_(json), file_(std::move(file)), path_(std::move(path)) {}
-
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(ErrorKind::input, file_ + (path_.empty() ? "" : ": " + path_), problem,
-                "write it again with gazetrace sweep");
-  }
-  [[nodiscard]] bool has(const std::string& key) const {
-    return json_.is_object() && json_.contains(key) && !json_.at(key).is_null();
-  }
-  [[nodiscard]] Node at(const std::string& key) const {
-    if (!json_.is_object()) {
-      fail("is no object");
-    }
-    if (!json_.contains(key)) {
-      fail("has no '" + key + "'");
-    }
-    return {json_.at(key), file_, path_.empty() ? key : path_ + "." + key};
-  }
-  [[nodiscard]] std::vector<Node> items() const {
-    if (!json_.is_array()) {
-      fail("is no list");
-    }
-    std::vector<Node> nodes;
-    nodes.reserve(json_.size());
-    for (std::size_t i = 0; i < json_.size(); ++i) {
-      nodes.emplace_back(json_[i], file_, fmt::format("{}[{}]", path_, i));
-    }
-    return nodes;
-  }
-  [[nodiscard]] std::vector<std::pair<std::string, Node>> members() const {
-    if (!json_.is_object()) {
-      fail("is no object");
-    }
-    std::vector<std::pair<std::string, Node>> nodes;
-    for (const auto& [key, value] : json_.items()) {
-      nodes.emplace_back(key, Node{value, file_, path_.empty() ? key : path_ + "." + key});
-    }
-    return nodes;
-  }
-  [[nodiscard]] bool is_null() const { return json_.is_null(); }
-  [[nodiscard]] bool is_number() const { return json_.is_number(); }
-  [[nodiscard]] double number() const {
-    if (!json_.is_number()) {
-      fail("is no number");
-    }
-    return json_.get<double>();
-  }
-  template <std::integral T>
-  [[nodiscard]] T whole_number() const {
-    const double value = number();
-    if (std::floor(value) != value || value < static_cast<double>(std::numeric_limits<T>::min()) ||
-        value > static_cast<double>(std::numeric_limits<T>::max())) {
-      fail("is no such whole number");
-    }
-    return json_.get<T>();
-  }
-  [[nodiscard]] std::string text() const {
-    if (!json_.is_string()) {
-      fail("is no text");
-    }
-    return json_.get<std::string>();
-  }
-  [[nodiscard]] bool truth() const {
-    if (!json_.is_boolean()) {
-      fail("is neither true nor false");
-    }
-    return json_.get<bool>();
-  }
-  // Of any kind, for people: texts without quotes, lists with commas.
-  [[nodiscard]] std::string shown() const {
-    if (json_.is_string()) {
-      return json_.get<std::string>();
-    }
-    if (json_.is_number_float()) {
-      return fmt::format("{:.6g}", json_.get<double>());
-    }
-    if (json_.is_array()) {
-      std::string list;
-      for (const Node& item : items()) {
-        list += (list.empty() ? "" : ", ") + item.shown();
-      }
-      return list;
-    }
-    return json_.is_null() ? "not set" : json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-  }
-
- private:
-  const Json& json_;
-  std::string file_, path_;
-};
-
 // Values of each kind, as they are written and read. A number that is not finite is null.
 Json written(RowRole role) {
   return to_string(role);
 }
-void read(const Node& node, RowRole& role) {
+void read(const JsonNode& node, RowRole& role) {
   const std::optional<RowRole> found = row_role(node.text());
   if (!found) {
     node.fail("is no role of a row: '" + node.text() + "'");
@@ -133,8 +37,8 @@ void read(const Node& node, RowRole& role) {
 Json written(const Vec2d& at) {
   return {at.x, at.y};
 }
-void read(const Node& node, Vec2d& at) {
-  const std::vector<Node> items = node.items();
+void read(const JsonNode& node, Vec2d& at) {
+  const std::vector<JsonNode> items = node.items();
   if (items.size() != 2) {
     node.fail("is no pair of numbers");
   }
@@ -148,17 +52,17 @@ Json written(const NamedValues& values) {
   }
   return json;
 }
-void read(const Node& node, NamedValues& values) {
+void read(const JsonNode& node, NamedValues& values) {
   for (const auto& [name, value] : node.members()) {
     values.emplace_back(name, value.shown());
   }
 }
 Json written(const Interval& interval);
-void read(const Node& node, std::optional<Interval>& interval);
+void read(const JsonNode& node, std::optional<Interval>& interval);
 template <class T>
 Json written(const T& value);
 template <class T>
-void read(const Node& node, T& value);
+void read(const JsonNode& node, T& value);
 
 // Two walks through the fields of a type. A `required` field must be in the file; another one that is missing or null
 // keeps its value when it is read.
@@ -211,7 +115,7 @@ class Writer {
 
 class Reader {
  public:
-  explicit Reader(const Node& node) : node_(node) {}
+  explicit Reader(const JsonNode& node) : node_(node) {}
   template <class T>
   void required(const char* key, T& value) {
     read(node_.at(key), value);
@@ -239,7 +143,7 @@ class Reader {
   template <class Fields>
   void object(const char* key, const Fields& fields) {
     if (node_.has(key)) {
-      const Node inner = node_.at(key);
+      const JsonNode inner = node_.at(key);
       Reader reader(inner);
       fields(reader);
     }
@@ -282,7 +186,7 @@ class Reader {
   }
 
  private:
-  const Node& node_;
+  const JsonNode& node_;
 };
 
 template <class Io, Either<ResultBuild> T>
@@ -449,7 +353,7 @@ Json written(const Interval& interval) {
   Writer(json).bounds(interval);
   return json;
 }
-void read(const Node& node, std::optional<Interval>& interval) {
+void read(const JsonNode& node, std::optional<Interval>& interval) {
   Reader(node).bounds(interval);
 }
 
@@ -494,7 +398,7 @@ Json written(const T& value) {
 }
 
 template <class T>
-void read(const Node& node, T& value) {
+void read(const JsonNode& node, T& value) {
   if constexpr (Described<T>) {
     Reader reader(node);
     describe(reader, value);
@@ -510,7 +414,7 @@ void read(const Node& node, T& value) {
       }
     }
   } else if constexpr (List<T>) {
-    for (const Node& item : node.items()) {
+    for (const JsonNode& item : node.items()) {
       read(item, value.emplace_back());
     }
   } else if constexpr (std::floating_point<T>) {
@@ -524,7 +428,7 @@ void read(const Node& node, T& value) {
   }
 }
 
-void check_format(const Node& root) {
+void check_format(const JsonNode& root) {
   const std::string format = root.has("format") ? root.at("format").text() : std::string();
   if (format.empty()) {
     root.fail(fmt::format("is no {} file: it has no 'format'", kFormat));
@@ -556,7 +460,7 @@ Results read_results(const std::string& path) {
   } catch (const Json::exception& e) {
     throw Error(ErrorKind::input, file, std::string("is no JSON: ") + e.what(), "write it again with gazetrace sweep");
   }
-  const Node root(json, file, "");
+  const JsonNode root(json, file, "");
   check_format(root);
   Results results;
   results.title = "Sweep";

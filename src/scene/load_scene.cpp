@@ -5,11 +5,13 @@
 #include <mutex>
 #include <utility>
 
+#include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/animation.hpp"
 #include "scene/gltf/compression.hpp"
+#include "scene/gltf/estimate.hpp"
 #include "scene/gltf/file.hpp"
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/mesh.hpp"
@@ -31,8 +33,9 @@ std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
     const std::string place = file.path + ": buffers[" + std::to_string(i) + "]";
     std::span<const std::uint8_t> bytes;
     if (!source.uri.empty()) {
-      storage.push_back(is_data_uri(source.uri) ? decode_data_uri(source.uri, place)
-                                                : read_whole_file(resolve_uri(file.path, source.uri, place), place));
+      storage.push_back(is_data_uri(source.uri)
+                            ? decode_data_uri(source.uri, place)
+                            : read_whole_file(resolve_uri(file.path, file.roots, source.uri, place), place));
       bytes = storage.back();
     } else if (i == 0 && file.is_binary && !source.fallback) {
       bytes = file.bin_chunk;
@@ -110,16 +113,53 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
   to.insert(to.end(), from.begin(), from.end());
 }
 
+// A document before its buffers are read.
+struct OpenScene {
+  GltfFile file;
+  CheckedGltf checked;
+  GltfDocument document;
+};
+
+OpenScene open_scene(const std::string& path, const SceneReadOptions& options) {
+  OpenScene scene;
+  scene.file = read_gltf_file(path);
+  if (!options.allow_outside) {
+    scene.file.roots = data_roots(path);
+  }
+  scene.checked = check_gltf_json(path, scene.file.json, options.limits);
+  scene.document = parse_gltf(path, scene.checked);
+  scene.document.data_roots = scene.file.roots;
+  if (!options.animation.empty()) {
+    keep_animation(scene.document, options.animation);
+  }
+  check_gltf_ranges(scene.document, scene.checked.buffers);
+  return scene;
+}
+
 }  // namespace
 
-Scene load_scene(const std::string& path, const SceneReadOptions& options) {
-  const GltfFile file = read_gltf_file(path);
-  const CheckedGltf checked = check_gltf_json(path, file.json);
-  GltfDocument document = parse_gltf(path, checked);
-  if (!options.animation.empty()) {
-    keep_animation(document, options.animation);
+SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& options) {
+  OpenScene open = open_scene(path, options);
+  SceneEstimate estimate = estimate_geometry(open.file, open.checked, open.document);
+  std::vector<std::vector<std::uint8_t>> storage;
+  const auto& images = open.document.images;
+  if (std::any_of(images.begin(), images.end(), [](const GltfImageSource& image) { return image.buffer_view >= 0; })) {
+    open.document.buffers = load_buffers(open.file, open.checked.buffers, storage);
   }
-  check_gltf_ranges(document, checked.buffers);
+  Warnings unused;
+  TextureTable textures(open.document, options.limits);
+  make_materials(open.document, textures, unused);
+  add_pictures(textures, options.threads, estimate);
+  return estimate;
+}
+
+Scene load_scene(const std::string& path, const SceneReadOptions& options) {
+  OpenScene open = open_scene(path, options);
+  const GltfFile& file = open.file;
+  const CheckedGltf& checked = open.checked;
+  GltfDocument& document = open.document;
+  SceneEstimate estimate = estimate_geometry(file, checked, document);
+  check_memory(estimate, options.limits, path);
   std::vector<std::vector<std::uint8_t>> storage;
   document.buffers = load_buffers(file, checked.buffers, storage);
   unpack_meshopt(document, checked.meshopt_views, storage, options.threads);
@@ -132,8 +172,10 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   list_extensions(document, scene);
   list_unshown(document, scene);
 
-  TextureTable textures(document);
+  TextureTable textures(document, options.limits);
   scene.materials = make_materials(document, textures, scene.warnings);
+  add_pictures(textures, options.threads, estimate);
+  check_memory(estimate, options.limits, path);
   const std::int32_t fallback = default_material(document, scene.materials);
 
   LoadCount count(options.progress, textures.picture_count() + document.meshes.size());

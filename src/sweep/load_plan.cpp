@@ -56,9 +56,8 @@ class PlanMaker {
   }
 
   std::string digest_of(const Job& job, const std::vector<std::int32_t>& frames) {
-    PipelineSettings settings;
-    digest_job(job.settings, frames, files_of(job), settings, schema_);
-    return digest_settings({{"settings", settings.settings_digest}, {"frames", format_frame_list(frames)}});
+    const std::string settings = digest_job(job.settings, files_of(job), schema_);
+    return digest_settings({{"settings", settings}, {"frames", format_frame_list(frames)}});
   }
 
   void add_scene(std::size_t index) {

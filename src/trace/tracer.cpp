@@ -199,6 +199,7 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
   SurfaceSorter sorter(std::sqrt(dot(context.camera->placement().up_step, context.camera->placement().up_step)),
                        context.camera->is_perspective());
   HalfSums halves;
+  FirstHitSummer first_hits;
   const auto finish_site = [&](std::size_t site) {
     if (!out.half_difference.empty()) {
       out.half_difference[site] = halves.difference();
@@ -206,8 +207,11 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
     halves = {};
     if (surfaces) {
       const std::size_t before = tile.surfaces.size();
-      sorter.finish_site(tile.surfaces);
+      sorter.finish_site(first_hits.samples(), tile.surfaces);
       out.first_surface[site] = static_cast<std::uint32_t>(tile.surfaces.size() - before);
+    }
+    if (!out.first_hits.empty()) {
+      out.first_hits[site] = first_hits.finish_site();
     }
   };
   SampleList list(map, range.first, range.count, context.settings.seed, frame,
@@ -254,6 +258,9 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
       halves.add(luminance(to_double(Vec3f{r, g, b})), work.samples.half[i]);
       if (surfaces && pass_through.needs_filtering(current)) {
         sorter.add(work.surfaces, i, {r, g, b}, work.samples.half[i]);
+        if (!out.first_hits.empty()) {
+          first_hits.add(work.surfaces, i, work.samples.half[i]);
+        }
       }
     }
     const std::int64_t spent_ns = thread_cpu_ns() - begin_ns;
@@ -311,6 +318,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   out.unrounded.sites.resize(settings.samples ? map.sites.size() : 0);
   out.unrounded.guides.resize(settings.samples && settings.guides ? map.sites.size() : 0);
   out.first_surface.resize(settings.surfaces ? map.sites.size() + 1 : 0);
+  out.first_hits.resize(context.first_hits ? map.sites.size() : 0);
   out.stats.kernel = variant.name;
   out.stats.regions.resize(map.regions.size());
 
@@ -332,6 +340,9 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
                         : settings.diffuse == DiffuseModel::lambert ? variant.lambert
                                                                     : variant.matte;
   parallel_for(ranges.size(), tracer_->options.threads, [&](std::size_t i) {
+    if (settings.stop && settings.stop()) {
+      throw Error(ErrorKind::interrupted, "", "the frame was given up");
+    }
     const FlushDenormals flush;
     auto work = pool.take();
     tracer_->trace_sites(context, kernel, filter, frame, map, z_order ? &*z_order : nullptr, ranges[i], *work,

@@ -201,7 +201,7 @@ class BadOutputs(harness.CliTest):
         self.assert_refused([*arguments, "--frames", "4-6", "--resume"], ["run.json", "1-3", "--part"])
         self.run_ok(*arguments, "--frames", "1-5", "--resume")
         self.write("timing.csv", "garbage\n")
-        self.assert_refused([*arguments, "--frames", "1-5", "--resume"], ["timing.csv"])
+        self.assertIn("timing.csv", self.run_ok(*arguments, "--frames", "1-5", "--resume").stderr)  # made anew
         self.assertIn('"done"', (self.folder / "run.json").read_text())
 
     def test_converting_into_no_folder(self):
@@ -249,7 +249,6 @@ class BadOptions(harness.CliTest):
         self.assert_refused(["render", "box.gltf", "more.gltf"], ["more.gltf"])
         self.assert_refused(["render", "box.gltf", "--size"], ["--size"])
         self.assert_refused(["render", "box.gltf", "--size", "1x1", "--size", "2x2"], ["--size"])
-        self.assert_refused(["render", "box.gltf", *OUT, "--overwrite", "--resume"], ["--resume"])
         self.assert_refused(["scene"], ["scene"])
         self.assert_refused(["gaze", "inspect"], ["log"])
         self.assert_refused(["gaze"], ["subcommand", "gazetrace gaze --help"])

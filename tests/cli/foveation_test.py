@@ -143,7 +143,7 @@ class Foveation(harness.CliTest):
     def test_the_filter_by_itself_suits_the_frame(self):
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         for i, (expected, *more) in enumerate([
-                ("guided",), ("linear", "--falloff", "uniform", "--spp", "1"), ("linear", "--shutter", "0.5"),
+                ("guided",), ("guided", "--falloff", "uniform", "--spp", "1"), ("linear", "--shutter", "0.5"),
                 ("linear", "--sample-range", "0:4"), ("linear", "--enhance-contrast", "1"), ("none", "--filter", "none")]):
             self.run_ok("render", "box.gltf", *GAZE, *more, "-o", f"{i}/f.exr", "--quiet")
             record = json.loads(next((self.folder / str(i)).glob("run*.json")).read_text())
@@ -151,7 +151,7 @@ class Foveation(harness.CliTest):
         # Without gaze all frames are uniform, whatever the fall-off.
         self.run_ok("render", "box.gltf", "--size", "64x36", "--spp", "2", "-o", "eyeless/f.exr", "--quiet")
         record = json.loads((self.folder / "eyeless/run.json").read_text())
-        self.assertEqual(config(record["config_toml"])["filter"], "linear")
+        self.assertEqual(config(record["config_toml"])["filter"], "guided")
 
     def test_presets_are_what_the_list_says(self):
         presets = {member["name"]: member["description"] for member in self.names("presets")}

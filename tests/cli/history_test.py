@@ -89,7 +89,7 @@ class Histories(harness.CliTest):
         whole, parts = self.record("whole/run.json"), self.record("parts/run.json")
         for key in ("settings_digest", "frames", "is_part", "history", "input_digests"):
             self.assertEqual(parts[key], whole[key], key)
-        self.assertEqual(len(set(parts["part_digests"])), 3)
+        self.assertEqual(parts["part_digests"], [])
 
     def test_broken_chains_of_parts_are_said(self):
         self.part("parts", "1-3", "--checkpoint", "after3.bin")

@@ -87,7 +87,9 @@ class Sequences(harness.CliTest):
 
     def test_resume_renders_what_other_settings_left(self):
         first = self.render("out", "--frames", "1-4")
-        self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-4", "--resume", "--seed", "5")
+        again = ["render", *JOB, *outputs("out"), "--frames", "1-4", "--resume", "--seed", "5"]
+        self.assert_refused(again, ["4 finished frames, 1-4", "--seed was 0 and is 5", "--overwrite"])
+        self.run_ok(*again, "--overwrite")
         second = self.pictures("out")
         self.assertTrue(all(first[name] != second[name] for name in first if name.startswith("f.")))
 

@@ -63,7 +63,7 @@ PipelineSettings settings_of(AccumulateOrder order = AccumulateOrder::after) {
   settings.exposure.smoothing_s = 0.2;
   settings.foveation.region_samples = {8, 4, 4};
   settings.reconstruction.filter = "linear";
-  settings.history_digest = "0123456789abcdef0123456789abcdef";
+  settings.settings_digest = "0123456789abcdef0123456789abcdef";
   settings.threads = 2;
   return settings;
 }
@@ -121,7 +121,7 @@ TEST(History, CheckpointsComeAsOftenAsAskedAndTheLastOneStays) {
   PipelineObserver observer;
   observer.frame_done = [&](const TimingRow&, bool) {
     held.push_back(std::filesystem::exists(settings.checkpoint)
-                       ? load_checkpoint(settings.checkpoint, settings.history_digest).passed.size()
+                       ? load_checkpoint(settings.checkpoint, settings.settings_digest).passed.size()
                        : 0);
   };
   (void)render_sequence(tracer, plan_of(1, 5), color, settings, observer);
@@ -234,11 +234,11 @@ TEST(Checkpoint, DamageAndOtherSettingsAreRefused) {
 TEST(Checkpoint, IsNotTakenUpWithoutADigest) {
   const TemporaryFolder folder;
   PipelineSettings settings = settings_of();
-  settings.history_digest.clear();
+  settings.settings_digest.clear();
   settings.resume_from = folder / "history.bin";
   TemporalHistory history;
   history.passed = {5};
-  save_checkpoint(settings.resume_from, history, settings.history_digest);
+  save_checkpoint(settings.resume_from, history, settings.settings_digest);
   Warnings warnings;
   EXPECT_THROW((void)starting_history(plan_of(6, 6), settings, warnings), Error);
 }
@@ -250,7 +250,7 @@ TEST(Checkpoint, ARunMustBeginAfterIt) {
   settings.resume_from = folder / "history.bin";
   TemporalHistory history;
   history.passed = {5};
-  save_checkpoint(settings.resume_from, history, settings.history_digest);
+  save_checkpoint(settings.resume_from, history, settings.settings_digest);
   EXPECT_THROW((void)render(scene, plan_of(5, 6), settings), Error);
   Warnings warnings;
   (void)starting_history(plan_of(6, 6), settings, warnings);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums per surface as the tracer makes them, and the guided filter on traced frames.
+// Sums per surface and of first hits as the tracer makes them, and the guided filter on traced frames.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -206,6 +207,196 @@ TEST(GuidedFilter, IsNearerToManySamplesThanLinear) {
   EXPECT_LT(guided_error[0], 0.25 * linear_error[0]);
   EXPECT_LT(guided_error[1], linear_error[1]);
   EXPECT_NEAR(guided_sum / truth_sum, 1, 0.01);
+}
+
+// Everything to the right of x = `edge_m`, `distance` ahead of a camera at the origin, shines white before a black sky.
+Scene shining_edge(double distance, const Material& material, double edge_m = 0) {
+  Scene scene;
+  scene.materials = {material};
+  const auto z = static_cast<float>(-distance);
+  const auto x = static_cast<float>(edge_m);
+  add_mesh(scene, {quad({{{x, -50, z}, {50, -50, z}, {50, 50, z}, {x, 50, z}}}, 0)});
+  return scene;
+}
+
+Material unlit_white() {
+  Material material = diffuse_material({1, 1, 1});
+  material.unlit = true;
+  return material;
+}
+
+const Camera kAhead = camera_at({0, 0, 0}, {0, 0, -1}, 20);
+double pixels_per_tangent() {
+  return kHeight / (2 * std::tan(10 * kRadPerDeg));
+}
+
+// Mean squares of the shifts of the samples that hit the right half of a picture, far from its edges.
+double mean_square_shift(const PosedScene& scene, const Camera& camera) {
+  const SamplingMap map = uniform_map(kWidth, kHeight, 64);
+  const SparseFrame sparse = scene.trace(camera, 0, map, with_halves());
+  EXPECT_EQ(sparse.first_hits.size(), map.sites.size());
+  double sum = 0;
+  int sites = 0;
+  for (std::size_t i = 0; i < sparse.first_hits.size(); ++i) {
+    if (map.sites[i].block_x > kWidth * 3 / 4) {
+      sum += static_cast<double>(sparse.first_hits[i].square_shift_px2) / sparse.count[i];
+      ++sites;
+    }
+  }
+  return sum / sites;
+}
+
+TEST(FirstHits, AreSummedOnlyWhereSamplesMaySeeWhatAPinholeDoesNot) {
+  const Scene scene = shining_edge(4, unlit_white());
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = uniform_map(8, 8, 2);
+  EXPECT_TRUE(tracer.at_rest().trace(kAhead, 0, map, with_halves()).first_hits.empty());
+  Camera lens = kAhead;
+  lens.lens = {0.1, 2};
+  EXPECT_TRUE(tracer.at_rest().trace(lens, 0, map, {}).first_hits.empty());
+  EXPECT_EQ(tracer.at_rest().trace(lens, 0, map, with_halves()).first_hits.size(), map.sites.size());
+  Material half = unlit_white();
+  half.alpha_mode = AlphaMode::blend;
+  half.base_color.w = 0.5F;
+  const Scene blended = shining_edge(4, half);
+  PathTracer other(blended, threads(2));
+  EXPECT_EQ(other.at_rest().trace(kAhead, 0, map, with_halves()).first_hits.size(), map.sites.size());
+}
+
+// A point at distance d blurs into a disc of radius R |1/d - 1/f| in tangents, whose mean square radius is half its
+// square. In focus nothing is shifted. The sky is at no distance: 1/d = 0.
+TEST(FirstHits, ALensShiftsThemOverTheCircleOfConfusion) {
+  constexpr double kLens = 0.1, kFocus = 4;
+  Camera lens = kAhead;
+  lens.lens = {kLens, kFocus};
+  for (const double distance : {2.0, 4.0, 12.0, 1e30}) {
+    const Scene scene = distance < 1e3 ? shining_edge(distance, unlit_white()) : Scene();
+    PathTracer tracer(scene, threads(2));
+    const double radius_px = kLens * std::fabs(1 / distance - 1 / kFocus) * pixels_per_tangent();
+    EXPECT_NEAR(mean_square_shift(tracer.at_rest(), lens), radius_px * radius_px / 2,
+                0.02 * radius_px * radius_px + 1e-4)
+        << distance;
+  }
+}
+
+// What moves evenly by a length L while the shutter is open is off its middle by L^2 / 12 in the mean square, whether
+// the camera moves or the surface does.
+TEST(FirstHits, AnOpenShutterShiftsThemByTheMotion) {
+  constexpr double kDistance = 4, kSlide = 0.3;
+  const double length_px = kSlide / kDistance * pixels_per_tangent();
+  Camera sliding = kAhead;
+  for (const double x : {-kSlide / 2, kSlide / 2}) {
+    sliding.shutter_poses.push_back(look_at({x, 0, 0}, {x, 0, -1}, {0, 1, 0}));
+  }
+  Scene scene = shining_edge(kDistance, unlit_white());
+  PathTracer still(scene, threads(2));
+  EXPECT_NEAR(mean_square_shift(still.at_rest(), sliding), length_px * length_px / 12, 0.01 * length_px * length_px);
+
+  scene.motions.push_back({[](std::int64_t t) {
+    return make_affine({kSlide * 1e-9 * static_cast<double>(t), 0, 0}, {}, {1, 1, 1});
+  }});
+  scene.instances[0].motion = 0;
+  PathTracer moving(scene, threads(2));
+  EXPECT_NEAR(mean_square_shift(moving.at({-500'000'000, 500'000'000}), kAhead), length_px * length_px / 12,
+              0.01 * length_px * length_px);
+}
+
+// Shares of the samples, by the alpha of the surface in front, within five standard deviations.
+TEST(FirstHits, BlendedSurfacesAreCountedAsOftenAsTheyAreSeen) {
+  Material half = unlit_white();
+  half.alpha_mode = AlphaMode::blend;
+  half.base_color.w = 0.3F;
+  const Scene scene = shining_edge(4, half);
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = uniform_map(kWidth, kHeight, 4);
+  const SparseFrame sparse = tracer.at_rest().trace(kAhead, 0, map, with_halves());
+  double seen = 0;
+  double samples = 0;
+  for (std::size_t i = 0; i < sparse.first_hits.size(); ++i) {
+    seen += sparse.first_hits[i].blended;
+    samples += map.sites[i].block_x >= kWidth / 2 ? sparse.count[i] : 0;
+    EXPECT_EQ(static_cast<float>(sparse.first_hits[i].blended), sparse.first_hits[i].shone.y);
+  }
+  EXPECT_NEAR(seen / samples, 0.3, 5 * std::sqrt(0.3 * 0.7 / samples));
+}
+
+// The root mean square of what is wrong with the columns from `first` on, and the same with a pixel's own samples.
+struct ColumnErrors {
+  double guided = 0, none = 0, pinhole = 0;
+};
+template <class Truth>
+ColumnErrors errors_of_columns(const Scene& scene, const Camera& camera, const SamplingMap& map, int first, int end,
+                               const Truth& truth) {
+  PathTracer tracer(scene, threads(2));
+  const SparseFrame sparse = tracer.at_rest().trace(camera, 0, map, with_halves());
+  const Guides guides = tracer.at_rest().guides(camera, kWidth, kHeight, {.edge_rays = 4});
+  const Frame guided = reconstruct(sparse, map, "guided", 0, &guides);
+  const Frame none = reconstruct(sparse, map, "none");
+  ColumnErrors sum;
+  const auto square = [](double a) { return a * a; };
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = first; x < end; ++x) {
+      const double t = truth(x);
+      sum.guided += square(static_cast<double>(guided.radiance(x, y).y) - t);
+      sum.none += square(static_cast<double>(none.radiance(x, y).y) - t);
+      sum.pinhole += square(static_cast<double>(guides.emission(x, y).y) - t);
+    }
+  }
+  const double pixels = kHeight * (end - first);
+  return {std::sqrt(sum.guided / pixels), std::sqrt(sum.none / pixels), std::sqrt(sum.pinhole / pixels)};
+}
+
+// An edge out of focus becomes the share of a disc that lies on one side of a line u radii off its centre:
+// 1/2 + (u sqrt(1 - u^2) + asin u) / pi.
+TEST(GuidedFilter, AnEdgeOutOfFocusIsAsWideAsItsDisc) {
+  constexpr double kLens = 0.1, kFocus = 4, kDistance = 2;
+  Camera lens = kAhead;
+  lens.lens = {kLens, kFocus};
+  const double radius_px = kLens * (1 / kDistance - 1 / kFocus) * pixels_per_tangent();
+  ASSERT_GT(radius_px, 4);
+  const auto covered = [&](int x) {
+    const double u = std::clamp((x + 0.5 - 0.5 * kWidth) / radius_px, -1.0, 1.0);
+    return 0.5 + (u * std::sqrt(1 - u * u) + std::asin(u)) / kPi;
+  };
+  const Scene scene = shining_edge(kDistance, unlit_white());
+  for (const std::uint32_t spp : {4U, 32U}) {
+    const ColumnErrors errors =
+        errors_of_columns(scene, lens, uniform_map(kWidth, kHeight, spp), kWidth / 2 - 6, kWidth / 2 + 6, covered);
+    EXPECT_GT(errors.pinhole, 0.15);
+    EXPECT_LT(errors.guided, 0.7 * errors.none) << spp;
+  }
+}
+
+// In focus, an edge through the middle of blocks of 4 pixels stays where it is and as sharp as it is.
+TEST(GuidedFilter, AnEdgeInFocusStaysSharpThroughALens) {
+  constexpr int kEdge = 86;
+  constexpr double kFocus = 4;
+  const SamplingMap map = foveated_map();
+  ASSERT_EQ(map.regions[map.region(kEdge, kHeight / 2)].block_px, 4);
+  Camera lens = kAhead;
+  lens.lens = {0.1, kFocus};
+  Scene scene = shining_edge(kFocus, unlit_white(), (kEdge - kWidth / 2) / pixels_per_tangent() * kFocus);
+  // The sky would be out of focus.
+  scene.materials.push_back(diffuse_material({0, 0, 0}));
+  const float edge = scene.meshes[0].geometries[0].positions[0].x;
+  add_mesh(scene, {quad({{{-50, -50, -4}, {edge, -50, -4}, {edge, 50, -4}, {-50, 50, -4}}}, 1)});
+  const ColumnErrors errors =
+      errors_of_columns(scene, lens, map, 0, kWidth, [](int x) { return x < kEdge ? 0.0 : 1.0; });
+  EXPECT_GT(errors.none, 0.05);
+  EXPECT_LT(errors.guided, 1e-3);
+}
+
+// Each ray sees a half-transparent surface or what is behind it. Their mean is a grey, and no pattern of dots.
+TEST(GuidedFilter, HalfTransparentSurfacesAreNotStippled) {
+  Material half = unlit_white();
+  half.alpha_mode = AlphaMode::blend;
+  half.base_color.w = 0.5F;
+  const Scene scene = shining_edge(4, half);
+  const ColumnErrors errors = errors_of_columns(scene, kAhead, uniform_map(kWidth, kHeight, 4), kWidth / 2 + 4,
+                                                kWidth - 4, [](int) { return 0.5; });
+  EXPECT_NEAR(errors.none, 0.25, 0.03);  // of four samples
+  EXPECT_NEAR(errors.pinhole, 0.5, 0.01);
+  EXPECT_LT(errors.guided, 0.5 * errors.none);
 }
 
 }  // namespace

@@ -64,7 +64,9 @@ TEST(ExrFrame, FloatPixelsComeBackBitEqualFromEveryLosslessCompression) {
   const Frame frame = example_frame(67, 35);
   for (const char* compression : {"none", "rle", "zips", "zip", "piz"}) {
     const std::string path = folder / (std::string(compression) + ".exr");
-    EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::float32, compression)), 0U);
+    EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::float32, compression))
+                  .clamped_values,
+              0U);
     EXPECT_EQ(read_exr_rgb(path), frame.radiance) << compression;
     EXPECT_EQ(read_image_rgb_float(path), frame.radiance) << compression;
   }
@@ -90,13 +92,15 @@ TEST(ExrFrame, HalfIsClampedAndCounted) {
   frame.radiance(0, 0) = {1e6F, -1e6F, kInf};
   frame.radiance(1, 0) = {65504, -65504, 65519};  // 65519 would round down, but is beyond the largest half
   const std::string path = folder / "half.exr";
-  EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::half, "piz")), 4U);
+  EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::half, "piz")).clamped_values,
+            4U);
   const ImageRgb back = read_exr_rgb(path);
   EXPECT_EQ(back(0, 0), (Vec3f{65504, -65504, 65504}));
   EXPECT_EQ(back(1, 0), (Vec3f{65504, -65504, 65504}));
   // 1/3 as a half: 1365 * 2^-12.
   EXPECT_EQ(back(2, 1).y, 1365.0F / 4096.0F);
-  EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::float32, "piz")), 0U);
+  EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::float32, "piz")).clamped_values,
+            0U);
 }
 
 TEST(ExrFrame, LayersKeepTheirTypes) {

@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <span>
+
+#include "core/file_digest.hpp"
 #include "gazetrace/output.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -32,9 +36,17 @@ class Merge : public testing::Test {
     write_text_atomically(timing_file_name(folder_.path(), record.frames, true), timing_csv_text(rows));
     write_text_atomically(run_record_file_name(folder_.path(), record.frames, true), run_record_json(record));
   }
+  // These parts have no pictures.
+  static MergeOptions options(bool allow_missing = false, bool overwrite = false) {
+    MergeOptions options;
+    options.allow_missing = allow_missing;
+    options.overwrite = overwrite;
+    options.trust_files = true;
+    return options;
+  }
   void expect_error(const std::vector<std::string>& texts, bool overwrite = false) {
     try {
-      merge_runs(folder_.path(), false, overwrite);
+      merge_runs(folder_.path(), options(false, overwrite));
       FAIL() << texts.front();
     } catch (const Error& e) {
       for (const std::string& text : texts) {
@@ -48,7 +60,7 @@ class Merge : public testing::Test {
 TEST_F(Merge, JoinsInOrderOfFrames) {
   write(part("9-12"), {9, 10, 11, 12});
   write(part("1-8"), {1, 2, 3, 4, 5, 6, 7, 8});
-  const MergeResult result = merge_runs(folder_.path(), false, false);
+  const MergeResult result = merge_runs(folder_.path(), options());
   EXPECT_EQ(result.parts.size(), 2U);
   EXPECT_EQ(result.frames, "1-12");
   EXPECT_TRUE(result.warnings.empty());
@@ -71,12 +83,12 @@ TEST_F(Merge, JoinsInOrderOfFrames) {
 TEST_F(Merge, InterleavedPartsHaveNoHoles) {
   write(part("1-9x2"), {1, 3, 5, 7, 9});
   write(part("2-8x2"), {2, 4, 6, 8});
-  EXPECT_EQ(merge_runs(folder_.path(), false, false).frames, "1-9");
+  EXPECT_EQ(merge_runs(folder_.path(), options()).frames, "1-9");
 }
 
 TEST_F(Merge, AResumedPartKeepsTheLastRowOfAFrame) {
   write(part("1-3"), {1, 2, 2, 3});
-  merge_runs(folder_.path(), false, false);
+  merge_runs(folder_.path(), options());
   EXPECT_EQ(read_timing_csv(folder_ / "timing.csv").size(), 3U);
 }
 
@@ -85,7 +97,7 @@ TEST_F(Merge, NothingIsOverwrittenUnlessAsked) {
   write_text_atomically(folder_ / "run.json", "precious");
   expect_error({"run.json", "exists already", "`overwrite`"});
   EXPECT_EQ(file_bytes(folder_ / "run.json"), "precious");
-  EXPECT_NO_THROW(merge_runs(folder_.path(), false, true));
+  EXPECT_NO_THROW(merge_runs(folder_.path(), options(false, true)));
   EXPECT_NE(file_bytes(folder_ / "run.json"), "precious");
 }
 
@@ -93,7 +105,7 @@ TEST_F(Merge, HolesBetweenParts) {
   write(part("1-4"), {1, 2, 3, 4});
   write(part("7-9"), {7, 8, 9});
   expect_error({"frames are missing: 5-6", "`allow-missing`"});
-  const MergeResult result = merge_runs(folder_.path(), true, false);
+  const MergeResult result = merge_runs(folder_.path(), options(true));
   EXPECT_EQ(result.frames, "1-4,7-9");
   EXPECT_THAT(result.warnings, testing::ElementsAre("frames are missing: 5-6"));
 }
@@ -128,7 +140,7 @@ TEST_F(Merge, DifferentBuildsAreSaid) {
   RunRecord other = part("6-7");
   other.instruction_set = "avx2";
   write(other, {6, 7});
-  EXPECT_THAT(merge_runs(folder_.path(), false, false).warnings,
+  EXPECT_THAT(merge_runs(folder_.path(), options()).warnings,
               testing::ElementsAre(testing::HasSubstr("parts differ in instruction set")));
 }
 
@@ -136,7 +148,7 @@ TEST_F(Merge, DifferentBuildsAreSaid) {
 class MergeWithHistory : public Merge {
  protected:
   void write_part(const std::string& frames, const std::string& found, const std::string& checkpoint = "") {
-    RunRecord record = part(frames, "of " + frames);
+    RunRecord record = part(frames, "shared");
     record.history = {"shared", found, checkpoint};
     if (!checkpoint.empty()) {
       record.input_digests[checkpoint] = "after " + found;
@@ -144,7 +156,7 @@ class MergeWithHistory : public Merge {
     write(record, parse_frame_list(frames));
   }
   Warnings merged() {
-    const MergeResult result = merge_runs(folder_.path(), true, true);
+    const MergeResult result = merge_runs(folder_.path(), options(true, true));
     record_ = read_run_record(folder_ / "run.json");
     return result.warnings;
   }
@@ -156,8 +168,8 @@ TEST_F(MergeWithHistory, AChainOfCheckpointsIsOneRun) {
   write_part("5-8", "1-4", "h.bin");
   write_part("9-12", "1-8", "h.bin");  // the same file, with another content by then
   EXPECT_TRUE(merged().empty());
-  EXPECT_EQ(record_.settings_digest, digest_of_sequence("shared", "1-12", 0, ""));
-  EXPECT_THAT(record_.part_digests, testing::UnorderedElementsAre("of 1-4", "of 5-8", "of 9-12"));
+  EXPECT_EQ(record_.settings_digest, "shared");  // that of a run in one piece
+  EXPECT_THAT(record_.part_digests, testing::IsEmpty());
   EXPECT_EQ(record_.history, (RecordedHistory{"shared", "", ""}));
   EXPECT_EQ(record_.input_digests.size(), 1U);
 }
@@ -220,12 +232,85 @@ TEST_F(MergeWithHistory, OtherSettingsAreNoChain) {
   expect_error({"timing.5-6.csv", "other settings"});
 }
 
+// A part with a file for each of its frames.
+class MergeFiles : public Merge {
+ protected:
+  void SetUp() override {
+    for (const std::string frames : {"1-2", "3-4"}) {
+      RunRecord record = part(frames);
+      for (const std::int32_t frame : parse_frame_list(frames)) {
+        const std::string name = "f." + std::to_string(frame) + ".png";
+        write_text_atomically(folder_ / name, "picture " + name);
+        record.files[name] = {frame, 15, digests_.at(static_cast<std::size_t>(frame - 1))};
+      }
+      write(record, parse_frame_list(frames));
+    }
+  }
+  std::vector<std::string> problems() {
+    std::vector<std::string> texts;
+    for (const BadFile& file : find_bad_files(read_run_parts(folder_.path()))) {
+      texts.push_back(std::to_string(file.frame) + " " + file.problem);
+    }
+    return texts;
+  }
+  // Of "picture f.1.png" and so on, by digest_bytes().
+  const std::vector<std::string> digests_{digest("picture f.1.png"), digest("picture f.2.png"),
+                                          digest("picture f.3.png"), digest("picture f.4.png")};
+
+ private:
+  static std::string digest(const std::string& text) { return digest_bytes(std::as_bytes(std::span(text))); }
+};
+
+TEST_F(MergeFiles, GoodFilesAreJoinedWithTheirDigests) {
+  EXPECT_THAT(problems(), testing::IsEmpty());
+  merge_runs(folder_.path());
+  EXPECT_EQ(read_run_record(folder_ / "run.json").files.size(), 4U);
+}
+
+TEST_F(MergeFiles, BadFilesAreFoundAndNothingIsJoined) {
+  std::filesystem::remove(folder_ / "f.1.png");
+  write_text_atomically(folder_ / "f.2.png", "picture f.3.png");
+  write_text_atomically(folder_ / "f.4.png", "pict");
+  EXPECT_THAT(problems(), testing::ElementsAre("1 is missing", "2 has another content than was written",
+                                               "4 has 4 bytes in place of 15"));
+  try {
+    merge_runs(folder_.path());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                testing::AllOf(testing::HasSubstr("3 files are"), testing::HasSubstr("frames 1-2,4"),
+                               testing::HasSubstr("f.2.png has another content"), testing::HasSubstr("`resume`")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run.json"));
+  MergeOptions some;
+  some.allow_missing = true;
+  const MergeResult result = merge_runs(folder_.path(), some);
+  EXPECT_EQ(result.frames, "3");
+  EXPECT_EQ(result.warnings.size(), 4U);
+  EXPECT_EQ(read_run_record(folder_ / "run.json").files.size(), 1U);
+}
+
+TEST_F(MergeFiles, AFrameWithoutFilesIsBad) {
+  write(part("5-6"), {5, 6});
+  EXPECT_THAT(problems(), testing::ElementsAre("5 lists no file of frame 5", "6 lists no file of frame 6"));
+}
+
+TEST_F(MergeFiles, TheJournalOfAKilledPartCounts) {
+  RunRecord killed = part("5-6");
+  write(killed, {5});
+  write_text_atomically(folder_ / "f.5.png", "picture f.1.png");
+  const std::string journal = file_journal_name(run_record_file_name(folder_.path(), "5-6", true));
+  write_text_atomically(journal, "5 15 " + digests_[0] + " f.5.png\n6 15 0123");
+  EXPECT_THAT(problems(), testing::IsEmpty());
+  EXPECT_EQ(read_file_journal(journal), (WrittenFiles{{"f.5.png", {5, 15, digests_[0]}}}));
+}
+
 TEST_F(Merge, NothingToMerge) {
   expect_error({"contains no parts"});
   write(part("1-2"), {1, 2});
   std::filesystem::remove(folder_ / "run.1-2.json");
   expect_error({"timing.1-2.csv", "run.1-2.json is missing"});
-  EXPECT_THROW(merge_runs(folder_ / "none", false, false), Error);
+  EXPECT_THROW(merge_runs(folder_ / "none", options()), Error);
 }
 
 }  // namespace

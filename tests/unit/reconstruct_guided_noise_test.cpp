@@ -57,8 +57,8 @@ Errors errors_at(double sigma, const LightAt& light_at) {
     surface.reflected = n * Vec3f{reflected, reflected, reflected};
     surface.albedo = n * Vec3f{0.5F, 0.5F, 0.5F};
     surface.normal = n * Vec3f{0, 0, 1};
-    surface.place_m = n * guides.camera.place(static_cast<float>(x) + 0.5F - 0.5F * kSize,
-                                              static_cast<float>(y) + 0.5F - 0.5F * kSize, 10);
+    surface.position_m = n * guides.camera.place(static_cast<float>(x) + 0.5F - 0.5F * kSize,
+                                                 static_cast<float>(y) + 0.5F - 0.5F * kSize, 10);
     surface.square = static_cast<float>(kSamples * (mean * mean + spread));
     surface.half_difference = static_cast<float>(0.5 * (a - b) / 2);
     surface.count = kSamples;

@@ -59,7 +59,7 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
       for (std::size_t s = first; s < sparse.surfaces.size(); ++s) {
         const auto m = static_cast<float>(sparse.surfaces[s].count);
         if (dot(sparse.surfaces[s].normal / m, guides.normal(x, y)) > 0.9F &&
-            std::fabs(sparse.surfaces[s].place_m.z / m - place.z) < 0.002F && sparse.surfaces[s].kind == kind) {
+            std::fabs(sparse.surfaces[s].position_m.z / m - place.z) < 0.002F && sparse.surfaces[s].kind == kind) {
           surface = &sparse.surfaces[s];
         }
       }
@@ -70,7 +70,7 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
       surface->reflected += n * light * albedo;
       surface->albedo += n * albedo;
       surface->normal += n * guides.normal(x, y);
-      surface->place_m += n * place;
+      surface->position_m += n * place;
       surface->square += n * light * light;
       surface->count += samples;
     });

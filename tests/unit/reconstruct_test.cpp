@@ -195,22 +195,53 @@ TEST(Reconstruct, VarianceOfTheMeanAndOfItsCombinations) {
   sparse.sum[a] = {4, 4, 4};
   sparse.sum_square_luminance[a] = 10;
   sparse.count[a] = 2;
-  // A single sample says nothing about its spread.
+  // A single sample says nothing about its spread: 1, 3 and 5 have a mean of 3 and one of (35 - 3 * 9) / 2.
   sparse.sum[b] = {5, 5, 5};
   sparse.sum_square_luminance[b] = 25;
   sparse.count[b] = 1;
   const Frame none = reconstruct(sparse, map, "none", 1);
   EXPECT_NEAR(none.variance(0, 0), 1.0, 1e-6);
-  EXPECT_EQ(none.variance(3, 0), 0.0F);
-  // At x = 1.5 the weights are 0.75 * 2 : 0.25 * 1, so a's share is 6/7 and the variance (6/7)^2.
+  EXPECT_NEAR(none.variance(3, 0), 4.0, 1e-6);
+  // At x = 1.5 the weights are 0.75 * 2 : 0.25 * 1, so a's share is 6/7 and the variance (6/7)^2 + 4 (1/7)^2.
   const Frame linear = reconstruct(sparse, map, "linear", 1);
-  EXPECT_NEAR(linear.variance(1, 0), 36.0 / 49.0, 1e-6);
+  EXPECT_NEAR(linear.variance(1, 0), 40.0 / 49.0, 1e-6);
   EXPECT_NEAR(linear.variance(0, 0), 1.0, 1e-6);
   // With equal counts and the same spread: 0.75^2 + 0.25^2.
   sparse.sum[b] = {4, 4, 4};
   sparse.sum_square_luminance[b] = 10;
   sparse.count[b] = 2;
   EXPECT_NEAR(reconstruct(sparse, map, "linear", 1).variance(1, 0), 0.625, 1e-6);
+}
+
+TEST(Reconstruct, SingleSamplesTakeTheirVarianceFromThoseAround) {
+  Layout layout;
+  layout.regions = {{"even", 1, 1, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(64, 48);
+  const SamplingMap map = map_from_layout(std::move(layout));
+  SparseFrame sparse = sample(map, [](double, double) { return 0; });
+  std::mt19937 random{5};
+  std::normal_distribution<float> light(10, 2);
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const float y = light(random);
+    sparse.sum[i] = {y, y, y};
+    sparse.sum_square_luminance[i] = y * y;
+  }
+  for (const char* filter : {"none", "linear"}) {
+    const Frame frame = reconstruct(sparse, map, filter, 2);
+    double mean = 0;
+    for (const float variance : frame.variance.pixels) {
+      mean += static_cast<double>(variance) / static_cast<double>(frame.variance.pixels.size());
+    }
+    EXPECT_NEAR(mean, 4, 0.2) << filter;  // 3072 samples: a standard error of 0.1
+  }
+  // Nothing else is known of a sample without others around.
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    set_site(sparse, i, 0, i == 0 ? 1 : 0);
+    sparse.sum_square_luminance[i] = 0;
+  }
+  sparse.sum[0] = {3, 3, 3};
+  sparse.sum_square_luminance[0] = 9;
+  EXPECT_FLOAT_EQ(reconstruct(sparse, map, "none", 1).variance(0, 0), 9);
 }
 
 TEST(Reconstruct, VarianceInsideEvenlySampledBlocks) {

@@ -23,6 +23,9 @@ TEST(SequenceName, Table) {
       {"beauty.<frame>.exr", 7, "beauty.7.exr"},
       {"out#1/50%/beauty.%03d.exr", 7, "out#1/50%/beauty.007.exr"},
       {"100%%.%02d.png", 7, "100%.07.png"},
+      {"out/%04d/%04d.exr", 7, "out/0007/0007.exr"},
+      {"a%%/shot<frame>/f.##.exr", 7, "a%%/shot7/f.07.exr"},
+      {"shot_%d/a.png", 7, "shot_%d/a.png"},
       {"still.png", 7, "still.png"},
       {"####", 0, "0000"},
       {"a.%06d", 2147483647, "a.2147483647"},
@@ -34,6 +37,16 @@ TEST(SequenceName, Table) {
   EXPECT_FALSE(has_frame_number("a.png"));
   EXPECT_FALSE(has_frame_number("100%%.png"));
   EXPECT_FALSE(has_frame_number("shot_%d/a.png"));
+}
+
+TEST(SequenceName, TheFolderOfAllFrames) {
+  EXPECT_EQ(folder_of_frames("out/beauty.####.exr"), "out");
+  EXPECT_EQ(folder_of_frames("beauty.####.exr"), ".");
+  EXPECT_EQ(folder_of_frames("/beauty.####.exr"), "/");
+  EXPECT_EQ(folder_of_frames("out/%04d/%04d.exr"), "out");
+  EXPECT_EQ(folder_of_frames("out/a/shot<frame>/b/%04d.exr"), "out/a");
+  EXPECT_EQ(folder_of_frames("%04d/%04d.exr"), ".");
+  EXPECT_EQ(folder_of_frames("shot_%d/still.exr"), "shot_%d");
 }
 
 void expect_usage(const std::string& pattern, std::int32_t frame, bool require_number, const char* text) {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <memory>
 #include <vector>
 
@@ -17,7 +18,18 @@ struct MergeArguments {
   std::string directory;
   bool allow_missing = false;
   bool overwrite = false;
+  bool trust_files = false;
+  int threads = 0;
 };
+
+// Every bad file has its own line, then one error says what to do.
+void check_files(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
+  const std::vector<BadFile> bad = find_bad_files(parts, arguments.threads);
+  for (const BadFile& file : bad) {
+    std::fprintf(stderr, "gazetrace: bad file: %s: %s\n", bounded(file.path).c_str(), bounded(file.problem).c_str());
+  }
+  refuse_bad_files(arguments.directory, bad);
+}
 
 MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
   const ResolvedJob resolved = resolve_whole_of_parts(parts, arguments.overwrite);
@@ -28,9 +40,14 @@ MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArgu
 
 int run_merge(const MergeArguments& arguments) {
   const std::vector<RunPart> parts = read_run_parts(arguments.directory);
-  const MergeResult result = are_parts_of_samples(parts)
-                                 ? run_merge_samples(parts, arguments)
-                                 : merge_runs(arguments.directory, arguments.allow_missing, arguments.overwrite);
+  const bool of_samples = are_parts_of_samples(parts);
+  MergeOptions options{arguments.allow_missing, arguments.overwrite, arguments.trust_files, arguments.threads};
+  if (!options.trust_files && (of_samples || !options.allow_missing)) {
+    check_files(parts, arguments);
+    options.trust_files = true;
+  }
+  const MergeResult result =
+      of_samples ? run_merge_samples(parts, arguments) : merge_runs(arguments.directory, options);
   print_warnings(result.warnings);
   print_result(fmt::format("{} parts joined, frames {}\n", result.parts.size(), result.frames));
   return exit_done;
@@ -41,7 +58,13 @@ int run_merge(const MergeArguments& arguments) {
 Command add_merge_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<MergeArguments>();
   app.add_option("folder", arguments->directory, "Where the parts were rendered into")->required()->type_name("DIR");
-  app.add_flag("--allow-missing", arguments->allow_missing, "Joins what is there though frames are missing");
+  app.add_flag("--allow-missing", arguments->allow_missing,
+               "Joins what is there though frames are missing, or their files bad");
+  app.add_flag("--trust-files", arguments->trust_files,
+               "Does not compare the files of the parts with what their records say was written");
+  app.add_option("--threads", arguments->threads, "For comparing files; 0: as many as the machine has")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and, of parts of samples, pictures");
   return {[arguments] { return run_merge(*arguments); }, {}};
 }

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
@@ -18,6 +20,8 @@ namespace {
 struct PlanArguments {
   Job job;
   std::string save_camera;
+  std::uint32_t chunks = 0;
+  std::string rate_from;
   bool counts = false;
   bool model_gain = false;
   bool json = false;
@@ -93,11 +97,45 @@ std::string counts_as_json(const std::vector<FrameCounts>& frames, std::uint32_t
   return json.dump(2) + "\n";
 }
 
+// Minutes at the rate of an earlier run of the job, by its timing.csv: of its rows whose times are known.
+std::optional<double> minutes_a_sample(const std::string& timing_path) {
+  double ms = 0;
+  double samples = 0;
+  for (const TimingRow& row : read_timing_csv(timing_path)) {
+    if (std::isfinite(row.total_ms) && row.samples > 0) {
+      ms += row.total_ms;
+      samples += static_cast<double>(row.samples);
+    }
+  }
+  return samples > 0 ? std::optional(ms / 60000.0 / samples) : std::nullopt;
+}
+
+std::string chunks_text(const std::vector<FrameChunk>& chunks, const std::optional<double>& minutes, bool as_json) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  std::string text = fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", "chunk", "frames", "samples", "minutes", "which");
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const FrameChunk& chunk = chunks[i];
+    const std::string list = chunk.frames.empty() ? "none" : format_frame_list(chunk.frames);
+    const bool known = minutes && chunk.samples > 0;
+    text += fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", i + 1, chunk.frames.size(),
+                        chunk.samples > 0 ? fmt::format("{:.0f}", chunk.samples) : "not known",
+                        known ? fmt::format("{:.2f}", chunk.samples * *minutes) : "-", list);
+    json.push_back({{"chunk", i + 1}, {"frames", list}, {"count", chunk.frames.size()}});
+    if (chunk.samples > 0) {
+      json.back()["samples"] = chunk.samples;
+    }
+    if (known) {
+      json.back()["minutes"] = chunk.samples * *minutes;
+    }
+  }
+  return as_json ? json.dump(2) + "\n" : text;
+}
+
 int run_plan(const PlanArguments& arguments) {
   const JobSettings& job = arguments.job.settings;
   check_job(arguments.job);
   if (job.scene.empty() && job.camera_path.empty() && !job.camera_from_gaze && !job.eye && !arguments.counts &&
-      !arguments.model_gain) {
+      !arguments.model_gain && arguments.chunks == 0) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
   }
@@ -120,6 +158,13 @@ int run_plan(const PlanArguments& arguments) {
     const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
     const GainOfPlan gain = gain_of_plan(resolved.plan, fps, job.threads);
     print_result(arguments.json ? gain_as_json(gain) : gain_as_text(gain));
+    return exit_done;
+  }
+  if (arguments.chunks > 0) {
+    const std::vector<FrameChunk> chunks = balanced_chunks(job, resolved.plan, arguments.chunks);
+    const std::optional<double> minutes =
+        arguments.rate_from.empty() ? std::nullopt : minutes_a_sample(arguments.rate_from);
+    print_result(chunks_text(chunks, minutes, arguments.json));
     return exit_done;
   }
   if (arguments.counts && job.foveation.falloff == "visible") {
@@ -151,6 +196,13 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
                "What eccentricity alone can save on this screen with this gaze, in samples at equal visible error, by "
                "FovVideoVDP's model; content and masking are left out; needs no scene")
       ->excludes("--counts");
+  app.add_option("--chunks", arguments->chunks,
+                 "How --chunk K/N divides the frames into N chunks: frames and samples of each; needs no scene")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_option("--rate-from", arguments->rate_from,
+                 "A timing.csv of the same job on the same machine, for the minutes of --chunks")
+      ->type_name("FILE");
   app.add_option(
          "--save-camera", arguments->save_camera,
          "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM, whose "

@@ -7,9 +7,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/interruption.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "cli/summary.hpp"
@@ -47,7 +50,13 @@ void warn_of_other_machine(const std::string& record_path, const RunRecord& now,
   if (!std::filesystem::exists(record_path)) {
     return;
   }
-  const RunRecord before = read_run_record(record_path);
+  RunRecord before;
+  try {
+    before = read_run_record(record_path);
+  } catch (const Error& error) {
+    warnings.push_back(error.what());
+    return;
+  }
   if (before.instruction_set != now.instruction_set || before.build != now.build ||
       before.ray_library != now.ray_library) {
     warnings.push_back(
@@ -56,6 +65,20 @@ void warn_of_other_machine(const std::string& record_path, const RunRecord& now,
                     record_path, before.build, before.instruction_set, before.ray_library, now.build,
                     now.instruction_set, now.ray_library));
   }
+}
+
+std::unique_ptr<RunLock> lock_outputs(ResolvedJob& resolved, const std::vector<std::string>& files) {
+  if (files.empty()) {
+    return nullptr;
+  }
+  RunRecord claim;
+  claim.frames = format_frame_list(resolved.frames);
+  if (resolved.pipeline.trace.samples) {
+    claim.samples = format_value(*resolved.pipeline.trace.samples);
+  }
+  auto lock = std::make_unique<RunLock>(claim, files.front(), [](const std::string& text) { print_warnings({text}); });
+  resolved.warnings.insert(resolved.warnings.end(), lock->taken_over().begin(), lock->taken_over().end());
+  return lock;
 }
 
 std::string pixel_report(const FrameRequest& request, const Frame& frame, const PixelIndex& pixel) {
@@ -79,18 +102,22 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   const JobSettings& job = arguments.job.settings;
   check_asked_for_something(job);
   check_job(arguments.job);
+  Interruption interruption(std::chrono::nanoseconds(job.grace.ns),
+                            job.max_time ? std::optional(std::chrono::nanoseconds(job.max_time->ns)) : std::nullopt);
   const ColorPipeline color(job.color);
   auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, job.quiet));
   ResolveOptions resolving;
   resolving.progress = [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); };
   ResolvedJob resolved = resolve(arguments.job, resolving);
   prepare_outputs(resolved);
+  const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
+  const std::unique_ptr<RunLock> lock = lock_outputs(resolved, files);
 
   loading->building_tree();
   PathTracer tracer(*resolved.scene, tracer_options(job));
   loading.reset();
+  interruption.frames_begin();
   RunRecord record = start_run_record(resolved, tracer, color, invocation.arguments);
-  const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
   if (!files.empty()) {
     if (job.resume) {
       warn_of_other_machine(files.front(), record, resolved.warnings);
@@ -116,6 +143,8 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
       pixels += pixel_report(request, frame, *job.only_pixel);
     };
   }
+  observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
+  resolved.pipeline.trace.stop = [&] { return interruption.stop_now(); };
   keep_freed_memory();
   const SequenceResult result =
       render_sequence(tracer, resolved.plan, color, resolved.pipeline, observer, std::move(resolved.history));
@@ -125,6 +154,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
   if (!files.empty()) {
     finish_run_record(record, result, resolved.plan, wall_s);
     write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
+    finish_files(files.front());
   }
   print_warnings(result_warnings(result, resolved.plan));
   if (!job.quiet) {
@@ -134,6 +164,12 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
     print_result(summary_json(result, resolved, wall_s));
   } else {
     print_result(pixels);
+  }
+  if (result.interrupted) {
+    std::fprintf(stderr, "gazetrace: interrupted by %s: %zu of %zu frames are done, %s left; go on with --resume\n",
+                 interruption.reason().c_str(), resolved.frames.size() - result.left.size(), resolved.frames.size(),
+                 bounded(format_frame_list(result.left), 200).c_str());
+    return exit_interrupted;
   }
   return exit_done;
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,20 +11,28 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "gazetrace/resolve.hpp"
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
 
 namespace gazetrace {
 namespace {
 
+// The options of a job that say how its scene is read.
+constexpr std::array<const char*, 7> kReading{"animation",     "allow-outside", "max-memory", "max-texture",
+                                              "max-expansion", "max-nodes",     "max-nesting"};
+
 struct SceneArguments {
   std::string path;
+  Job job;
   bool bvh = false;
+  bool estimate = false;
   bool json = false;
   int threads = 0;
 };
 
 struct SceneReport {
+  SceneEstimate estimate;
   Scene scene;
   SceneSummary summary;
   double load_s = 0;
@@ -86,10 +95,26 @@ std::string light_text(const PunctualLight& light) {
   return fmt::format("{} '{}'", light.kind == LightKind::spot ? "spot" : kind, light.name);
 }
 
+std::string estimate_text(const SceneEstimate& estimate) {
+  return fmt::format(
+      "will take    about {:.0f} MiB: geometry {:.1f}, tree {:.1f}, textures {:.1f}, pictures while they are decoded "
+      "{:.1f}, nodes {:.1f}, files {:.1f}\n",
+      mib(estimate.total_bytes()), mib(estimate.geometry_bytes), mib(estimate.tree_bytes), mib(estimate.texture_bytes),
+      mib(estimate.picture_bytes), mib(estimate.node_bytes), mib(estimate.file_bytes));
+}
+
+nlohmann::ordered_json estimate_json(const SceneEstimate& estimate) {
+  return {{"total_bytes", estimate.total_bytes()},   {"geometry_bytes", estimate.geometry_bytes},
+          {"tree_bytes", estimate.tree_bytes},       {"texture_bytes", estimate.texture_bytes},
+          {"picture_bytes", estimate.picture_bytes}, {"node_bytes", estimate.node_bytes},
+          {"file_bytes", estimate.file_bytes},       {"triangles", estimate.triangles},
+          {"pictures", estimate.pictures},           {"nodes", estimate.nodes}};
+}
+
 std::string report_text(const SceneReport& report) {
   const Scene& scene = report.scene;
   const SceneSummary& s = report.summary;
-  std::string text = fmt::format("{}\n", scene.source);
+  std::string text = fmt::format("{}\n", scene.source) + estimate_text(report.estimate);
   text += fmt::format("triangles    {} unique, {} instanced, {} emissive\n", s.triangles_unique, s.triangles_instanced,
                       s.emissive_triangles);
   text += fmt::format("meshes       {} with {} parts, {} instances, {} vertices\n", s.meshes, s.geometries, s.instances,
@@ -130,6 +155,7 @@ std::string report_json(const SceneReport& report) {
   const Scene& scene = report.scene;
   const SceneSummary& s = report.summary;
   Json json{{"source", scene.source},
+            {"estimate", estimate_json(report.estimate)},
             {"triangles_unique", s.triangles_unique},
             {"triangles_instanced", s.triangles_instanced},
             {"emissive_triangles", s.emissive_triangles},
@@ -174,8 +200,14 @@ std::string report_json(const SceneReport& report) {
 
 int run_scene(const SceneArguments& arguments) {
   SceneReport report;
-  SceneReadOptions options;
+  SceneReadOptions options = scene_read_options(arguments.job.settings);
   options.threads = arguments.threads;
+  report.estimate = estimate_scene(arguments.path, options);
+  if (arguments.estimate) {
+    print_result(arguments.json ? estimate_json(report.estimate).dump(2) + "\n"
+                                : arguments.path + "\n" + estimate_text(report.estimate));
+    return exit_done;
+  }
   const auto begin = std::chrono::steady_clock::now();
   report.scene = load_scene(arguments.path, options);
   report.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -197,6 +229,14 @@ int run_scene(const SceneArguments& arguments) {
 Command add_scene_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<SceneArguments>();
   app.add_option("scene", arguments->path, "glTF 2.0 scene, .gltf or .glb")->required()->type_name("FILE");
+  app.add_flag("--estimate", arguments->estimate, "Tells the memory that the scene will need, and does not load it");
+  OptionList reading;
+  for (const char* name : kReading) {
+    reading.push_back(job_schema().find(name));
+  }
+  bind_options(app, reading, [arguments](const Option& option, const std::vector<std::string>& values) {
+    set_option(arguments->job, option.name, values, {Origin::given, "the command line", {}});
+  });
   app.add_flag("--bvh", arguments->bvh, "Builds the ray tracing tree, too: its memory and time, and peak memory");
   app.add_option("--threads", arguments->threads, "0: as many as the machine has")
       ->check(CLI::NonNegativeNumber)

@@ -7,20 +7,18 @@ void add_filter_options(JobSchema& schema) {
   schema.group("Between the samples");
   schema
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
-             "Fills pixels between samples ('gazetrace list filters'). auto: guided for foveated frames; linear, which "
-             "passes single pixels through, for uniform ones (without gaze all are), with --aperture or --shutter, "
-             "--sample-range, --enhance-contrast and --accumulate-order before. All frames have one filter: where "
-             "--gaze-missing uniform makes some of a log's frames uniform, they are guided as well. What guided takes "
-             "from first hits shows no blur of lens and shutter")
+             "Fills pixels between samples and takes noise away ('gazetrace list filters'). auto: guided; linear, "
+             "which passes single pixels through, with --sample-range, --enhance-contrast and "
+             "--accumulate-order before")
       .with(Trait::always_stated);
-  schema.value(
-      "--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
-      "Pixels that have a site of their own with at least so many samples keep the mean of these samples in every "
-      "filter; 0, the default: none do, since guided and oidn themselves give back what samples know better");
+  schema.value("--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,
+               "A pixel with at least this many samples of its own keeps their mean, whatever the filter; 0: no pixel "
+               "does, since guided and oidn themselves keep detail that the samples establish");
   schema
       .value("--enhance-contrast", &JobSettings::enhance_contrast, "0..1", Touch::filter,
-             "An enhancement, no estimate: raises what contrast blocks have left, as the eye's periphery misses "
-             "contrast more than detail; 1: a wave of half the blocks' limit is as strong as at full rate")
+             "Raises the contrast that blocks have lost, since peripheral vision misses contrast more than detail. "
+             "This is an enhancement and not an estimate; 1: a wave at half the blocks' frequency limit is as strong "
+             "as at the full rate")
       .within(0, 1)
       .need("`filter` linear, push-pull or tent");
 }

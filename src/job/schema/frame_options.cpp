@@ -23,6 +23,21 @@ void add_frame_options(JobSchema& schema) {
       .decides_nothing()
       .with(Trait::one_run);
   schema
+      .value(
+          "--chunk", &JobSettings::chunk, "K/N", Touch::frames,
+          "Renders the K-th of N parts of the frames, which cost about the same by the samples of the plan; each is a "
+          "--part. The borders are the same for every task and are written down beside the outputs. With "
+          "--chunk-frames, K alone: the K-th so many frames. A chunk without frames is done at once")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema
+      .value("--chunk-frames", &JobSettings::chunk_frames, "N", Touch::frames,
+             "Chunks of N frames each, however many there are; 0: --chunk says of how many")
+      .decides_nothing()
+      .within(0, 1e9)
+      .with(Trait::one_run)
+      .need("`chunk`");
+  schema
       .value("--sample-range", at(&JobSettings::trace, &TraceSettings::samples), "A:B", Touch::frames,
              "Traces only the samples A to B - 1 of every pixel or block, and writes their sums instead of pictures; "
              "once all parts are there, 'gazetrace merge' makes the pictures, to the bit those of a single run")

@@ -78,12 +78,12 @@ void add_time_options(JobSchema& schema) {
       .with(Trait::gaze_source);
   schema
       .value("--gaze-mode", &JobSettings::gaze_mode, choices<GazeInterpolation>(), Touch::gaze,
-             "Which samples of the log a frame gets")
+             "How the gaze of a frame is taken from the log's samples")
       .idle_when({without_gaze_log()});
   schema
       .value("--gaze-missing", &JobSettings::gaze_missing, choices<NoGazePolicy>(), Touch::gaze,
-             "For frames without usable gaze: hold the last (the centre before there is one), look at the centre, "
-             "render uniformly, or stop")
+             "What happens in frames without usable gaze: hold the last one (the centre before the first), look at the "
+             "centre, render uniformly, or stop with an error")
       .idle_when({without_gaze_log()});
   schema
       .value("--gaze-max-age", &JobSettings::gaze_max_age, "DURATION", Touch::gaze, "An older sample counts as no gaze")
@@ -101,7 +101,7 @@ void add_time_options(JobSchema& schema) {
 void add_uncertainty_options(JobSchema& schema) {
   schema
       .flag("--gaze-uncertainty", &JobSettings::gaze_uncertainty, Touch::gaze,
-            "The fovea grows by what the gaze may be off: accuracy + precision + age x speed")
+            "Enlarges the fovea by the uncertainty of the gaze: accuracy + precision + age x speed")
       .idle_when({without_gaze(), with_uniform()});
   schema
       .value("--gaze-accuracy", &JobSettings::gaze_accuracy_deg, "DEG", Touch::gaze,
@@ -150,8 +150,9 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
   schema.flag("--gaze-swap-xy", read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
   schema.flag("--gaze-flip-x", read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
   schema.flag("--gaze-flip-y", read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
-  schema.flag("--gaze-decimal-comma", read(&GazeReadOptions::decimal_comma), Touch::gaze,
-              "Numbers have decimal commas though commas separate the columns; not needed with tabs or semicolons");
+  schema.flag(
+      "--gaze-decimal-comma", read(&GazeReadOptions::decimal_comma), Touch::gaze,
+      "Numbers have decimal commas although commas also separate the columns; not needed with tabs or semicolons");
   return schema;
 }
 

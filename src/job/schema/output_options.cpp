@@ -22,7 +22,7 @@ void add_exr_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema
       .value("--aov", exr(&ExrSettings::aovs), "NAME,NAME", Touch::output,
-             "More channels of the .exr ('gazetrace list aovs')")
+             "Further channels of the .exr ('gazetrace list aovs')")
       .with(Trait::one_run);
 }
 
@@ -51,8 +51,30 @@ void add_output_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema
       .flag("--resume", &JobSettings::resume, Touch::output,
-            "Keeps finished frames of the same settings and renders the rest")
+            "Keeps finished frames of the same settings and inputs, after comparing their files with what was written, "
+            "and renders the rest; where frames were made under others, it refuses, or renders them again with "
+            "--overwrite")
       .decides_nothing()
+      .with(Trait::one_run);
+  schema
+      .flag("--trust-files", &JobSettings::trust_files, Touch::output,
+            "--resume believes the headers of finished files and does not read them whole")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema
+      .value(
+          "--grace", &JobSettings::grace, "DURATION", Touch::output,
+          "After a signal to end (TERM, INT, USR1, XCPU), the time to finish the frame in hand; then it is given up, "
+          "and the run goes on with --resume")
+      .decides_nothing()
+      .within(0, 1e18)
+      .with(Trait::one_run);
+  schema
+      .value("--max-time", &JobSettings::max_time, "DURATION", Touch::output,
+             "Ends in time as if by a signal, so that the run is over, --grace included, so long after its beginning: "
+             "55m before a queue's limit of an hour")
+      .decides_nothing()
+      .within(0, 1e18)
       .with(Trait::one_run);
   schema.group("Talk");
   schema

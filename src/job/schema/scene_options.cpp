@@ -3,6 +3,46 @@
 
 namespace gazetrace {
 
+namespace {
+
+constexpr auto limit(auto member) {
+  return at(&JobSettings::limits, member);
+}
+
+void add_limit_options(JobSchema& schema) {
+  schema.group("Limits");
+  schema
+      .flag("--allow-outside", &JobSettings::allow_outside, Touch::scene,
+            "The scene may name files outside of its folder, or of the data set that it belongs to; give it for scenes "
+            "that you trust")
+      .decides_nothing();
+  schema
+      .value("--max-memory", &JobSettings::max_memory, "BYTES", Touch::scene,
+             "Refuses a scene that will take more memory ('gazetrace scene' tells), before it is loaded: 8G, 500M; 0: "
+             "three quarters of what the machine has")
+      .decides_nothing();
+  schema
+      .value("--max-texture", limit(&SceneLimits::texture_side_px), "PX", Touch::scene,
+             "Refuses pictures that are wider or higher")
+      .decides_nothing()
+      .within(1, 65536);
+  schema
+      .value("--max-expansion", limit(&SceneLimits::expansion), "TIMES", Touch::scene,
+             "Refuses pictures that unpack to more than 64 MiB and so many times their file's size")
+      .decides_nothing()
+      .within(1, 1e9);
+  schema.value("--max-nodes", limit(&SceneLimits::nodes), "N", Touch::scene, "Refuses scenes of more nodes")
+      .decides_nothing()
+      .within(1, 1e9);
+  schema
+      .value("--max-nesting", limit(&SceneLimits::nesting), "N", Touch::scene,
+             "Refuses scenes whose JSON is nested deeper")
+      .decides_nothing()
+      .within(8, 1000);
+}
+
+}  // namespace
+
 void add_scene_options(JobSchema& schema) {
   schema.group("Scene and light");
   schema.value("scene", &JobSettings::scene, "FILE", Touch::scene, "glTF 2.0 scene, .gltf or .glb").decides_by_file();
@@ -18,6 +58,7 @@ void add_scene_options(JobSchema& schema) {
                "Turns the environment about +y, degrees");
   schema.value("--env-ev", &JobSettings::environment_ev, "STOPS", Touch::light, "Multiplies the environment by 2^STOPS")
       .within(-kMaxStops, kMaxStops);
+  add_limit_options(schema);
 }
 
 }  // namespace gazetrace

@@ -425,9 +425,11 @@ const std::vector<std::string>& known_gltf_extensions() {
   return kKnown;
 }
 
-CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text) {
-  if (is_nested_too_deep(json_text)) {
-    throw Error(ErrorKind::input, path, "the JSON is nested more than " + std::to_string(kMaxJsonDepth) + " deep");
+CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, const SceneLimits& limits) {
+  if (is_nested_too_deep(json_text, limits.nesting)) {
+    throw Error(ErrorKind::input, path,
+                "the JSON is nested more than " + std::to_string(limits.nesting) + " deep, which is the limit",
+                "export the file again, or raise `max-nesting`");
   }
   Json root;
   try {
@@ -438,6 +440,12 @@ CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text)
   }
   if (!root.is_object()) {
     throw Error(ErrorKind::input, path, "is not a glTF file: its JSON is not an object");
+  }
+  const auto nodes = root.find("nodes");
+  if (nodes != root.end() && nodes->is_array() && nodes->size() > limits.nodes) {
+    throw Error(ErrorKind::input, path + ": nodes",
+                "there are " + std::to_string(nodes->size()) + " nodes; the limit is " + std::to_string(limits.nodes),
+                "join bodies that stand still, or raise `max-nodes`");
   }
   tidy_numbers(root);
   Walker walker(path, root);

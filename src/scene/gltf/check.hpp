@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gazetrace/scene.hpp"
 #include "scene/gltf/compression.hpp"
 
 namespace gazetrace {
@@ -35,6 +36,6 @@ struct CheckedGltf {
 const std::vector<std::string>& known_gltf_extensions();
 
 // Error(input) names the file, the JSON place and what is wrong.
-CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text);
+CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, const SceneLimits& limits = {});
 
 }  // namespace gazetrace

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "gazetrace/error.hpp"
@@ -263,6 +264,8 @@ GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked) {
   try {
     parsed = parser.LoadASCIIFromString(&model, &problem, &warning, checked.json.data(),
                                         static_cast<unsigned int>(checked.json.size()), "");
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::runtime, path, "there is no memory for what its JSON says", "make the scene smaller");
   } catch (const std::exception& error) {
     problem = error.what();
   }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -127,6 +128,7 @@ struct GltfSkin {
 
 struct GltfDocument {
   std::string path;
+  std::vector<std::filesystem::path> data_roots;       // as GltfFile::roots
   std::vector<std::span<const std::uint8_t>> buffers;  // an entry is empty where the file has no data for it
   std::vector<GltfImageSource> images;
   std::vector<std::string> extensions_used;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <new>
 #include <span>
 #include <utility>
 
@@ -52,7 +53,9 @@ std::unique_ptr<draco::Mesh> decode(std::span<const std::uint8_t> bytes, const s
     reason = mesh.status().error_msg_string();
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // such as no memory for the sizes in a damaged header
+  } catch (const std::bad_alloc&) {
+    reason = "there is no memory for the sizes that they state";
+  } catch (const std::exception& error) {
     reason = error.what();
   }
   fail(place, "the compressed bytes are damaged" + (reason.empty() ? reason : " (" + reason + ")"));

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <optional>
 
+#include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -189,15 +190,20 @@ std::vector<std::uint8_t> decode_data_uri(std::string_view uri, const std::strin
   return std::move(*bytes);
 }
 
-std::string resolve_uri(const std::string& gltf_path, std::string_view uri, const std::string& place) {
+std::string resolve_uri(const std::string& gltf_path, const std::vector<std::filesystem::path>& roots,
+                        std::string_view uri, const std::string& place) {
   if (uri.empty()) {
     throw Error(ErrorKind::input, place, "the uri is empty");
   }
   if (uri.find("://") != std::string_view::npos) {
-    throw Error(ErrorKind::input, place, "'" + std::string(uri) + "' is not a file", "download it and use its name");
+    throw Error(ErrorKind::input, place, "'" + bounded(uri, 200) + "' is not a file", "download it and use its name");
   }
   const std::filesystem::path relative(percent_decoded(uri));
-  return (std::filesystem::path(gltf_path).parent_path() / relative).lexically_normal().string();
+  std::string path = (std::filesystem::path(gltf_path).parent_path() / relative).lexically_normal().string();
+  if (!roots.empty()) {
+    check_within(roots, path, relative.string(), place);
+  }
+  return path;
 }
 
 }  // namespace gazetrace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@ struct GltfFile {
   std::string_view json;                    // into `bytes`
   std::span<const std::uint8_t> bin_chunk;  // into `bytes`; empty for .gltf
   bool is_binary = false;
+  std::vector<std::filesystem::path> roots;  // data_roots(), where its uris may lead; empty: anywhere
 };
 
 // A .glb is recognised by its first bytes, not by its name. Error(input) for a missing file and for broken chunks.
@@ -28,7 +30,8 @@ bool is_data_uri(std::string_view uri);
 std::vector<std::uint8_t> decode_data_uri(std::string_view uri, const std::string& place);
 
 // The file system path for a uri: percent escapes are decoded, and it is relative to the folder of the glTF file.
-// Error(input) for schemes such as https:.
-std::string resolve_uri(const std::string& gltf_path, std::string_view uri, const std::string& place);
+// Error(input) for schemes such as https:, and for paths that lead out of `roots`, unless there are none.
+std::string resolve_uri(const std::string& gltf_path, const std::vector<std::filesystem::path>& roots,
+                        std::string_view uri, const std::string& place);
 
 }  // namespace gazetrace

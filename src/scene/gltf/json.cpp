@@ -33,7 +33,7 @@ void tidy_value(Json& value, bool sizes) {
 
 }  // namespace
 
-bool is_nested_too_deep(std::string_view text) {
+bool is_nested_too_deep(std::string_view text, int most) {
   int depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -47,7 +47,7 @@ bool is_nested_too_deep(std::string_view text) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
-      if (++depth > kMaxJsonDepth) {
+      if (++depth > most) {
         return true;
       }
     } else if (c == '}' || c == ']') {

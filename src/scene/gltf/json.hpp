@@ -8,10 +8,8 @@
 
 namespace gazetrace {
 
-inline constexpr int kMaxJsonDepth = 200;
-
-// Whether the JSON is nested deeper than any exporter writes it; it would overflow the stack of recursive parsers.
-bool is_nested_too_deep(std::string_view text);
+// Whether the JSON is nested deeper than this; nesting without a limit would overflow the stack of recursive parsers.
+bool is_nested_too_deep(std::string_view text, int most);
 
 // Adapts numbers to what the parser expects. "Integers may be stored as decimals with a zero fractional part" (glTF 2.0
 // section 3.2), which it refuses. In extensions it truncates integers to 32 bits, but not decimals, so larger numbers

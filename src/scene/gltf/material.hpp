@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/image_io.hpp"
 #include "gazetrace/scene.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/texture.hpp"
@@ -20,12 +21,15 @@ namespace gazetrace {
 // however many entries and glTF images share it.
 class TextureTable {
  public:
-  explicit TextureTable(const GltfDocument& document) : document_(document) {}
+  TextureTable(const GltfDocument& document, const SceneLimits& limits)
+      : document_(document), limits_{limits.texture_side_px, limits.expansion, kFreeDecodedBytes} {}
 
   // -1, with one warning per glTF texture, where the file names no picture that can be read.
   std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
 
   [[nodiscard]] std::size_t picture_count() const { return pictures_.size(); }
+  // By the headers of the pictures; Error(input) as load().
+  [[nodiscard]] std::vector<PictureSize> sizes() const;
   // Decodes everything that was requested so far; `picture_done` is called for each picture, from several threads.
   // Error(input) names the glTF file, the image and the picture file.
   std::vector<Texture> load(int threads, const std::function<void()>& picture_done) const;
@@ -45,6 +49,7 @@ class TextureTable {
   ImageRgba decode(const Picture& picture, const std::string& place) const;
 
   const GltfDocument& document_;
+  PictureLimits limits_;
   std::vector<Entry> entries_;
   std::vector<Picture> pictures_;
   std::map<std::tuple<int, int, int, bool, TextureUse>, std::int32_t> known_;

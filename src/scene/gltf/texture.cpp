@@ -57,7 +57,8 @@ int TextureTable::picture_of_image(int image) {
     index = static_cast<int>(pictures_.size());
     pictures_.push_back({image, "", {}});
   } else if (!source.uri.empty()) {
-    const std::string path = resolve_uri(document_.path, source.uri, image_place(document_, image));
+    const std::string path =
+        resolve_uri(document_.path, document_.data_roots, source.uri, image_place(document_, image));
     const auto [it, is_new] = picture_by_path_.try_emplace(path, static_cast<int>(pictures_.size()));
     if (is_new) {
       pictures_.push_back({image, path, {}});
@@ -70,13 +71,27 @@ int TextureTable::picture_of_image(int image) {
 
 ImageRgba TextureTable::decode(const Picture& picture, const std::string& place) const {
   if (!picture.path.empty()) {
-    return read_image_rgba(picture.path, place);
+    return read_image_rgba(picture.path, place, limits_);
   }
   const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
   if (source.buffer_view >= 0) {
-    return read_image_rgba(view_bytes(document_, source.buffer_view, place), place);
+    return read_image_rgba(view_bytes(document_, source.buffer_view, place), place, limits_);
   }
-  return read_image_rgba(decode_data_uri(source.uri, place), place);
+  return read_image_rgba(decode_data_uri(source.uri, place), place, limits_);
+}
+
+std::vector<PictureSize> TextureTable::sizes() const {
+  std::vector<PictureSize> sizes;
+  for (const Picture& picture : pictures_) {
+    const std::string place = image_place(document_, picture.image);
+    const GltfImageSource& source = document_.images[static_cast<std::size_t>(picture.image)];
+    sizes.push_back(!picture.path.empty() ? read_picture_size(picture.path, place, limits_)
+                    : source.buffer_view >= 0
+                        ? read_picture_size(view_bytes(document_, source.buffer_view, place), place, limits_)
+                        : read_picture_size(decode_data_uri(source.uri, place), place, limits_));
+    sizes.back().uses = picture.entries.size();
+  }
+  return sizes;
 }
 
 std::vector<Texture> TextureTable::load(int threads, const std::function<void()>& picture_done) const {

@@ -30,7 +30,7 @@ struct EdgeFrame {
 struct EdgeHit {
   std::uint32_t object = 0, material = 0;  // as in Guides: 0 for a miss
   RoughNormal smooth;
-  Vec3f plane_normal, place_m;  // the position is relative to the camera
+  Vec3f plane_normal, position_m;  // the position is relative to the camera
   float tolerance_m = 0;
 };
 
@@ -48,7 +48,7 @@ bool sees_the_same(const EdgeFrame& frame, int x, int y, const EdgeHit& hit) {
   }
   const Vec2f through = from_center(frame.guide, x, y, {0.5F, 0.5F});
   const Vec3f place = guides.camera.place(through.x, through.y, guides.depth_m.pixels[i]);
-  return std::fabs(dot(hit.plane_normal, place - hit.place_m)) < hit.tolerance_m;
+  return std::fabs(dot(hit.plane_normal, place - hit.position_m)) < hit.tolerance_m;
 }
 
 struct PixelStep {
@@ -134,7 +134,7 @@ void trace_batch(const EdgeFrame& frame, const EdgeBatch& batch, GuideWorkspace&
       hit.material = 1 + chunk.material[i];
       hit.smooth = smooth_normal(chunk, i);
       hit.plane_normal = chunk.geometric.get(i);
-      hit.place_m = chunk.position.get(i) - origin;
+      hit.position_m = chunk.position.get(i) - origin;
       hit.tolerance_m = kSamePlanePixels * frame.pixel_m * (frame.guides.camera.perspective ? chunk.t[i] : 1.0F);
       rays[k].seen_by = seen_by(frame, rays[k].pixel, frame.inside[k % per_pixel], hit);
     }

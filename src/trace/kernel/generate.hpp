@@ -52,6 +52,7 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
   if (frame_.settings.surfaces) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       work_.surfaces.kind[i] = SurfaceKind::miss;
+      work_.surfaces.blended[i] = 0;
     }
   }
 }

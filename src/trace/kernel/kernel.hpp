@@ -30,6 +30,7 @@ struct FrameContext {
   TraceSettings settings;
   bool last_ray_finds_light = false;    // the ray after the last scattering event can still find light
   bool last_ray_needs_surface = false;  // it can find light on a surface, so visibility of the sky is not enough
+  bool first_hits = false;              // SparseFrame::first_hits are collected
   RayRecorder* recorder = nullptr;      // for measurements only
 };
 

@@ -60,6 +60,9 @@ class PathKernel {
       alive = shade(vertex, alive);
       if (vertex == 0 && frame_.settings.surfaces) {
         keep_shone(static_cast<std::size_t>(count));
+        if (frame_.first_hits) {
+          find_shifts(static_cast<std::size_t>(count));
+        }
       }
       trace_shadows(vertex);
     }
@@ -167,6 +170,8 @@ class PathKernel {
   void record_guides(std::size_t slot, std::size_t i);
   void record_surface(std::size_t slot, std::size_t i);
   void keep_shone(std::size_t count);
+  [[nodiscard]] Vec3f position_in_mid_time(std::size_t i) const;
+  void find_shifts(std::size_t count);
 
   // emission.hpp
   void add_emission(int vertex, std::size_t i, std::size_t slot, const Vec3f& throughput,

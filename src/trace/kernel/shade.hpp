@@ -123,7 +123,8 @@ inline void PathKernel<kFeatures, kDiffuse>::record_surface(std::size_t slot, st
   const ChunkHits& chunk = work_.chunk;
   SurfaceBatch& out = work_.surfaces;
   const Vec3f albedo = albedo_to_divide_by(*frame_.scene, chunk, i, kDiffuse);
-  const Vec3f place = chunk.position.get(i) - frame_.camera->origin();
+  const Vec3f position = frame_.scene->blurs ? position_in_mid_time(i) : chunk.position.get(i);
+  const Vec3f place = position - frame_.camera->origin();
   out.albedo_r[slot] = albedo.x;
   out.albedo_g[slot] = albedo.y;
   out.albedo_b[slot] = albedo.z;
@@ -134,6 +135,54 @@ inline void PathKernel<kFeatures, kDiffuse>::record_surface(std::size_t slot, st
   out.place_y[slot] = place.y;
   out.place_z[slot] = place.z;
   out.kind[slot] = kind_of_hit(*frame_.scene, chunk, i, kDiffuse);
+  out.blended[slot] = frame_.scene->materials[chunk.material[i]].alpha_mode == AlphaMode::blend ? 1 : 0;
+}
+
+// Where the point of the surface that a sample hit is in the middle of the time for which the shutter is open.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline Vec3f PathKernel<kFeatures, kDiffuse>::position_in_mid_time(std::size_t i) const {
+  const ChunkHits& chunk = work_.chunk;
+  if constexpr (kFeatures.instances) {
+    if (chunk.instance[i] != kNoId) {
+      constexpr float kMiddle = 0.5F;
+      const RenderScene& scene = *frame_.scene;
+      const ShadingInstance& now = scene.instances[chunk.instance[i]];
+      if (now.way == kNoId && now.shape_way == kNoId) {
+        return chunk.position.get(i);
+      }
+      const ShadingInstance instance = scene.instance_at(chunk.instance[i], kMiddle);
+      const std::uint32_t triangle = chunk.triangle[i];
+      const std::array<Vec3f, 3> corner = instance.shape_way != kNoId
+                                              ? scene.shape_ways[instance.shape_way].at(triangle, kMiddle).position
+                                              : scene.triangles[triangle].position;
+      const float u = chunk.u[i];
+      const float v = chunk.v[i];
+      return apply_columns(instance.axes, corner[0] * (1.0F - u - v) + corner[1] * u + corner[2] * v) +
+             instance.translation;
+    }
+  }
+  return chunk.position.get(i);
+}
+
+// How far what the camera rays hit is from where the pinhole of the frame's mid-time sees it. Call it before the camera
+// rays are overwritten.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::find_shifts(std::size_t count) {
+  const CameraRays& camera = *frame_.camera;
+  SurfaceBatch& out = work_.surfaces;
+  const RayBatch& rays = work_.rays[0];
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool misses = out.kind[i] == SurfaceKind::miss;
+    const Vec3f way =
+        misses ? Vec3f{rays.dx[i], rays.dy[i], rays.dz[i]} : Vec3f{out.place_x[i], out.place_y[i], out.place_z[i]};
+    const Vec2f seen = camera.pixel_of(way);
+    const Vec2f shift{seen.x - work_.samples.x[i], seen.y - work_.samples.y[i]};
+    const float square = shift.x * shift.x + shift.y * shift.y;
+    // An orthographic camera sees the same sky in all of its pixels. What is behind the pinhole it sees nowhere.
+    constexpr float kMost = kMostShiftPx * kMostShiftPx;
+    const bool is_known = camera.is_perspective() || !misses;
+    out.square_shift_px2[i] = is_known ? (square < kMost ? square : kMost) : 0.0F;
+  }
 }
 
 // Keeps the radiance that the camera rays themselves found. Call it before the first shadow rays are traced.

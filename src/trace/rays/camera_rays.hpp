@@ -40,6 +40,15 @@ class CameraRays {
   [[nodiscard]] bool moves() const { return !keys_.empty(); }
   [[nodiscard]] Placement placement_at(float time) const;
 
+  // Where the pinhole in the middle of the frame's time sees what lies that way from it, in pixels from the frame's
+  // centre; infinite or no number where it does not lie ahead.
+  [[nodiscard]] Vec2f pixel_of(const Vec3f& way) const {
+    const float step2 = static_cast<float>(step_ * step_);
+    const float depth = perspective_ ? dot(way, placement_.forward) : 1.0F;
+    const float scale = 1.0F / (step2 * (depth > 0 ? depth : 0.0F));
+    return {dot(way, placement_.right_step) * scale, -dot(way, placement_.up_step) * scale};
+  }
+
   [[nodiscard]] float cone_width() const { return width_; }  // at the origin, m
   [[nodiscard]] const Vec3f& forward() const { return placement_.forward; }
   [[nodiscard]] const Placement& placement() const { return placement_; }  // in the middle of the frame's time

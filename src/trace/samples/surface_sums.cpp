@@ -54,17 +54,19 @@ void SurfaceSorter::add(const SurfaceBatch& batch, std::size_t slot, const Vec3d
   surface.place += to_double(place);
   const double shone = luminance(reflected);
   surface.halves.add(shone, half);
-  const double ratio = shone / luminance(albedo);
+  const double albedo_luminance = luminance(albedo);
+  surface.albedo_of_half[half] += albedo_luminance;
+  const double ratio = shone / albedo_luminance;
   surface.square += ratio * ratio;
   ++surface.count;
 }
 
-void SurfaceSorter::finish_site(std::vector<SurfaceSums>& out) {
+void SurfaceSorter::finish_site(const std::array<std::uint32_t, 2>& samples, std::vector<SurfaceSums>& out) {
   for (std::size_t k = 0; k < used_; ++k) {
     const Surface& s = surfaces_[k];
     out.push_back({to_float(s.reflected), to_float(s.albedo), to_float(s.normal), to_float(s.place),
                    static_cast<float>(std::min(s.square, static_cast<double>(std::numeric_limits<float>::max()))),
-                   s.halves.difference(), s.count, s.kind});
+                   s.halves.difference(), s.count, s.kind, half_difference(s.albedo_of_half, samples)});
   }
   used_ = 0;
 }

@@ -52,17 +52,21 @@ std::vector<Variant> variants_of(const std::string& filter) {
   return variants;
 }
 
+std::vector<float> luminance_of(const Frame& frame) {
+  std::vector<float> luminance;
+  luminance.reserve(frame.radiance.pixels.size());
+  for (const Vec3f& c : frame.radiance.pixels) {
+    luminance.push_back(0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z);
+  }
+  return luminance;
+}
+
 Luminances render(PathTracer& tracer, const FramePlan& plan, const PipelineSettings& settings, double* temporal_ms) {
   const ColorPipeline color(ColorSettings{});
   Luminances frames;
   PipelineObserver observer;
   observer.frame_ready = [&](const FrameRequest&, const Frame& frame, double) {
-    std::vector<float> luminance;
-    luminance.reserve(frame.radiance.pixels.size());
-    for (const Vec3f& c : frame.radiance.pixels) {
-      luminance.push_back(0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z);
-    }
-    frames.push_back(std::move(luminance));
+    frames.push_back(luminance_of(frame));
   };
   observer.frame_done = [&](const TimingRow& row, bool) {
     if (temporal_ms != nullptr) {

@@ -34,7 +34,7 @@ std::vector<Variant> make_variants();
 // Without those of order for filters that need guides, which always come before accumulation.
 std::vector<Variant> variants_of(const std::string& filter);
 
-// Accumulation from both sides, which has no history: only of use where whole sequences are compared.
+// Accumulation from both sides, which has no history to hand over.
 std::vector<Variant> two_sided_variants();
 
 class Bench {
@@ -71,7 +71,7 @@ class Bench {
     PipelineSettings settings;
     settings.reconstruction.filter = filter;
     settings.accumulate = accumulate;
-    settings.history_digest = "none";
+    settings.settings_digest = "none";
     settings.trace.seed = 1;
     return settings;
   }
@@ -94,6 +94,7 @@ class Bench {
   GazeLog log_;
 };
 
+std::vector<float> luminance_of(const Frame& frame);
 // Frame by frame; adds the time that accumulation took.
 Luminances render(PathTracer& tracer, const FramePlan& plan, const PipelineSettings& settings,
                   double* temporal_ms = nullptr);

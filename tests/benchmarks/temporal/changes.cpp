@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
+
+#include "gazetrace/frame_renderer.hpp"
 
 namespace gazetrace::temporal {
 namespace {
@@ -36,6 +39,44 @@ Luminances across_a_change(PathTracer& before, PathTracer& after, const Bench& b
   return frames;
 }
 
+// The same from both sides: frames of both scenes are in the windows of those near the change.
+Luminances two_sided_across_a_change(PathTracer& before, PathTracer& after, const Bench& bench, const Variant& variant,
+                                     const std::string& filter, int first_after) {
+  const auto reach = static_cast<std::size_t>(variant.accumulate.window);
+  const FrameSettings settings = bench.settings_of(variant.accumulate, filter);
+  const FramePlan plan = bench.plan(false, first_after - variant.accumulate.window,
+                                    first_after + kAfter.back() + variant.accumulate.window);
+  std::vector<ReconstructedFrame> frames;
+  for (const FrameRequest& request : plan.frames) {
+    frames.push_back(FrameRenderer(request.frame < first_after ? before : after, settings).reconstruct(request));
+  }
+  Luminances joined;
+  for (std::size_t own = reach; own + reach < frames.size(); ++own) {
+    std::vector<const ReconstructedFrame*> window;
+    for (std::size_t k = own - reach; k <= own + reach; ++k) {
+      window.push_back(&frames[k]);
+    }
+    TemporalHistory unused;
+    joined.push_back(luminance_of(FrameRenderer(after, settings).join(window, reach, unused).frame));
+  }
+  return joined;
+}
+
+std::vector<Variant> variants_at_a_change(const std::string& filter) {
+  std::vector<Variant> variants = variants_of(filter);
+  for (Variant& variant : two_sided_variants()) {
+    variants.push_back(std::move(variant));
+  }
+  return variants;
+}
+
+Luminances frames_after(PathTracer& before, PathTracer& after, const Bench& bench, const Variant& variant,
+                        const std::string& filter, int first_after) {
+  return variant.accumulate.mode == AccumulateMode::two_sided
+             ? two_sided_across_a_change(before, after, bench, variant, filter, first_after)
+             : across_a_change(before, after, bench, variant, filter, first_after);
+}
+
 }  // namespace
 
 // How much more than the new light is seen, relative to how much there was more before.
@@ -57,8 +98,8 @@ void light_goes_out(PathTracer& tracer, const Scene& scene, const Bench& bench, 
   for (const auto& frame : alone) {
     level += mean_of(frame) / static_cast<double>(alone.size());
   }
-  for (const Variant& variant : variants_of(filter)) {
-    const Luminances frames = across_a_change(tracer, dark_tracer, bench, variant, filter, kFirst);
+  for (const Variant& variant : variants_at_a_change(filter)) {
+    const Luminances frames = frames_after(tracer, dark_tracer, bench, variant, filter, kFirst);
     fmt::print("| {} |", variant.name);
     for (const int after : kAfter) {
       fmt::print(" {:.1f} % |", 100 * (mean_of(frames[static_cast<std::size_t>(after)]) - level) / (9 * level));
@@ -118,8 +159,8 @@ void body_is_gone(PathTracer& tracer, const Scene& scene, const Bench& bench, co
       fmt::print(" {} |", after);
     }
     fmt::print("\n| --- |{}\n", " --- | --- | --- | --- | --- | --- |");
-    for (const Variant& variant : variants_of(filter)) {
-      const Luminances frames = across_a_change(board_tracer, tracer, bench, variant, filter, kFirst);
+    for (const Variant& variant : variants_at_a_change(filter)) {
+      const Luminances frames = frames_after(board_tracer, tracer, bench, variant, filter, kFirst);
       fmt::print("| {} |", variant.name);
       for (const int after : kAfter) {
         // The part of the old picture in the new one, by least squares.

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/interruption.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <utility>
+
+#include "cli/exit_codes.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::array<std::pair<int, const char*>, 4> kSignals{
+    {{SIGTERM, "TERM"}, {SIGINT, "INT"}, {SIGUSR1, "USR1"}, {SIGXCPU, "XCPU"}}};
+
+sigset_t watched() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const auto& [signal, name] : kSignals) {
+    sigaddset(&set, signal);
+  }
+  return set;
+}
+
+std::string name_of(int number) {
+  for (const auto& [signal, name] : kSignals) {
+    if (signal == number) {
+      return std::string("signal ") + name;
+    }
+  }
+  return "a signal";
+}
+
+// As if nobody had watched.
+void end_at_once(int signal) {
+  std::signal(signal, SIG_DFL);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  ::raise(signal);
+}
+
+}  // namespace
+
+Interruption::Interruption(std::chrono::nanoseconds grace, std::optional<std::chrono::nanoseconds> max_time)
+    : grace_(std::chrono::duration_cast<Clock::duration>(grace)) {
+  if (max_time) {
+    latest_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(*max_time);
+  }
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  watcher_ = std::thread([this] { watch(); });
+}
+
+Interruption::~Interruption() {
+  ended_ = true;
+  watcher_.join();
+  const sigset_t set = watched();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+bool Interruption::stop_before_frame(double frame_ms) {
+  const std::lock_guard guard(mutex_);
+  if (reason_.empty() && latest_ && Clock::now() + std::chrono::duration<double, std::milli>(frame_ms) > *latest_) {
+    reason_ = "--max-time";
+    end_ = *latest_;
+  }
+  return !reason_.empty();
+}
+
+std::string Interruption::reason() const {
+  const std::lock_guard guard(mutex_);
+  return reason_;
+}
+
+void Interruption::ask(const std::string& reason, Clock::time_point end) {
+  const std::lock_guard guard(mutex_);
+  if (reason_.empty()) {
+    reason_ = reason;
+    end_ = latest_ ? std::min(end, *latest_) : end;
+  }
+}
+
+void Interruption::watch() {
+  const sigset_t set = watched();
+  int interrupts = 0;
+  while (!ended_) {
+    const timespec wait{0, 50'000'000};
+    const int signal = ::sigtimedwait(&set, nullptr, &wait);
+    if (signal == SIGINT && ++interrupts > 1) {
+      end_at_once(signal);
+    }
+    const Clock::time_point now = Clock::now();
+    if (signal > 0) {
+      ask(name_of(signal), now + grace_);
+    } else if (latest_ && now >= *latest_ - grace_) {
+      ask("--max-time", *latest_);
+    }
+    bool over = false;
+    {
+      const std::lock_guard guard(mutex_);
+      over = end_ && now >= *end_;
+    }
+    if (over && !in_frames_ && !ended_) {
+      std::fprintf(stderr, "gazetrace: interrupted by %s before the first frame; go on with --resume\n",
+                   reason().c_str());
+      ::_exit(exit_interrupted);
+    }
+    over_ = over;
+  }
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/data_root.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path resolved(const fs::path& path) {
+  std::error_code failed;
+  const fs::path followed = fs::weakly_canonical(path, failed);
+  return failed ? fs::absolute(path).lexically_normal() : followed;
+}
+
+// Where the git data of a working tree is: in .git, or, of a dataset within another, where the file .git says.
+fs::path git_folder(const fs::path& tree) {
+  const fs::path git = tree / ".git";
+  std::error_code ignored;
+  if (!fs::is_regular_file(git, ignored)) {
+    return git;
+  }
+  constexpr std::string_view kKey = "gitdir: ";
+  std::ifstream file(git);
+  std::string line;
+  std::getline(file, line);
+  return line.starts_with(kKey) ? resolved(tree / line.substr(kKey.size())) : git;
+}
+
+bool is_root(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::exists(folder / "dataset_description.json", ignored) || fs::exists(folder / ".datalad", ignored) ||
+         fs::exists(git_folder(folder) / "annex", ignored);
+}
+
+void add_root(std::vector<fs::path>& roots, const fs::path& folder) {
+  fs::path root = folder;
+  for (fs::path at = folder;; at = at.parent_path()) {
+    if (is_root(at)) {
+      root = at;
+      break;
+    }
+    if (at == at.parent_path()) {
+      break;
+    }
+  }
+  const auto add = [&](const fs::path& one) {
+    if (std::find(roots.begin(), roots.end(), one) == roots.end()) {
+      roots.push_back(one);
+    }
+  };
+  add(root);
+  std::error_code ignored;
+  if (const fs::path annex = git_folder(root) / "annex"; fs::exists(annex, ignored)) {
+    add(resolved(annex));
+  }
+}
+
+bool lies_in(const fs::path& file, const fs::path& root) {
+  return std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first == root.end();
+}
+
+}  // namespace
+
+std::vector<fs::path> data_roots(const std::string& path) {
+  std::vector<fs::path> roots;
+  const fs::path file = fs::absolute(path);
+  add_root(roots, resolved(file.parent_path()));
+  add_root(roots, resolved(file).parent_path());
+  return roots;
+}
+
+void check_within(const std::vector<fs::path>& roots, const std::string& named, const std::string& words,
+                  const std::string& place, const std::string& remedy) {
+  const fs::path file = resolved(fs::absolute(named));
+  if (std::any_of(roots.begin(), roots.end(), [&](const fs::path& root) { return lies_in(file, root); })) {
+    return;
+  }
+  throw Error(ErrorKind::input, place,
+              "'" + bounded(words, 200) + "' leads outside of '" + roots.front().string() + "', where the data lies",
+              remedy);
+}
+
+}  // namespace gazetrace

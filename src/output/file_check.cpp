@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares what lies in a folder with what the records of the runs say they wrote.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "core/file_digest.hpp"
+#include "core/parallel.hpp"
+#include "gazetrace/output.hpp"
+#include "output/written_file.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_stamp(const std::string& path) {
+  return !path.ends_with(".sums");
+}
+
+// Why the content of a file may be another one than was written, as far as its header tells.
+std::string what_it_is(const std::string& path, const WrittenFile& file, const std::string& settings_digest) {
+  if (!has_stamp(path)) {
+    return {};
+  }
+  const FrameStamp stamp = read_frame_stamp(path);
+  if (stamp.frame && *stamp.frame != file.frame) {
+    return fmt::format("holds frame {}", *stamp.frame);
+  }
+  if (!stamp.settings_digest.empty() && stamp.settings_digest != settings_digest) {
+    return "was made under other settings or from other files";
+  }
+  return {};
+}
+
+// Empty: it is as it was written.
+std::string problem_of(const std::string& path, const WrittenFile& file, const std::string& settings_digest) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  if (!fs::exists(status)) {
+    return "is missing";
+  }
+  if (!fs::is_regular_file(status)) {
+    return "is not a file";
+  }
+  const auto size = fs::file_size(path, failed);
+  if (failed) {
+    return "cannot be read: " + failed.message();
+  }
+  std::string digest;
+  if (size == file.bytes) {
+    try {
+      digest = digest_file(path);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    if (digest == file.digest) {
+      return {};
+    }
+  }
+  if (std::string other = what_it_is(path, file, settings_digest); !other.empty()) {
+    return other;
+  }
+  return size == file.bytes ? std::string("has another content than was written")
+                            : fmt::format("has {} bytes in place of {}", size, file.bytes);
+}
+
+}  // namespace
+
+std::vector<BadFile> find_bad_files(const std::string& directory, const WrittenFiles& files,
+                                    const std::string& settings_digest, int threads) {
+  std::vector<BadFile> checked;
+  for (const auto& [name, file] : files) {
+    checked.push_back({path_in_record(directory, name), file.frame, {}});
+  }
+  std::vector<const WrittenFile*> wanted;
+  for (const auto& [name, file] : files) {
+    wanted.push_back(&file);
+  }
+  parallel_for(checked.size(), threads,
+               [&](std::size_t i) { checked[i].problem = problem_of(checked[i].path, *wanted[i], settings_digest); });
+  std::erase_if(checked, [](const BadFile& file) { return file.problem.empty(); });
+  std::stable_sort(checked.begin(), checked.end(),
+                   [](const BadFile& a, const BadFile& b) { return a.frame < b.frame; });
+  return checked;
+}
+
+std::vector<BadFile> find_bad_files(const std::vector<RunPart>& parts, int threads) {
+  std::vector<BadFile> bad;
+  for (const RunPart& part : parts) {
+    const std::string folder = fs::path(part.timing_path).parent_path().string();
+    const std::vector<BadFile> found = find_bad_files(folder, part.record.files, part.record.settings_digest, threads);
+    bad.insert(bad.end(), found.begin(), found.end());
+    std::set<std::int32_t> listed;
+    for (const auto& [name, file] : part.record.files) {
+      listed.insert(file.frame);
+    }
+    for (const auto& [frame, row] : part.rows) {
+      if (!listed.contains(frame)) {
+        bad.push_back({part.record_path, frame, fmt::format("lists no file of frame {}", frame)});
+      }
+    }
+  }
+  std::stable_sort(bad.begin(), bad.end(), [](const BadFile& a, const BadFile& b) { return a.frame < b.frame; });
+  return bad;
+}
+
+void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& bad) {
+  if (bad.empty()) {
+    return;
+  }
+  std::set<std::int32_t> frames;
+  for (const BadFile& file : bad) {
+    frames.insert(file.frame);
+  }
+  std::string named;
+  constexpr std::size_t kNamed = 4;
+  for (std::size_t i = 0; i < std::min(kNamed, bad.size()); ++i) {
+    named += fmt::format("{}{} {}", i == 0 ? "" : ", ", bad[i].path, bad[i].problem);
+  }
+  if (bad.size() > kNamed) {
+    named += fmt::format(", and {} more", bad.size() - kNamed);
+  }
+  throw Error(ErrorKind::input, directory,
+              fmt::format("{} not what was written, of frames {}: {}",
+                          bad.size() == 1 ? "1 file is" : fmt::format("{} files are", bad.size()),
+                          format_frame_list({frames.begin(), frames.end()}), named),
+              "render their parts again with `resume`, which makes these frames alone, or give `trust-files`");
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a document will take in memory, reckoned before it is loaded.
+#pragma once
+
+#include "gazetrace/scene.hpp"
+#include "scene/gltf/document.hpp"
+#include "scene/gltf/file.hpp"
+#include "scene/gltf/material.hpp"
+
+namespace gazetrace {
+
+// All but pictures, from the counts that the JSON states and the sizes of the files.
+SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked, const GltfDocument& document);
+// Adds the pictures that the table would decode, by their headers.
+void add_pictures(const TextureTable& textures, int threads, SceneEstimate& estimate);
+
+// Error(input) at `path` where the estimate is above the limit.
+void check_memory(const SceneEstimate& estimate, const SceneLimits& limits, const std::string& path);
+
+}  // namespace gazetrace

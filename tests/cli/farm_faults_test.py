@@ -1,0 +1,484 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What goes wrong on a farm: files that are lost or changed, inputs that change, side files that are cut, two runs in one
+folder, signals and limits of time."""
+
+import csv
+import json
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import zlib
+
+import harness
+
+JOB_TOML = """
+scene = "glide.gltf"
+gaze = "log.csv"
+size = "48x27"
+frame-rect = [0, 0, 64, 36]
+region-samples = [4, 2, 1]
+exposure = 0.5
+quiet = true
+"""
+JOB = ["--config", "job.toml"]
+
+
+def outputs(folder):
+    return ["-o", f"{folder}/f.####.exr", "-o", f"{folder}/f.####.png"]
+
+
+class Farm(harness.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
+        self.write("log.csv", harness.moving_gaze())
+        self.write("job.toml", JOB_TOML)
+
+    def render(self, folder, *more):
+        return self.run_ok("render", *JOB, *outputs(folder), *more)
+
+    def parts(self, folder, *more):
+        for frames in ("1-3", "4-6"):
+            self.render(folder, "--frames", frames, "--part", *more)
+
+    def record(self, path):
+        return json.loads((self.folder / path).read_text())
+
+    def rows(self, path):
+        with open(self.folder / path, newline="", encoding="utf-8") as file:
+            return {int(row["frame"]): row for row in csv.DictReader(file)}
+
+    def times(self, folder):
+        return {path.name: path.stat().st_mtime_ns for path in (self.folder / folder).glob("f.*")}
+
+
+class MergeLooksAtFiles(Farm):
+    def test_each_bad_file_is_named_and_rendered_again(self):
+        self.parts("out")
+        whole = self.pictures("out")
+        out = self.folder / "out"
+        (out / "f.0001.exr").unlink()
+        (out / "f.0002.png").unlink()
+        (out / "f.0003.exr").write_bytes(whole["f.0003.exr"][:1000])
+        shutil.copyfile(out / "f.0006.exr", out / "f.0005.exr")
+        changed = bytearray(whole["f.0006.png"])
+        changed[-100] ^= 1
+        (out / "f.0006.png").write_bytes(changed)
+        merged = self.run_program("merge", "out")
+        self.assertEqual(merged.returncode, 2, merged.stdout + merged.stderr)
+        for words in ("f.0001.exr: is missing", "f.0002.png: is missing", "f.0003.exr: has 1000 bytes in place of",
+                      "f.0005.exr: holds frame 6", "f.0006.png: has another content", "5 files are not what was written",
+                      "frames 1-3,5-6"):
+            self.assertIn(words, merged.stderr)
+        self.assertFalse((out / "run.json").exists())
+        # What is there is joined without them where that is asked for.
+        partly = self.run_ok("merge", "out", "--allow-missing")
+        self.assertIn("2 parts joined, frames 4\n", partly.stdout)
+        before = self.times("out")
+        self.parts("out", "--resume")
+        self.assertEqual(self.pictures("out"), whole)
+        made = {name for name, stamp in self.times("out").items() if before.get(name) != stamp}
+        self.assertEqual(made, {f"f.{frame:04d}.{suffix}" for frame in (1, 2, 3, 5, 6) for suffix in ("exr", "png")})
+        self.assertIn("2 parts joined, frames 1-6", self.run_ok("merge", "out", "--overwrite").stdout)
+        self.assertEqual(len(self.record("out/run.json")["files"]), 12)
+
+    def test_files_can_be_trusted(self):
+        self.parts("out")
+        (self.folder / "out/f.0001.png").unlink()
+        self.assertEqual(self.run_program("merge", "out").returncode, 2)
+        self.run_ok("merge", "out", "--trust-files")
+
+    def test_sums_of_samples(self):
+        for samples in ("0:4", "4:8"):
+            self.run_ok("render", "glide.gltf", "--falloff", "uniform", "--spp", "8", "--filter", "none", "--size", "32x18",
+                        "--quiet", "--frames", "1", "-o", "out/f.exr", "--sample-range", samples)
+        sums = self.folder / "out/samples.0001.4-8.sums"
+        content = bytearray(sums.read_bytes())
+        content[-50] ^= 1
+        sums.write_bytes(content)
+        merged = self.run_program("merge", "out")
+        self.assertEqual(merged.returncode, 2)
+        self.assertIn("samples.0001.4-8.sums: has another content", merged.stderr)
+
+    def test_a_killed_part_knows_its_files(self):
+        self.render("out", "--frames", "1-3", "--part")
+        record = self.record("out/run.1-3.json")
+        lines = [f'{file["frame"]} {file["bytes"]} {file["digest"]} {name}\n' for name, file in record["files"].items()]
+        record["files"] = {}
+        self.write("out/run.1-3.json", json.dumps(record))
+        self.write("out/run.1-3.files", "".join(lines) + "2 17 cut")
+        (self.folder / "out/f.0002.exr").write_bytes(b"")
+        self.assertIn("f.0002.exr: has 0 bytes in place of", self.run_program("merge", "out").stderr)
+        before = self.times("out")
+        self.render("out", "--frames", "1-3", "--part", "--resume")
+        made = {name for name, stamp in self.times("out").items() if before[name] != stamp}
+        self.assertEqual(made, {"f.0002.exr", "f.0002.png"})
+        self.assertFalse((self.folder / "out/run.1-3.files").exists())
+        self.run_ok("merge", "out")
+
+
+class ResumeLosesNothing(Farm):
+    def test_a_changed_input_is_said_and_nothing_rendered_over(self):
+        self.render("out", "--frames", "1-4")
+        before = self.times("out")
+        scene = harness.box_gltf(camera_seconds=1.0)
+        scene["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 0.9
+        self.write("glide.gltf", json.dumps(scene))
+        again = ["render", *JOB, *outputs("out"), "--frames", "1-4", "--resume"]
+        self.assert_refused(again, ["run.json", "4 finished frames, 1-4", "glide.gltf has changed", "--overwrite"])
+        self.assertEqual(self.times("out"), before)
+        (self.folder / "out/f.0001.exr").unlink()
+        (self.folder / "out/f.0001.png").unlink()
+        self.assert_refused(again, ["3 finished frames, 2-4"])
+        self.run_ok(*again, "--overwrite")
+        self.assertTrue(all(before[name] != stamp for name, stamp in self.times("out").items()))
+
+    def test_a_changed_option_is_named(self):
+        self.render("out", "--frames", "1-2", "--seed", "3")
+        again = ["render", *JOB, *outputs("out"), "--frames", "1-2", "--resume"]
+        self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "--seed was 3 and is 4"])
+        self.run_ok(*again, "--seed", "3")
+        # Without a record the pictures alone say that they are others.
+        (self.folder / "out/run.json").unlink()
+        self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "no record"])
+
+    def test_another_history_is_another_picture(self):
+        history = ["--accumulate", "reproject", "--part"]
+        self.render("out", "--frames", "1-2", *history, "--checkpoint", "after-2")
+        self.render("out", "--frames", "3-4", *history)
+        joined = ["render", *JOB, *outputs("out"), "--frames", "3-4", *history, "--resume-from", "after-2", "--resume"]
+        self.assert_refused(joined, ["2 finished frames, 3-4", "after-2 was not read then"])
+        self.run_ok(*joined, "--overwrite")
+        self.run_ok("merge", "out")
+
+
+class DigestsOfParts(Farm):
+    def test_how_a_run_was_cut_is_not_in_its_files(self):
+        history = ["--accumulate", "reproject"]
+        self.render("whole", "--frames", "1-6", *history)
+        self.render("parts", "--frames", "1-3", "--part", *history, "--checkpoint", "h")
+        self.render("parts", "--frames", "4-6", "--part", *history, "--resume-from", "h")
+        self.assertEqual(self.pictures("parts"), self.pictures("whole"))
+        self.run_ok("merge", "parts")
+        whole, parts = self.record("whole/run.json"), self.record("parts/run.json")
+        self.assertEqual(parts["settings_digest"], whole["settings_digest"])
+        self.assertEqual(parts["files"], whole["files"])
+        self.assertEqual(parts["part_digests"], [])
+
+
+class DamagedSideFiles(Farm):
+    def test_a_resumed_run_makes_them_anew(self):
+        self.render("out", "--frames", "1-3")
+        before, record = self.times("out"), (self.folder / "out/run.json").read_bytes()
+        good = self.rows("out/timing.csv")
+        for name, content in (("timing.csv", b""), ("timing.csv", b"frame,plan"), ("timing.csv", b"a,b\n1,2\n"),
+                              ("run.json", record[:len(record) // 2]), ("run.json", b"")):
+            with self.subTest(name=name, content=content[:20]):
+                self.write(f"out/{name}", content)
+                result = self.render("out", "--frames", "1-3", "--resume")
+                self.assertEqual(self.times("out"), before)
+                rows = self.rows("out/timing.csv")
+                self.assertEqual(list(rows), [1, 2, 3])
+                self.assertEqual([row["exposure_ev"] for row in rows.values()], [row["exposure_ev"] for row in good.values()])
+                self.assertEqual(len(self.record("out/run.json")["files"]), 6)
+                self.assertTrue(all(len(line) < 700 for line in result.stderr.splitlines()), result.stderr)
+
+    def test_a_cut_record_of_a_part_is_one_short_line(self):
+        self.parts("out")
+        record = (self.folder / "out/run.1-3.json").read_bytes()
+        self.write("out/run.1-3.json", record[:len(record) // 2])
+        self.assertLess(len(self.assert_refused(["merge", "out"], ["run.1-3.json", "--resume"])), 700)
+        self.render("out", "--frames", "1-3", "--part", "--resume")
+        self.run_ok("merge", "out")
+
+
+class Names(Farm):
+    def test_messages_are_bounded(self):
+        scene = harness.box_gltf()
+        scene["extensionsRequired"] = ["A" * 10_000_000]
+        self.write("long.gltf", json.dumps(scene))
+        self.assertLess(len(self.assert_refused(["scene", "long.gltf"], ["long.gltf", "more bytes"])), 4000)
+        scene = harness.box_gltf()
+        scene["extensionsRequired"] = ["red \x1b[31m text"]
+        self.write("escape.gltf", json.dumps(scene))
+        self.assertNotIn("\x1b", self.assert_refused(["scene", "escape.gltf"], ["red"]))
+
+    def test_a_damaged_png_has_one_line(self):
+        png = harness.png(8, 8, lambda x, y: (x, y, 0))
+        at = png.index(b"IDAT") + 8
+        data = bytearray(png)
+        data[at] ^= 0xFF
+        length = int.from_bytes(png[at - 8 - 4:at - 8], "big")
+        data[at - 4 + length:at + length] = zlib.crc32(bytes(data[at - 8:at - 4 + length])).to_bytes(4, "big")
+        self.write("broken.png", bytes(data))
+        scene = harness.box_gltf()
+        scene["images"] = [{"uri": "broken.png"}]
+        scene["textures"] = [{"source": 0}]
+        scene["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+        self.write("textured.gltf", json.dumps(scene))
+        self.assert_refused(["scene", "textured.gltf"], ["broken.png", "damaged"])
+
+    def test_folders_of_frames(self):
+        self.run_ok("render", *JOB, "-o", "out/%04d/%04d.exr", "--frames", "1-2")
+        self.assertEqual(self.files("out"), ["0001/0001.exr", "0002/0002.exr", "run.json", "timing.csv"])
+        self.run_ok("compare", "out/%04d/%04d.exr", "out/%04d/%04d.exr", "--metrics", "mse")
+        self.assert_refused(["render", *JOB, "-o", ""], ["--output", "empty"])
+
+
+class Confined(Farm):
+    def textured(self, uri):
+        scene = harness.box_gltf()
+        scene["images"] = [{"uri": uri}]
+        scene["textures"] = [{"source": 0}]
+        scene["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+        return json.dumps(scene)
+
+    def test_uris_stay_in_the_scene_s_folder(self):
+        secret = self.write("secret/picture.png", harness.png(2, 2, lambda x, y: (1, 2, 3)))
+        self.write("scene/inside.png", secret.read_bytes())
+        (self.folder / "scene/link.png").symlink_to(secret)
+        (self.folder / "scene/folder").symlink_to(secret.parent)
+        self.write("scene/ok.gltf", self.textured("inside.png"))
+        self.run_ok("scene", "scene/ok.gltf")
+        for number, uri in enumerate(("../secret/picture.png", str(secret), "link.png", "folder/picture.png",
+                                      "%2e%2e/secret/picture.png", "x/../../secret/picture.png")):
+            with self.subTest(uri=uri):
+                name = f"scene/{number}.gltf"
+                self.write(name, self.textured(uri))
+                self.assert_refused(["scene", name], ["images[0]", "leads outside", "--allow-outside"])
+                self.assert_refused(["render", name, "-o", "o/f.exr", "--size", "16x9"], ["leads outside"])
+                self.run_ok("scene", name, "--allow-outside")
+        scene = harness.box_gltf()
+        scene["buffers"][0]["uri"] = "../../../../../../../../../etc/passwd"
+        self.write("scene/buffer.gltf", json.dumps(scene))
+        self.assert_refused(["scene", "scene/buffer.gltf"], ["buffers[0]", "leads outside"])
+
+    def test_the_root_of_a_data_set(self):
+        picture = harness.png(2, 2, lambda x, y: (1, 2, 3))
+        self.write("set/dataset_description.json", "{}")
+        self.write("set/stimuli/shared/picture.png", picture)
+        key = self.write("set/.git/annex/objects/ab/cd/KEY/KEY", picture)
+        self.write("set/stimuli/scene/up.gltf", self.textured("../shared/picture.png"))
+        (self.folder / "set/stimuli/scene/annexed.png").symlink_to(os.path.relpath(key, self.folder / "set/stimuli/scene"))
+        self.write("set/stimuli/scene/annexed.gltf", self.textured("annexed.png"))
+        self.write("set/stimuli/scene/out.gltf", self.textured("../../../outside.png"))
+        self.write("outside.png", picture)
+        for name in ("up", "annexed"):
+            self.run_ok("scene", f"set/stimuli/scene/{name}.gltf")
+        self.assert_refused(["scene", "set/stimuli/scene/out.gltf"], ["leads outside", "set'"])
+        # The annex of a data set within another lies where .git says.
+        self.write("super/.git/modules/sub/annex/objects/KEY", picture)
+        self.write("super/sub/.git", "gitdir: ../.git/modules/sub\n")
+        (self.folder / "super/sub/annexed.png").symlink_to("../.git/modules/sub/annex/objects/KEY")
+        self.write("super/sub/annexed.gltf", self.textured("annexed.png"))
+        self.run_ok("scene", "super/sub/annexed.gltf")
+
+    def test_a_link_to_a_scene_brings_its_files(self):
+        self.write("real/picture.png", harness.png(2, 2, lambda x, y: (1, 2, 3)))
+        self.write("real/scene.gltf", self.textured("picture.png"))
+        (self.folder / "linked").mkdir()
+        for name in ("scene.gltf", "picture.png"):
+            (self.folder / "linked" / name).symlink_to(self.folder / "real" / name)
+        self.run_ok("scene", "linked/scene.gltf")
+
+
+class Chunks(Farm):
+    def test_chunks_are_the_whole(self):
+        self.render("whole", "--frames", "1-7")
+        for number in (3, 1, 2):
+            self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-7", "--chunk", f"{number}/3")
+        borders = json.loads((self.folder / "out/chunks.3.json").read_text())
+        self.assertEqual([name for name in self.files("out") if name.startswith("run.")],
+                         sorted(f"run.{frames}.json" for frames in borders["chunks"]))
+        self.assertIn("frames 1-7", self.run_ok("merge", "out").stdout)
+        self.assertEqual(self.pictures("out"), self.pictures("whole"))
+        told = json.loads(self.run_ok("plan", *JOB, "--frames", "1-7", "--chunks", "3", "--json",
+                                      "--rate-from", "whole/timing.csv").stdout)
+        self.assertEqual([chunk["frames"] for chunk in told], borders["chunks"])
+        self.assertEqual([chunk["samples"] for chunk in told], borders["samples"])
+        self.assertTrue(all(chunk["minutes"] > 0 for chunk in told))
+
+    def test_borders_that_are_written_down_stay(self):
+        self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "1/2")
+        borders = json.loads((self.folder / "out/chunks.2.json").read_text())
+        borders["chunks"] = ["1-4", "5-6"]
+        self.write("out/chunks.2.json", json.dumps(borders))
+        self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "2/2")
+        self.assertIn("run.5-6.json", self.files("out"))
+
+    def test_chunks_of_a_length(self):
+        for number in range(1, 4):
+            self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-5", "--chunk", number, "--chunk-frames", "2")
+        self.assertIn("3 parts joined, frames 1-5", self.run_ok("merge", "out").stdout)
+        late = self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-5", "--chunk", "4", "--chunk-frames", "2")
+        self.assertIn("chunk 4 has none of the 5 frames", late.stderr)
+
+    def test_what_is_no_chunk(self):
+        for options, words in ((["--chunk", "3"], "--chunk"), (["--chunk", "4/3"], "4/3"), (["--chunk", "0/3"], "0/3"),
+                               (["--chunk-frames", "3"], "--chunk"), (["--chunk", "1/3", "--chunk-frames", "3"], "--chunk")):
+            self.assert_refused(["render", *JOB, *outputs("bad"), *options], [words])
+
+
+class Running(Farm):
+    SLOW = ["--frames", "1-4", "--size", "640x360", "--region-samples", "400,400,400", "--threads", "1"]
+
+    def start(self, *more):
+        process = subprocess.Popen([harness.PROGRAM, "render", *JOB, *outputs("out"), *more], cwd=self.folder,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(lambda: (process.poll() is None and process.kill(), process.wait(), process.stderr.close()))
+        return process
+
+    def wait_for(self, condition, process):
+        deadline = time.monotonic() + 120
+        while not condition() and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.005)
+        self.assertTrue(condition())
+
+
+class Locks(Running):
+    def test_two_runs_do_not_share_a_folder(self):
+        first = self.start(*self.SLOW)
+        lock = self.folder / "out/run.json.lock"
+        self.wait_for(lock.exists, first)
+        self.wait_for((self.folder / "out/run.json").exists, first)
+        words = ["run.json.lock", f"process {first.pid}", "frames 1-4", "wait for it"]
+        self.assert_refused(["render", *JOB, *outputs("out"), *self.SLOW, "--resume"], words)
+        # A part whose frames it makes as well; others are free.
+        self.assert_refused(["render", *JOB, *outputs("out"), "--frames", "4-5", "--part", "--resume"], words)
+        self.run_ok("render", *JOB, *outputs("out"), "--frames", "5-6", "--part")
+        first.send_signal(signal.SIGKILL)
+        first.wait()
+        self.assertTrue(lock.exists())
+        after = self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-4", "--resume", "--overwrite")
+        self.assertIn("that run is dead", after.stderr)
+        self.assertFalse(lock.exists())
+
+    def test_a_lock_of_another_machine_that_is_silent(self):
+        self.render("out", "--frames", "1")
+        holder = {"host": "elsewhere", "machine": "other boot", "process": 1, "began": "5", "since_s": 1, "frames": "1", "samples": ""}
+        lock = self.write("out/run.json.lock", json.dumps(holder))
+        os.utime(lock, (time.time() - 3600, time.time() - 3600))
+        self.assertIn("process 1 on elsewhere", self.render("out", "--frames", "1", "--resume").stderr)
+        self.assertFalse(lock.exists())
+        # One that cannot be read is no run either.
+        self.write("out/run.json.lock", "{")
+        os.utime(lock, (time.time() - 3600, time.time() - 3600))
+        self.render("out", "--frames", "1", "--resume")
+
+
+class Signals(Running):
+    """The frame in hand is finished or given up, the run says what is left, and goes on to the same bits."""
+
+    LONG = ["--frames", "1-24", "--size", "160x90", "--region-samples", "60,60,60", "--threads", "1"]
+
+    def interrupt(self, folder_ready, number, *more):
+        process = self.start(*more)
+        self.wait_for(folder_ready, process)
+        process.send_signal(number)
+        self.assertEqual(process.wait(timeout=120), 4)
+        line = process.stderr.read().splitlines()[-1]
+        self.assertIn("interrupted by", line)
+        self.assertIn("go on with --resume", line)
+        return line
+
+    def test_each_signal_and_on_to_the_same_bits(self):
+        history = ["--accumulate", "reproject", "--checkpoint", "out/h"]
+        self.run_ok("render", *JOB, *outputs("whole"), *self.LONG, "--accumulate", "reproject")
+        for count, number in enumerate((signal.SIGTERM, signal.SIGUSR1, signal.SIGINT, signal.SIGXCPU)):
+            ready = self.folder / f"out/f.{2 + 3 * count:04d}.exr"
+            line = self.interrupt(ready.exists, number, *self.LONG, *history, *(["--resume"] if count else []))
+            self.assertIn(f"signal {number.name[3:]}", line)
+            record = self.record("out/run.json")
+            done = len(list((self.folder / "out").glob("f.*.exr")))
+            self.assertEqual(record["facts"]["state"], "interrupted")
+            self.assertEqual(len(record["files"]), 2 * done)
+            self.assertEqual(list(self.rows("out/timing.csv")), list(range(1, done + 1)))
+            self.assertEqual(sorted(name for name in self.files("out") if name.endswith((".lock", ".files"))), [])
+        result = self.run_ok("render", *JOB, *outputs("out"), *self.LONG, *history, "--resume", "--json")
+        summary = json.loads(result.stdout)
+        self.assertFalse(summary["interrupted"])
+        self.assertGreater(summary["skipped"], 0)
+        whole = self.pictures("whole")
+        self.assertEqual(self.pictures("out"), whole)
+
+    def test_a_frame_that_the_grace_time_does_not_allow_is_given_up(self):
+        slow = [*self.SLOW, "--grace", "0s"]
+        line = self.interrupt((self.folder / "out/run.json").exists, signal.SIGTERM, *slow)
+        self.assertIn("0 of 4 frames are done, 1-4 left", line)
+        self.assertEqual([name for name in self.files("out") if name.startswith("f.")], [])
+
+    def test_the_time_is_up(self):
+        result = self.run_program("render", *JOB, *outputs("out"), *self.SLOW, "--max-time", "1s", "--grace", "0.5s")
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertIn("interrupted by --max-time", result.stderr)
+        self.assertEqual(self.record("out/run.json")["facts"]["state"], "interrupted")
+
+    def test_a_second_interrupt_ends_at_once(self):
+        process = self.start(*self.SLOW, "--grace", "10min")
+        self.wait_for((self.folder / "out/run.json").exists, process)
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), -signal.SIGINT)
+
+
+class Bombs(Farm):
+    def textured(self, name):
+        scene = harness.box_gltf()
+        scene["images"] = [{"uri": name}]
+        scene["textures"] = [{"source": 0}]
+        scene["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+        self.write("bomb.gltf", json.dumps(scene))
+
+    def png_of_zeros(self, width, height, surplus=0):
+        pack = zlib.compressobj(9)
+        row = b"\0" * (1 + 3 * width)
+        data = b"".join(pack.compress(row) for _ in range(height)) + pack.compress(b"\0" * surplus) + pack.flush()
+
+        def chunk(kind, content):
+            return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+
+        return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                chunk(b"IDAT", data) + chunk(b"IEND", b""))
+
+    def test_pictures(self):
+        self.write("zeros.png", self.png_of_zeros(5000, 5000))
+        self.textured("zeros.png")
+        self.assert_refused(["scene", "bomb.gltf"], ["zeros.png", "unpacks to 95 MiB", "64 MiB", "--max-expansion"])
+        self.assert_refused(["scene", "bomb.gltf", "--max-texture", "4096"], ["5000 x 5000", "4096", "--max-texture"])
+        self.write("surplus.png", self.png_of_zeros(4, 4, 50_000_000))
+        self.textured("surplus.png")
+        self.assert_refused(["scene", "bomb.gltf"], ["surplus.png", "more data than its pixels"])
+
+    def test_nodes_and_nesting(self):
+        scene = harness.box_gltf()
+        scene["nodes"] += [{}] * 600_000
+        self.write("nodes.gltf", json.dumps(scene))
+        self.assert_refused(["scene", "nodes.gltf"], ["600004 nodes", "500000", "--max-nodes"])
+        scene = harness.box_gltf()
+        scene["extras"] = json.loads("[" * 50 + "]" * 50)
+        self.write("nested.gltf", json.dumps(scene))
+        self.run_ok("scene", "nested.gltf")
+        self.assert_refused(["scene", "nested.gltf", "--max-nesting", "20"], ["20 deep", "--max-nesting"])
+
+    def test_memory_is_told_and_kept(self):
+        told = json.loads(self.run_ok("scene", "glide.gltf", "--estimate", "--json").stdout)
+        self.assertEqual((told["triangles"], told["nodes"]), (12, 4))
+        self.assertIn("will take    about", self.run_ok("scene", "glide.gltf").stdout)
+        refusal = ["glide.gltf", "will take about", "the limit is 0 MiB", "--max-memory"]
+        self.assert_refused(["scene", "glide.gltf", "--max-memory", "1K"], refusal)
+        self.assert_refused(["render", *JOB, "-o", "o/f.exr", "--max-memory", "1K"], refusal)
+        self.run_ok("scene", "glide.gltf", "--max-memory", "160M")
+        # A file that claims more than it has, told before anything is loaded.
+        scene = harness.box_gltf()
+        scene["accessors"][0].pop("bufferView")
+        scene["accessors"][0]["count"] = 2_000_000
+        self.write("claims.gltf", json.dumps(scene))
+        self.assert_refused(["scene", "claims.gltf", "--max-memory", "160M"], ["--max-memory"])
+
+
+if __name__ == "__main__":
+    harness.main()
