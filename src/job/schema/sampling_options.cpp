@@ -161,8 +161,7 @@ void add_pilot_options(JobSchema& schema) {
       .idle_when({with_other_falloffs({"visible"})});
   schema
       .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
-             "visible: the highest rate anywhere in the frame, in samples a pixel; with a target in JOD, the highest "
-             "rate of the whole frame")
+             "visible: the highest rate anywhere in the frame, in samples a pixel; with --target-jod, of the frame")
       .above(0, kMostSamples)
       .idle_when({without_rates_to_limit});
   schema
