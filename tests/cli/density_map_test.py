@@ -75,7 +75,9 @@ class DensityMap(harness.CliTest):
         self.render("all", *common, "--resume")
         self.assertEqual((self.folder / "all/f.0002.exr").read_bytes(), before)
         self.write_map("d.0002.exr", 5)
-        self.assertEqual(self.render("all", *common, "--resume"), [64 * 36 * frame for frame in (1, 5, 3)])
+        again = ["render", "box.gltf", *VIEW, "--falloff", "map", *common, "--resume", "-o", "all/f.####.exr"]
+        self.assert_refused(again, ["3 finished frames, 1-3", "d.0002.exr has changed"])
+        self.assertEqual(self.render("all", *common, "--resume", "--overwrite"), [64 * 36 * frame for frame in (1, 5, 3)])
         self.assert_refused(["render", "box.gltf", *VIEW, "--falloff", "map", "--density-map", "d.####.exr", "--frames", "4", "-o",
                              "x.exr"], ["d.0004.exr"])
 
