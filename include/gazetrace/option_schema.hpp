@@ -164,8 +164,8 @@ struct OptionOf : Option {
     range = OptionRange{least, most, true, {}};
     return *this;
   }
-  OptionOf& need(std::string words) {
-    needs.push_back(std::move(words));
+  OptionOf& need(std::string_view words) {
+    needs.emplace_back(words);
     return *this;
   }
   OptionOf& idle_when(const std::vector<IdleRule<S>>& rules) {

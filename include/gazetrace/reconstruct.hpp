@@ -86,6 +86,8 @@ struct FilterFacts {
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
   bool enhances_contrast = false;  // enhance_contrast() is applied
   bool part_of_samples = false;    // TraceSettings::samples
+  bool means_frames = false;       // AccumulateMode::running
+  bool single_pixel = false;       // TraceSettings::only_pixel
 };
 struct FilterChoice {
   std::string name;

@@ -207,7 +207,9 @@ FilterChoice filter_of(const JobSettings& job) {
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,
                         .enhances_contrast = job.enhance_contrast > 0,
-                        .part_of_samples = job.trace.samples.has_value()});
+                        .part_of_samples = job.trace.samples.has_value(),
+                        .means_frames = job.accumulate.mode == AccumulateMode::running,
+                        .single_pixel = job.only_pixel.has_value()});
 }
 
 }  // namespace gazetrace

@@ -171,8 +171,19 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   JudgedRate judged;
   if (own.foveation.target.jod &&
       std::any_of(resume.work.begin(), resume.work.end(), [](FrameWork work) { return work != FrameWork::skip; })) {
-    judged.choose(tracer, plan.judged, color, own);
-    result.facts.emplace_back("rate", judged.text());
+    try {
+      if (observer.stop_before_frame && observer.stop_before_frame(0)) {
+        result.interrupted = true;
+      } else {
+        judged.choose(tracer, plan.judged, color, own);
+        result.facts.emplace_back("rate", judged.text());
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::interrupted) {
+        throw;
+      }
+      result.interrupted = true;
+    }
   }
   const FrameRenderer renderer(tracer, own);
   std::optional<FrameWindow> window;
@@ -201,7 +212,9 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       keep_bad_samples(rendered.samples, result);
       add_times(rendered.times, row);
       add_prediction(rendered.prediction, row);
-      judged.enter(row);
+      if (work == FrameWork::render) {
+        judged.enter(row);
+      }
       row.exposure_ev = rendered.exposure_ev;
       if (observer.frame_ready) {
         observer.frame_ready(request, rendered.frame, rendered.exposure_ev);
@@ -234,6 +247,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       if (observer.frame_begins) {
         observer.frame_begins(request);
       }
+      const Stopwatch own_time;  // without the choice of the rate, which the first row counts
       try {
         make_frame(request, work, row);
       } catch (const Error& error) {
@@ -243,7 +257,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
         result.interrupted = true;
         break;
       }
-      made_ms += row.total_ms;
+      made_ms += own_time.elapsed_ms();
       ++made;
       checkpoint_is_old = true;
     }

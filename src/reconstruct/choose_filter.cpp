@@ -13,6 +13,12 @@ FilterChoice choose_filter(const FilterFacts& facts) {
   if (facts.part_of_samples) {
     return {"linear", "guided filters need every sample of a frame, and this is a part of them"};
   }
+  if (!facts.foveated && facts.means_frames) {
+    return {"linear", "frames are uniform, and their running mean is to tend to that of the samples"};
+  }
+  if (!facts.foveated && facts.single_pixel) {
+    return {"linear", "one pixel is replayed, which has no neighbours to be smoothed with"};
+  }
   if (!facts.foveated) {
     return {"guided",
             "noise is smoothed along surfaces as far as it is noise, and samples are kept where they know better"};

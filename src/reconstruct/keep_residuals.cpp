@@ -139,7 +139,8 @@ std::vector<SiteResidual> residuals_of_sites(const FilterInput& input, const Sur
       SiteResidual& residual = residuals[i];
       residual.radiance = input.values.value(i).radiance - share * mean;
       residual.shown = share * luminance(mean);
-      if (input.values.count(i) > 1) {
+      // Halves that are equal to the bit say nothing: one of them had no sample that is a number.
+      if (input.values.count(i) > 1 && input.sparse.half_difference[i] != 0) {
         residual.replica = input.sparse.half_difference[i] - share * replica;
       } else {
         residual.replica = replica_of_single_sample(i, residual.radiance);
@@ -258,10 +259,11 @@ class RegionResiduals {
         const std::uint32_t site = sites[index(x, y)];
         const SiteResidual& r = of_site[site];
         finer_.put(x, y, {r.radiance.x, r.radiance.y, r.radiance.z, r.replica});
-        kept_[index(x, y)].shown = r.shown;
+        const float shown = shown_by_site(input.map, site, r, picture);
+        kept_[index(x, y)].shown = shown;
         doubt_[index(x, y)] =
             settings.residual_doubt * doubt_of_few(static_cast<float>(input.values.count(site)), settings);
-        light_.put(x, y, {shown_by_site(input.map, site, r, picture)});
+        light_.put(x, y, {shown});
       }
     });
     keep_bands();

@@ -69,7 +69,9 @@ TEST(ChooseFilter, GuidedWhereAllSamplesAreThere) {
   for (const FilterFacts& facts : std::vector<FilterFacts>{{.accumulates_sites = true},
                                                            {.enhances_contrast = true},
                                                            {.part_of_samples = true},
-                                                           {.foveated = false, .part_of_samples = true}}) {
+                                                           {.foveated = false, .part_of_samples = true},
+                                                           {.foveated = false, .means_frames = true},
+                                                           {.foveated = false, .single_pixel = true}}) {
     const FilterChoice choice = choose_filter(facts);
     EXPECT_EQ(choice.name, "linear");
     EXPECT_NE(choice.reason, choose_filter({}).reason);
