@@ -56,9 +56,14 @@ void add_root(std::vector<fs::path>& roots, const fs::path& folder) {
     }
   };
   add(root);
+  // The object store alone, and only where it is one: a link in its place must not open another folder.
   std::error_code ignored;
-  if (const fs::path annex = git_folder(root) / "annex"; fs::exists(annex, ignored)) {
-    add(resolved(annex));
+  const fs::path store = git_folder(root) / "annex" / "objects";
+  if (fs::is_directory(store, ignored)) {
+    if (const fs::path real = resolved(store);
+        real.filename() == "objects" && real.parent_path().filename() == "annex") {
+      add(real);
+    }
   }
 }
 

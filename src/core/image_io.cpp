@@ -83,7 +83,7 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
                     size + " pixels",
                 "export it again");
   }
-  const auto decoded = static_cast<double>(pixels * (spec.format.size() == 1 ? 4 : 16));
+  const auto decoded = static_cast<double>(spec.image_bytes());  // with the file's own channels and depth
   const auto allowed =
       static_cast<double>(limits.free_bytes) + limits.expansion * static_cast<double>(picture.file_size);
   if (limits.expansion > 0 && decoded > allowed) {

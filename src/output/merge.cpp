@@ -134,6 +134,9 @@ MergeResult merge_runs(const std::string& directory, const MergeOptions& options
     }
     result.warnings.push_back(problem);
   }
+  if (owners.empty()) {
+    throw Error(ErrorKind::input, directory, "no frame is left to join", "render the parts again");
+  }
   if (have_history(parts)) {
     check_histories(all_frames(parts, owners, missing), result.warnings);
   }

@@ -82,10 +82,17 @@ std::string name_of(const RunRecord& record) {
 
 std::vector<RunPart> read_run_parts(const std::string& directory) {
   std::error_code error;
-  std::vector<std::filesystem::path> paths;
+  std::vector<std::filesystem::path> paths, without_rows;
   for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    if (is_part_name(entry.path().filename().string())) {
+    const std::string name = entry.path().filename().string();
+    if (is_part_name(name)) {
       paths.push_back(entry.path());
+    } else if (name.starts_with("run.") && name.ends_with(".json") && name != "run.json") {
+      // The record of a part that was ended before its table began is all that tells of its frames.
+      const auto timing = entry.path().parent_path() / ("timing." + name.substr(4, name.size() - 4 - 5) + ".csv");
+      if (!std::filesystem::exists(timing)) {
+        without_rows.push_back(entry.path());
+      }
     }
   }
   if (error) {
@@ -99,6 +106,14 @@ std::vector<RunPart> read_run_parts(const std::string& directory) {
   std::vector<RunPart> parts;
   for (const auto& path : paths) {
     parts.push_back(read_part(path));
+  }
+  std::sort(without_rows.begin(), without_rows.end());
+  for (const auto& path : without_rows) {
+    const std::string name = path.filename().string();
+    RunPart& part = parts.emplace_back();
+    part.record_path = path.string();
+    part.timing_path = (path.parent_path() / ("timing." + name.substr(4, name.size() - 4 - 5) + ".csv")).string();
+    part.record = read_run_record(part.record_path);
   }
   check_same_settings(parts);
   return parts;

@@ -135,9 +135,10 @@ std::int64_t folder_time(const std::string& own_file) {
 }
 
 bool process_lives(const Holder& holder) {
-  if (!holder.began.empty()) {
-    return begin_of_process(holder.process) == holder.began;
+  if (const std::string began = begin_of_process(holder.process); !began.empty() && !holder.began.empty()) {
+    return began == holder.began;
   }
+  // Nothing is known of when it began: /proc may hide the processes of others.
   return ::kill(static_cast<pid_t>(holder.process), 0) == 0 || errno == EPERM;
 }
 
@@ -174,9 +175,10 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
   for (;;) {
     const std::optional<std::int64_t> renewed = time_of(path);
     if (!renewed) {
-      return false;
+      std::error_code failed;
+      return fs::exists(path, failed) || failed;  // what cannot be looked at may well live
     }
-    if (*renewed != *first) {
+    if (!first || *renewed != *first) {
       return true;
     }
     if (folder_time(looking.own_file) - *renewed > kSilence.count()) {
@@ -204,8 +206,9 @@ bool remove_dead(const std::string& path, const Holder& dead, const std::string&
     return false;
   }
   const bool right = read_lock(aside) == std::optional(dead);
-  if (!right) {
-    static_cast<void>(::link(aside.c_str(), path.c_str()));
+  // Put back; by a move where the file system has no links and nobody has made a lock since.
+  if (!right && ::link(aside.c_str(), path.c_str()) != 0 && errno != EEXIST && !fs::exists(path)) {
+    static_cast<void>(::rename(aside.c_str(), path.c_str()));
   }
   ::unlink(aside.c_str());
   return right;
@@ -251,7 +254,8 @@ int make_lock(const OwnFile& own, const std::string& path, const std::string& te
 
 // Renews the lock while the run lives, and removes it at the end.
 struct RunLock::Heart {
-  explicit Heart(std::string lock_path) : path(std::move(lock_path)), beat([this] { run(); }) {}
+  Heart(std::string lock_path, Holder own)
+      : path(std::move(lock_path)), self(std::move(own)), beat([this] { run(); }) {}
   ~Heart() {
     {
       const std::lock_guard guard(mutex);
@@ -259,7 +263,9 @@ struct RunLock::Heart {
     }
     end.notify_all();
     beat.join();
-    ::unlink(path.c_str());
+    if (is_held()) {
+      ::unlink(path.c_str());
+    }
   }
   Heart(const Heart&) = delete;
   Heart& operator=(const Heart&) = delete;
@@ -267,11 +273,17 @@ struct RunLock::Heart {
   void run() {
     std::unique_lock guard(mutex);
     while (!end.wait_for(guard, kBeat, [this] { return ended; })) {
-      ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);
+      if (is_held()) {
+        ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);
+      }
     }
   }
 
+  // A run that was stopped for long may have been taken for dead; the lock is then another's.
+  [[nodiscard]] bool is_held() const { return read_lock(path) == std::optional(self); }
+
   std::string path;
+  Holder self;
   std::mutex mutex;
   std::condition_variable end;
   bool ended = false;
@@ -307,7 +319,7 @@ RunLock::RunLock(const RunRecord& record, const std::string& record_path,
       remove(path, *holder);
     }
   }
-  heart_ = std::make_unique<Heart>(path);
+  heart_ = std::make_unique<Heart>(path, self);
   if (!self.samples.empty()) {
     return;
   }

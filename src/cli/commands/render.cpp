@@ -77,7 +77,10 @@ std::unique_ptr<RunLock> lock_outputs(ResolvedJob& resolved, const std::vector<s
     claim.samples = format_value(*resolved.pipeline.trace.samples);
   }
   auto lock = std::make_unique<RunLock>(claim, files.front(), [](const std::string& text) { print_warnings({text}); });
-  resolved.warnings.insert(resolved.warnings.end(), lock->taken_over().begin(), lock->taken_over().end());
+  // Said to the person who waits, and not kept in the record, which may be published: it names a host.
+  print_warnings(lock->taken_over());
+  // Another run may have made frames while this one checked or waited.
+  prepare_outputs(resolved);
   return lock;
 }
 
