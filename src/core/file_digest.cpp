@@ -54,7 +54,7 @@ std::string digest_bytes(std::span<const std::byte> bytes) {
   return digest.hex();
 }
 
-std::string digest_file(const std::string& path) {
+std::ifstream open_for_reading(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     throw Error(ErrorKind::input, path, "this is a folder, not a file");
@@ -65,6 +65,11 @@ std::string digest_file(const std::string& path) {
     throw Error(ErrorKind::input, path, std::string("cannot be opened: ") + std::strerror(errno == 0 ? EIO : errno),
                 "check the path");
   }
+  return file;
+}
+
+std::string digest_file(const std::string& path) {
+  std::ifstream file = open_for_reading(path);
   Digest digest;
   std::vector<std::byte> bytes(kChunkBytes);
   while (file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size())) ||

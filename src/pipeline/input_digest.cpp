@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which files a run reads, and digests of their content.
 #include <algorithm>
-#include <cerrno>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -21,19 +19,6 @@ namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::ifstream open_for_reading(const std::string& path) {
-  if (fs::is_directory(path)) {
-    throw Error(ErrorKind::input, path, "this is a folder, not a file");
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    throw Error(ErrorKind::input, path, std::string("cannot be opened: ") + std::strerror(errno == 0 ? EIO : errno),
-                "check the path");
-  }
-  return file;
-}
 
 std::string read_bytes(std::ifstream& file, std::size_t count) {
   std::string bytes(count, '\0');
