@@ -445,10 +445,10 @@ class Bombs(Farm):
                 chunk(b"IDAT", data) + chunk(b"IEND", b""))
 
     def test_pictures(self):
-        self.write("zeros.png", self.png_of_zeros(5000, 5000))
+        self.write("zeros.png", self.png_of_zeros(8000, 5000))
         self.textured("zeros.png")
-        self.assert_refused(["scene", "bomb.gltf"], ["zeros.png", "unpacks to 95 MiB", "64 MiB", "--max-expansion"])
-        self.assert_refused(["scene", "bomb.gltf", "--max-texture", "4096"], ["5000 x 5000", "4096", "--max-texture"])
+        self.assert_refused(["scene", "bomb.gltf"], ["zeros.png", "unpacks to 114 MiB", "64 MiB", "--max-expansion"])
+        self.assert_refused(["scene", "bomb.gltf", "--max-texture", "4096"], ["8000 x 5000", "4096", "--max-texture"])
         self.write("surplus.png", self.png_of_zeros(4, 4, 50_000_000))
         self.textured("surplus.png")
         self.assert_refused(["scene", "bomb.gltf"], ["surplus.png", "more data than its pixels"])
