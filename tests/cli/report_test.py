@@ -104,7 +104,7 @@ class Report(harness.CliTest):
         small_results.make(self.folder, "640x360", 4)
         self.run_ok("report", ".", "--max-mib", "64")
         everything = len((self.folder / "report.html").read_bytes())
-        for limit in (1.2, 0.6, 0.3):
+        for limit in (1, 0.6, 0.3):
             self.run_ok("report", ".", "--max-mib", limit, "--overwrite")
             text = (self.folder / "report.html").read_text()
             self.assertLess(len(text.encode()), limit * 2**20)
