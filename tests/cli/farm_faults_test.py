@@ -91,6 +91,17 @@ class MergeLooksAtFiles(Farm):
         self.assertEqual(self.run_program("merge", "out").returncode, 2)
         self.run_ok("merge", "out", "--trust-files")
 
+    def test_a_part_that_ended_before_its_table_began_is_missing(self):
+        self.parts("out")
+        (self.folder / "out/timing.4-6.csv").unlink()
+        self.assert_refused(["merge", "out"], ["frames are missing: 4-6"])
+
+    def test_nothing_is_left_to_join(self):
+        self.parts("out")
+        for path in (self.folder / "out").glob("f.*"):
+            path.unlink()
+        self.assert_refused(["merge", "out", "--allow-missing"], ["no frame is left to join"])
+
     def test_sums_of_samples(self):
         for samples in ("0:4", "4:8"):
             self.run_ok("render", "glide.gltf", "--falloff", "uniform", "--spp", "8", "--filter", "none", "--size", "32x18",
@@ -269,6 +280,11 @@ class Confined(Farm):
         for name in ("up", "annexed"):
             self.run_ok("scene", f"set/stimuli/scene/{name}.gltf")
         self.assert_refused(["scene", "set/stimuli/scene/out.gltf"], ["leads outside", "set'"])
+        # A link in the place of an annex opens nothing.
+        (self.folder / "trap/.git").mkdir(parents=True)
+        (self.folder / "trap/.git/annex").symlink_to("/")
+        self.write("trap/out.gltf", self.textured("../outside.png"))
+        self.assert_refused(["scene", "trap/out.gltf"], ["leads outside"])
         # The annex of a data set within another lies where .git says.
         self.write("super/.git/modules/sub/annex/objects/KEY", picture)
         self.write("super/sub/.git", "gitdir: ../.git/modules/sub\n")
