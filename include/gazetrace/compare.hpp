@@ -52,11 +52,13 @@ struct ComparisonSettings {
   DisplayPhotometry photometry;  // FovVideoVDP
   bool original_border = true;   // FovVideoVDP
   double frames_per_second = 0;  // FovVideoVDP; 0: every frame is a still
+  ImageGray pooling_weights;     // FovVideoVDP, see FovVideoVdpSettings; the other metrics take none
   // Needed for regions, bands, weighted scores and metrics that need gaze.
   std::optional<PlanarView> view;
   bool want_maps = false;
 };
-// Error(usage) that names the setting whose value is out of range: peak (above 0), contrast (above 1), ambient light (0
+// Error(usage) for pooling weights and other metrics than FovVideoVDP, and that names the setting whose value is out of
+// range: peak (above 0), contrast (above 1), ambient light (0
 // or more), reflectivity (0..1) and relmse's epsilon (above 0), all of them finite; and where code values are relative
 // and the room's light makes black as bright as white.
 void check_comparison(const ComparisonSettings& settings);
@@ -149,6 +151,8 @@ struct ComparedPicture {
   FrameFacts facts;
 };
 ComparedPicture read_compared_picture(const std::string& path);
+// The red channel of a picture, as ComparisonSettings::pooling_weights. Error(input) where it cannot be read.
+ImageGray read_pooling_weights(const std::string& path);
 // The code values, at 8 bits, of linear light as a view shows it.
 ImageRgb viewed(const ImageRgb& light, const ColorPipeline& color, double exposure_ev, int threads = 0);
 // The light that a display emits for code values, relative to its peak.

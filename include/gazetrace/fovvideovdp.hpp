@@ -71,6 +71,11 @@ struct FovVideoVdpSettings {
   // had the height's parity, which changes scores by up to 0.05 JOD on small pictures. true: as their program; false:
   // the correct border.
   bool original_border = true;
+  // Of each pixel in the means over a frame, in the frames' size; 0 or more and not all 0. In coarser bands it is the
+  // mean of those of the pixels beneath. Empty: all count alike. Where only some windows of a frame are known, and the
+  // rest of test and reference is the same, the weight of a window's pixels is the area that the window stands for over
+  // its own, so that Q is estimated of the whole frame before it becomes a score.
+  ImageGray pooling_weights;
   int threads = 0;
 };
 
@@ -92,7 +97,8 @@ double fovvideovdp_jod(double q);
 // not grow with time.
 class FovVideoVdp {
  public:
-  // Error(usage) for pictures of less than 8 pixels a side, and for frame rates so low that the temporal filter would
+  // Error(usage) for pictures of less than 8 pixels a side, for pooling weights of another size or that are no weights,
+  // and for frame rates so low that the temporal filter would
   // have less than two taps.
   FovVideoVdp(const FovVideoVdpSettings& settings, int width_px, int height_px);
   ~FovVideoVdp();

@@ -23,6 +23,7 @@ struct CompareJob : MetricChoice {
   AngleReading reading = AngleReading::full_angle;  // of region_angles_deg
   JobSettings shared;  // screen, gaze, colour: the options that `render` has, under the same names
   std::string csv, json, maps;
+  std::string pooling_weights;  // a picture, for FovVideoVDP
   std::vector<std::string> fail_above, fail_below;
   bool map_overlay = false;
   bool anyway = false;

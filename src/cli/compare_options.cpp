@@ -69,6 +69,9 @@ OptionSchema<CompareJob> compare_schema() {
   OptionSchema<CompareJob> schema;
   schema.include(
       metric_schema(), [](auto& job) -> auto& { return job; });
+  schema.value("--pooling-weights", &CompareJob::pooling_weights, "FILE",
+               "A picture in the frames' size whose red channel says how much each pixel counts in fovvideovdp's means "
+               "over a frame, as where windows stand for the whole; other metrics are refused beside it");
   add_limits(schema);
   add_sequence_options(schema);
   schema.include(gaze_file_schema(), shared(&JobSettings::gaze));

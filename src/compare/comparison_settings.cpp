@@ -30,6 +30,12 @@ void check_comparison(const ComparisonSettings& settings) {
   require(settings.metric.pixels_per_degree > 0, "flip", settings.metric.pixels_per_degree,
           "a number of pixels per degree above 0");
   require(settings.frames_per_second >= 0, "`fps`", settings.frames_per_second, "a frame rate");
+  for (const std::string& name : settings.metrics) {
+    if (!settings.pooling_weights.empty() && name != "fovvideovdp") {
+      throw Error(ErrorKind::usage, "`pooling-weights`", name + " has no pooling weights",
+                  "give `metrics` fovvideovdp alone");
+    }
+  }
   // Relative code values fill the range between black and white, so there must be such a range.
   const double black = black_level_cd_m2(p);
   if (!is_absolute(settings.metric.response) && !(black < p.peak_cd_m2)) {

@@ -34,6 +34,14 @@ ComparedPicture read_compared_picture(const std::string& path) {
   return result;
 }
 
+ImageGray read_pooling_weights(const std::string& path) {
+  const ImageRgb picture = is_exr(path) ? read_exr_rgb(path) : read_image_rgb_float(path);
+  ImageGray weights(picture.width_px, picture.height_px);
+  std::transform(picture.pixels.begin(), picture.pixels.end(), weights.pixels.begin(),
+                 [](const Vec3f& value) { return value.x; });
+  return weights;
+}
+
 ImageRgb viewed(const ImageRgb& light, const ColorPipeline& color, double exposure_ev, int threads) {
   const DisplayImage display = color.apply(light, exposure_ev, 8, threads);
   ImageRgb code(light.width_px, light.height_px);

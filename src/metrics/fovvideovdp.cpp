@@ -53,7 +53,8 @@ void normalised_contrast(const float* plane, const std::vector<float>& blurred, 
   }
 }
 
-double sum_of_powers(const std::vector<float>& values, float exponent) {
+// `weights`: of the values; null where all count alike.
+double sum_of_powers(const std::vector<float>& values, const float* weights, float exponent) {
   constexpr std::size_t kRun = 16;
   double sum = 0;
   std::array<float, kRun> powers{};
@@ -63,10 +64,62 @@ double sum_of_powers(const std::vector<float>& values, float exponent) {
       powers[i] = pow_fast(values[x + i], exponent);
     }
     for (std::size_t i = 0; i < count; ++i) {
-      sum += static_cast<double>(powers[i]);
+      sum += static_cast<double>(weights != nullptr ? weights[x + i] * powers[i] : powers[i]);
     }
   }
   return sum;
+}
+
+// The weights of the pixels of a band in its mean.
+struct BandWeights {
+  ImageGray weights;  // empty: all are 1
+  double sum = 0;
+};
+
+BandWeights band_weights(ImageGray weights, int width_px, int height_px) {
+  if (weights.empty()) {
+    return {{}, static_cast<double>(width_px) * height_px};
+  }
+  double sum = 0;
+  for (const float weight : weights.pixels) {
+    sum += static_cast<double>(weight);
+  }
+  return {std::move(weights), sum};
+}
+
+// Means of two by two; at an odd border, of what is there.
+ImageGray halved_weights(const ImageGray& weights) {
+  if (weights.empty()) {
+    return {};
+  }
+  ImageGray half((weights.width_px + 1) / 2, (weights.height_px + 1) / 2);
+  for (int y = 0; y < half.height_px; ++y) {
+    for (int x = 0; x < half.width_px; ++x) {
+      const int x1 = std::min(2 * x + 1, weights.width_px - 1);
+      const int y1 = std::min(2 * y + 1, weights.height_px - 1);
+      half(x, y) = 0.25F * (weights(2 * x, 2 * y) + weights(x1, 2 * y) + weights(2 * x, y1) + weights(x1, y1));
+    }
+  }
+  return half;
+}
+
+void check_weights(const ImageGray& weights, int width_px, int height_px) {
+  if (weights.empty()) {
+    return;
+  }
+  if (weights.width_px != width_px || weights.height_px != height_px) {
+    throw Error(ErrorKind::usage, "`pooling-weights`",
+                fmt::format("{}x{} weights, but the pictures have {}x{} pixels", weights.width_px, weights.height_px,
+                            width_px, height_px));
+  }
+  const bool are_weights = std::all_of(weights.pixels.begin(), weights.pixels.end(),
+                                       [](float weight) { return weight >= 0 && std::isfinite(weight); });
+  const bool any = std::any_of(weights.pixels.begin(), weights.pixels.end(), [](float weight) { return weight > 0; });
+  if (!are_weights || !any) {
+    throw Error(ErrorKind::usage, "`pooling-weights`",
+                are_weights ? "all weights are 0" : "some weights are negative or no numbers",
+                "give finite weights of 0 or more, with one above 0");
+  }
 }
 
 }  // namespace
@@ -104,6 +157,7 @@ struct FovVideoVdp::Impl {
   TemporalFilters filters;  // empty for stills
   std::vector<double> frequencies_cpd;
   std::vector<BandGeometry> bands;
+  std::vector<BandWeights> pooling;   // of each band
   std::deque<LuminancePair> history;  // newest first
 
   Impl(const FovVideoVdpSettings& given, int width, int height) : settings(given), width_px(width), height_px(height) {
@@ -115,11 +169,16 @@ struct FovVideoVdp::Impl {
     if (settings.frames_per_second != 0) {
       filters = temporal_filters(settings.frames_per_second);
     }
+    check_weights(settings.pooling_weights, width, height);
     frequencies_cpd = fovvideovdp_bands_cpd(settings.geometry.pixels_per_degree(), width, height);
+    ImageGray of_band = std::move(settings.pooling_weights);
     int w = width;
     int h = height;
     for (const double frequency : frequencies_cpd) {
       bands.push_back(band_geometry(settings.geometry, settings.foveated, frequency, w, h, settings.threads));
+      ImageGray coarser = halved_weights(of_band);
+      pooling.push_back(band_weights(std::move(of_band), w, h));
+      of_band = std::move(coarser);
       w = (w + 1) / 2;
       h = (h + 1) / 2;
     }
@@ -209,7 +268,8 @@ struct FovVideoVdp::Impl {
         doubled_row(tst_coarse, y, width, row.scratch, row.blurred.data());
         normalised_contrast(&tst.pixels[from], row.blurred, row.background, sensitivity, gain, test);
         masked_differences(reference, test, q, row.difference);
-        return sum_of_powers(row.difference, static_cast<float>(kPoolSpace));
+        const float* weights_of_row = pooling[b].weights.empty() ? nullptr : &pooling[b].weights.pixels[from];
+        return sum_of_powers(row.difference, weights_of_row, static_cast<float>(kPoolSpace));
       };
       row_sum[r][0] = channel(planes.reference_sustained, coarse.reference_sustained, planes.test_sustained,
                               coarse.test_sustained, row.sensitivity_sustained, kMaskSustained);
@@ -224,13 +284,12 @@ struct FovVideoVdp::Impl {
         }
       }
     });
-    const double pixels = static_cast<double>(width) * height;
     for (const auto& sum : row_sum) {
       result.sustained += sum[0];
       result.transient += sum[1];
     }
-    result.sustained = std::pow(result.sustained / pixels, 1 / kPoolSpace);
-    result.transient = std::pow(result.transient / pixels, 1 / kPoolSpace);
+    result.sustained = std::pow(result.sustained / pooling[b].sum, 1 / kPoolSpace);
+    result.transient = std::pow(result.transient / pooling[b].sum, 1 / kPoolSpace);
     return result;
   }
 

@@ -215,6 +215,16 @@ struct KeptResidual {
   float shown = 0;  // as SiteResidual
 };
 
+// Where light is rare, some pixels have it in both halves by chance, so that their replicas are small and their
+// residuals look like details. Of noise that is mostly nothing and at times s, the mean of fourth powers over that of
+// squares is s squared; of normal noise it is three times its variance, which is left out. Twice s is what both halves
+// show together, three times s when one of them has it twice.
+float square_of_coincidence(const Power& wide) {
+  constexpr float kEvents = 3;
+  const float rare = wide.noise > 0 ? wide.spread / wide.noise - 3 * wide.noise : 0.0F;
+  return rare > 0 ? kEvents * kEvents * rare : 0.0F;  // no number where squares were infinite
+}
+
 // The share of a residual that is no noise: what follows from the signal that is there on average far around and from
 // the noise near the pixel (a rare bright sample is noise there), and more where there is more signal near the pixel.
 // Both signals must be beyond doubt. `near` was smoothed twice; `wide` is the mean of `independent` squares.
@@ -224,7 +234,8 @@ float share_to_keep(const Power& near, const Power& wide, float independent, flo
   // Less doubt far around: signal that is missed there costs more than noise that is kept.
   constexpr float kWideDoubt = 2;
   const float spread = 2 * std::max(near.spread, wide.spread);
-  const float near_signal = near.residual - near.noise - doubt * std::sqrt(kWeightsSquared * spread);
+  const float near_signal = near.residual - near.noise - doubt * std::sqrt(kWeightsSquared * spread) -
+                            kWeightsSquared * square_of_coincidence(wide);
   const float wide_signal = wide.residual - wide.noise - kWideDoubt * std::sqrt(2 * wide.spread / independent);
   const float share =
       std::max(near_signal > 0 ? near_signal / near.residual : 0.0F,

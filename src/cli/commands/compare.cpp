@@ -209,6 +209,9 @@ CompareConditions conditions_of(const CompareJob& job, const CompareInputs& inpu
     const FlickerRange range = flicker_range(inputs.frames_per_second, settings.photometry.peak_cd_m2 / 2);
     conditions.emplace_back("flicker", flicker_range_text(range) + "; blind to bias (see temporal_bias)");
   }
+  if (!job.pooling_weights.empty()) {
+    conditions.emplace_back("pooling", "by the weights of " + job.pooling_weights + "; bands and regions are not");
+  }
   if (contains(settings.metrics, "fovvideovdp")) {
     const DisplayPhotometry& p = settings.photometry;
     conditions.emplace_back("fovvideovdp",
@@ -304,6 +307,9 @@ int run_compare(const CompareJob& job) {
   const std::vector<Limit> limits = limits_of(job, settings.metrics);
   check_consecutive(inputs, settings.metrics);
   fix_flip_exposures(settings, pair.reference.light);
+  if (!job.pooling_weights.empty()) {
+    settings.pooling_weights = read_pooling_weights(job.pooling_weights);
+  }
   Comparison comparison(settings, width, height);
   check_compare_outputs(job, inputs, settings.metrics);
   std::ofstream csv = open_csv(job.csv);

@@ -32,6 +32,7 @@ std::unique_ptr<SequenceMetric> make_fovvideovdp(const ComparisonSettings& setti
   metric.geometry = fovvideovdp_geometry(*settings.view);
   metric.frames_per_second = settings.frames_per_second;
   metric.original_border = settings.original_border;
+  metric.pooling_weights = settings.pooling_weights;
   metric.threads = settings.metric.threads;
   return std::make_unique<FovVideoVdpOfFrames>(metric, width_px, height_px);
 }
