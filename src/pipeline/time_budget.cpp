@@ -25,7 +25,6 @@ constexpr double kRehearsalShare = 0.05;
 constexpr double kLeastRehearsal = 1.0 / 16, kMostRehearsal = 8;
 constexpr double kFewer = 0.25;           // of these samples, in the second rehearsal
 constexpr double kPilotShare = 1.0 / 16;  // of a frame's samples, that a pilot at the frame's rates may have
-constexpr double kCloseEnough = 1.3;      // a change of the rate after which the cost of a sample is the same
 constexpr std::uint64_t kSeedTag = 0x52454845415253ULL;  // "REHEARS": no sample of the frame has a part in its rate
 constexpr double kLate = 1.1;                            // over the budget: worth a warning
 // Until the first frame's files are written: milliseconds a megapixel of a common machine.
@@ -56,6 +55,11 @@ FrameSettings with_budget(const FrameSettings& settings, double spp) {
   return result;
 }
 
+// Samples of a pilot are traced in pilot_ms, those of a first look in trace_ms.
+double traced_samples(const TimingRow& row) {
+  return std::max(1.0, static_cast<double>(row.samples - (row.pilot_ms > 0 ? row.pilot_samples : 0)));
+}
+
 ImageGray scaled(ImageGray rates, double by) {
   for (float& rate : rates.pixels) {
     rate = static_cast<float>(by * static_cast<double>(rate));
@@ -66,18 +70,26 @@ ImageGray scaled(ImageGray rates, double by) {
 }  // namespace
 
 FrameCost cost_of(const TimingRow& row) {
-  // Samples of a pilot are traced in pilot_ms, those of a first look in trace_ms.
-  const bool by_pilot = row.pilot_ms > 0;
-  const auto traced = static_cast<double>(row.samples - (by_pilot ? row.pilot_samples : 0));
   FrameCost cost;
-  cost.sample_ms = row.trace_ms / std::max(1.0, traced);
+  cost.sample_ms = row.trace_ms / traced_samples(row);
   cost.fixed_ms = row.plan_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms + row.color_ms +
                   row.write_ms + std::max(0.0, row.pilot_ms - cost.sample_ms * static_cast<double>(row.pilot_samples));
   return cost;
 }
 
+FrameCost cost_of(const TimingRow& row, const FrameCost& known) {
+  FrameCost cost = cost_of(row);
+  const double expected_ms = known.base_ms + known.sample_ms * traced_samples(row);
+  if (expected_ms > 0) {
+    cost.base_ms = known.base_ms * row.trace_ms / expected_ms;
+    cost.sample_ms = known.sample_ms * row.trace_ms / expected_ms;
+  }
+  return cost;
+}
+
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next) {
-  return {0.5 * (known.fixed_ms + next.fixed_ms), 0.5 * (known.sample_ms + next.sample_ms)};
+  return {0.5 * (known.fixed_ms + next.fixed_ms), 0.5 * (known.base_ms + next.base_ms),
+          0.5 * (known.sample_ms + next.sample_ms)};
 }
 
 FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamples& fewer) {
@@ -86,12 +98,12 @@ FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamp
   constexpr double kLeastOfMean = 0.4;
   const double mean = more.trace_ms / std::max(1.0, more.samples);
   cost.sample_ms = std::clamp(slope, kLeastOfMean * mean, mean);
-  cost.fixed_ms += (mean - cost.sample_ms) * more.samples;
+  cost.base_ms = (mean - cost.sample_ms) * more.samples;
   return cost;
 }
 
 double affordable_spp(double budget_ms, const FrameCost& cost, double pixels, double least, double most) {
-  const double left_ms = std::max(0.0, budget_ms - cost.fixed_ms);
+  const double left_ms = std::max(0.0, budget_ms - cost.fixed_ms - cost.base_ms);
   const double spp = left_ms / std::max(cost.sample_ms * pixels, 1e-12);
   return std::clamp(spp, std::min(least, most), most);
 }
@@ -114,7 +126,7 @@ TimeBudget::TimeBudget(PathTracer& tracer, const FrameSettings& settings, const 
       budget_ms_(1e3 * settings.foveation.target.time_s.value()) {}
 
 FrameSettings TimeBudget::settings_for(const FrameRequest& request, const TemporalHistory& history) {
-  if (known_samples_ == 0) {
+  if (known_frames_ == 0) {
     rehearse(request, history);
   }
   const FoveationSettings& foveation = settings_.foveation;
@@ -186,12 +198,9 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
 }
 
 void TimeBudget::learn(TimingRow& row) {
-  const FrameCost cost = cost_of(row);
-  const auto samples = static_cast<double>(row.samples);
-  // A sample costs more at lower rates, so what was known of another rate is forgotten.
-  const bool is_alike = samples < kCloseEnough * known_samples_ && samples > known_samples_ / kCloseEnough;
-  cost_ = is_alike ? mean_cost(cost_, cost) : cost;
-  known_samples_ = samples;
+  const FrameCost cost = cost_of(row, cost_);
+  cost_ = known_frames_ == 0 ? cost : mean_cost(cost_, cost);
+  ++known_frames_;
   add_pilot(rehearsal_, row);
   row.pilot_ms += rehearsal_ms_;
   rehearsal_ = {};

@@ -20,6 +20,7 @@ namespace gazetrace {
 
 struct FrameCost {
   double fixed_ms = 0;  // first hits, filter, accumulation, view, files, and what of a pilot is not tracing
+  double base_ms = 0;   // of tracing, whatever the number of samples
   double sample_ms = 0;
 };
 
@@ -29,8 +30,10 @@ FrameCost cost_of(const TimingRow& row);
 struct TracedSamples {
   double trace_ms = 0, samples = 0;
 };
-// `cost` of a frame with `more` samples, if a sample costs what `more` takes longer than `fewer`; the rest is fixed.
+// `cost` of a frame with `more` samples, if a sample costs what `more` takes longer than `fewer`.
 FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamples& fewer);
+// The same, where something is known already: tracing takes longer or less long than that by one factor.
+FrameCost cost_of(const TimingRow& row, const FrameCost& known);
 // Half of what was known and half of what is new: a frame that was held up by chance counts for half.
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next);
 // Samples a pixel, between `least` and `most`, that leave the frame with `budget_ms`.
@@ -60,7 +63,7 @@ class TimeBudget {
   const OutputSettings& output_;
   double budget_ms_;
   FrameCost cost_;
-  double known_samples_ = 0;  // of the last frame
+  int known_frames_ = 0;
   // Of the rehearsal, until a row has it.
   TraceStats rehearsal_;
   double rehearsal_ms_ = 0;

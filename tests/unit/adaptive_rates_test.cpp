@@ -138,25 +138,35 @@ TEST(TimeBudget, SamplesOfAPilotAreNotPaidTwice) {
   EXPECT_DOUBLE_EQ(cost_of(row).sample_ms, 500.0 / 6e5);
 }
 
+TEST(TimeBudget, AFrameThatTookTwiceAsLongMakesTracingTwiceAsDear) {
+  const TimingRow row = frame_of(5e5);  // 500 ms, expected were 250
+  const FrameCost cost = cost_of(row, {1, 50, 4e-4});
+  EXPECT_DOUBLE_EQ(cost.fixed_ms, 70);
+  EXPECT_DOUBLE_EQ(cost.base_ms, 100);
+  EXPECT_DOUBLE_EQ(cost.sample_ms, 8e-4);
+}
+
 TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
   // 20 ms and 1 microsecond a sample.
-  const FrameCost cost = with_slope({50, 1.2e-3}, {120, 1e5}, {45, 2.5e4});
+  const FrameCost cost = with_slope({50, 0, 1.2e-3}, {120, 1e5}, {45, 2.5e4});
   EXPECT_NEAR(cost.sample_ms, 1e-3, 1e-12);
-  EXPECT_NEAR(cost.fixed_ms, 70, 1e-9);
+  EXPECT_NEAR(cost.base_ms, 20, 1e-9);
+  EXPECT_NEAR(affordable_spp(1070, cost, 1e5, 0.01, 1e6), 10, 1e-9);
   // Where chance has the fewer take longer, or the more no longer, nobody believes it.
-  EXPECT_NEAR(with_slope({50, 0}, {120, 1e5}, {130, 2.5e4}).sample_ms, 0.4 * 1.2e-3, 1e-12);
-  EXPECT_NEAR(with_slope({50, 0}, {120, 1e5}, {0, 2.5e4}).sample_ms, 1.2e-3, 1e-12);
-  EXPECT_NEAR(with_slope({50, 0}, {120, 1e5}, {0, 2.5e4}).fixed_ms, 50, 1e-9);
+  EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {130, 2.5e4}).sample_ms, 0.4 * 1.2e-3, 1e-12);
+  EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {0, 2.5e4}).sample_ms, 1.2e-3, 1e-12);
+  EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {0, 2.5e4}).base_ms, 0, 1e-9);
 }
 
 TEST(TimeBudget, RatesKeepTheirLimits) {
-  const FrameCost cost{100, 1e-3};
+  const FrameCost cost{60, 40, 1e-3};
   EXPECT_DOUBLE_EQ(affordable_spp(99, cost, 1e4, 0.5, 64), 0.5);  // not even the fixed cost
   EXPECT_DOUBLE_EQ(affordable_spp(1e9, cost, 1e4, 0.5, 64), 64);
-  EXPECT_DOUBLE_EQ(affordable_spp(1e9, {0, 0}, 1e4, 0.5, 64), 64);  // nothing was measured
+  EXPECT_DOUBLE_EQ(affordable_spp(1e9, {0, 0, 0}, 1e4, 0.5, 64), 64);  // nothing was measured
   EXPECT_DOUBLE_EQ(affordable_spp(99, cost, 1e4, 8, 4), 4);
-  const FrameCost mean = mean_cost(cost, {300, 3e-3});
-  EXPECT_DOUBLE_EQ(mean.fixed_ms, 200);
+  const FrameCost mean = mean_cost(cost, {300, 10, 3e-3});
+  EXPECT_DOUBLE_EQ(mean.fixed_ms, 180);
+  EXPECT_DOUBLE_EQ(mean.base_ms, 25);
   EXPECT_DOUBLE_EQ(mean.sample_ms, 2e-3);
 }
 
