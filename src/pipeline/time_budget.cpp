@@ -21,9 +21,10 @@ namespace {
 constexpr double kLeastSpp = 1.0 / 16;
 // The frame that is rehearsed at its full size may take about this part of the time for its samples, within these
 // rates.
-constexpr double kRehearsalShare = 0.05;
+constexpr double kRehearsalShare = 0.03;
 constexpr double kLeastRehearsal = 1.0 / 16, kMostRehearsal = 8;
-constexpr double kFewer = 0.25;           // of these samples, in the second rehearsal
+constexpr double kMoreShare = 0.1;        // of the time, for the second rehearsal; at least
+constexpr double kLeastMore = 2;          // times the samples of the first
 constexpr double kPilotShare = 1.0 / 16;  // of a frame's samples, that a pilot at the frame's rates may have
 constexpr std::uint64_t kSeedTag = 0x52454845415253ULL;  // "REHEARS": no sample of the frame has a part in its rate
 constexpr double kLate = 1.1;                            // over the budget: worth a warning
@@ -158,7 +159,8 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   const Pilot first = pilot_at(ImageGray(1, 1, 1));
   const double first_ms = first.times.trace_ms / std::max(1.0, static_cast<double>(first.stats.samples));
 
-  // The frame with few samples, and its samples alone with fewer: the difference is the cost of a sample.
+  // The frame with few samples, and its samples alone with more: the difference is the cost of a sample. Where less
+  // than a sample falls on a pixel, every further one is a further pixel's, too, and costs more.
   const auto settings_at = [&](double spp) {
     FrameSettings settings = with_budget(settings_, spp);
     settings.trace.seed = hash_combine(settings.trace.seed, kSeedTag);
@@ -171,16 +173,17 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
                                 std::max(kMostRehearsal, least));
   TemporalHistory scratch = history;
   const RenderedFrame few = FrameRenderer(tracer_, settings_at(low)).render(request, scratch);
-  const TracedFrame fewer =
-      FrameRenderer(tracer_, settings_at(std::max(low * kFewer, by_pilot ? 0 : least))).trace(request);
+  const double low_ms = few.times.trace_ms / std::max(1.0, static_cast<double>(few.samples.samples));
+  const double high = std::min(kMoreShare * budget_ms_ / (low_ms * pixels), kLeastMore * kMostRehearsal);
+  const TracedFrame more = FrameRenderer(tracer_, settings_at(std::max(high, kLeastMore * low))).trace(request);
   TimingRow row;
   add_times(few.times, row);
   add_samples(few.samples, few.first_look, few.map, row);
-  for (const TraceStats* stats : {&few.samples, &few.first_look, &fewer.sparse.stats, &fewer.first_look}) {
+  for (const TraceStats* stats : {&few.samples, &few.first_look, &more.sparse.stats, &more.first_look}) {
     add_traces(*stats, rehearsal_);
   }
-  cost_ = with_slope(cost_of(row), {few.times.trace_ms, static_cast<double>(few.samples.samples)},
-                     {fewer.times.trace_ms, static_cast<double>(fewer.sparse.stats.samples)});
+  cost_ = with_slope(cost_of(row), {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},
+                     {few.times.trace_ms, static_cast<double>(few.samples.samples)});
   cost_.fixed_ms += guessed_output_ms(output_, pixels);
 
   if (by_pilot) {

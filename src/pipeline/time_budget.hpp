@@ -3,7 +3,7 @@
 //
 // The time of a frame is taken to be a fixed part and a part for each sample. Both are those of the frames before it in
 // this run, whatever those of an earlier run took. The first frame is rehearsed, and the rehearsal is part of its time:
-// at its full size with few samples and with fewer, which tells the fixed part and what a further sample costs. (A
+// at its full size with few samples and with more, which tells the fixed part and what a further sample costs. (A
 // sample costs less where more of them share a pixel.) Where `visible` puts samples they may cost more or less, which
 // pilots tell.
 //
