@@ -54,14 +54,16 @@ struct FalloffParameters {
   FalloffTable table;                                   // table
 };
 
-// A quality that the fall-off `visible` spends samples for until a pilot predicts it. At most one of the members is
-// given; it takes the place of a budget. Jobs have an option for `relmse` alone: against measured pictures, what is
-// predicted of JOD was off by one to two JOD, and whether times are kept was not measured.
+// A quality, or a time, from which the number of samples follows. At most one of the members is given; it takes the
+// place of a budget. `relmse` is for the fall-off `visible`, whose pilot predicts it. From the others render_sequence()
+// makes a budget: from `jod` and `flip` one for all frames, which are uniform, from `time_s` one for each frame of any
+// fall-off. A FrameRenderer alone does not see them.
 struct QualityTarget {
   std::optional<double> relmse;  // mean over the frame of squared error over (squared luminance + 0.01)
-  std::optional<double> jod;     // predicted JOD of the clip, up to 10; see visible_error.hpp
-  std::optional<double> time_s;  // no quality but a time: of pilot, samples and filter of one frame, in seconds
-  [[nodiscard]] bool is_given() const { return relmse || jod || time_s; }
+  std::optional<double> jod;     // of the whole sequence by FovVideoVDP, up to 10
+  std::optional<double> flip;    // mean FLIP of its frames as stills, 0..1
+  std::optional<double> time_s;  // wall time of a frame, its files included, in seconds; frames depend on the machine
+  [[nodiscard]] bool is_given() const { return relmse || jod || flip || time_s; }
 };
 
 constexpr int kDefaultMaxBlockPx = 16;
@@ -87,7 +89,8 @@ struct FoveationSettings {
   // Of the fall-off `map`: the file that MapContext::density is read from, or a pattern of files with a place for the
   // frame's number (frame_file_name()).
   std::string density_map;
-  // Of the fall-off `visible`: the least and the most samples a pixel of any place.
+  // Of the fall-off `visible`: the least and the most samples a pixel of any place. Of targets from which one rate
+  // follows: of the whole frame.
   double min_spp = 0.0625, max_spp = 65536;
   QualityTarget target;
   // A budget replaces the rates above: any fall-off is scaled so that a frame has this many samples, per pixel on
@@ -200,8 +203,6 @@ struct SamplingMap {
   // Where rates are not whole: the expectation of each site's count over all seeds, also where the count is 0 now. An
   // unbiased estimate divides a site's sum by it. Empty where every count is certain.
   std::vector<float> expected_samples;
-  // Samples a pixel where the density is 1, and in the fovea of a layout; 0 in frames that are uniform.
-  double full_rate_spp = 0;
   [[nodiscard]] double expected(std::size_t site) const {
     return expected_samples.empty() ? sites[site].samples : static_cast<double>(expected_samples[site]);
   }

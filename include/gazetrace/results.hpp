@@ -130,6 +130,8 @@ struct ResultFixedQuality {
   std::string metric, scene, gaze, curve;
   double at = 0;
   FixedQuality result;
+  // Of a level in JOD: what sampling by eccentricity alone can save by model_gain.hpp, for white noise.
+  std::optional<double> model_gain = std::nullopt;
 };
 
 // Whether a metric noticed that the gaze was wrong.

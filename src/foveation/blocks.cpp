@@ -117,7 +117,6 @@ WeighedMap blocks_of_density(const DensityField& field, const FoveationSettings&
   map.width_px = width_px;
   map.height_px = height_px;
   map.region = Image<std::uint8_t>(width_px, height_px);
-  map.full_rate_spp = full_rate_spp;
   for (int side = 1; side <= settings.max_block_px; side *= 2) {
     map.regions.push_back({"block_" + std::to_string(side), side, 0, 0, 0, 0});
   }

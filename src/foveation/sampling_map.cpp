@@ -64,19 +64,15 @@ std::optional<double> budget_of(const FoveationSettings& settings, const PlanarV
 }
 
 SamplingMap map_of_layout(Layout layout, const std::optional<double>& budget, const MapContext& context) {
-  const bool about_gaze = layout.regions.size() > 1;
-  const double fovea_spp = layout.regions.front().tau;
   SamplingMap map = map_from_layout(std::move(layout));
-  double scale = 1;
   if (budget) {
     std::vector<double> weights(map.sites.size());
     for (std::size_t i = 0; i < weights.size(); ++i) {
       weights[i] = map.sites[i].samples;
     }
-    scale = rate_of_budget(map, weights, *budget, kMaxSpp);
+    const double scale = rate_of_budget(map, weights, *budget, kMaxSpp);
     set_whole_counts(map, weights, scale, kMaxSpp, context.seed, context.frame);
   }
-  map.full_rate_spp = about_gaze ? fovea_spp * scale : 0;
   return map;
 }
 
@@ -97,7 +93,6 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
   if (budget) {
     rate = rate_of_budget(blocks.map, blocks.weights, *budget, kMaxSpp);
   }
-  blocks.map.full_rate_spp = std::min(rate, kMaxSpp);
   set_whole_counts(blocks.map, blocks.weights, rate, kMaxSpp, context.seed, context.frame);
   return std::move(blocks.map);
 }

@@ -89,24 +89,56 @@ void check_history_options(const JobSettings& job) {
 }
 
 void check_target(const JobSettings& job) {
-  if (!job.foveation.target.jod) {
+  const QualityTarget& target = job.foveation.target;
+  if (!target.jod && !target.flip) {
     return;
   }
-  if (job.gaze.path.empty() && !job.gaze_at) {
-    throw Error(ErrorKind::usage, "`target-jod`", "what is seen depends on where the eye looks",
+  const char* const option = target.jod ? "`target-jod`" : "`target-flip`";
+  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;
+  if (target.jod && !has_gaze) {
+    throw Error(ErrorKind::usage, option, "what is seen depends on where the eye looks",
                 "give `gaze` or `gaze-at`, and the `screen`");
+  }
+  if (target.flip && !has_gaze && !screen_geometry(job.screen)) {
+    throw Error(ErrorKind::usage, option, "what is seen depends on how many pixels a degree has",
+                "give the `screen`, or `screen-px` and `screen-ppd`");
   }
   const std::string filter = filter_of(job).name;
   if (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear")) {
-    throw Error(ErrorKind::usage, "`target-jod`",
+    throw Error(ErrorKind::usage, option,
                 fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see",
                             job.foveation.falloff, filter),
                 "give `falloff` uniform and `filter` none, or a budget");
   }
   if (job.accumulate.mode != AccumulateMode::off) {
-    throw Error(ErrorKind::usage, "`target-jod`",
+    throw Error(ErrorKind::usage, option,
                 "frames that are accumulated have more frames before them than a pilot looks at",
                 "leave `accumulate` out, or give a budget");
+  }
+}
+
+// What is refused depends on the same frame being made twice, or on a frame having a time of its own.
+void check_time_budget(const JobSettings& job) {
+  if (!job.foveation.target.time_s) {
+    return;
+  }
+  PipelineSettings history;
+  history.accumulate = job.accumulate;
+  history.exposure = job.exposure;
+  history.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
+  if (job.resume && uses_history(history)) {
+    throw Error(ErrorKind::usage, "`time-budget`",
+                "frames that depend on those before them cannot be resumed: made again, those before would be others",
+                "leave `resume` out, or give `budget-spp`");
+  }
+  if (job.accumulate.mode == AccumulateMode::two_sided) {
+    throw Error(ErrorKind::usage, "`time-budget`",
+                "frames that are read by those around them have no time of their own",
+                "give `budget-spp`, or another `accumulate`");
+  }
+  if (job.only_pixel) {
+    throw Error(ErrorKind::usage, "`time-budget`", "with `only-pixel` a single pixel is traced, and takes no time",
+                "give `budget-spp`");
   }
 }
 
@@ -174,6 +206,7 @@ void check_job(const Job& whole, const JobSchema& schema) {
   check_ranges(job, schema);
   check_history_options(job);
   check_target(job);
+  check_time_budget(job);
   check_sample_range(job);
   check_chunk(job);
   if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {

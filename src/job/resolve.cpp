@@ -139,13 +139,13 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   }
 }
 
-// For a target in JOD. The sequence is as long as the job is without `frames`; where nothing moves, it is a still or,
-// if there are `frames`, a second of rest.
+// For a target in JOD or FLIP. The sequence is as long as the job is without `frames`; where nothing moves, it is a
+// still or, if there are `frames`, a second of rest.
 void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, const Scene* scene,
                        ResolvedJob& resolved) {
   if (!camera.is_static || (scene != nullptr && moves(*scene))) {
-    throw Error(ErrorKind::usage, "`target-jod`", "the view moves, and is only judged at rest",
-                "give a budget, or hold camera and scene still");
+    throw Error(ErrorKind::usage, job.foveation.target.jod ? "`target-jod`" : "`target-flip`",
+                "the view moves, and is only judged at rest", "give a budget, or hold camera and scene still");
   }
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   JobSettings whole = job;
@@ -277,7 +277,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     choose_chunk(job, camera, taken_off_ns, resolved);
   }
   make_plan(job, camera, taken_off_ns, resolved);
-  if (job.foveation.target.jod) {
+  if (job.foveation.target.jod || job.foveation.target.flip) {
     add_judged_frames(job, camera, taken_off_ns, scene, resolved);
   }
   const auto& aovs = job.exr.aovs;
@@ -316,6 +316,12 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
     resolved.decisions.emplace_back("filter", filter.name + ", because " + filter.reason);
   }
   const JobSettings& settings = resolved.job.settings;
+  if (settings.foveation.target.time_s) {
+    resolved.warnings.emplace_back(
+        "`time-budget`: how many samples frames have depends on the machine and on what else it does; another run "
+        "makes "
+        "other pictures");
+  }
   resolved.pipeline = pipeline_settings(settings);
   if (options.scope == ResolveScope::render) {
     check_output_settings(resolved.pipeline.output, resolved.frames.size() > 1);

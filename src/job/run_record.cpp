@@ -3,12 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
+#include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/version.hpp"
 #include "pipeline/file_journal.hpp"
 
 namespace gazetrace {
+
+namespace {
+
+// The rate that an earlier run of the same settings chose: where all its frames are there, it is not chosen again.
+void keep_chosen_rate(const std::string& record_path, RunRecord& record) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(record_path, ignored)) {
+    return;
+  }
+  try {
+    const RunRecord earlier = read_run_record(record_path);
+    const auto rate = earlier.facts.find("rate");
+    if (earlier.settings_digest == record.settings_digest && rate != earlier.facts.end()) {
+      record.facts.insert(*rate);
+    }
+  } catch (const Error&) {
+    // A damaged record tells nothing, and is about to be replaced.
+  }
+}
+
+}  // namespace
 
 RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
                            const std::vector<std::string>& command_line) {
@@ -27,6 +51,7 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   const std::vector<std::string> outputs = output_files(settings, resolved.frames);
   if (settings.output.resume && !outputs.empty()) {
     record.files = read_earlier_files(outputs.front());  // the file of the record is about to be replaced
+    keep_chosen_rate(outputs.front(), record);
   }
   record.is_part = settings.is_part || settings.trace.samples.has_value();
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
@@ -43,6 +68,9 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   if (settings.accumulate.mode == AccumulateMode::two_sided) {
     record.facts["causal"] = "false";  // frames use others that come after them
   }
+  if (settings.foveation.target.time_s) {
+    record.facts["reproducible"] = "false";  // how many samples a frame has follows from what they took
+  }
   record.facts["state"] = "running";
   return record;
 }
@@ -53,7 +81,9 @@ void finish_run_record(RunRecord& record, const SequenceResult& result, const Fr
   record.facts["peak_memory_mib"] = fmt::format("{:.1f}", peak_memory_mib());
   const Warnings late = result_warnings(result, plan);
   record.warnings.insert(record.warnings.end(), late.begin(), late.end());
-  record.facts.insert(result.facts.begin(), result.facts.end());
+  for (const auto& [name, text] : result.facts) {
+    record.facts.insert_or_assign(name, text);
+  }
   record.bad_samples = result.bad_samples;
   record.files = result.files;
 }

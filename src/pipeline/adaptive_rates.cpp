@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
 #include "pipeline/noise_estimate.hpp"
 #include "pipeline/trace_counts.hpp"
@@ -85,8 +84,6 @@ class RateFinder {
     const QualityTarget& target = settings_.foveation.target;
     if (target.relmse) {
       meet_target();
-    } else if (target.time_s) {
-      spend_time(*target.time_s);
     } else {
       check_pilot_budget(settings_.foveation, request_);
       spend(budget_spp_of(settings_.foveation, request_));
@@ -134,19 +131,6 @@ class RateFinder {
       look_again();
       set_rates(spp - pilot_spp());
     }
-    predict();
-  }
-
-  // The time of a sample, of first hits and of the filter is that of the pilot, which has as many pixels less.
-  void spend_time(double seconds) {
-    const Stopwatch watch;
-    look(kFirstForTarget);
-    const StageTimes& times = noise_.pilot().times;
-    const double pilot_pixels = static_cast<double>(noise_.pilot().luminance.pixels.size());
-    const double sample_ms = times.trace_ms / std::max(1.0, static_cast<double>(result_.pilot.samples));
-    const double fixed_ms = (times.guides_ms + times.reconstruct_ms) * pixels_of(request_) / pilot_pixels;
-    const double wanted = (1e3 * seconds - watch.elapsed_ms() - fixed_ms) / sample_ms / pixels_of(request_);
-    set_rates(std::clamp(wanted, std::max(settings_.foveation.min_spp, 0.01), settings_.foveation.max_spp));
     predict();
   }
 
@@ -250,6 +234,11 @@ void check_pilot_budget(const FoveationSettings& settings, const FrameRequest& r
                     pilot, request.width_px, request.height_px, spp * pixels_of(request)),
         "give more");
   }
+}
+
+double least_pilot_spp(const FrameRequest& request) {
+  const double cell_px = pilot_cell_px(request);
+  return kLeastFirst / (cell_px * cell_px);
 }
 
 AdaptiveRates adaptive_rates(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings) {

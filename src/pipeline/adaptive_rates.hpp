@@ -31,8 +31,10 @@ ImageGray rates_between(const ImageGray& wanted, double spp, double least, doubl
 // Error(usage) for a budget that the first pilot would use up. Traces nothing.
 void check_pilot_budget(const FoveationSettings& settings, const FrameRequest& request);
 
-// A function of request and settings alone, unless FoveationSettings::target is a time. Error(usage) as
-// check_pilot_budget().
+// What the first pilot takes of the smallest budgets, in samples a pixel of the frame (but for rounding at its edges).
+double least_pilot_spp(const FrameRequest& request);
+
+// A function of request and settings alone. Error(usage) as check_pilot_budget().
 AdaptiveRates adaptive_rates(const PosedScene& scene, const FrameRequest& request, const FrameSettings& settings);
 
 }  // namespace gazetrace

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rate of a sequence that is to reach QualityTarget::jod: one budget for all of its frames.
+// The rate of a sequence that is to reach QualityTarget::jod or ::flip: one budget for all of its frames.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "gazetrace/color.hpp"
@@ -12,9 +13,9 @@
 namespace gazetrace {
 
 struct ClipRate {
-  double spp = 0;            // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
-  double predicted_jod = 0;  // of the sequence, at this rate
-  TraceStats pilot;          // samples that were discarded
+  double spp = 0;  // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
+  std::optional<double> predicted_jod, predicted_flip;  // of the sequence, at this rate: what was asked for
+  TraceStats pilot;                                     // samples that were discarded
   int rounds = 0;
   std::size_t frames = 0;  // renderings of judged frames
 

@@ -118,8 +118,11 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind
     return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);
   }
-  if (settings.foveation.target.jod) {
+  if (settings.foveation.target.jod || settings.foveation.target.flip) {
     return "the rate needs a pilot of the sequence";
+  }
+  if (settings.foveation.target.time_s) {
+    return "the rate follows from what samples take, which no two parts have alike";
   }
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";

@@ -203,7 +203,7 @@ void add_fixed_quality(Html& html, const Results& data) {
     return;
   }
   html.begin_table("Speed-up at fixed quality");
-  html.head({"scene and gaze", "metric", "at", "speed-up", "why not"});
+  html.head({"scene and gaze", "metric", "at", "speed-up", "by the model", "why not"});
   for (const ResultFixedQuality& fixed : data.fixed_quality) {
     html.add("<tr><th scope=\"row\">{}</th>",
              escaped(scene_gaze_text({fixed.scene, fixed.gaze}) + (fixed.curve.empty() ? "" : ", " + fixed.curve)));
@@ -212,6 +212,7 @@ void add_fixed_quality(Html& html, const Results& data) {
     html.cell(fixed.result.speed_up ? escaped(fixed.result.bound.empty() ? "" : fixed.result.bound + " ") +
                                           value_text(fixed.result.speed_up)
                                     : std::string("not known"));
+    html.cell(value_text(fixed.model_gain));
     html.add("<td class=\"words\">{}</td></tr>\n", escaped(fixed.result.why));
   }
   html.end_table();

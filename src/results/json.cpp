@@ -308,6 +308,7 @@ void describe(Io& io, T& fixed) {
   io.field("speed_up", fixed.result.speed_up);
   io.field("bound", fixed.result.bound);
   io.field("why", fixed.result.why);
+  io.field("model_gain", fixed.model_gain);
 }
 
 template <class Io, Either<ResultControl> T>

@@ -123,10 +123,11 @@ std::string fixed_quality_text(const Results& results) {
   std::string text;
   for (const ResultFixedQuality& one : results.fixed_quality) {
     const FixedQuality& r = one.result;
-    text += fmt::format("  {}/{}{} {} {:g}: {}{}\n", one.scene, one.gaze,
-                        one.curve.empty() ? "" : ", " + one.curve + ",", one.metric, one.at,
-                        r.speed_up ? fmt::format("{}{}{:.3g}", r.bound, r.bound.empty() ? "" : " ", *r.speed_up) : "-",
-                        r.why.empty() ? "" : " (" + r.why + ")");
+    text += fmt::format(
+        "  {}/{}{} {} {:g}: {}{}{}\n", one.scene, one.gaze, one.curve.empty() ? "" : ", " + one.curve + ",", one.metric,
+        one.at, r.speed_up ? fmt::format("{}{}{:.3g}", r.bound, r.bound.empty() ? "" : " ", *r.speed_up) : "-",
+        r.why.empty() ? "" : " (" + r.why + ")",
+        one.model_gain ? fmt::format("; by the model of eccentricity alone {:.3g}", *one.model_gain) : std::string());
   }
   return text.empty() ? text : "\nspeed-up at fixed quality, t_uniform / t_foveated\n" + text;
 }

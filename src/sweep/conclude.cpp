@@ -8,6 +8,7 @@
 
 #include "gazetrace/output.hpp"
 #include "results/lookup.hpp"
+#include "sweep/model_gain_of_test.hpp"
 #include "sweep/quality_over_time.hpp"
 #include "sweep/scorer.hpp"
 
@@ -299,6 +300,7 @@ Results conclude(Results facts, const SweepPlan& plan, const Measurements& measu
   results.event_shares = agreed(measured.references, &ResultFloor::event_shares);
   results.pareto = pareto_fronts(metrics, rows);
   results.fixed_quality = speed_ups_at_quality(plan.measure, measured.references, rows);
+  add_model_gains(plan, results.fixed_quality);
   results.controls = controls_of(metrics, rows);
   results.notes = notes_of(plan, measured);
   results.rows.assign(rows.begin(), rows.end());  // the runs themselves are left behind

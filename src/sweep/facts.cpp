@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
-#include "gazetrace/model_gain.hpp"
 #include "gazetrace/version.hpp"
 #include "sweep/conclude.hpp"
+#include "sweep/model_gain_of_test.hpp"
 #include "sweep/state.hpp"
 
 namespace gazetrace {
@@ -22,20 +22,10 @@ ResultViewing viewing_of(const SweepPlan& plan) {
   viewing.peak_cd_m2 = photometry.peak_cd_m2;
   viewing.contrast = photometry.contrast;
   viewing.ambient_lux = photometry.ambient_lux;
-  if (request.gaze_direction_true) {
-    constexpr double kCutBelowCpd = 4;
-    constexpr double kCutFactor = 0.1;
-    constexpr double kSlowest = 4;  // frames a second that FovVideoVDP takes for a video
-    ModelGainSettings settings;
-    settings.view = request.view;
-    const FrameRate& fps = plan.tests.front().pipeline.fps;
-    const double per_second = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
-    settings.frames_per_second = plan.tests.front().plan.frames.size() > 1 && per_second > kSlowest ? per_second : 0;
-    const double center_ppd = fovvideovdp_geometry(request.view).pixels_per_degree();
-    viewing.model_gain = model_gain(settings, *request.gaze_direction_true, white_error()).gain;
-    viewing.model_gain_cut_4_cpd =
-        model_gain(settings, *request.gaze_direction_true, cut_error(kCutBelowCpd, kCutFactor, center_ppd)).gain;
-  }
+  constexpr double kJod = 9.5;
+  constexpr NoiseCut kCut{4, 0.1};
+  viewing.model_gain = model_gain_of_test(plan.tests.front(), kJod);
+  viewing.model_gain_cut_4_cpd = model_gain_of_test(plan.tests.front(), kJod, kCut);
   return viewing;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <utility>
 
@@ -41,6 +42,20 @@ void take(Job& job, const Job& other, const JobSchema& schema, const std::functi
       const auto source = other.sources.find(option.name);
       const std::string place = source == other.sources.end() ? std::string() : source->second.place;
       set_option(job, option.name, values, {Origin::file, place, {}}, option.name, schema);
+    }
+  }
+}
+
+// A reference has as many samples as its plan says, in every picture and on every machine.
+void check_reference_has_no_target(const Job& reference, const std::vector<Assignment>& options) {
+  if (!reference.settings.foveation.target.is_given()) {
+    return;
+  }
+  constexpr std::array kTargets{"target-relmse", "target-jod", "target-flip", "time-budget"};
+  for (const Assignment& given : options) {
+    if (is_among(kTargets, given.option)) {
+      throw Error(ErrorKind::input, given.place, fmt::format("a reference cannot follow '{}'", given.option),
+                  "give 'spp' or 'budget-spp'");
     }
   }
 }
@@ -100,6 +115,7 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
     set_option(job, option, {value}, {Origin::file, {}, {}}, option, schema);
   }
   assign(job, request.file.reference.options, schema);
+  check_reference_has_no_target(job, request.file.reference.options);
   job.settings.frames = test.settings.frames;
   job.settings.threads = test.settings.threads;
   if (test.settings.camera_from_gaze) {

@@ -208,8 +208,9 @@ void compare_model(PathTracer& tracer, const World& world, const Options& option
   const PlanarView view = view_of_display(display_by_name("paper"), {}, options.width_px, options.height_px);
   const Vec3d gaze = view.direction(options.gaze.x * options.width_px, options.gaze.y * options.height_px);
   constexpr std::size_t kBands = kBandEnds.size() + 1;
-  const double probe_spp = make_sampling_map(settings, view, gaze).full_rate_spp;
-  if (probe_spp > 0 && probe_spp < options.foveal_spp) {
+  const ImageGray probe = samples_per_pixel(make_sampling_map(settings, view, gaze));
+  const auto probe_spp = static_cast<double>(*std::max_element(probe.pixels.begin(), probe.pixels.end()));
+  if (probe_spp < options.foveal_spp) {
     settings.budget_spp = *settings.budget_spp * options.foveal_spp / probe_spp;
   }
   std::array<std::vector<double>, kBands> foveated;

@@ -98,6 +98,50 @@ class Adaptive(harness.CliTest):
         (self.folder / "9/f.0002.exr").unlink()
         clip("9", "9", "--resume")
         self.assertEqual(whole, self.pictures("9"))
+        # With nothing left to do no rate is chosen, and the record still states it.
+        rate = self.record("9")["facts"]["rate"]
+        clip("9", "9", "--resume")
+        self.assertEqual(rate, self.record("9")["facts"]["rate"])
+
+    def test_a_stated_flip(self):
+        def still(folder, target, *more, ppd="12"):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], "--screen-px", "64,40", "--screen-ppd", ppd, "--falloff",
+                        "uniform", "--filter", "none", "--target-flip", target, *more, "-o", f"{folder}/f.exr")
+            row, = self.rows(folder)
+            return int(row["samples"]) - int(row["pilot_samples"])
+
+        least = still("flip-0.08", "0.08")
+        self.assertGreater(still("flip-0.04", "0.04"), 1.5 * least)
+        self.assertIn("FLIP", self.record("flip-0.04")["facts"]["rate"])
+        still("threads", "0.04", "--threads", "1")
+        self.assertEqual(self.pictures("threads"), self.pictures("flip-0.04"))
+        # The pixels of a screen that is farther away are smaller, and so is their noise.
+        self.assertLess(still("far", "0.08", ppd="40"), 0.9 * least)
+
+    def test_a_time_for_each_frame(self):
+        def timed(folder, *more):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *GAZE, "--frames", "1-2", "--time-budget", "50ms", *more, "-o",
+                        f"{folder}/f.####.exr")
+            return self.rows(folder)
+
+        for falloff, filter_name in (("uniform", "none"), ("visible", "guided"), ("regions", "linear")):
+            rows = timed(falloff, "--falloff", falloff, "--filter", filter_name, "--max-spp", "40")
+            self.assertGreater(int(rows[0]["pilot_samples"]), 0)  # the first frame is rehearsed
+            for row in rows:
+                self.assertLess(int(row["samples"]) - int(row["pilot_samples"]), 40.01 * 64 * 40)
+        record = self.record("uniform")
+        self.assertEqual(record["facts"]["reproducible"], "false")
+        self.assertTrue(any("time-budget" in warning for warning in record["warnings"]), record["warnings"])
+        self.assertIn("time-budget = \"50ms\"", record["config_toml"])
+        # Bounds of a frame's rate, which here leave no choice.
+        rows = timed("bound", "--falloff", "uniform", "--filter", "none", "--min-spp", "3", "--max-spp", "3")
+        self.assertEqual([int(row["samples"]) - int(row["pilot_samples"]) for row in rows], [3 * 64 * 40] * 2)
+        # A frame that is there stays; the other is made again, of whatever number of samples.
+        kept = (self.folder / "bound/f.0001.exr").read_bytes()
+        (self.folder / "bound/f.0002.exr").unlink()
+        timed("bound", "--falloff", "uniform", "--filter", "none", "--min-spp", "3", "--max-spp", "3", "--resume")
+        self.assertEqual(kept, (self.folder / "bound/f.0001.exr").read_bytes())
+        self.assertTrue((self.folder / "bound/f.0002.exr").exists())
 
     def test_a_moving_view_is_not_judged(self):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
@@ -107,7 +151,7 @@ class Adaptive(harness.CliTest):
         self.assertIn("moves", result.stderr)
 
     def test_what_is_refused(self):
-        render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
+        render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet", "--overwrite"]
         for words, *arguments in [
             (["--target-relmse", "visible"], "--target-relmse", "0.01"),
             (["--target-relmse", "budget"], "--falloff", "visible", "--target-relmse", "0.1", "--budget-spp", "3"),
@@ -122,6 +166,19 @@ class Adaptive(harness.CliTest):
             (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
             (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
             (["--sample-range", "pilot"], *RAW, "--target-jod", "9", "--sample-range", "0:2"),
+            (["--target-flip", "screen"], "--falloff", "uniform", "--filter", "none", "--target-flip", "0.05"),
+            (["--target-flip", "bias"], *GAZE, "--falloff", "uniform", "--filter", "guided", "--target-flip", "0.05"),
+            (["--target-flip", "0.03"], *RAW, "--target-flip", "1"),
+            (["--target-flip", "accumulate"], *RAW, "--target-flip", "0.05", "--accumulate", "running"),
+            (["--target-flip", "--max-spp"], *RAW, "--target-flip", "0.001", "--max-spp", "0.1"),
+            (["--time-budget", "unit"], "--time-budget", "2"),
+            (["--time-budget", "seconds"], "--time-budget", "0s"),
+            (["--time-budget", "budget"], "--time-budget", "1s", "--budget-spp", "3"),
+            (["--target-jod", "time-budget"], *RAW, "--target-jod", "9", "--time-budget", "1s"),
+            (["--time-budget", "around"], "--time-budget", "1s", "--accumulate", "two-sided"),
+            (["--time-budget", "resume"], "--time-budget", "1s", "--accumulate", "running", "--resume"),
+            (["--time-budget", "--only-pixel"], "--time-budget", "1s", "--only-pixel", "3,4"),
+            (["--sample-range", "parts"], *RAW, "--time-budget", "1s", "--sample-range", "0:2"),
             (["--target-jod", "--max-spp"], *RAW, "--target-jod", "9.9", "--max-spp", "0.1"),
         ]:
             with self.subTest(arguments=arguments):
@@ -130,6 +187,9 @@ class Adaptive(harness.CliTest):
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
                 for word in words:
                     self.assertIn(word, result.stderr)
+        counts = self.run_program("plan", "--counts", "--size", "64x40", "--falloff", "uniform", "--time-budget", "1s")
+        self.assertEqual(counts.returncode, 2)
+        self.assertIn("time", counts.stderr)
         counts = self.run_program("plan", "--counts", "--size", "64x40", "--falloff", "visible")
         self.assertEqual(counts.returncode, 2)
         self.assertIn("pilot", counts.stderr)

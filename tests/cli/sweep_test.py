@@ -112,6 +112,8 @@ class Sweep(harness.CliTest):
         self.assertEqual({control["wrong"] for control in results["controls"] if control["gaze"] == "moving"},
                          {"shuffled", "center", "mirrored"})
         self.assertTrue(results["fixed_quality"])
+        for line in results["fixed_quality"]:  # the model's gain is of levels in JOD
+            self.assertEqual(line["metric"] == "fovvideovdp", (line["model_gain"] or 0) > 1, line)
         self.assertIn("speed-up at fixed quality", table)
         self.assertIn("equal-time, reached", table)
         self.assertIn("16 samples per pixel", (self.folder / "out/methods.txt").read_text())
@@ -299,6 +301,7 @@ class Sweep(harness.CliTest):
             ("at = [0.2, 0.5]", "", None, ["looks nowhere"]),
             ("spp = 16", "spp = 16\nscramblings = 3", None, ["scramblings"]),
             ("spp = 16", "spp = 16\nseed = 1", None, ["seeds", "reference"]),
+            ("spp = 16", 'time-budget = "1s"', "spp = 16", ["a reference cannot follow 'time-budget'"]),
             ('"flip", "fov', '"flop", "fov', None, ["did you mean 'flip'"]),
             ('quality = ["flip=0.05", "fovvideovdp=9.5"]', 'quality = ["ssim=0.9"]', None, ["ssim"]),
             ("region-samples = [[16, 4, 4], [8, 2, 1]]", 'gaze-offset = ["0s", "100ms"]', None, ["looks elsewhere", "[[gaze]]"]),

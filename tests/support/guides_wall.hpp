@@ -49,9 +49,7 @@ inline SamplingMap map_with_fovea(const PixelSpan& across, const PixelSpan& down
       layout.region(x, y) = 0;
     }
   }
-  SamplingMap map = map_from_layout(std::move(layout));
-  map.full_rate_spp = foveal_samples;
-  return map;
+  return map_from_layout(std::move(layout));
 }
 
 }  // namespace gazetrace

@@ -113,7 +113,7 @@ Results results_with_everything() {
   results.references = {reference};
   results.rows = {row_with_everything()};
   results.pareto = {{"flip", {{"box/left", {"a", "b"}}}}};
-  results.fixed_quality = {{"flip", "box", "left", "region-blocks 1;1", 0.05, {3.5, ">", "never"}}};
+  results.fixed_quality = {{"flip", "box", "left", "region-blocks 1;1", 0.05, {3.5, ">", "never"}, 1.25}};
   results.controls = {{"box", "left", "box-left-1", "flip weighted", "mirrored", "why", 0.1, 0.2, true}};
   results.notes = {"a note"};
   results.methods = "Everything was measured.\n";
@@ -141,6 +141,7 @@ TEST(Results, WhatIsWrittenIsReadAgainToTheBit) {
   EXPECT_EQ(read.view, "ACES SDR");
   EXPECT_EQ(read.controls.at(0).wrong_score, 0.2);
   EXPECT_EQ(read.fixed_quality.at(0).result.bound, ">");
+  EXPECT_EQ(read.fixed_quality.at(0).model_gain, 1.25);
 }
 
 std::vector<std::string> keys_of(const ordered_json& json) {
@@ -173,7 +174,7 @@ TEST(Results, TheKeysOfVersionOne) {
   EXPECT_THAT(keys_of(json.at("viewing")), ElementsAre("size_px", "ppd", "width_deg", "peak_cd_m2", "contrast",
                                                        "ambient_lux", "model_gain", "model_gain_cut_4_cpd"));
   EXPECT_THAT(keys_of(json.at("fixed_quality").at(0)),
-              ElementsAre("metric", "at", "scene", "gaze", "curve", "speed_up", "bound", "why"));
+              ElementsAre("metric", "at", "scene", "gaze", "curve", "speed_up", "bound", "why", "model_gain"));
   EXPECT_THAT(keys_of(json.at("controls").at(0)),
               ElementsAre("scene", "gaze", "metric", "of", "wrong", "right_score", "wrong_score", "sensitive", "why"));
 }

@@ -171,6 +171,11 @@ int run_plan(const PlanArguments& arguments) {
     throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
                 "give another one, or render and read timing.csv");
   }
+  if (arguments.counts && job.foveation.target.is_given()) {
+    throw Error(ErrorKind::usage, "`counts`",
+                "counts that follow from a target or a time are known once it is rendered",
+                "give a budget, or render and read timing.csv");
+  }
   if (!arguments.counts) {
     print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));
     return exit_done;

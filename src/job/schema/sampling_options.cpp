@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // How samples are distributed. The ranges that are stated here are checked by check_foveation(), whose messages say
 // more.
+#include <cmath>
+#include <vector>
+
 #include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 
@@ -152,16 +155,21 @@ void add_pilot_options(JobSchema& schema) {
   using F = FoveationSettings;
   JobIdleRule without_rates_to_limit = with_other_falloffs({"visible"});
   without_rates_to_limit.holds = [elsewhere = without_rates_to_limit.holds](const JobSettings& job) {
-    return elsewhere(job) && !job.foveation.target.jod;
+    return elsewhere(job) && !job.foveation.target.is_given();
+  };
+  JobIdleRule without_least_rate = with_other_falloffs({"visible"});
+  without_least_rate.holds = [elsewhere = without_least_rate.holds](const JobSettings& job) {
+    return elsewhere(job) && !job.foveation.target.time_s;
   };
   schema
       .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
-             "visible: the lowest rate anywhere in the frame, in samples a pixel")
+             "visible: the lowest rate anywhere in the frame, in samples a pixel; with --time-budget, of a frame")
       .within(0, kMostSamples)
-      .idle_when({with_other_falloffs({"visible"})});
+      .idle_when({without_least_rate});
   schema
       .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
-             "visible: the highest rate anywhere in the frame, in samples a pixel; with --target-jod, of the frame")
+             "visible: the highest rate anywhere in the frame, in samples a pixel; with --target-jod, --target-flip "
+             "and --time-budget, of a frame")
       .above(0, kMostSamples)
       .idle_when({without_rates_to_limit});
   schema
@@ -173,6 +181,28 @@ void add_pilot_options(JobSchema& schema) {
       .need("`falloff` visible");
 }
 
+// Settings hold seconds; what is read and written is a duration with its unit.
+void add_time_budget(JobSchema& schema) {
+  OptionOf<JobSettings>& option = schema.value(
+      "--time-budget", at(&JobSettings::foveation, &FoveationSettings::target, &QualityTarget::time_s), "DURATION",
+      Touch::sampling,
+      "As many samples as make a frame take this long, its pilot, filter and files included: the best picture for the "
+      "time, with any --falloff. It depends on the machine and is not reproducible; excludes budgets");
+  option.assign = [](JobSettings& job, const auto& values, const auto& place) {
+    DurationNs time;
+    parse_value(values.at(0), place, time);
+    job.foveation.target.time_s = static_cast<double>(time.ns) * 1e-9;
+  };
+  option.check = [](const auto& values, const auto& place) {
+    DurationNs time;
+    parse_value(values.at(0), place, time);
+  };
+  option.values = [](const JobSettings& job) {
+    const std::optional<double>& time_s = job.foveation.target.time_s;
+    return time_s ? std::vector{format_value(DurationNs{std::llround(*time_s * 1e9)})} : std::vector<std::string>();
+  };
+}
+
 void add_target_options(JobSchema& schema) {
   using F = FoveationSettings;
   schema
@@ -182,6 +212,13 @@ void add_target_options(JobSchema& schema) {
           "sequence scores so much by FovVideoVDP, as 'gazetrace compare' measures it")
       .within(0, 10)
       .need("gaze, `falloff` uniform and `filter` none");
+  schema
+      .value("--target-flip", at(&JobSettings::foveation, &F::target, &QualityTarget::flip), "ERROR", Touch::sampling,
+             "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "
+             "the mean FLIP of a frame is no more, as 'gazetrace compare' measures it")
+      .within(0, 1)
+      .need("`screen`, `falloff` uniform and `filter` none");
+  add_time_budget(schema);
 }
 
 void add_term_options(JobSchema& schema) {

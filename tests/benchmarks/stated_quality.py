@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Does `--target-jod` come out? Clips are rendered to a stated quality, and then measured against a reference.
+"""Does a stated quality come out? Clips are rendered by `--target-jod` or `--target-flip`, and measured against a reference.
 
-  target_jod.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--targets 8.5,9] [--filters none]
-                [--falloffs uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28] [--frames 24]
-                [--reference-spp 4096] [--seed 1]
+  stated_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--metric jod|flip] [--targets 8.5,9]
+                    [--filters none] [--falloffs uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28]
+                    [--frames 24] [--reference-spp 4096] [--seed 1]
 
 OPTIONS are those of `gazetrace render`. Views are at rest, so that one reference stands for all frames; it is rendered in
 two halves of other seeds, and what the halves score against each other, as a still, is printed. Every line is a pair of clip and
-target: JOD stated, predicted and measured by `gazetrace compare`, by how much that is off, the rate, and the share of the pilot
-in the time of all frames. Pictures that OUT_FOLDER holds already are used again; a line is printed as soon as it is measured.
-The last lines count the pairs within 0.1 and 0.2. It needs the Python packages numpy and OpenEXR.
+target: JOD or mean FLIP stated, predicted and measured by `gazetrace compare`, by how much that is off (FLIP: in parts of what was
+stated), the rate, and the share of the pilot in the time of all frames. Pictures that OUT_FOLDER holds already are used again; a line is printed as soon as it is measured.
+The last lines count the pairs within 0.1 and 0.2 JOD, or within 5 and 10 % of FLIP. It needs the Python packages numpy and OpenEXR.
 """
 
 import argparse
@@ -30,6 +30,9 @@ def run(*arguments):
     if done.returncode != 0:
         raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr else f"{arguments[:2]}: {done.returncode}")
     return done.stdout
+
+
+METRICS = {"jod": "fovvideovdp", "flip": "flip"}
 
 
 class Bench:
@@ -62,7 +65,7 @@ class Bench:
 
     def score(self, reference, test, gaze, frames, exposure):
         scores = self.out / "scores.json"
-        run(self.asked.program, "compare", reference / "f.####.exr", test / "f.####.exr", "--metrics", "fovvideovdp", "--fps",
+        run(self.asked.program, "compare", reference / "f.####.exr", test / "f.####.exr", "--metrics", METRICS[self.asked.metric], "--fps",
             "24", "--frames", frames, "--anyway", *self.screen, "--gaze-at", gaze, "--exposure", exposure, "--overwrite",
             "--json", scores)
         return json.loads(scores.read_text())["sequence"][0]["scores"][0]["value"]
@@ -90,13 +93,13 @@ def exposure_of(scene):
 
 def judge(bench, name, scene, gaze, falloff, filter_name, target):
     asked = bench.asked
-    folder = bench.out / name / f"{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
+    folder = bench.out / name / f"{asked.metric}-{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
     bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--falloff", falloff, "--filter", filter_name,
-                 "--target-jod", target, "--seed", str(asked.seed))
+                 f"--target-{asked.metric}", target, "--seed", str(asked.seed))
     with open(folder / "timing.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     rate = json.loads((folder / "run.json").read_text())["facts"]["rate"]
-    predicted = float(rows[0]["predicted_jod"])
+    predicted = float(re.search(r"expected to reach (?:a mean FLIP of )?([\d.e-]+)", rate)[1])
     whole = sum(float(row["total_ms"]) for row in rows)
     pilot = sum(float(row["pilot_ms"]) for row in rows)
     measured = bench.score(bench.reference(name, scene), folder, gaze, f"1-{asked.frames}", exposure_of(scene))
@@ -108,6 +111,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("out")
     parser.add_argument("--scene", action="append", required=True)
+    parser.add_argument("--metric", choices=METRICS, default="jod")
     parser.add_argument("--targets", default="8.5,9")
     parser.add_argument("--filters", default="none")
     parser.add_argument("--falloffs", default="uniform")
@@ -127,24 +131,25 @@ def main():
         name, *scene = shlex.split(text)
         bench.reference(name, scene)
         floor = bench.score(*(bench.out / name / f"half{k}" for k in range(2)), "0.5,0.5", "1", exposure_of(scene))
-        print(f"{name}: the halves of the reference score {floor:.2f} JOD against each other, as a still")
+        print(f"{name}: the halves of the reference score {floor:.4g} {asked.metric.upper()} against each other, as a still")
         for gaze in asked.gazes.split():
             for falloff in asked.falloffs.split(","):
                 for filter_name in asked.filters.split(","):
                     for target in asked.targets.split(","):
-                        place = f"{name:<14}{gaze:>10} {falloff:<9}{filter_name:<8}{float(target):7.2f}"
+                        place = f"{name:<14}{gaze:>10} {falloff:<9}{filter_name:<8}{float(target):7.4g}"
                         try:
                             predicted, measured, spp, pilot = judge(bench, name, scene, gaze, falloff, filter_name, target)
                         except RuntimeError as problem:
                             print(f"{place} {problem}", flush=True)
                             continue
-                        off.setdefault(filter_name, []).append(measured - float(target))
+                        error = measured - float(target) if asked.metric == "jod" else measured / float(target) - 1
+                        off.setdefault(filter_name, []).append(error)
                         pilots.append(pilot)
-                        print(f"{place}{predicted:10.3f}{measured:9.3f}{measured - float(target):+7.3f}{spp:9.2f}{pilot:7.1%}",
-                              flush=True)
+                        print(f"{place}{predicted:10.4g}{measured:9.4g}{error:+7.3f}{spp:9.2f}{pilot:7.1%}", flush=True)
     for filter_name, values in off.items():
-        near = [sum(abs(v) <= most for v in values) for most in (0.1, 0.2)]
-        print(f"{filter_name}: {near[0]} of {len(values)} within 0.1, {near[1]} within 0.2; mean "
+        bounds = (0.1, 0.2) if asked.metric == "jod" else (0.05, 0.1)
+        near = [sum(abs(v) <= most for v in values) for most in bounds]
+        print(f"{filter_name}: {near[0]} of {len(values)} within {bounds[0]}, {near[1]} within {bounds[1]}; mean "
               f"{statistics.fmean(values):+.3f}")
     if pilots:
         print(f"pilot: median {statistics.median(pilots):.1%} of the time, most {max(pilots):.1%}")
