@@ -62,7 +62,7 @@ class Study(harness.CliTest):
         other = self.frames_of_plan("--fps", "10", "--frames", "6", "--trial", "2")[0]
         self.assertEqual(frame["gaze_true"]["row_before"], other["gaze_true"]["row_before"])
         inspected = self.run_ok("gaze", "inspect", "blocks.asc", "--trial", "2", "--json").stdout
-        self.assertEqual(json.loads(inspected)["loss"]["samples"], 500)
+        self.assertEqual(json.loads(inspected)["samples"], 500)
         self.assert_refused(["gaze", "events", "blocks.asc", "--trial", "4"], ["there is no trial 4", "1 to 3"])
         self.assert_refused(["gaze", "events", "blocks.asc", "--trial", "1", "--trial-start", "NO SUCH"],
                             ["has no trial by messages", "3 blocks"])
