@@ -334,7 +334,7 @@ std::size_t count_of(const EyeEvents& events, EyeMovement movement) {
 }
 
 TEST(GazeEvents, EkFindsMicrosaccadesAtTheirTimes) {
-  const std::vector<Step> steps = {{300, 0.4, 0.4}, {700, -0.3, -0.3}, {1200, 0.5, 0.5}, {1600, 3.0, 3.0}};
+  const std::vector<Step> steps = {{300, 0.4, 0.4}, {700, -0.3, -0.3}, {1200, 0.8, 0.8}, {1600, 3.0, 3.0}};
   const GazeLog log = two_eyes(2000, steps);
   const EyeEvents events = detect_events(log, event_preset("microsaccades"));
   std::vector<const EyeEvent*> fast;
