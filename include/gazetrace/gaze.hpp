@@ -93,8 +93,8 @@ struct ClockFit {
   double rms_residual_ns = 0, max_residual_ns = 0;
 };
 ClockFit fit_clock(const std::vector<ClockAnchor>& anchors);
-// The time of the one message or event of the log whose text is `text` or, where there is no such text, contains it.
-// Throws Error(input) where it is not in the log or is in it more than once.
+// The time of the one message or event of the log whose text is `text` or else contains it; "text#2" is the second of
+// several. Throws Error(input) where it is not in the log or, without such a number, is in it more than once.
 std::int64_t time_of_message(const GazeLog& log, std::string_view text);
 
 }  // namespace gazetrace

@@ -18,10 +18,10 @@
 
 namespace gazetrace {
 
-// What an eye does at a time. pursuit occurs in the truth of synthetic logs only, as no method here tells it apart.
-// unclassified: the eye was seen, but its movement is none of the others (fixations too short to be kept, implausible
-// speeds).
-enum class EyeMovement : std::uint8_t { fixation, saccade, pursuit, blink, lost, unclassified };
+// What an eye does at a time. Only ivdt finds pursuit, and only ek finds microsaccades; the parts of a fixation before
+// and after a microsaccade are events of their own. unclassified: the eye was seen, but its movement is none of the
+// others (fixations too short to be kept, implausible speeds).
+enum class EyeMovement : std::uint8_t { fixation, saccade, pursuit, blink, lost, unclassified, microsaccade };
 std::string_view to_string(EyeMovement movement);
 
 // Directions in the head are those of the log; world turns them by the head's pose at the time.
@@ -48,8 +48,8 @@ struct EventSettings {
   std::string method = "ivt";  // a name of `event_methods()`: the algorithm
   GazeSpace space = GazeSpace::head;
   // ivt: a sample slower than this belongs to a fixation. Olsen 2012.
-  double velocity_deg_s = 30;
-  std::int64_t velocity_window_ns = 20'000'000;  // ivt: its window; adaptive: the length of its smoothing
+  double velocity_deg_s = 30;                    // and ivdt
+  std::int64_t velocity_window_ns = 20'000'000;  // ivt, ivdt: its window; adaptive: the length of its smoothing
   // ivt: lost samples in a gap up to this length are bridged for the classification, unless a blink is in it. 0: never.
   std::int64_t max_gap_ns = 75'000'000;
   // ivt: fixations that are no farther apart than both of these become one. 0 ns: never.
@@ -58,14 +58,21 @@ struct EventSettings {
   // All methods: shorter fixations are unclassified. n samples last n steps of the clock, as in Tobii Studio's exports;
   // the window of idt is measured from its first to its last sample.
   std::int64_t min_fixation_ns = 60'000'000;
-  // idt: the most that extent of azimuth plus extent of elevation may be. Salvucci & Goldberg 2000, eq. for D.
+  // idt, ivdt: the most that extent of azimuth plus extent of elevation may be. Salvucci & Goldberg 2000, eq. for D.
   double dispersion_deg = 1.0;
+  // ivdt: gaze that stays within dispersion_deg for this long is a fixation, else a pursuit. Pursuit slower than their
+  // quotient cannot be told from fixation.
+  std::int64_t dispersion_window_ns = 110'000'000;
   // adaptive (Nystrom & Holmqvist 2010): where the peak threshold starts, the speed and acceleration that no eye
   // exceeds, and the shortest saccade.
   double start_velocity_deg_s = 100;
   double max_velocity_deg_s = 1000;
   double max_acceleration_deg_s2 = 100'000;
-  std::int64_t min_saccade_ns = 10'000'000;
+  std::int64_t min_saccade_ns = 10'000'000;  // and ek
+  // ek (Engbert & Kliegl 2003): the thresholds in multiples of the velocities' own spread (their lambda), and the
+  // extent below which a saccade counts as a microsaccade.
+  double noise_factor = 6;
+  double max_microsaccade_deg = 1;
   // All methods: a loss of this length that the log does not explain is taken for a blink (pymovements, after Nystrom
   // et al. 2024). Both 0: only what the log calls a blink is one.
   std::int64_t min_blink_ns = 50'000'000, max_blink_ns = 500'000'000;
@@ -120,6 +127,12 @@ EyeEvents detect_events(const GazeLog& log, const EventSettings& settings);
 // Throws Error(input) where the preset is for the other kind of device. `device` is what the user says that the log was
 // recorded on; where it is empty, `recorded_device` decides.
 EyeEvents detect_events(const GazeLog& log, const EventPreset& preset, std::optional<GazeDevice> device = std::nullopt);
+// The log of one eye alone, out of a log of both. Error(input) where the log has not both eyes.
+GazeLog one_eye(const GazeLog& log, Eye eye);
+// Those of the left eye, of which only the saccades and microsaccades stay that overlap one of the right eye (the
+// binocular condition of Engbert & Kliegl 2003); what else ek found is noise of one eye and becomes part of a fixation.
+EyeEvents binocular_events(const GazeLog& log, const EventPreset& preset,
+                           std::optional<GazeDevice> device = std::nullopt);
 // The events that the log itself states for the eye it has been read for (EyeLink's EFIX and ESACC, Tobii's columns,
 // labels set by hand), in the same form, so that both can be compared. Without such events every sample is
 // unclassified.

@@ -127,6 +127,14 @@ struct GazeWitness {
   std::optional<Eye> eye = std::nullopt;  // the eye whose gaze it describes; empty: that of all rows
 };
 
+// A part of a recording, see gaze_trials.hpp. Both ends are included.
+struct GazeTrial {
+  std::int32_t number = 1;  // from 1, in the order of time
+  std::string name;         // what the recording or the table calls it; may be empty
+  std::int64_t begin_ns = 0, end_ns = 0;
+  std::int32_t block = 0;  // number of the block of the recording that it begins in, from 1; 0: in none
+};
+
 struct GazeLog {
   GazeKind kind = GazeKind::screen;
   // Times increase. There is one gaze for each time, made from both eyes as `Conventions::eye` says.
@@ -158,6 +166,7 @@ struct GazeLog {
 
   GazeOrder order;
   std::vector<GazeWitness> witnesses;
+  std::optional<GazeTrial> trial;  // where the log was cut to one
 };
 
 // Times in the log's own nanoseconds. A gap is a step of more than three median steps.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gazetrace/camera.hpp"
+#include "gazetrace/gaze_trials.hpp"
 #include "gazetrace/option_values.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "gazetrace/scene.hpp"
@@ -29,6 +30,7 @@ struct GazeFileSettings {
   std::string columns_file;  // a column map; what `read` says overrides it
   std::optional<double> min_confidence;
   bool sort = false;
+  TrialSettings trials;
 };
 
 // The settings of one run, in the order of the options, which job_schema.hpp describes.

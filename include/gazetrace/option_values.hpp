@@ -16,6 +16,7 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/gaze.hpp"
 #include "gazetrace/gaze_events.hpp"
+#include "gazetrace/gaze_trials.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/plan.hpp"
 #include "gazetrace/temporal.hpp"
@@ -149,6 +150,8 @@ GAZETRACE_ENUM_NAMES(GazeFrame, "gaze frame", {E::automatic, "auto"}, {E::head, 
                      {E::scene_camera, "scene-camera"})
 GAZETRACE_ENUM_NAMES(Eye, "eye", {E::left, "left"}, {E::right, "right"})
 GAZETRACE_ENUM_NAMES(GazeDevice, "device", {E::desktop, "desktop"}, {E::head_mounted, "head-mounted"})
+GAZETRACE_ENUM_NAMES(TrialSplit, "way to split trials", {E::blocks, "blocks"}, {E::messages, "messages"},
+                     {E::table, "table"})
 GAZETRACE_ENUM_NAMES(UnorderedPolicy, "policy for unordered stamps", {E::error, "error"}, {E::sort, "sort"})
 GAZETRACE_ENUM_NAMES(DiffuseModel, "diffuse model", {E::burley, "burley"}, {E::lambert, "lambert"}, {E::matte, "matte"})
 GAZETRACE_ENUM_NAMES(LightSampling, "light sampling", {E::mis, "mis"}, {E::light_only, "light"}, {E::bsdf_only, "bsdf"})

@@ -212,6 +212,14 @@ struct TracerMemory {
   double build_s = 0;           // time that building the scene took
 };
 
+// What one ray of a camera hits first.
+struct RayHit {
+  std::uint32_t object = 0;    // 1 + index into Scene::instances; 0: nothing, the environment
+  std::uint32_t material = 0;  // 1 + index into Scene::materials; 0: nothing
+  double distance_m = 0;       // from the camera along the ray; +Inf where nothing is hit
+  Vec3d position_m;            // in the world; NaN where nothing is hit
+};
+
 class PosedScene;
 
 class PathTracer {
@@ -257,6 +265,12 @@ class PosedScene {
 
   // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;
+
+  // First hits of single rays through places of the frame (continuous pixel coordinates, which may lie beside it), by
+  // a pinhole in the middle of the shutter's time. Alpha masks are cut out; whether a ray hits a blended surface is
+  // decided by a hash of its index, so that many rays through one place hit it as often as it is opaque.
+  [[nodiscard]] std::vector<RayHit> first_hits(const Camera& camera, int width_px, int height_px,
+                                               const std::vector<Vec2d>& places_px) const;
 
   // What the pixels' centres see in this pose, and where that is in another view, earlier or later.
   [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,

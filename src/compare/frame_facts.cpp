@@ -56,8 +56,9 @@ void take_gaze(const std::string& text, FrameFacts& facts) {
     gaze.v = *v;
   }
   gaze.no_gaze = no_gaze == "1";
-  gaze.movement = named(value_of(text, "event"), {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::pursuit,
-                                                  EyeMovement::blink, EyeMovement::lost, EyeMovement::unclassified});
+  gaze.movement = named(value_of(text, "event"),
+                        {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::pursuit, EyeMovement::blink,
+                         EyeMovement::lost, EyeMovement::unclassified, EyeMovement::microsaccade});
   gaze.since_saccade_ns = integer_of(value_of(text, "since_saccade_ns"));
   // Files of earlier versions state both: there, gaze on a screen has the default direction, straight ahead.
   facts.gaze_is_direction = !direction.empty() && (!has_place || direction != "0,0,-1");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/text.hpp"
@@ -55,6 +56,17 @@ ClockFit fit_clock(const std::vector<ClockAnchor>& anchors) {
 }
 
 std::int64_t time_of_message(const GazeLog& log, std::string_view text) {
+  // "IMAGE ON#2" is the second one of them.
+  std::size_t nth = 0;
+  if (const std::size_t hash = text.rfind('#'); hash != std::string_view::npos) {
+    const std::string_view digits = text.substr(hash + 1);
+    const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), nth);
+    if (code == std::errc() && end == digits.data() + digits.size() && nth > 0) {
+      text = text.substr(0, hash);
+    } else {
+      nth = 0;
+    }
+  }
   const auto find = [&](const auto& fits) {
     std::vector<const GazeEvent*> found;
     for (const GazeEvent& event : log.events) {
@@ -72,11 +84,19 @@ std::int64_t time_of_message(const GazeLog& log, std::string_view text) {
     throw Error(ErrorKind::input, log.source, fmt::format("has no message '{}' to anchor its clock at", text),
                 "give the text of a message, or a time such as 12.5s");
   }
+  if (nth > found.size()) {
+    throw Error(ErrorKind::input, log.source, fmt::format("has only {} messages with '{}'", found.size(), text));
+  }
+  if (nth > 0) {
+    std::stable_sort(found.begin(), found.end(),
+                     [](const GazeEvent* a, const GazeEvent* b) { return a->begin_ns < b->begin_ns; });
+    return found[nth - 1]->begin_ns;
+  }
   if (found.size() > 1) {
     throw Error(ErrorKind::input, log.source,
                 fmt::format("has {} messages with '{}', the first two in lines {} and {}", found.size(), text,
                             found[0]->row, found[1]->row),
-                "give more of the text, or a time such as 12.5s");
+                "give more of the text, #1 behind it for the first of them, or a time such as 12.5s");
   }
   return found.front()->begin_ns;
 }

@@ -57,6 +57,10 @@ std::int64_t count_from_first_sample(GazeLog& log) {
   for (GazeCalibration& calibration : log.calibrations) {
     shift(calibration.t_ns);
   }
+  if (log.trial) {
+    shift(log.trial->begin_ns);
+    shift(log.trial->end_ns);
+  }
   if (log.order.first_backward_row != 0) {
     shift(log.order.first_backward_ns);
     shift(log.order.before_ns);

@@ -55,9 +55,10 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   } else if (log != nullptr && log->samples.size() > 1) {
     const GazeMapping mapping = gaze_mapping(job, log, taken_off_ns);
     const std::int64_t begin_ns = mapping.event_ns.value_or(log->samples.front().t_ns);
-    const double span_ns = static_cast<double>(log->samples.back().t_ns) - static_cast<double>(begin_ns);
+    const std::int64_t end_ns = log->trial ? log->trial->end_ns : log->samples.back().t_ns;
+    const double span_ns = static_cast<double>(end_ns) - static_cast<double>(begin_ns);
     count = frames_until(span_ns * mapping.scale + static_cast<double>(mapping.offset_ns), job);
-    reason = "as long as the gaze log";
+    reason = log->trial ? fmt::format("as long as trial {}", log->trial->number) : "as long as the gaze log";
   } else if (const std::int64_t end_ns = last_motion_ns(scene); end_ns > 0) {
     count = frames_until(static_cast<double>(end_ns), job);
     reason = "as long as the scene's animation";

@@ -32,7 +32,7 @@ GazeLog read_job_gaze(const JobSettings& job) {
   if (!job.recording_screen.empty()) {
     options.display = known_screen(job.recording_screen, "`recording-screen`");
   }
-  return load_gaze_log(job.gaze.path, options);
+  return chosen_trial(load_gaze_log(job.gaze.path, options), job.gaze.trials);
 }
 
 constexpr const char* kAnchor = "`gaze-anchor`";
@@ -103,6 +103,8 @@ GazeMapping gaze_mapping(const JobSettings& job, const GazeLog* log, std::int64_
         throw Error(ErrorKind::usage, "`gaze-start`", "lies ages away from the log");
       }
       mapping.event_ns = event_ns;
+    } else if (log != nullptr && log->trial) {
+      mapping.event_ns = log->trial->begin_ns;
     }
   }
   mapping.interpolation = job.gaze_mode;
@@ -128,7 +130,7 @@ GazeReadOptions read_options(const GazeFileSettings& gaze, const ScreenSettings&
 }
 
 GazeLog read_gaze_file(const GazeFileSettings& gaze, const ScreenSettings& screen) {
-  return load_gaze_log(gaze.path, read_options(gaze, screen));
+  return chosen_trial(load_gaze_log(gaze.path, read_options(gaze, screen)), gaze.trials);
 }
 
 std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_off_ns) {

@@ -12,6 +12,7 @@
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/trace.hpp"
+#include "trace/guides/first_hits.hpp"
 #include "trace/guides/guides.hpp"
 #include "trace/kernel/kernel.hpp"
 #include "trace/motion/surface_motion.hpp"
@@ -376,6 +377,13 @@ Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, con
   tracer_->pose(times_);
   return trace_guides(tracer_->render_scene, tracer_->lights, CameraRays(camera, height_px), width_px, height_px,
                       settings, tracer_->options.threads);
+}
+
+std::vector<RayHit> PosedScene::first_hits(const Camera& camera, int width_px, int height_px,
+                                           const std::vector<Vec2d>& places_px) const {
+  tracer_->pose(times_);
+  return trace_first_hits(*tracer_->scene, tracer_->render_scene, CameraRays(camera, height_px), width_px, height_px,
+                          places_px, tracer_->options.threads);
 }
 
 SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int height_px,

@@ -26,7 +26,7 @@ const std::vector<std::vector<std::string>> kLayers = {
     {"reconstruct", "temporal", "color", "output", "metrics", "visible"},
     {"pipeline", "compare", "results"},
     {"job"},
-    {"sweep", "report", "video"},
+    {"sweep", "report", "study", "video"},
     {"cli"},
 };
 const std::map<std::string, int> kLayer = [] {
@@ -51,6 +51,7 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
     {"output", "reconstruct"},    // writes frames
     {"visible", "metrics"},       // predicts what a metric will measure
     {"visible", "color"},         // through the view that the picture is shown with
+    {"study", "report"},          // pages are filled the same way
 };
 
 // The public headers of each module.
@@ -60,7 +61,7 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"camera", {"camera", "motion"}},
     {"material", {"material"}},
     {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_read", "gaze_write"}},
-    {"gaze", {"gaze", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process", "gaze_synth"}},
+    {"gaze", {"gaze", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process", "gaze_synth", "gaze_trials"}},
     {"scene", {"scene", "deformation"}},
     {"plan", {"plan"}},
     {"foveation", {"foveation"}},
@@ -77,6 +78,7 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"job",
      {"job", "job_schema", "job_settings", "option_schema", "option_values", "metric_options", "recorded_run",
       "resolve"}},
+    {"study", {"gaze_objects", "gaze_aois", "gaze_report"}},
     {"sweep", {"sweep", "sweep_plan"}},
     {"report", {"report"}},
     {"video", {"video"}},

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "gazetrace/error.hpp"
 
 namespace gazetrace {
 
@@ -21,7 +22,17 @@ Command add_gaze_command(CLI::App& app, const Invocation& invocation) {
 #include "cli/gaze_commands.def"
 #undef GAZETRACE_GAZE_COMMAND
   app.require_subcommand(1);
-  return {[commands, &app] { return commands->at(app.get_subcommands().front()->get_name()).run(); }, {}};
+  const auto chosen = [commands, &app]() -> const Command& {
+    return commands->at(app.get_subcommands().front()->get_name());
+  };
+  return {[chosen] { return chosen().run(); },
+          [chosen](const std::string& path) {
+            if (!chosen().read_config) {
+              throw Error(ErrorKind::usage, "`config`",
+                          "only commands with the options of 'render' take a settings file");
+            }
+            chosen().read_config(path);
+          }};
 }
 
 }  // namespace gazetrace

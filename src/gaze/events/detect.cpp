@@ -41,7 +41,8 @@ const EventMethod& method_by_name(const std::string& name) {
 void check_settings(const EventSettings& s) {
   const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
   if (!positive(s.velocity_deg_s) || !positive(s.dispersion_deg) || !positive(s.start_velocity_deg_s) ||
-      !positive(s.max_velocity_deg_s) || !positive(s.max_acceleration_deg_s2) || s.velocity_window_ns <= 0) {
+      !positive(s.max_velocity_deg_s) || !positive(s.max_acceleration_deg_s2) || s.velocity_window_ns <= 0 ||
+      !positive(s.noise_factor) || !positive(s.max_microsaccade_deg) || s.dispersion_window_ns <= 0) {
     throw Error(ErrorKind::usage, "", "a threshold of event detection is not a positive number");
   }
   if (s.min_fixation_ns < 0 || s.min_saccade_ns < 0 || s.max_gap_ns < 0 || s.merge_gap_ns < 0 ||

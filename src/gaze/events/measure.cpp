@@ -32,7 +32,7 @@ class Measures {
     event.peak_velocity_deg_s = event.mean_velocity_deg_s = kNan;
     if (run.movement == EyeMovement::fixation) {
       measure_fixation(event);
-    } else if (run.movement == EyeMovement::saccade) {
+    } else if (run.movement == EyeMovement::saccade || run.movement == EyeMovement::microsaccade) {
       measure_saccade(event);
     }
     return event;

@@ -52,6 +52,8 @@ std::string_view to_string(EyeMovement movement) {
       return "lost";
     case EyeMovement::unclassified:
       return "unclassified";
+    case EyeMovement::microsaccade:
+      return "microsaccade";
   }
   return "unclassified";
 }

@@ -115,6 +115,33 @@ void add_uncertainty_options(JobSchema& schema) {
       .idle_when({without_gaze()});
 }
 
+constexpr auto trial(auto member) {
+  return at(&GazeFileSettings::trials, member);
+}
+
+void add_trial_options(OptionSchema<GazeFileSettings>& schema) {
+  schema.value("--trial", trial(&TrialSettings::trial), "NUMBER|NAME", Touch::gaze,
+               "Only this trial of the log, whose beginning becomes video time 0 ('gazetrace gaze trials' lists them)");
+  schema.value("--trial-by", trial(&TrialSettings::by), choices<TrialSplit>(), Touch::gaze,
+               "What divides the log into trials: its own blocks (START to END), messages, or a table; default: what "
+               "the options below give, else blocks");
+  schema.value("--trial-start", trial(&TrialSettings::begin), "PATTERN", Touch::gaze,
+               "A message that begins a trial: a part of its text, or all of it with * and ?");
+  schema.value("--trial-end", trial(&TrialSettings::end), "PATTERN", Touch::gaze,
+               "A message that ends it; default: where the next one begins, or its block ends");
+  schema
+      .value("--trial-nth", trial(&TrialSettings::nth), "N", Touch::gaze,
+             "Only the Nth message that fits begins a trial; 0: every one")
+      .at_least(0);
+  schema.flag("--trial-per-block", trial(&TrialSettings::per_block), Touch::gaze,
+              "Counts --trial-nth anew in each block");
+  schema
+      .value("--trial-table", trial(&TrialSettings::table), "FILE", Touch::gaze,
+             "Trials as a table: onset and duration in seconds on the log's clock, as in BIDS events, or onset_ns and "
+             "offset_ns; a name or trial_type each")
+      .decides_by_file();
+}
+
 }  // namespace
 
 OptionSchema<GazeFileSettings> gaze_file_schema() {
@@ -153,6 +180,7 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
   schema.flag(
       "--gaze-decimal-comma", read(&GazeReadOptions::decimal_comma), Touch::gaze,
       "Numbers have decimal commas although commas also separate the columns; not needed with tabs or semicolons");
+  add_trial_options(schema);
   return schema;
 }
 

@@ -202,16 +202,18 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
       deformation = static_cast<std::int32_t>(placed.deformations.size());
       placed.deformations.push_back(std::move(*shape.animated));
     }
+    const std::string name = node.name.empty() ? "#" + std::to_string(world.node) : node.name;
     for (const Affine& place : places) {
       const Affine to_world = has_skin ? Affine{} : world.to_world * place;
       if (chain) {
         // Kept whatever its transform is at rest, since the tracer checks the transform at each time.
-        placed.instances.push_back({mesh, to_world, static_cast<std::int32_t>(placed.motions.size()), deformation});
+        placed.instances.push_back(
+            {mesh, to_world, static_cast<std::int32_t>(placed.motions.size()), deformation, name});
         placed.motions.push_back(
             {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; },
              last_key_ns(*chain)});
       } else if (has_usable_inverse(to_world)) {
-        placed.instances.push_back({mesh, to_world, -1, deformation});
+        placed.instances.push_back({mesh, to_world, -1, deformation, name});
       } else if (left_out++ == 0) {
         first_left_out = world.node;
       }

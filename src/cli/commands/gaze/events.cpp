@@ -38,11 +38,15 @@ EyeEvents find_events(const EventsArguments& arguments, const GazeLog& log) {
 // How many of what, for people who write the events to a file.
 std::string summary(const EyeEvents& events, const GazeLog& log) {
   std::string text = fmt::format("{}: by {}", log.source, events.preset);
-  for (const EyeMovement movement : {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::blink, EyeMovement::lost,
-                                     EyeMovement::unclassified}) {
+  for (const EyeMovement movement :
+       {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::microsaccade, EyeMovement::pursuit,
+        EyeMovement::blink, EyeMovement::lost, EyeMovement::unclassified}) {
     std::size_t count = 0;
     for (const EyeEvent& event : events.events) {
       count += event.movement == movement ? 1 : 0;
+    }
+    if (count == 0 && (movement == EyeMovement::microsaccade || movement == EyeMovement::pursuit)) {
+      continue;  // which most methods do not look for
     }
     text += fmt::format(", {} {}", count, to_string(movement));
   }

@@ -36,14 +36,25 @@ void write_picture(const InspectArguments& arguments, const GazeLog& log, const 
   }
 }
 
+// The raw numbers of the trial alone, which an inspection interprets again.
+void cut_rows(RawGaze& raw, const GazeTrial& trial) {
+  const bool corner_moves = !raw.corners.empty();  // counts rows, which must then stay
+  if (!corner_moves) {
+    std::erase_if(raw.rows, [&](const RawSample& row) { return row.t_ns < trial.begin_ns || row.t_ns > trial.end_ns; });
+  }
+}
+
 int run_inspect(const InspectArguments& arguments) {
   for (const std::string& output : {arguments.svg, arguments.save_columns}) {
     if (!output.empty()) {
       check_output_file(output, arguments.overwrite);
     }
   }
-  const GazeUnderInspection gaze =
-      load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
+  GazeUnderInspection gaze = load_for_inspection(arguments.gaze.path, read_options(arguments.gaze, arguments.screen));
+  if (!arguments.gaze.trials.trial.empty()) {
+    gaze.log = chosen_trial(std::move(gaze.log), arguments.gaze.trials);
+    cut_rows(gaze.raw, *gaze.log.trial);
+  }
   GazeInspectOptions options;
   options.display = screen_geometry(arguments.screen);
   options.keep_ids = arguments.keep_ids;

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which objects of a scene gaze fell on. A tracker is off by about half a degree, so an object is never looked at for
+// certain: every object has a share of the directions that the eye may have had.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/gaze_events.hpp"
+#include "gazetrace/job.hpp"
+#include "gazetrace/math.hpp"
+#include "gazetrace/plan.hpp"
+#include "gazetrace/resolve.hpp"
+#include "gazetrace/scene.hpp"
+#include "gazetrace/trace.hpp"
+
+namespace gazetrace {
+
+// Whether the viewer saw this scene on this path while the log was recorded, or looked at something else. A log does
+// not tell; who asks must.
+enum class Stimulus : std::uint8_t { replayed, recorded };
+
+// Directions around a gaze, equally likely each. The gaze is off by a normal distribution around it: the tracker's
+// accuracy is its mean distance, sd = accuracy sqrt(2 / pi) in each axis (the mean of a Rayleigh distribution), and the
+// precision p, a root mean square distance, adds p / sqrt(2) in each axis. Radii are the quantiles (i + 1/2) / count of
+// that distribution and turn by the golden angle from one to the next (Vogel, "A better way to construct the sunflower
+// head", 1979), so that they are stratified in both, and the same for the same gaze.
+std::vector<Vec3d> gaze_cone(const Vec3d& direction, const GazeUncertainty& uncertainty, int count);
+// The angle from the gaze within which 95 % of them lie: sqrt(-2 ln 0.05) standard deviations.
+double gaze_cone_95_deg(const GazeUncertainty& uncertainty);
+
+struct GazeObjectsSettings {
+  GazeUncertainty uncertainty;
+  int rays = 256;  // in the cone of each frame, 16..65536
+  int nearest = 3;
+  // Of the grid over the frame by which the nearest objects are found; 0: none are sought.
+  int grid_rays = 100'000;
+  Stimulus stimulus = Stimulus::replayed;
+};
+
+// What carries a name: a node of the glTF, as far as it has one material. Instances of one node are one object, and so
+// are nodes of one name.
+struct SceneObject {
+  std::string node, material;  // both empty: nothing was hit, the environment
+};
+
+struct ObjectShare {
+  std::size_t object = 0;  // an index into GazeObjects::objects
+  double share = 0;        // of the cone, 0..1
+  // Of its ray that is nearest to the gaze: distance from the camera, +Inf for the environment, and place in the world.
+  double distance_m = 0;
+  Vec3d position_m;
+};
+struct NearObject {
+  std::size_t object = 0;
+  double eccentricity_deg = 0;  // of the ray on it that is nearest to the gaze
+};
+
+struct FrameObjects {
+  std::int32_t frame = 1;
+  std::int64_t t_video_ns = 0, t_log_ns = 0;
+  GazeState state = GazeState::none;  // measured or held; other frames have no gaze and no shares
+  std::optional<EyeMovement> movement;
+  std::vector<ObjectShare> shares;  // the largest first
+  double beside_share = 0;          // of the cone that falls beside the picture
+  std::vector<NearObject> nearest;  // of all nodes in the picture, the nearest first
+};
+
+struct GazeObjects {
+  GazeObjectsSettings settings;
+  std::vector<SceneObject> objects;
+  std::vector<FrameObjects> frames;
+  double grid_deg = 0;  // the step of the grid in the middle of the picture: eccentricities are right to half of it
+};
+
+// First hits around the true gaze (not the steering one) of every frame of the plan, by a pinhole in the middle of the
+// frame's time. Throws Error(usage) for settings out of range.
+GazeObjects gaze_objects(PathTracer& tracer, const Scene& scene, const FramePlan& plan,
+                         const GazeObjectsSettings& settings);
+
+// The same for the frames of a job, whose scene is loaded for it. Accuracy and precision are those of the job
+// (`gaze-accuracy`, `gaze-precision`) or, where it states none, those of the log; Error(input) where that tells none.
+struct GazeOnScene {
+  ResolvedJob resolved;
+  GazeObjects objects;
+};
+GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings);
+
+// One row for each frame: frame, t_video_ns, t_log_ns, gaze, movement, stimulus, node, material, share, distance_m,
+// x_m, y_m, z_m, also (other objects with at least 0.5 % as "node (material)=share"), beside_share, cone95_deg, near_1,
+// near_1_deg, ...
+std::string objects_as_tsv(const GazeObjects& objects);
+std::string objects_as_json(const GazeObjects& objects);
+
+}  // namespace gazetrace

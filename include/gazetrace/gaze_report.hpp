@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a perception lab looks at before it uses a recording: the quality of the data, and pictures of the eye
+// movements, as numbers and as a page.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_events.hpp"
+#include "gazetrace/gaze_log.hpp"
+
+namespace gazetrace {
+
+// Quality of the data of one gaze under the names of Holmqvist, Nystrom & Mulvey, "Eye tracker data quality: what it is
+// and how to measure it", ETRA 2012. NaN: not known.
+struct GazeQuality {
+  std::string of;  // "gaze", "left eye", "right eye"
+  std::size_t samples = 0, usable = 0;
+  // Of the blocks of the recording, or from the first sample to the last; pauses between blocks do not count.
+  double duration_s = 0;
+  double sampling_rate_hz = 0;   // as stated by the log, else by the median step
+  double effective_rate_hz = 0;  // usable samples over the duration
+  double data_loss = 0;          // share of the samples expected at that rate that are missing or not usable
+  double accuracy_deg = 0;       // mean error of the validations in the log
+  double accuracy_max_deg = 0;   // their largest one
+  std::size_t validations = 0;
+  // Medians over fixations: root mean square of the distances from sample to sample, and standard deviation.
+  double precision_rms_s2s = 0, precision_sd = 0;
+  std::string precision_unit;  // "deg", else "px" or "of the picture"
+};
+// `eye`: one eye of a log of both, or the gaze of the log.
+GazeQuality measure_quality(const GazeLog& log, std::optional<Eye> eye = std::nullopt);
+
+// peak velocity (deg/s) = factor * amplitude^exponent, fitted by least squares to the logarithms of all saccades of 0.5
+// to 30 degrees. correlation: of the logarithms. All NaN for fewer than five saccades.
+struct MainSequence {
+  std::size_t saccades = 0;
+  double factor = 0, exponent = 0, correlation = 0;
+};
+MainSequence fit_main_sequence(const std::vector<EyeEvent>& events);
+
+struct GazeReportSettings {
+  std::string method = "auto";  // an event preset, "auto", or "log"
+  std::optional<GazeDevice> device;
+  std::string picture;        // .png or .jpg of what was seen, behind scanpath and heat map; empty: none
+  double heat_sigma_deg = 1;  // standard deviation of the spot that each fixation leaves on the heat map
+  bool keep_ids = false;
+};
+
+struct GazePlot {
+  std::string name, title;  // the name is that of its file without suffix
+  std::string svg;
+  bool is_wide = false;
+  std::string note;  // what is to be known of it; it stands in the drawing, too
+};
+struct GazeReportTable {
+  std::string name;  // of its file
+  std::string text;
+};
+
+struct GazeReport {
+  std::vector<GazeQuality> quality;  // of the gaze and, for logs of both eyes, of each eye
+  EyeEvents events;
+  MainSequence main_sequence;
+  std::vector<GazePlot> plots;
+  // Tables of events of each eye, and the disparity of the eyes over time (vergence.tsv: t_ns, horizontal_deg: left
+  // minus right, so that converging eyes give more, vertical_deg), for logs of both eyes.
+  std::vector<GazeReportTable> tables;
+  std::string json;  // all numbers
+  std::string html;  // one file that needs nothing else
+  Warnings warnings;
+};
+// Throws the errors of detect_events, and Error(input) for a picture that cannot be read.
+GazeReport gaze_report(const GazeLog& log, const GazeReportSettings& settings);
+
+}  // namespace gazetrace

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trials: the parts of a recording that are looked at one by one. They are found by the recording's own blocks, by its
+// messages, or in a table.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_log.hpp"
+
+namespace gazetrace {
+
+// blocks: each block of the recording (EyeLink's START to END, a trial of SMI) is a trial. messages: a message begins
+// each. table: a file lists them.
+enum class TrialSplit : std::uint8_t { blocks, messages, table };
+
+struct TrialSettings {
+  std::string trial;             // the one to look at: its number, or its name; empty: the whole recording
+  std::optional<TrialSplit> by;  // empty: the table where there is one, messages where a pattern is given, else blocks
+  // The message that begins a trial, and the one that ends it. A pattern with * or ? stands for the whole text; one
+  // without for every text that contains it. Without `end` a trial ends where the next one begins, or its block ends.
+  std::string begin, end;
+  // Only the nth of the messages that fit begins a trial; 0: every one does. per_block: they are counted anew in each
+  // block, so that there is one trial in each.
+  std::int32_t nth = 0;
+  bool per_block = false;
+  // Tab- or comma-separated, with a header: `onset` and `duration` in seconds on the log's clock (as in BIDS), or
+  // `onset_ns` and `offset_ns`; `name` or `trial_type` names the trials.
+  std::string table;
+};
+
+// In the order of time; only those that hold a sample. Error(input) where there is none, with what the log has instead;
+// Error(usage) for rules that contradict each other; Error(input) with file:line for a broken table.
+std::vector<GazeTrial> find_trials(const GazeLog& log, const TrialSettings& settings);
+// The one that `which` names, by number or name. Error(usage) with what there is.
+const GazeTrial& trial_by_name(const std::vector<GazeTrial>& trials, std::string_view which);
+
+// What the log holds between begin and end of the trial: samples, messages and events, which are cut at the ends.
+// Validations before it stay, since they say how good it is. Of the head's poses the nearest one on either side stays.
+GazeLog cut_to_trial(GazeLog log, const GazeTrial& trial);
+// The log, or the trial of it that the settings name.
+GazeLog chosen_trial(GazeLog log, const TrialSettings& settings);
+
+// Whether a message's text fits a pattern, as TrialSettings::begin says.
+bool fits_pattern(std::string_view text, std::string_view pattern);
+
+}  // namespace gazetrace

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/gaze_aois.hpp"
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct AoisArguments {
+  Job job;
+  std::string areas, method = "auto", tables;
+  bool json = false;
+};
+
+void write_tables(const AoisArguments& arguments, const AoiAnalysis& analysis) {
+  const std::filesystem::path folder(arguments.tables);
+  const std::pair<const char*, std::string> files[] = {{"aois.tsv", aoi_figures_as_tsv(analysis)},
+                                                       {"fixations.tsv", aoi_fixations_as_tsv(analysis)},
+                                                       {"transitions.tsv", aoi_transitions_as_tsv(analysis)},
+                                                       {"aois.json", aois_as_json(analysis)}};
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) {
+    throw Error(ErrorKind::usage, "`tables`",
+                "cannot make the folder '" + arguments.tables + "': " + problem.message());
+  }
+  for (const auto& [name, text] : files) {
+    check_output_file((folder / name).string(), arguments.job.settings.overwrite);
+  }
+  for (const auto& [name, text] : files) {
+    write_text_atomically((folder / name).string(), text);
+  }
+}
+
+int run_aois(const AoisArguments& arguments) {
+  const AoisOfJob found = aois_of_job(arguments.job, arguments.areas, arguments.method);
+  print_warnings(found.warnings);
+  if (!arguments.tables.empty()) {
+    write_tables(arguments, found.analysis);
+  }
+  print_result(arguments.json ? aois_as_json(found.analysis) : aoi_figures_as_tsv(found.analysis));
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_gaze_aois_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<AoisArguments>();
+  bind_job_options(app, arguments->job);
+  app.add_option(
+         "--aois", arguments->areas,
+         "The areas, .toml or .json: rectangles, ellipses and polygons in fractions or pixels of the display, or "
+         "objects of the scene by node or material")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--method", arguments->method, "How fixations are found ('gazetrace list event-methods'), or log")
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--tables", arguments->tables,
+                 "Writes aois.tsv, fixations.tsv, transitions.tsv and aois.json into this folder")
+      ->type_name("DIR");
+  app.add_flag("--json", arguments->json, "Prints everything as JSON");
+  return {[arguments] { return run_aois(*arguments); },
+          [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/gaze_objects.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct ObjectsArguments {
+  Job job;
+  GazeObjectsSettings objects;
+  bool recorded_here = false;
+  std::string table;
+};
+
+std::string summary(const ObjectsArguments& arguments, const GazeObjects& objects) {
+  const GazeUncertainty& u = objects.settings.uncertainty;
+  return fmt::format(
+      "{}: {} frames, {} objects; accuracy {:.3g} deg, precision {:.3g} deg: 95 % of the cone within {:.3g} deg\n{}\n",
+      arguments.table, objects.frames.size(), objects.objects.size() - 1, u.accuracy_deg, u.precision_deg,
+      gaze_cone_95_deg(u),
+      arguments.recorded_here ? "recorded on this stimulus, as stated"
+                              : "replayed: nobody stated that the viewer saw this (--recorded-here)");
+}
+
+int run_objects(ObjectsArguments& arguments) {
+  if (!arguments.table.empty()) {
+    check_output_file(arguments.table, arguments.job.settings.overwrite);
+  }
+  arguments.objects.stimulus = arguments.recorded_here ? Stimulus::recorded : Stimulus::replayed;
+  const GazeOnScene seen = look_at_scene(arguments.job, arguments.objects);
+  print_warnings(seen.resolved.warnings);
+  const bool json = arguments.table.ends_with(".json");
+  const std::string text = json ? objects_as_json(seen.objects) : objects_as_tsv(seen.objects);
+  if (arguments.table.empty()) {
+    print_result(text);
+  } else {
+    write_text_atomically(arguments.table, text);
+    print_result(summary(arguments, seen.objects));
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_gaze_objects_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<ObjectsArguments>();
+  bind_job_options(app, arguments->job);
+  app.add_option("--table", arguments->table, "Where the table goes, .tsv or .json; default: as TSV to stdout")
+      ->type_name("FILE");
+  app.add_flag("--recorded-here", arguments->recorded_here,
+               "States that the viewer saw this scene on this path while the log was recorded; else it is a replay");
+  app.add_option("--cone-rays", arguments->objects.rays, "Directions in the cone of each frame")
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--nearest", arguments->objects.nearest, "How many of the objects nearest to the gaze are named")
+      ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--grid-rays", arguments->objects.grid_rays,
+                 "Rays over the frame that look for these; they are found to half a step of the grid")
+      ->type_name("N")
+      ->capture_default_str();
+  return {[arguments] { return run_objects(*arguments); },
+          [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// I-VDT: what is faster than a threshold is a saccade; of the rest, a window slides until the gaze stays within D in it
+// and then grows as long as it does, and is a fixation; what the window passes over is a pursuit. Komogortsev & Karpov,
+// "Automated classification and scoring of smooth pursuit eye movements in the presence of fixations and saccades",
+// Behavior Research Methods 45, 2013.
+//
+// That paper lets the window run over the trace without its saccades. Here it does not reach over a saccade or a loss.
+// Samples too close to the end of such a stretch to fill a window are what the sample before them is; in a stretch
+// shorter than the window, whether it is a fixation is decided by the dispersion of all of it.
+#include <algorithm>
+#include <cstddef>
+
+#include "gaze/angles.hpp"
+#include "gaze/events/dispersion_window.hpp"
+#include "gaze/events/event_method.hpp"
+
+namespace gazetrace {
+namespace {
+
+void split_stretch(const GazeDirections& gaze, std::size_t first, std::size_t end, EyeEvents& events) {
+  const EventSettings& settings = events.settings;
+  const auto label = [&](std::size_t from, std::size_t to, EyeMovement movement) {
+    std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(from),
+              events.labels.begin() + static_cast<std::ptrdiff_t>(to), movement);
+  };
+  label(first, end, EyeMovement::pursuit);
+  DispersionWindow window(gaze.direction);
+  window.start(first);
+  for (std::size_t begin = first; begin < end;) {
+    const auto is_filled = [&] {
+      return window.end() > begin && gaze.t_ns[window.end() - 1] - gaze.t_ns[begin] >= settings.dispersion_window_ns;
+    };
+    while (window.end() < end && !is_filled()) {
+      window.push();
+    }
+    if (!is_filled()) {
+      const bool follows_fixation = begin > first && events.labels[begin - 1] == EyeMovement::fixation;
+      const bool is_alone = begin == first && window.dispersion_deg() <= settings.dispersion_deg;
+      if (follows_fixation || is_alone) {
+        label(begin, end, EyeMovement::fixation);
+      }
+      return;
+    }
+    if (window.dispersion_deg() > settings.dispersion_deg) {
+      window.pop();
+      ++begin;
+      continue;
+    }
+    while (window.end() < end && window.dispersion_with_next_deg() <= settings.dispersion_deg) {
+      window.push();
+    }
+    label(begin, window.end(), EyeMovement::fixation);
+    begin = window.end();
+    if (begin < end) {
+      window.start(begin);
+    }
+  }
+}
+
+// A pursuit as short as a fixation that is not kept is the flank of a saccade.
+void drop_short_pursuits(const GazeDirections& gaze, EyeEvents& events) {
+  const std::int64_t step_ns = median_step_ns(gaze.t_ns);
+  for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
+    if (run.movement == EyeMovement::pursuit &&
+        gaze.t_ns[run.last] - gaze.t_ns[run.first] + step_ns < events.settings.min_fixation_ns) {
+      std::fill(events.labels.begin() + static_cast<std::ptrdiff_t>(run.first),
+                events.labels.begin() + static_cast<std::ptrdiff_t>(run.last) + 1, EyeMovement::unclassified);
+    }
+  }
+}
+
+}  // namespace
+
+void classify_ivdt(const GazeDirections& gaze, EyeEvents& events) {
+  const std::vector<double> speed = angular_speed_deg_s(gaze, events.settings.velocity_window_ns);
+  for (std::size_t i = 0; i < speed.size(); ++i) {
+    if (speed[i] >= events.settings.velocity_deg_s) {
+      events.labels[i] = EyeMovement::saccade;
+    }
+  }
+  for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
+    if (run.movement == EyeMovement::unclassified) {
+      split_stretch(gaze, run.first, run.last + 1, events);
+    }
+  }
+  drop_short_fixations(gaze, events);
+  drop_short_pursuits(gaze, events);
+}
+
+}  // namespace gazetrace

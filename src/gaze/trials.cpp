@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/gaze_trials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <utility>
+
+#include "core/text.hpp"
+#include "gaze/trial_table.hpp"
+
+namespace gazetrace {
+namespace {
+
+// The blocks of the recording, in the order of time.
+std::vector<GazeTrial> blocks_of(const GazeLog& log) {
+  std::vector<GazeTrial> blocks;
+  for (const GazeEvent& event : log.events) {
+    if (event.type == GazeEventType::segment) {
+      blocks.push_back({0, {}, event.begin_ns, event.end_ns, 0});
+    }
+  }
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const GazeTrial& a, const GazeTrial& b) { return a.begin_ns < b.begin_ns; });
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    blocks[i].block = static_cast<std::int32_t>(i) + 1;
+  }
+  return blocks;
+}
+
+// The block that a time lies in; null where it lies in none.
+const GazeTrial* block_at(const std::vector<GazeTrial>& blocks, std::int64_t t_ns) {
+  const auto after = std::upper_bound(blocks.begin(), blocks.end(), t_ns,
+                                      [](std::int64_t t, const GazeTrial& block) { return t < block.begin_ns; });
+  return after != blocks.begin() && t_ns <= std::prev(after)->end_ns ? &*std::prev(after) : nullptr;
+}
+
+std::vector<const GazeEvent*> messages_of(const GazeLog& log, const std::string& pattern) {
+  std::vector<const GazeEvent*> messages;
+  for (const GazeEvent& event : log.events) {
+    if (event.type == GazeEventType::message && fits_pattern(event.text, pattern)) {
+      messages.push_back(&event);
+    }
+  }
+  std::stable_sort(messages.begin(), messages.end(),
+                   [](const GazeEvent* a, const GazeEvent* b) { return a->begin_ns < b->begin_ns; });
+  return messages;
+}
+
+std::vector<GazeTrial> trials_by_messages(const GazeLog& log, const TrialSettings& settings,
+                                          const std::vector<GazeTrial>& blocks) {
+  std::map<std::int32_t, std::int32_t> counts;
+  std::vector<GazeTrial> trials;
+  for (const GazeEvent* message : messages_of(log, settings.begin)) {
+    const GazeTrial* const block = block_at(blocks, message->begin_ns);
+    const std::int32_t in_block = block != nullptr ? block->block : 0;
+    const std::int32_t count = ++counts[settings.per_block ? in_block : 0];
+    if (settings.nth == 0 || count == settings.nth) {
+      const std::int64_t end_ns = block != nullptr ? block->end_ns : log.samples.back().t_ns;
+      trials.push_back({0, message->text, message->begin_ns, std::max(end_ns, message->begin_ns), in_block});
+    }
+  }
+  for (std::size_t i = 0; i + 1 < trials.size(); ++i) {
+    trials[i].end_ns = std::max(std::min(trials[i].end_ns, trials[i + 1].begin_ns - 1), trials[i].begin_ns);
+  }
+  if (settings.end.empty()) {
+    return trials;
+  }
+  const std::vector<const GazeEvent*> ends = messages_of(log, settings.end);
+  for (GazeTrial& trial : trials) {
+    const auto end = std::upper_bound(ends.begin(), ends.end(), trial.begin_ns,
+                                      [](std::int64_t t, const GazeEvent* message) { return t < message->begin_ns; });
+    if (end != ends.end()) {
+      trial.end_ns = std::min(trial.end_ns, (*end)->begin_ns);
+    }
+  }
+  return trials;
+}
+
+TrialSplit split_of(const TrialSettings& settings) {
+  const TrialSplit split = settings.by.value_or(!settings.table.empty()   ? TrialSplit::table
+                                                : !settings.begin.empty() ? TrialSplit::messages
+                                                                          : TrialSplit::blocks);
+  const auto needs = [&](TrialSplit which, bool given, const char* option, const char* name) {
+    if (given && split != which) {
+      throw Error(ErrorKind::usage, option, fmt::format("says nothing where trials are not split by {}", name),
+                  fmt::format("leave it out, or give `trial-by` {}", name));
+    }
+  };
+  needs(TrialSplit::table, !settings.table.empty(), "`trial-table`", "table");
+  needs(TrialSplit::messages, !settings.begin.empty(), "`trial-start`", "messages");
+  needs(TrialSplit::messages, !settings.end.empty(), "`trial-end`", "messages");
+  needs(TrialSplit::messages, settings.nth != 0, "`trial-nth`", "messages");
+  needs(TrialSplit::messages, settings.per_block, "`trial-per-block`", "messages");
+  if (split == TrialSplit::messages && settings.begin.empty()) {
+    throw Error(ErrorKind::usage, "`trial-by`", "does not say which message begins a trial", "give `trial-start`");
+  }
+  if (split == TrialSplit::table && settings.table.empty()) {
+    throw Error(ErrorKind::usage, "`trial-by`", "names no table", "give `trial-table`");
+  }
+  if (settings.per_block && settings.nth == 0) {
+    throw Error(ErrorKind::usage, "`trial-per-block`", "counts messages, and every one begins a trial",
+                "give `trial-nth`");
+  }
+  return split;
+}
+
+std::string what_it_has(const GazeLog& log, const std::vector<GazeTrial>& blocks) {
+  const auto messages = std::count_if(log.events.begin(), log.events.end(),
+                                      [](const GazeEvent& e) { return e.type == GazeEventType::message; });
+  return fmt::format("the log has {} blocks and {} messages", blocks.size(), messages);
+}
+
+}  // namespace
+
+bool fits_pattern(std::string_view text, std::string_view pattern) {
+  text = trim(text);
+  if (pattern.find_first_of("*?") == std::string_view::npos) {
+    return text.find(pattern) != std::string_view::npos;
+  }
+  // Where a star fits too little, it takes one character more: only the last star is ever tried again.
+  std::size_t t = 0;
+  std::size_t p = 0;
+  std::size_t star = std::string_view::npos;
+  std::size_t tried = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && (pattern[p] == '?' || (pattern[p] != '*' && pattern[p] == text[t]))) {
+      ++t;
+      ++p;
+    } else if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      tried = t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++tried;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+std::vector<GazeTrial> find_trials(const GazeLog& log, const TrialSettings& settings) {
+  const TrialSplit split = split_of(settings);
+  if (log.samples.empty()) {
+    throw Error(ErrorKind::input, log.source, "has no samples to divide into trials");
+  }
+  const std::vector<GazeTrial> blocks = blocks_of(log);
+  std::vector<GazeTrial> trials = split == TrialSplit::blocks     ? blocks
+                                  : split == TrialSplit::messages ? trials_by_messages(log, settings, blocks)
+                                                                  : read_trial_table(settings.table);
+  std::erase_if(trials, [&](const GazeTrial& trial) {
+    const auto first = std::lower_bound(log.samples.begin(), log.samples.end(), trial.begin_ns,
+                                        [](const GazeSample& s, std::int64_t t) { return s.t_ns < t; });
+    return first == log.samples.end() || first->t_ns > trial.end_ns;
+  });
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    trials[i].number = static_cast<std::int32_t>(i) + 1;
+    if (trials[i].block == 0) {
+      const GazeTrial* const block = block_at(blocks, trials[i].begin_ns);
+      trials[i].block = block != nullptr ? block->block : 0;
+    }
+  }
+  if (trials.empty()) {
+    const char* const remedy =
+        split == TrialSplit::blocks     ? "give `trial-start` with a message's text, or `trial-table`"
+        : split == TrialSplit::messages ? "check the text of `trial-start`, and `trial-nth` against their number"
+                                        : "its times must be on the clock of the log";
+    throw Error(ErrorKind::input, log.source,
+                fmt::format("has no trial by {}: {}",
+                            split == TrialSplit::blocks     ? "blocks"
+                            : split == TrialSplit::messages ? "messages"
+                                                            : "that table",
+                            what_it_has(log, blocks)),
+                remedy);
+  }
+  return trials;
+}
+
+const GazeTrial& trial_by_name(const std::vector<GazeTrial>& trials, std::string_view which) {
+  std::size_t number = 0;
+  const auto [end, code] = std::from_chars(which.data(), which.data() + which.size(), number);
+  if (code == std::errc() && end == which.data() + which.size()) {
+    if (number < 1 || number > trials.size()) {
+      throw Error(ErrorKind::usage, "`trial`", fmt::format("there is no trial {}", which),
+                  fmt::format("they are numbered from 1 to {}", trials.size()));
+    }
+    return trials[number - 1];
+  }
+  const GazeTrial* found = nullptr;
+  for (const GazeTrial& trial : trials) {
+    if (trim(trial.name) != which) {
+      continue;
+    }
+    if (found != nullptr) {
+      throw Error(ErrorKind::usage, "`trial`",
+                  fmt::format("trials {} and {} have that name", found->number, trial.number), "give the number");
+    }
+    found = &trial;
+  }
+  if (found == nullptr) {
+    throw Error(ErrorKind::usage, "`trial`", fmt::format("no trial is called '{}'", which),
+                fmt::format("give a name, or a number from 1 to {}", trials.size()));
+  }
+  return *found;
+}
+
+GazeLog cut_to_trial(GazeLog log, const GazeTrial& trial) {
+  const auto cut = [&](auto& values, std::size_t first, std::size_t end) {
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>(end), values.end());
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  const auto from = [&](const auto& values, std::int64_t t_ns) {
+    return static_cast<std::size_t>(
+        std::lower_bound(values.begin(), values.end(), t_ns, [](const auto& v, std::int64_t t) { return v.t_ns < t; }) -
+        values.begin());
+  };
+  const auto until = [&](const auto& values, std::int64_t t_ns) {
+    return static_cast<std::size_t>(
+        std::upper_bound(values.begin(), values.end(), t_ns, [](std::int64_t t, const auto& v) { return t < v.t_ns; }) -
+        values.begin());
+  };
+  const std::size_t first = from(log.samples, trial.begin_ns);
+  const std::size_t end = std::max(until(log.samples, trial.end_ns), first);
+  const std::size_t count = log.samples.size();
+  if (log.eyes.size() == count) {
+    cut(log.eyes, first, end);
+  }
+  if (log.origins.size() == count) {
+    cut(log.origins, first, end);
+  }
+  cut(log.samples, first, end);
+  if (!log.head.empty()) {
+    const std::size_t head_first = from(log.head, trial.begin_ns);
+    const std::size_t head_end = until(log.head, trial.end_ns);
+    cut(log.head, head_first > 0 ? head_first - 1 : 0, std::min(head_end + 1, log.head.size()));
+  }
+  std::erase_if(log.events, [&](const GazeEvent& e) { return e.end_ns < trial.begin_ns || e.begin_ns > trial.end_ns; });
+  for (GazeEvent& event : log.events) {
+    event.begin_ns = std::max(event.begin_ns, trial.begin_ns);
+    event.end_ns = std::min(event.end_ns, trial.end_ns);
+  }
+  std::erase_if(log.calibrations, [&](const GazeCalibration& c) { return c.t_ns > trial.end_ns; });
+  log.trial = trial;
+  return log;
+}
+
+GazeLog chosen_trial(GazeLog log, const TrialSettings& settings) {
+  if (settings.trial.empty()) {
+    split_of(settings);  // says what contradicts itself, although nothing is cut
+    return log;
+  }
+  const std::vector<GazeTrial> trials = find_trials(log, settings);
+  const GazeTrial trial = trial_by_name(trials, settings.trial);
+  return cut_to_trial(std::move(log), trial);
+}
+
+}  // namespace gazetrace

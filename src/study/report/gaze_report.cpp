@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/gaze_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "gaze/inspect/inspect.hpp"
+#include "study/report/drawing.hpp"
+#include "study/report/page.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+EyeEvents events_by(const GazeLog& log, const GazeReportSettings& settings) {
+  if (settings.method == "log") {
+    return events_of_log(log);
+  }
+  const EventPreset& preset =
+      settings.method == "auto" ? default_event_preset(log, settings.device) : event_preset(settings.method);
+  return detect_events(log, preset, settings.device);
+}
+
+bool has_both_eyes(const GazeLog& log) {
+  return !log.eyes.empty() && log.eyes.size() == log.samples.size();
+}
+
+// Places in the unit of the plane, and pupils, of the gaze and of each eye.
+struct Traces {
+  std::vector<double> seconds;
+  std::vector<GazeTrace> x, y, pupil, disparity;
+};
+
+Traces traces_of(const GazeLog& log, const GazePlane& plane) {
+  Traces traces;
+  const bool both = has_both_eyes(log);
+  const std::size_t count = log.samples.size();
+  const auto list = [&](std::vector<GazeTrace>& to, const std::string& name, const char* color) {
+    to.push_back({name, color, std::vector<double>(count, kNan)});
+  };
+  for (std::vector<GazeTrace>* const to : {&traces.x, &traces.y, &traces.pupil}) {
+    if (both) {
+      list(*to, "left eye", kLeftColor);
+      list(*to, "right eye", kRightColor);
+    } else {
+      list(*to, "gaze", kGazeColor);
+    }
+  }
+  list(traces.disparity, "horizontal", kGazeColor);
+  list(traces.disparity, "vertical", "#009e73");
+  const auto pupil = [](float size) { return size > 0 ? static_cast<double>(size) : kNan; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const GazeSample& sample = log.samples[i];
+    traces.seconds.push_back(static_cast<double>(sample.t_ns - log.samples.front().t_ns) * 1e-9);
+    if (!both) {
+      const Vec2d at = is_usable(sample.validity) ? plane.of(sample) : Vec2d{kNan, kNan};
+      traces.x[0].values[i] = at.x;
+      traces.y[0].values[i] = at.y;
+      traces.pupil[0].values[i] = pupil(sample.pupil);
+      continue;
+    }
+    const EyeGaze* const eyes[] = {&log.eyes[i].left, &log.eyes[i].right};
+    for (std::size_t e = 0; e < 2; ++e) {
+      const Vec2d at = is_usable(eyes[e]->validity) ? plane.at(eyes[e]->at) : Vec2d{kNan, kNan};
+      traces.x[e].values[i] = at.x;
+      traces.y[e].values[i] = at.y;
+      traces.pupil[e].values[i] = pupil(eyes[e]->pupil);
+    }
+    traces.disparity[0].values[i] = traces.x[0].values[i] - traces.x[1].values[i];
+    traces.disparity[1].values[i] = traces.y[0].values[i] - traces.y[1].values[i];
+  }
+  return traces;
+}
+
+void add_time_plots(const GazeLog& log, const GazePlane& plane, GazeReport& report) {
+  const Traces traces = traces_of(log, plane);
+  const auto add = [&](const char* name, const std::string& title, const std::string& label,
+                       const std::vector<GazeTrace>& lines) {
+    if (auto plot = trace_plot(name, title, label, traces.seconds, lines)) {
+      report.plots.push_back(std::move(*plot));
+    }
+  };
+  add("x_over_time", "Horizontal position", fmt::format("x [{}], right", plane.unit()), traces.x);
+  add("y_over_time", "Vertical position", fmt::format("y [{}], up", plane.unit()), traces.y);
+  if (has_both_eyes(log)) {
+    add("disparity_over_time", "Disparity: left eye less right eye (vergence)",
+        fmt::format("disparity [{}]", plane.unit()), traces.disparity);
+  }
+  const std::string unit = log.pupil_unit.empty() ? "unit not stated" : log.pupil_unit;
+  add("pupil_over_time", fmt::format("Pupil size [{}]", unit), fmt::format("pupil [{}]", unit), traces.pupil);
+  if (!has_both_eyes(log)) {
+    return;
+  }
+  const bool is_angle = plane.unit() == "deg";
+  std::string table = fmt::format("t_ns\thorizontal_{0}\tvertical_{0}\n", is_angle ? "deg" : "share_or_px");
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const double horizontal = traces.disparity[0].values[i];
+    const double vertical = traces.disparity[1].values[i];
+    if (std::isnan(horizontal) || std::isnan(vertical)) {
+      fmt::format_to(std::back_inserter(table), "{}\tn/a\tn/a\n", log.samples[i].t_ns);
+    } else {
+      fmt::format_to(std::back_inserter(table), "{}\t{:.5g}\t{:.5g}\n", log.samples[i].t_ns, horizontal, vertical);
+    }
+  }
+  report.tables.push_back({"vergence.tsv", std::move(table)});
+}
+
+}  // namespace
+
+std::size_t count_of(const EyeEvents& events, EyeMovement movement) {
+  return static_cast<std::size_t>(std::count_if(events.events.begin(), events.events.end(),
+                                                [&](const EyeEvent& e) { return e.movement == movement; }));
+}
+
+std::vector<double> durations_ms(const EyeEvents& events, EyeMovement movement) {
+  std::vector<double> values;
+  for (const EyeEvent& event : events.events) {
+    if (event.movement == movement) {
+      values.push_back(static_cast<double>(event.end_ns - event.begin_ns) * 1e-6);
+    }
+  }
+  return values;
+}
+
+std::vector<double> amplitudes_deg(const EyeEvents& events, EyeMovement movement) {
+  std::vector<double> values;
+  for (const EyeEvent& event : events.events) {
+    if (event.movement == movement && std::isfinite(event.amplitude_deg)) {
+      values.push_back(event.amplitude_deg);
+    }
+  }
+  return values;
+}
+
+GazeReport gaze_report(const GazeLog& log, const GazeReportSettings& settings) {
+  if (!(settings.heat_sigma_deg > 0) || settings.heat_sigma_deg > 45) {
+    throw Error(ErrorKind::usage, "`heat-sigma`", "must be above 0 and at most 45 degrees");
+  }
+  if (log.samples.empty()) {
+    throw Error(ErrorKind::input, log.source, "has no samples to report on");
+  }
+  const std::string picture = picture_uri(settings.picture);
+  GazeReport report;
+  report.warnings = log.warnings;
+  report.events = events_by(log, settings);
+  report.main_sequence = fit_main_sequence(report.events.events);
+  report.quality.push_back(measure_quality(log));
+  if (has_both_eyes(log)) {
+    for (const Eye eye : {Eye::left, Eye::right}) {
+      report.quality.push_back(measure_quality(log, eye));
+      const GazeLog alone = one_eye(log, eye);
+      report.tables.push_back({eye == Eye::left ? "events_left.tsv" : "events_right.tsv",
+                               events_as_tsv(events_by(alone, settings), alone)});
+    }
+  }
+  report.tables.push_back({"events.tsv", events_as_tsv(report.events, log)});
+  const std::vector<EyeEvent>& events = report.events.events;
+  report.plots.push_back(main_sequence_plot(events, report.main_sequence));
+  report.plots.push_back(histogram_plot("fixation_durations", "Durations of fixations", "duration [ms]",
+                                        durations_ms(report.events, EyeMovement::fixation), "#009e73"));
+  report.plots.push_back(histogram_plot("saccade_amplitudes", "Amplitudes of saccades", "amplitude [deg]",
+                                        amplitudes_deg(report.events, EyeMovement::saccade), kLeftColor));
+  if (auto heat = heat_map_plot(log, events, picture, settings.heat_sigma_deg)) {
+    report.plots.push_back(std::move(*heat));
+  }
+  report.plots.push_back(scanpath_plot(log, events, picture));
+  add_time_plots(log, GazePlane(log, std::nullopt), report);
+  report.json = gaze_report_json(log, report);
+  report.html = gaze_page(log, report);
+  return report;
+}
+
+}  // namespace gazetrace

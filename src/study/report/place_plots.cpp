@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the eye was: the scanpath and the heat map, over a picture where there is one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "core/statistics.hpp"
+#include "gaze/inspect/inspect.hpp"
+#include "gazelog/screen_angles.hpp"
+#include "study/report/drawing.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kMargin = 10, kBelow = 46;
+constexpr std::size_t kMostNumbers = 60;
+constexpr int kHeatLevels = 8;
+
+// What the plane of the plot is: the display in fractions, or angles around straight ahead.
+struct Plane {
+  bool is_screen = false;
+  Axis x, y;
+  double height = 0;  // of the drawing
+};
+
+Vec2d place_of(const EyeEvent& event, bool is_screen) {
+  if (is_screen) {
+    return {event.u, event.v};
+  }
+  const Vec3d& d = event.direction;
+  return {std::atan2(d.x, -d.z) * kDegPerRad, std::atan2(d.y, std::hypot(d.x, d.z)) * kDegPerRad};
+}
+
+std::vector<const EyeEvent*> placed_fixations(const std::vector<EyeEvent>& events, bool is_screen) {
+  std::vector<const EyeEvent*> fixations;
+  for (const EyeEvent& event : events) {
+    const Vec2d at = place_of(event, is_screen);
+    if (event.movement == EyeMovement::fixation && std::isfinite(at.x) && std::isfinite(at.y)) {
+      fixations.push_back(&event);
+    }
+  }
+  return fixations;
+}
+
+double aspect_of(const GazeLog& log) {
+  const auto& g = log.recording_geometry;
+  return g && g->width_px > 0 && g->height_px > 0 ? static_cast<double>(g->height_px) / g->width_px : 9.0 / 16;
+}
+
+Plane plane_of(const GazeLog& log, const std::vector<const EyeEvent*>& fixations) {
+  Plane plane;
+  plane.is_screen = log.kind != GazeKind::direction;
+  const double width = kWideWidth - 2 * kMargin;
+  if (plane.is_screen) {
+    const double height = width * aspect_of(log);
+    plane.x = {0, 1, kMargin, kMargin + width};
+    plane.y = {0, 1, kMargin, kMargin + height};
+    plane.height = height + kMargin + kBelow;
+    return plane;
+  }
+  double reach = 5;
+  for (const EyeEvent* f : fixations) {
+    const Vec2d at = place_of(*f, false);
+    reach = std::max({reach, std::abs(at.x), std::abs(at.y)});
+  }
+  reach = std::min(reach * 1.08, 90.0);
+  const double height = 0.62 * width;
+  plane.x = {-reach / 0.62, reach / 0.62, kMargin, kMargin + width};
+  plane.y = {reach, -reach, kMargin, kMargin + height};
+  plane.height = height + kMargin + kBelow;
+  return plane;
+}
+
+void draw_ground(Drawing& svg, const Plane& plane, const std::string& picture, double darken) {
+  const double width = plane.x.end - plane.x.begin;
+  const double height = plane.y.end - plane.y.begin;
+  svg.add(fmt::format(R"(<rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" fill="#f2f2ef" stroke="#888888"/>)",
+                      kMargin, width, height));
+  if (!picture.empty() && plane.is_screen) {
+    svg.add(fmt::format(
+        R"(<image x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" preserveAspectRatio="none" href="{3}"/>)", kMargin,
+        width, height, picture));
+    svg.add(fmt::format(R"(<rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" fill="#000000" fill-opacity="{3}"/>)",
+                        kMargin, width, height, darken));
+  }
+}
+
+std::string beside_note(const std::vector<const EyeEvent*>& fixations, const Plane& plane) {
+  const auto beside = std::count_if(fixations.begin(), fixations.end(), [&](const EyeEvent* f) {
+    const Vec2d at = place_of(*f, plane.is_screen);
+    return plane.is_screen && (at.x < 0 || at.y < 0 || at.x > 1 || at.y > 1);
+  });
+  return beside > 0 ? fmt::format("; {} beside the display are not shown", beside) : "";
+}
+
+// From a level of 0..1 to a color that gets lighter all the way: a coarse "inferno" (van der Walt & Smith 2015).
+const char* heat_color(double level) {
+  static constexpr std::array<const char*, 8> kColors{"#420a68", "#6b176e", "#932667", "#bb3754",
+                                                      "#dd513a", "#f37819", "#fca50a", "#f6d746"};
+  return kColors[std::min<std::size_t>(static_cast<std::size_t>(level * 8), 7)];
+}
+
+struct HeatGrid {
+  std::size_t columns = 240, rows = 135;
+  std::vector<double> values;  // seconds of fixation per square degree
+  double highest = 0;
+};
+
+HeatGrid heat_of(const std::vector<const EyeEvent*>& fixations, const ScreenAngles& screen, double aspect,
+                 double sigma_deg) {
+  HeatGrid grid;
+  grid.rows =
+      std::max<std::size_t>(1, static_cast<std::size_t>(std::round(static_cast<double>(grid.columns) * aspect)));
+  grid.values.assign(grid.columns * grid.rows, 0.0);
+  const double sigma = sigma_deg * kRadPerDeg;
+  const double peak = 1 / (2 * kPi * sigma_deg * sigma_deg);
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const Vec3d direction = screen.direction((static_cast<double>(column) + 0.5) / static_cast<double>(grid.columns),
+                                               (static_cast<double>(row) + 0.5) / static_cast<double>(grid.rows));
+      double& value = grid.values[row * grid.columns + column];
+      for (const EyeEvent* f : fixations) {
+        // For small angles the square of the angle is that of the chord, which needs no trigonometry.
+        const Vec3d apart = direction - f->direction;
+        const double squares = dot(apart, apart) / (sigma * sigma);
+        if (squares < 18) {
+          value += static_cast<double>(f->end_ns - f->begin_ns) * 1e-9 * peak * std::exp(-0.5 * squares);
+        }
+      }
+      grid.highest = std::max(grid.highest, value);
+    }
+  }
+  return grid;
+}
+
+void draw_heat(Drawing& svg, const HeatGrid& grid, const Plane& plane) {
+  const double cell_x = (plane.x.end - plane.x.begin) / static_cast<double>(grid.columns);
+  const double cell_y = (plane.y.end - plane.y.begin) / static_cast<double>(grid.rows);
+  std::array<std::string, kHeatLevels + 1> paths;
+  const auto level_at = [&](std::size_t row, std::size_t column) {
+    return std::min(static_cast<int>(grid.values[row * grid.columns + column] / grid.highest * (kHeatLevels + 1)),
+                    kHeatLevels);
+  };
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    for (std::size_t column = 0; column < grid.columns;) {
+      const int level = level_at(row, column);
+      std::size_t end = column + 1;
+      while (end < grid.columns && level_at(row, end) == level) {
+        ++end;
+      }
+      fmt::format_to(std::back_inserter(paths[static_cast<std::size_t>(level)]), "M{:.1f} {:.1f}h{:.1f}v{:.2f}h{:.1f}z",
+                     plane.x.begin + cell_x * static_cast<double>(column),
+                     plane.y.begin + cell_y * static_cast<double>(row), cell_x * static_cast<double>(end - column),
+                     cell_y + 0.05, -cell_x * static_cast<double>(end - column));
+      column = end;
+    }
+  }
+  for (int level = 1; level <= kHeatLevels; ++level) {
+    const double share = (level - 0.5) / kHeatLevels;
+    svg.add(fmt::format(R"(<path d="{}" fill="{}" fill-opacity="{:.2f}"/>)", paths[static_cast<std::size_t>(level)],
+                        heat_color(share), 0.45 + 0.35 * share));
+  }
+  const double y = plane.y.end + 14;
+  for (int level = 1; level <= kHeatLevels; ++level) {
+    svg.add(fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="26" height="12" fill="{}"/>)",
+                        plane.x.begin + 26 * (level - 1), y, heat_color((level - 0.5) / kHeatLevels)));
+  }
+  svg.text(
+      plane.x.begin + 26 * kHeatLevels + 10, y + 11,
+      fmt::format("{:.2g} to {:.2g} s of fixation per square degree", grid.highest / (kHeatLevels + 1), grid.highest));
+}
+
+}  // namespace
+
+GazePlot scanpath_plot(const GazeLog& log, const std::vector<EyeEvent>& events, const std::string& picture) {
+  const bool is_screen = log.kind != GazeKind::direction;
+  const std::vector<const EyeEvent*> fixations = placed_fixations(events, is_screen);
+  const Plane plane = plane_of(log, fixations);
+  Drawing svg(kWideWidth, plane.height, "Scanpath: fixations in their order, larger where they last longer");
+  draw_ground(svg, plane, picture, 0.25);
+  svg.add(
+      fmt::format(R"(<clipPath id="scanpath-clip"><rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}"/></clipPath>)",
+                  kMargin, plane.x.end - plane.x.begin, plane.y.end - plane.y.begin));
+  svg.add(fmt::format(R"-(<g clip-path="url(#scanpath-clip)">)-"));
+  const bool on_picture = !picture.empty() && is_screen;
+  std::string path;
+  for (const EyeEvent* f : fixations) {
+    const Vec2d at = place_of(*f, is_screen);
+    fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? "M" : "L", plane.x.at(at.x),
+                   plane.y.at(at.y));
+  }
+  svg.add(fmt::format(
+      R"(<path d="{}" fill="none" stroke="{}" stroke-width="1.2" stroke-opacity="0.7" stroke-linejoin="round"/>)", path,
+      on_picture ? "#ffffff" : "#555555"));
+  for (std::size_t i = 0; i < fixations.size(); ++i) {
+    const Vec2d at = place_of(*fixations[i], is_screen);
+    const double seconds = static_cast<double>(fixations[i]->end_ns - fixations[i]->begin_ns) * 1e-9;
+    const double radius = std::clamp(16 * std::sqrt(seconds), 3.0, 30.0);
+    svg.add(fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" fill="{}" fill-opacity="0.5" stroke="{}"/>)",
+                        plane.x.at(at.x), plane.y.at(at.y), radius, on_picture ? "#ffd34d" : "#56b4e9",
+                        on_picture ? "#4a3600" : "#0a3d62"));
+    if (i < kMostNumbers) {
+      svg.text(plane.x.at(at.x), plane.y.at(at.y) + 4, std::to_string(i + 1), "middle",
+               R"(font-size="11" font-weight="bold" fill="#111111")");
+    }
+  }
+  svg.add(fmt::format("</g>"));
+  std::string note = fmt::format("{} fixations in their order, area by duration", fixations.size());
+  if (fixations.size() > kMostNumbers) {
+    note += fmt::format("; the first {} are numbered", kMostNumbers);
+  }
+  note += is_screen ? beside_note(fixations, plane)
+                    : fmt::format("; {:.0f} degrees from the middle to the upper edge", plane.y.low);
+  svg.text(kMargin, plane.y.end + 24, note);
+  return {"scanpath", "Scanpath", svg.str(), true, note};
+}
+
+std::optional<GazePlot> heat_map_plot(const GazeLog& log, const std::vector<EyeEvent>& events,
+                                      const std::string& picture, double sigma_deg) {
+  const ScreenAngles screen(log);
+  const std::vector<const EyeEvent*> fixations = placed_fixations(events, true);
+  if (log.kind != GazeKind::screen || !screen.known() || fixations.empty()) {
+    return std::nullopt;
+  }
+  const Plane plane = plane_of(log, fixations);
+  Drawing svg(kWideWidth, plane.height, "Heat map: where fixations spent their time");
+  draw_ground(svg, plane, picture, 0.35);
+  const HeatGrid grid = heat_of(fixations, screen, aspect_of(log), sigma_deg);
+  if (grid.highest > 0) {
+    draw_heat(svg, grid, plane);
+  }
+  const std::string note = fmt::format("each fixation a spot of {:.2g} deg (standard deviation)", sigma_deg);
+  svg.text(plane.x.end, plane.y.end + 25, note, "end");
+  return GazePlot{"heat_map", "Heat map of fixation time", svg.str(), true,
+                  fmt::format("Colors from {:.2g} to {:.2g} s of fixation per square degree; {}",
+                              grid.highest / (kHeatLevels + 1), grid.highest, note)};
+}
+
+}  // namespace gazetrace

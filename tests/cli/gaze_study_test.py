@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trials, objects, areas of interest and reports from outside."""
+
+import csv
+import io
+import json
+import math
+import re
+
+import harness
+
+
+def blocks(count, seconds=2, rate=250, pause=3):
+    """An EyeLink recording of several blocks; in each, IMAGE_ON after half a second and IMAGE_OFF half a second later."""
+    lines = ["** CONVERTED FROM x.edf", "MSG\t1000 DISPLAY_COORDS 0 0 1023 767"]
+    for block in range(count):
+        begin = 1000 + block * (seconds + pause) * 1000
+        lines += [f"MSG\t{begin} TRIALID {block + 1}", f"START\t{begin} \tLEFT\tSAMPLES\tEVENTS",
+                  f"SAMPLES\tGAZE\tLEFT\tRATE\t{rate}.00\tTRACKING\tCR"]
+        for i in range(seconds * rate):
+            t = begin + i * 1000 // rate
+            if i == rate // 2:
+                lines.append(f"MSG\t{t} IMAGE_ON")
+            if i == rate:
+                lines.append(f"MSG\t{t} IMAGE_OFF")
+            lines.append(f"{t}\t {200 + 300 * (i % 125 > 62) + i % 3:.1f}\t  {300 + 50 * block:.1f}\t  900.0\t...")
+        lines.append(f"END\t{begin + seconds * 1000 - 1} \tSAMPLES\tEVENTS\tRES\t  35.00\t  35.00")
+    return "\n".join(lines) + "\n"
+
+
+def table(text):
+    return list(csv.DictReader(io.StringIO(text), delimiter="\t"))
+
+
+class Study(harness.CliTest):
+    VIEW = ["--eye", "0,1,4", "--target", "0,0,0", "--size", "64x48"]
+
+    def frames_of_plan(self, *arguments):
+        text = self.run_ok("plan", "--gaze", "blocks.asc", "--json", *self.VIEW, *arguments).stdout
+        return json.loads(text)["frames"]
+
+    def test_trials_of_blocks_and_their_frames(self):
+        self.write("blocks.asc", blocks(4))
+        report = json.loads(self.run_ok("gaze", "trials", "blocks.asc", "--fps", "24", "--json").stdout)
+        self.assertEqual([t["block"] for t in report["trials"]], [1, 2, 3, 4])
+        self.assertNotIn("name", report["trials"][0])
+        planned = [self.frames_of_plan("--fps", "24", "--trial", str(n)) for n in (1, 2, 3, 4)]
+        self.assertEqual([len(p) for p in planned], [t["frames"] for t in report["trials"]])
+        self.assertEqual(sum(len(p) for p in planned), report["frames"])
+        # The whole recording holds the pauses too.
+        self.assertGreater(len(self.frames_of_plan("--fps", "24")), 2 * report["frames"])
+
+    def test_messages_split_and_align(self):
+        self.write("blocks.asc", blocks(3))
+        options = ["--trial-start", "TRIALID *", "--trial-end", "IMAGE_OFF"]
+        report = json.loads(self.run_ok("gaze", "trials", "blocks.asc", *options, "--keep-ids", "--json").stdout)
+        self.assertEqual([t["name"] for t in report["trials"]], ["TRIALID 1", "TRIALID 2", "TRIALID 3"])
+        events = table(self.run_ok("gaze", "events", "blocks.asc", *options, "--trial", "TRIALID 2").stdout)
+        self.assertGreaterEqual(min(int(e["onset_ns"]) for e in events), 6_000_000_000)
+        self.assertLessEqual(max(int(e["offset_ns"]) for e in events), 7_000_000_000)
+        frame = self.frames_of_plan("--fps", "10", "--frames", "1", "--trial", "2", "--gaze-anchor", "IMAGE_ON=0s")[0]
+        other = self.frames_of_plan("--fps", "10", "--frames", "6", "--trial", "2")[0]
+        self.assertEqual(frame["gaze_true"]["row_before"], other["gaze_true"]["row_before"])
+        inspected = self.run_ok("gaze", "inspect", "blocks.asc", "--trial", "2", "--json").stdout
+        self.assertEqual(json.loads(inspected)["samples"], 500)
+        self.assert_refused(["gaze", "events", "blocks.asc", "--trial", "4"], ["there is no trial 4", "1 to 3"])
+        self.assert_refused(["gaze", "events", "blocks.asc", "--trial", "1", "--trial-start", "NO SUCH"],
+                            ["has no trial by messages", "3 blocks"])
+        self.assert_refused(["gaze", "events", "blocks.asc", "--trial-nth", "2"], ["--trial-nth"])
+
+    def test_objects_and_areas_of_a_scene(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        self.write("log.csv", harness.gaze_csv(f"{i * 10_000_000},0.5,0.6,ok,cyclopean" for i in range(50)))
+        common = ["box.gltf", "--gaze", "log.csv", "--size", "64x36", "--fps", "10", "--frames", "1-4", "--gaze-accuracy", "0.5"]
+        rows = table(self.run_ok("gaze", "objects", *common).stdout)
+        self.assertEqual(len(rows), 4)
+        self.assertEqual({(r["stimulus"], r["gaze"]) for r in rows}, {("replayed", "measured")})
+        self.assertEqual({r["node"] for r in rows}, {"#0"})  # the box in the middle, whose node has no name
+        self.assertAlmostEqual(float(rows[0]["share"]), 1, places=3)
+        # A tenth of the frame's height below the middle, from (0, 0.5, 4): the box's front at z = 0.5.
+        down = 0.2 * math.tan(0.4)
+        self.assertAlmostEqual(float(rows[0]["distance_m"]), 3.5 * math.hypot(1, down), places=2)
+        self.assertAlmostEqual(float(rows[0]["y_m"]), 0.5 - 3.5 * down, places=2)
+        self.run_ok("gaze", "objects", *common, "--recorded-here", "--table", "objects.json")
+        report = json.loads((self.folder / "objects.json").read_text())
+        self.assertEqual(report["stimulus"], "recorded")
+        self.assertEqual(report["accuracy_deg"], 0.5)
+        self.assert_refused(["gaze", "objects", *common[:-2]], ["--gaze-accuracy"])
+        self.write("areas.toml", '[[aoi]]\nname = "box"\nnode = "#0"\n[[aoi]]\nname = "corner"\nrectangle = [0, 0, 0.1, 0.1]\n')
+        areas = table(self.run_ok("gaze", "aois", *common, "--aois", "areas.toml", "--tables", "tables").stdout)
+        self.assertEqual([a["aoi"] for a in areas], ["box", "corner", "(none)"])
+        self.assertEqual([a["fixations"] for a in areas], ["1", "0", "0"])
+        self.assertEqual(table((self.folder / "tables/fixations.tsv").read_text())[0]["aoi"], "box")
+
+    def test_a_report_is_one_file_that_loads_nothing(self):
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "5s", "--noise", "0.05")
+        self.run_ok("gaze", "report", "log.csv", "-o", "page.html", "--json", "page.json", "--parts", "parts")
+        page = (self.folder / "page.html").read_text()
+        self.assertNotRegex(page, r"<script|<link[^>]+href=\"(?!data:)|url\((?!#)")
+        self.assertEqual(set(re.findall(r"https?://[^\"<> ]+", page)), {"http://www.w3.org/2000/svg"})
+        numbers = json.loads((self.folder / "page.json").read_text())
+        self.assertAlmostEqual(numbers["quality"][0]["precision_rms_s2s"], 0.1, delta=0.015)
+        self.assertGreater(numbers["events"]["fixation"]["count"], 8)
+        parts = sorted(p.name for p in (self.folder / "parts").iterdir())
+        self.assertIn("main_sequence.svg", parts)
+        self.assertIn("heat_map.svg", parts)
+        self.assertIn("events.tsv", parts)
+        self.assert_refused(["gaze", "report", "log.csv", "-o", "page.html"], ["exists already"])
+
+
+if __name__ == "__main__":
+    harness.main()
