@@ -53,7 +53,12 @@ void lose(GazeValidity& validity) {
 // Whether the numbers of a row stand for a place that the tracker did not know.
 bool is_mark(const Vec3d& at, const Conventions& c) {
   const bool has_three = c.form == PlaceForm::vector;
-  const bool is_given = c.missing_value && at.x == *c.missing_value && at.y == at.x && (!has_three || at.z == at.x);
+  // A place on a display is unknown where one of its coordinates is. Zero alone is the display's edge, and a component
+  // of a direction may be any number.
+  const bool one_is_enough = !has_three && c.missing_value && *c.missing_value != 0;
+  const bool is_given =
+      c.missing_value && (one_is_enough ? at.x == *c.missing_value || at.y == *c.missing_value
+                                        : at.x == *c.missing_value && at.y == at.x && (!has_three || at.z == at.x));
   return is_given || is_missing_marker(at.x) || is_missing_marker(at.y) || (has_three && is_missing_marker(at.z));
 }
 
@@ -297,6 +302,24 @@ void recount_times(GazeLog& log, int declared_exponent, int exponent) {
   for (GazeCalibration& calibration : log.calibrations) {
     recount(calibration.t_ns);
   }
+  for (GazeRecording& recording : log.recordings) {
+    recount(recording.first_ns);
+    recount(recording.last_ns);
+  }
+}
+
+// Differences of stamps are taken everywhere, and must fit into an int64; half of that leaves room for their sums.
+void check_span(const GazeLog& log) {
+  const auto [first, last] = std::minmax_element(
+      log.samples.begin(), log.samples.end(), [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
+  constexpr std::int64_t kLongest = std::numeric_limits<std::int64_t>::max() / 2;
+  std::int64_t span_ns = 0;
+  if (__builtin_sub_overflow(last->t_ns, first->t_ns, &span_ns) || span_ns > kLongest) {
+    throw Error(
+        ErrorKind::input, fmt::format("{}:{}", log.source, std::max(first->row, last->row)),
+        fmt::format("the stamps reach from {} to {} ns, over more than a hundred years", first->t_ns, last->t_ns),
+        "check the unit of the time column (`gaze-time-unit`), or remove the rows with a damaged time");
+  }
 }
 
 }  // namespace
@@ -348,7 +371,10 @@ GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
   log.events = raw.events;
   log.calibrations = raw.calibrations;
   log.witnesses = raw.witnesses;
+  log.recordings = raw.recordings;
+  log.recording = raw.recording;
   log.warnings = raw.warnings;
+  log.warnings.insert(log.warnings.end(), raw.damages.begin(), raw.damages.end());
   log.warnings.insert(log.warnings.end(), conventions.warnings.begin(), conventions.warnings.end());
   log.conventions = conventions;
   log.samples.reserve(raw.rows.size());
@@ -370,6 +396,7 @@ GazeLog interpret(const RawGaze& raw, const Conventions& conventions) {
   if (log.samples.empty()) {
     throw Error(ErrorKind::input, log.source, "holds no sample", "a gaze log needs at least one row below its header");
   }
+  check_span(log);
   order_samples(log, conventions.unordered);
   drop_duplicates(log, conventions.unordered);
   choose_eyes(log);
