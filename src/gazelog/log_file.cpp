@@ -103,6 +103,29 @@ std::int64_t line_of(std::string_view text, std::size_t at) {
   return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
 }
 
+// Whether the last line's last word is shorter than that of any of the lines just before it: where a file was cut off
+// in the middle of a number, it is.
+bool ends_early(std::string_view text) {
+  constexpr int kLookedAt = 10;
+  const auto last_word = [](std::string_view line) {
+    line = trim(line);
+    return line.size() - std::min(line.find_last_of(",;\t ") + 1, line.size());
+  };
+  std::size_t begin = text.rfind('\n');
+  const std::size_t length = last_word(text.substr(begin == std::string_view::npos ? 0 : begin + 1));
+  for (int i = 0; i < kLookedAt && begin != std::string_view::npos && begin > 0; ++i) {
+    const std::size_t end = begin;
+    begin = text.rfind('\n', end - 1);
+    const std::string_view line = text.substr(begin == std::string_view::npos ? 0 : begin + 1,
+                                              end - (begin == std::string_view::npos ? 0 : begin + 1));
+    const bool is_row = !line.empty() && ((line.front() >= '0' && line.front() <= '9') || line.front() == '-');
+    if (is_row && last_word(line) > length) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 GazeFile open_log_file(const std::string& path) {
@@ -130,11 +153,11 @@ void note_damages(const GazeFile& file, RawGaze& raw) {
                     "copy the file again, or remove these lines",
                     file.path, line_of(text, zero), std::count(text.begin(), text.end(), '\0')));
   }
-  const std::int64_t last_line = line_of(text, text.size());
-  if (text.back() != '\n' && !raw.rows.empty() && raw.rows.back().row == last_line) {
+  const std::int64_t last_line = text.back() == '\n' ? 0 : line_of(text, text.size());
+  if (last_line > 0 && !raw.rows.empty() && raw.rows.back().row == last_line && ends_early(text)) {
     raw.damages.push_back(
-        fmt::format("{}:{}: the last row has no line end: if the file was cut off there, its last number lacks digits; "
-                    "remove the row, or end it",
+        fmt::format("{}:{}: the last row has no line end and is shorter than others: the file seems to be cut off in "
+                    "the middle of it; remove the row, or mend it",
                     file.path, last_line));
   }
 }

@@ -13,8 +13,8 @@ namespace gazetrace {
 // that line is read.
 GazeFile open_log_file(const std::string& path);
 
-// Adds to `raw.damages` what shows that the file is not whole: bytes of value zero in a text, and a last row without a
-// line end.
+// Adds to `raw.damages` what shows that the file is not whole: bytes of value zero in a text, and a last row that is
+// short and has no line end.
 void note_damages(const GazeFile& file, RawGaze& raw);
 
 }  // namespace gazetrace

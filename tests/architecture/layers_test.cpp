@@ -60,7 +60,7 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"camera", {"camera", "motion"}},
     {"material", {"material"}},
     {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_read", "gaze_write"}},
-    {"gaze", {"gaze", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process", "gaze_synth"}},
+    {"gaze", {"gaze", "gaze_event_check", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process", "gaze_synth"}},
     {"scene", {"scene", "deformation"}},
     {"plan", {"plan"}},
     {"foveation", {"foveation"}},
