@@ -238,10 +238,12 @@ void take_events(const std::string& path, RawGaze& raw) {
   if (raw.rows.empty()) {
     return;
   }
-  const auto [first, last] = std::minmax_element(
-      raw.rows.begin(), raw.rows.end(), [](const RawSample& a, const RawSample& b) { return a.t_ns < b.t_ns; });
+  const auto ends = std::minmax_element(raw.rows.begin(), raw.rows.end(),
+                                        [](const RawSample& a, const RawSample& b) { return a.t_ns < b.t_ns; });
+  const std::int64_t first_ns = ends.first->t_ns;
+  const std::int64_t last_ns = ends.second->t_ns;
   const std::size_t all = events.size();
-  std::erase_if(events, [&](const GazeEvent& e) { return e.end_ns < first->t_ns || e.begin_ns > last->t_ns; });
+  std::erase_if(events, [&](const GazeEvent& e) { return e.end_ns < first_ns || e.begin_ns > last_ns; });
   if (events.empty()) {
     throw Error(ErrorKind::input, path, fmt::format("none of its {} events lies within the log's time", all),
                 "are both of one recording, with times on one clock?");
