@@ -124,8 +124,8 @@ struct Conventions {
   std::optional<Eye> dominant_eye;
   enum class TakenEye : std::uint8_t { left, right, mean, combined };
   struct Taken {
-    TakenEye eye = TakenEye::combined;
-    bool is_alone = false;  // the log has rows of that eye only
+    TakenEye eye;
+    bool is_alone;  // the log has rows of that eye only
   };
   std::optional<Concluded<Taken>> eye_taken;
 

@@ -105,10 +105,18 @@ struct EyeEvent {
   // Mean direction of a fixation, NaN for other movements; for gaze on a screen also as fractions of the display.
   Vec3d direction{};
   double u = 0, v = 0;
-  // For a saccade: the angle between where it begins and where it lands, its highest and mean speed, and the direction
+  // For a saccade: the angle between where it begins and where it lands, the highest and the mean of the speeds at its
+  // samples (angular_speed_deg_s over EventSettings::velocity_window_ns), and the direction
   // of its course (degrees, 0 to the right, 90 up). For a fixation: the peak speed, and dispersion_deg, the root mean
   // square of the angle to its mean direction. NaN where a value does not apply.
   double amplitude_deg = 0, peak_velocity_deg_s = 0, mean_velocity_deg_s = 0, angle_deg = 0, dispersion_deg = 0;
+  // Of an event that the log itself states, what the tracker says of it: begin and end may lie between samples.
+  struct Stated {
+    std::int64_t begin_ns = 0, end_ns = 0;
+    std::optional<std::int64_t> duration_ns;
+    std::optional<double> amplitude_deg, peak_velocity_deg_s;
+  };
+  std::optional<Stated> stated = std::nullopt;
 };
 
 struct EyeEvents {
@@ -139,7 +147,9 @@ EyeEvents binocular_events(const GazeLog& log, const EventPreset& preset,
 EyeEvents events_of_log(const GazeLog& log);
 
 // Tab-separated values with one event in each row: movement, onset_ns, offset_ns, duration_ms, first_row, last_row,
-// amplitude_deg, ...
+// amplitude_deg, ... n samples last n steps of the clock. Of events that the log states, these columns hold what the
+// tracker says (n/a where it says nothing), and our own measures stand in columns named measured_... and after the
+// velocity filter and its window, such as two_point_20ms_peak_velocity_deg_s.
 std::string events_as_tsv(const EyeEvents& events, const GazeLog& log);
 std::string events_as_json(const EyeEvents& events, const GazeLog& log);
 

@@ -18,7 +18,8 @@
 namespace gazetrace {
 
 // How many samples can be used. The time of a loss is the time from one usable sample to the next, less one median
-// step.
+// step; at either end of a section it is the time to the section's first or last sample. A section is what was recorded
+// without a pause, and pauses are no losses.
 struct GazeLoss {
   std::size_t samples = 0, usable = 0;
   std::array<std::size_t, 6> by_validity{};       // in the order of GazeValidity
@@ -27,6 +28,9 @@ struct GazeLoss {
   double blink_like_median_ms = 0;
   std::size_t longer = 0;  // losses above 500 ms
   std::int64_t longest_ns = 0;
+  // At the beginning and at the end of the log; of a log without a usable sample all of it is leading.
+  std::int64_t leading_ns = 0, trailing_ns = 0;
+  std::int64_t last_usable_row = 0, first_usable_row = 0;  // 1-based lines; 0: there is none
 };
 
 // Runs in which the position stays the same, bit by bit, over at least five samples and 100 ms. They come from data
@@ -102,7 +106,9 @@ struct GazeInspection {
   std::vector<GazeFact> facts;
   std::optional<DisplayGeometry> geometry;
   std::vector<GazeCalibration> calibrations;
-  std::array<std::size_t, 5> events{};  // in the order of GazeEventType
+  std::vector<GazeRecording> recordings;  // as GazeLog has them, and which of them was inspected
+  std::size_t recording = 0;
+  std::array<std::size_t, 6> events{};  // in the order of GazeEventType
   std::size_t head_poses = 0;
   bool both_eyes = false;
   bool is_wall_clock = false;  // stamps are times of day; unless the options keep them, first_ns and last_ns are 0
@@ -110,6 +116,7 @@ struct GazeInspection {
 
   GazeOrder order;
   GazeTiming timing;
+  std::int64_t span_ns = 0;  // from the first sample to the last, also where these are not shown
   GazeLoss loss;
   GazeFrozen frozen;
   std::string unit;  // of precision and disparity: "deg", "px" or "of the picture"
@@ -136,10 +143,12 @@ GazeInspection inspect_gaze(const GazeLog& log, const GazeInspectOptions& option
 struct GazeUnderInspection {
   RawGaze raw;
   Conventions conventions;
+  bool is_first_of_several = false;  // no recording was chosen, and the first one is looked at
   bool is_sorted_by_option = false;  // if false, rows that are out of order or repeated are findings
   GazeLog log;
 };
-// Broken logs are mended where an option can mend them, and what was wrong becomes a finding. Gaze on a scene camera's
+// Broken logs are mended where an option can mend them, and what was wrong becomes a finding. Of several recordings the
+// first one is taken. Gaze on a scene camera's
 // picture is accepted. Display sizes that nobody states are guessed, as `GazeReadOptions::guess_display` says.
 GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read);
 GazeInspection inspect_gaze(const GazeUnderInspection& gaze, const GazeInspectOptions& options);

@@ -80,6 +80,7 @@ enum class GazeEventType : std::uint8_t {
   blink,
   message,  // of the experiment or the tracker; its words are in `text`
   segment,  // the recording ran from begin to end; between segments it was stopped
+  aoi,      // gaze lay in an area of interest that the log names in `text`
 };
 std::string_view to_string(GazeEventType type);
 
@@ -90,6 +91,19 @@ struct GazeEvent {
   std::int64_t begin_ns = 0, end_ns = 0;
   std::string text;
   std::int64_t row = 0;
+  // What the tracker states of it besides, in its own reckoning: a duration may count the last sample's own time, and a
+  // velocity has the tracker's filter behind it.
+  std::optional<std::int64_t> stated_duration_ns = std::nullopt;
+  std::optional<double> stated_amplitude_deg = std::nullopt, stated_peak_velocity_deg_s = std::nullopt;
+};
+
+// One of the recordings that a file holds, or one block of its only recording.
+struct GazeRecording {
+  std::string name;            // as the file names it, which may identify a person; empty: the file only counts them
+  bool is_block = false;       // blocks stand on one clock, so that a log may hold several; recordings do not
+  std::size_t rows = 0;        // rows of the file, one for each eye
+  std::int64_t first_row = 0;  // 1-based line of the file where it begins
+  std::int64_t first_ns = 0, last_ns = 0;  // of its rows, on the clock of the file
 };
 
 // The errors that a validation of the tracker measured.
@@ -167,9 +181,14 @@ struct GazeLog {
   GazeOrder order;
   std::vector<GazeWitness> witnesses;
   std::optional<GazeTrial> trial;  // where the log was cut to one
+
+  // The recordings of the file, or the blocks of its only one, in the order of the file; empty where there is but one.
+  std::vector<GazeRecording> recordings;
+  std::size_t recording = 0;  // which of them this log holds, counted from 1; 0: all that the file has
 };
 
-// Times in the log's own nanoseconds. A gap is a step of more than three median steps.
+// Times in the log's own nanoseconds. A gap is a step of more than three median steps, unless the recording was stopped
+// there: then it is a pause.
 struct GazeTiming {
   std::int64_t first_ns = 0, last_ns = 0;
   double nominal_rate_hz = 0;  // stated by the log; 0: not stated
@@ -180,6 +199,8 @@ struct GazeTiming {
   std::size_t gaps = 0;
   std::int64_t longest_gap_ns = 0;  // 0: none
   std::int64_t gaps_total_ns = 0;
+  std::size_t pauses = 0;
+  std::int64_t pauses_total_ns = 0;
 };
 
 }  // namespace gazetrace

@@ -33,6 +33,14 @@ struct CornerFromRow {
   Vec2d corner;
 };
 
+// From this line of the file on, everything belongs to one recording: an index into `RawGaze::recordings`. Origins and
+// poses of the head have no line; of each there were so many when the recording began.
+struct RecordingFromLine {
+  std::int64_t line = 0;
+  std::size_t recording = 0;
+  std::size_t origins = 0, head = 0;
+};
+
 // A fault of the file itself, which `read_raw_gaze` passed over and which an option mends. `load_gaze_log` refuses a
 // log with such a fault.
 struct RawFault {
@@ -71,6 +79,11 @@ struct RawGaze {
   // Where the display's corner moves between the rows of the file, in the order of the rows. Before the first of these
   // rows it is at `Conventions::corner`; if this is empty, it is there for all rows.
   std::vector<CornerFromRow> corners;
+  // The recordings of the file, or the blocks of its only one, and where each of them begins or goes on, in the order
+  // of the lines. Both are empty where the file holds one only.
+  std::vector<GazeRecording> recordings;
+  std::vector<RecordingFromLine> recording_lines;
+  std::size_t recording = 0;  // as GazeLog::recording: the other recordings' rows have been left out
   // Degrees that become directions grow upwards, whatever origin was stated or guessed for them. If this is false, they
   // grow downwards where they count from the top left.
   bool directions_grow_up = false;
@@ -78,12 +91,14 @@ struct RawGaze {
   std::string way_out;          // for gaze on a scene camera's picture: what could be read instead
   std::vector<GazeFact> notes;  // what else the file states, in words
   std::vector<RawFault> faults;
+  Warnings damages;  // what shows that the file is not whole; no option mends it
   Warnings warnings;
 };
 
-// Reads a file, which may be packed by gzip, or the recording in a folder. `options` name the format and the columns;
-// nothing is converted. Throws Error(input) with file:line for a file that is no log, for broken rows, and for columns
-// or units that are not known.
+// Reads a file, which may be packed by gzip, or the recording in a folder. `options` name the format, the columns and
+// the recording; nothing is converted. Where the file holds several recordings and the options name none of them, it
+// gives the rows of all of them, which `load_gaze_log` refuses. Throws Error(input) with file:line for a file that is
+// no log, for broken rows, and for columns, units or recordings that are not known.
 RawGaze read_raw_gaze(const std::string& path, const GazeReadOptions& options);
 
 // What `options` state replaces what the log declares, and what neither states is guessed from the numbers; both give a

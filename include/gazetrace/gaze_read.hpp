@@ -29,6 +29,7 @@ struct EyeColumns {
 // found by its header. In every format that is a table, the names of time, x, y and z given here replace its own.
 struct GazeColumns {
   std::string time, x, y, z, validity, confidence, pupil, eye;
+  std::string recording;  // which recording a row belongs to, where a file holds several
   EyeColumns left, right;
   // The head's pose in the same rows: position, and Euler angles in degrees (Unity's order: z, x, y) or, with w, a
   // quaternion.
@@ -65,6 +66,12 @@ enum class GazeFrame { automatic, head, scene_camera };
 struct GazeReadOptions {
   std::string format;  // a name of `gaze_formats()`; empty: found by the file's content
   GazeColumns columns;
+  // Which recording, or which block, of a file that holds several: its number from 1 in the order of the file, or its
+  // name; empty: the only one, or all blocks of it.
+  std::string recording;
+  // A table of fixations, saccades or blinks that another program found in this log, on the log's clock: they become
+  // events of the log. Empty: none.
+  std::string events_file;
   // Converts pixels, lengths and degrees to fractions of the display. Logs that hold fractions do not need it.
   std::optional<DisplayGeometry> display;
   // Where the eye's perpendicular meets the display, as the user gave it; empty: `display`'s where that is not its
@@ -78,8 +85,8 @@ struct GazeReadOptions {
   GazeFrame frame = GazeFrame::automatic;
   double min_confidence = std::numeric_limits<double>::quiet_NaN();  // NaN: the format's own (Pupil Core: 0.6)
   bool zero_is_missing = false;  // a place of exactly (0, 0) is missing, even if its row is marked as valid
-  // Places whose every coordinate is exactly this number, in the log's own unit, are missing. Coordinates of -32768,
-  // and of 1e7 and more, always stand for missing places.
+  // Places with exactly this number in one coordinate, in the log's own unit, are missing; 0 must stand in both, and in
+  // directions every number in all three. Coordinates of -32768, and of 1e7 and more, always stand for missing places.
   std::optional<double> missing_value;
   bool swap_xy = false;  // x and y are exchanged in the log
   bool flip_x = false;   // left and right are exchanged: u becomes 1 - u, direction x becomes -x
@@ -112,10 +119,10 @@ struct GazeFormatGuess {
 };
 std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path);
 
-// Reads a log, also one that is packed by gzip, or the recording in a folder. Error(input) with file:line for a log
-// without times or without samples, for stamps that are out of order or repeated (unless sorting was asked for: then
-// the last row of equal stamps is kept, and a warning counts the others), for columns and units that are not known, and
-// for gaze on a scene camera's picture.
+// Reads a log, also one that is packed by gzip, or the recording in a folder. Error(input) with file:line for a file of
+// several recordings of which none is chosen, for a log without times or without samples, for stamps that are out of
+// order or repeated (unless sorting was asked for: then the last row of equal stamps is kept, and a warning counts the
+// others), for columns and units that are not known, and for gaze on a scene camera's picture.
 GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options);
 
 }  // namespace gazetrace

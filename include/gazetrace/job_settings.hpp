@@ -71,6 +71,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   std::optional<Vec2d> gaze_at;
   GazeInterpolation gaze_mode = GazeInterpolation::hold;
   NoGazePolicy gaze_missing = NoGazePolicy::hold;
+  std::uint64_t gaze_max_missing_frames = 3600;  // in a row; 0: any number
   DurationNs gaze_max_age{500'000'000};
   DurationNs gaze_max_gap{75'000'000};
   DurationNs gaze_offset;

@@ -58,6 +58,9 @@ struct PlanSettings {
   std::int64_t start_ns = 0;  // the video time at which frame 1 begins
   CameraExtrapolation camera_extrapolation = CameraExtrapolation::error;
   GazeMapping gaze;
+  // More frames than this in a row without gaze are refused: most often the log holds several recordings, or the frames
+  // go on after its end. 0: any number is planned.
+  std::uint64_t most_frames_without_gaze = 0;
   std::int64_t gaze_latency_ns = 0;  // >= 0; gaze_render is the gaze this long before the frame, gaze_true is not
   bool find_events = true;           // detect eye movements with default_event_preset(), in the recording's geometry
   // If given, FrameRequest::gaze_uncertainty_deg is accuracy + precision + age x speed, and widens the fovea.

@@ -60,6 +60,24 @@ std::string utf8_from_utf16(std::string_view bytes, bool little_endian) {
   return out;
 }
 
+// Which byte order a text of Latin letters and digits has that is UTF-16; empty: it is none.
+std::optional<bool> utf16_without_mark(std::string_view text) {
+  constexpr std::size_t kLeast = 8;
+  constexpr std::size_t kMost = 256;
+  const std::size_t count = std::min(text.size(), kMost) / 2 * 2;
+  std::size_t even = 0;
+  std::size_t odd = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    (i % 2 == 0 ? even : odd) += text[i] == '\0' ? 1 : 0;
+  }
+  // A few characters may be others, such as a Greek mu.
+  const std::size_t nearly_all = count / 2 - count / 32;
+  if (count < kLeast || std::min(even, odd) > 0 || std::max(even, odd) < nearly_all) {
+    return std::nullopt;
+  }
+  return odd > even;
+}
+
 constexpr bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
@@ -101,6 +119,15 @@ std::string utf8_text(std::string text) {
     return utf8_from_utf16(std::string_view(text).substr(2), true);
   } else if (text.starts_with("\xFE\xFF")) {
     return utf8_from_utf16(std::string_view(text).substr(2), false);
+  } else if (const std::optional<bool> little_endian = utf16_without_mark(text)) {
+    return utf8_from_utf16(text, *little_endian);
+  }
+  return text;
+}
+
+std::string with_line_ends(std::string text) {
+  if (text.find('\n') == std::string::npos) {
+    std::replace(text.begin(), text.end(), '\r', '\n');
   }
   return text;
 }

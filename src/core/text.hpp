@@ -11,12 +11,15 @@
 
 namespace gazetrace {
 
-// The whole file as UTF-8: a byte-order mark is dropped, and UTF-16 with its mark (either order) is converted.
+// The whole file as UTF-8: a byte-order mark is dropped, and UTF-16 (either order) is converted. Without a mark, a text
+// counts as UTF-16 where every second byte of its beginning is zero and no other.
 // Error(input) where it cannot be read.
 std::string read_text_file(const std::string& path);
 // The two steps of read_text_file().
 std::string read_file_bytes(const std::string& path);
 std::string utf8_text(std::string text);
+// A text whose lines end in \r alone gets \n for each of them.
+std::string with_line_ends(std::string text);
 
 std::string_view trim(std::string_view text);  // blanks, tabs, carriage returns, no-break spaces
 std::string to_lower(std::string_view text);   // ASCII

@@ -91,7 +91,8 @@ PlanarView view_of_display(const DisplayGeometry& display, const FrameRect& rect
     throw Error(ErrorKind::usage, "",
                 fmt::format("a frame of {}x{} px does not have the shape of the {}x{} px of the display that it fills",
                             frame_width_px, frame_height_px, r.width_px, r.height_px),
-                "change the frame's size, or say with a frame rectangle where on the display it lies");
+                fmt::format("give `size` {:.0f}x{}, or say with `frame-rect` where on the display the frame lies",
+                            std::max(1.0, std::round(frame_height_px * r.width_px / r.height_px)), frame_height_px));
   }
   const double cm_per_px_x = display.width_cm / display_width;
   const double cm_per_px_y = display.height_cm / display_height;

@@ -9,8 +9,11 @@
 namespace gazetrace {
 namespace {
 
-// What a log says in words of its clock, and of what had to be guessed or mended.
+// What a log says in words of its clock, and of what had to be guessed or mended. Of recordings the numbers stay.
 void take_dates_out(GazeLog& log) {
+  for (GazeRecording& recording : log.recordings) {
+    recording.name.clear();
+  }
   log.clock = without_dates(log.clock);
   for (Warnings* const warnings : {&log.warnings, &log.conventions.warnings}) {
     for (std::string& warning : *warnings) {
@@ -60,6 +63,10 @@ std::int64_t count_from_first_sample(GazeLog& log) {
   if (log.trial) {
     shift(log.trial->begin_ns);
     shift(log.trial->end_ns);
+  }
+  for (GazeRecording& recording : log.recordings) {
+    shift(recording.first_ns);
+    shift(recording.last_ns);
   }
   if (log.order.first_backward_row != 0) {
     shift(log.order.first_backward_ns);

@@ -78,7 +78,8 @@ class Resampler {
     result_.t_log_ns = t_ns;
     result_.age_is_known = !log.sample_age_unknown;
     if (movements != nullptr && after_ > 0 && after_ <= movements->size()) {
-      result_.movement = (*movements)[after_ - 1];
+      // In a gap, in a pause and after the end nobody saw what the eye did.
+      result_.movement = is_unseen() ? EyeMovement::lost : (*movements)[after_ - 1];
       result_.since_saccade_ns = since_saccade_ns();
     }
   }
@@ -115,6 +116,15 @@ class Resampler {
     // A log of one row stands for a gaze that never moves.
     return samples_.size() > 1 &&
            (age_ns > mapping_.max_interpolation_gap_ns || age_ns < -mapping_.max_interpolation_gap_ns);
+  }
+
+  // Whether the row before lies so far back that a row is missing at least, at the rate that the rows before it have.
+  [[nodiscard]] bool is_unseen() const {
+    constexpr std::int64_t kSteps = 3;
+    const GazeSample& before = samples_[after_ - 1];
+    const std::int64_t step_ns = after_ > 1 ? saturating_difference(before.t_ns, samples_[after_ - 2].t_ns) : 0;
+    const std::int64_t age_ns = age(before);
+    return is_gap(age_ns) && age_ns / kSteps > step_ns;
   }
 
   void take(const GazeSample& sample, GazeState state, std::string reason) {

@@ -165,7 +165,10 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
                            : exponent_by_rate(file, table, c.time, raw.nominal_rate_hz, file.path);
   const TimeScale scale =
       declare_time(raw, options, time_name, exponent, stated ? Evidence::sidecar : Evidence::statistics, file.path);
-  raw.pupil_unit = c.pupil ? sidecars.text(names[*c.pupil] + ".Units") : "";
+  if (c.pupil) {
+    const std::string measure = sidecars.text(names[*c.pupil] + ".Measure");  // area or diameter, in no unit
+    raw.pupil_unit = measure.empty() ? sidecars.text(names[*c.pupil] + ".Units") : measure;
+  }
   const Eye eye = recorded_eye(sidecars);
   TableRows rows(file, table, c.needed());
   while (rows.next()) {
@@ -224,6 +227,9 @@ void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& 
     const auto duration = table.find("duration");
     const auto blink = table.find("blink");
     const auto message = table.find("message");
+    const auto stated = table.find("stated_duration");
+    const auto amplitude = table.find("amplitude");
+    const auto peak = table.find("peak_velocity");
     TableRows rows(file, table, table.headings.size());
     while (rows.next()) {
       GazeEvent event;
@@ -237,8 +243,14 @@ void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& 
                    : text == "fixation" ? GazeEventType::fixation
                    : text == "saccade"  ? GazeEventType::saccade
                    : text == "segment"  ? GazeEventType::segment
+                   : text == "aoi"      ? GazeEventType::aoi
                                         : GazeEventType::message;
       event.text = is_missing(rows.cell(message)) ? "" : std::string(rows.cell(message));
+      if (std::int64_t stated_ns = 0; stated && scaled_integer(rows.cell(*stated), 9, stated_ns) == NumberStatus::ok) {
+        event.stated_duration_ns = stated_ns;
+      }
+      event.stated_amplitude_deg = amplitude ? number_from(rows.cell(*amplitude)) : std::nullopt;
+      event.stated_peak_velocity_deg_s = peak ? number_from(rows.cell(*peak)) : std::nullopt;
       raw.events.push_back(std::move(event));
     }
     return;

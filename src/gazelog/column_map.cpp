@@ -53,6 +53,7 @@ void visit(Columns& c, Visitor&& v) {
   v("confidence", c.confidence);
   v("pupil", c.pupil);
   v("eye", c.eye);
+  v("recording", c.recording);
   const auto visit_eye = [&](const std::string& side, auto& e) {
     v(side + ".x", e.x);
     v(side + ".y", e.y);

@@ -40,14 +40,37 @@ class Finder {
     if (const auto found = optional(name, names)) {
       return *found;
     }
+    missing_.push_back({std::string(what), std::string(option)});
+    return 0;
+  }
+  [[nodiscard]] const ColumnHeading& heading(std::size_t column) const { return table_.headings[column]; }
+  // All that were not found, in one message.
+  void refuse_missing() const {
+    if (missing_.empty()) {
+      return;
+    }
+    std::string what;
+    std::string options;
+    for (std::size_t i = 0; i < missing_.size(); ++i) {
+      const std::string_view joint = i == 0 ? "" : i + 1 == missing_.size() ? " and " : ", ";
+      what += fmt::format("{}{}", joint, missing_[i].what);
+      options += fmt::format("{}{}", joint, missing_[i].option);
+    }
+    const bool is_one = missing_.size() == 1;
     throw Error(ErrorKind::input, place_,
-                fmt::format("no column for {} is found; the columns are: {}", what, column_listing(table_)),
-                fmt::format("name it with {}", option));
+                fmt::format("no {} for {} {} found; the columns are: {}", is_one ? "column" : "columns", what,
+                            is_one ? "is" : "are", column_listing(table_)),
+                fmt::format("name {} with {}", is_one ? "it" : "them", options));
   }
 
  private:
+  struct Missing {
+    std::string what, option;
+  };
+
   const DelimitedTable& table_;
   const std::string& place_;
+  mutable std::vector<Missing> missing_;
 };
 
 using std::string_view_literals::operator""sv;
@@ -87,6 +110,40 @@ GazeSource eye_source(const Finder& find, const EyeColumns& declared, Eye eye) {
   return source;
 }
 
+// The eye that a column's name tells: "LGazePos2dx", "left_x", "gaze x right", "ry". Of the words of a name, which a
+// capital letter begins as well, one is L, R, left or right.
+std::optional<Eye> eye_of_name(std::string_view name) {
+  const std::string lower = to_lower(name);
+  if (lower == "lx" || lower == "ly" || lower == "rx" || lower == "ry") {
+    return lower.front() == 'l' ? Eye::left : Eye::right;
+  }
+  const auto is_capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+  const auto is_small = [](char c) { return c >= 'a' && c <= 'z'; };
+  std::string word;
+  std::optional<Eye> eye;
+  const auto end_word = [&] {
+    const std::string w = to_lower(word);
+    eye = w == "l" || w == "left" ? Eye::left : w == "r" || w == "right" ? Eye::right : eye;
+    word.clear();
+  };
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const char c = name[i];
+    const bool begins =
+        is_capital(c) && i > 0 && (is_small(name[i - 1]) || (i + 1 < name.size() && is_small(name[i + 1])));
+    if (begins || !(is_capital(c) || is_small(c))) {
+      end_word();
+    }
+    word += is_capital(c) || is_small(c) ? std::string(1, c) : "";
+  }
+  end_word();
+  return eye;
+}
+
+Eye eye_of_names(const ColumnHeading& x, const ColumnHeading& y) {
+  const std::optional<Eye> eye = eye_of_name(x.name);
+  return eye && eye == eye_of_name(y.name) ? *eye : Eye::cyclopean;
+}
+
 void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& declared) {
   const bool by_eye = is_declared(declared.left) || is_declared(declared.right);
   if (by_eye) {
@@ -117,6 +174,7 @@ void plan_positions(ColumnPlan& plan, const Finder& find, const GazeColumns& dec
   source.confidence = find.optional(declared.confidence, kConfidence);
   source.pupil = find.optional(declared.pupil, kPupil);
   source.origin = {find.by_role(kOriginX), find.by_role(kOriginY), find.by_role(kOriginZ)};
+  source.eye = eye_of_names(find.heading(source.x), find.heading(source.y));
   plan.sources.insert(plan.sources.begin(), source);
 }
 
@@ -214,6 +272,7 @@ ColumnPlan plan_columns(const DelimitedTable& table, const GazeColumns& declared
   plan_head(plan, find, declared);
   plan.eye = find.optional(declared.eye, kEye);
   plan.frame = find.optional(declared.frame);
+  find.refuse_missing();
   plan_time_unit(plan, table.headings[plan.time], declared, place);
   plan_position_unit(plan, table, declared, place);
   for (const GazeSource& source : plan.sources) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazelog/decimal_comma.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -128,7 +130,59 @@ double roughness(const RowsOfCells& table, const std::vector<bool>& fractions) {
   return sum;
 }
 
+// Whether as many cells as a row has too many may be the last three digits of a number.
+bool are_thousands(const Row& cells, std::size_t columns) {
+  const auto is_group = [](std::string_view cell) { return cell.size() == 3 && all_digits(cell); };
+  const auto groups = std::count_if(cells.begin() + 1, cells.end(), is_group);
+  return static_cast<std::size_t>(groups) >= cells.size() - columns &&
+         std::all_of(cells.begin(), cells.end(), is_whole);
+}
+
 }  // namespace
+
+void refuse_thousands(const GazeFile& file) {
+  constexpr std::size_t kLeastRows = 2;
+  std::size_t columns = 0;
+  std::size_t fitting = 0;
+  std::size_t longer = 0;
+  std::int64_t first_longer = 0;
+  Row cells;
+  LineReader lines(file.text);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view text = trim(line);
+    if (text.empty() || text.front() == '#' || text.front() == '%') {
+      continue;
+    }
+    if (columns == 0) {
+      if (text.find(',') == std::string_view::npos || text.find_first_of("\t;\"{@") != std::string_view::npos) {
+        return;  // other separators, quotes, or no table
+      }
+      split_cells(text, ',', cells);
+      while (cells.size() > 1 && trim(cells.back()).empty()) {
+        cells.pop_back();
+      }
+      columns = cells.size();
+      continue;
+    }
+    const auto commas = static_cast<std::size_t>(std::count(text.begin(), text.end(), ','));
+    if (commas + 1 <= columns || text.back() == ',') {
+      ++fitting;
+      continue;
+    }
+    split_cells(text, ',', cells);
+    if (!are_thousands(cells, columns)) {
+      return;
+    }
+    first_longer = longer++ == 0 ? lines.number() : first_longer;
+  }
+  if (longer >= kLeastRows && fitting > 0) {
+    throw Error(ErrorKind::input, fmt::format("{}:{}", file.path, first_longer),
+                fmt::format("the row holds more cells than the {} columns, as {} of {} rows do: commas separate the "
+                            "columns, and group the digits of numbers from 1,000 on",
+                            columns, longer, longer + fitting),
+                "export again without thousands separators, or with tabs or semicolons between the columns");
+  }
+}
 
 DecimalCommas find_decimal_commas(const GazeFile& file) {
   constexpr std::size_t kLeastRows = 3;

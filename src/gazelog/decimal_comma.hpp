@@ -25,4 +25,8 @@ struct DecimalCommas {
 // difference is clear.
 DecimalCommas find_decimal_commas(const GazeFile& file);
 
+// Throws Error(input) where commas separate the cells and also group the digits of some numbers: rows hold more cells
+// than there are columns, but only those whose numbers are large.
+void refuse_thousands(const GazeFile& file);
+
 }  // namespace gazetrace

@@ -189,39 +189,20 @@ GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, GazeKind kind) {
   return sample;
 }
 
-struct Rows {
-  std::array<std::size_t, 3> of_eye{};
-  [[nodiscard]] std::size_t left() const { return of_eye[static_cast<std::size_t>(Eye::left)]; }
-  [[nodiscard]] std::size_t right() const { return of_eye[static_cast<std::size_t>(Eye::right)]; }
-  [[nodiscard]] std::size_t own() const { return of_eye[static_cast<std::size_t>(Eye::cyclopean)]; }
-};
-
-// One sample for each time, which is the log's own combined gaze where it has one, with both eyes beside it.
+// One sample for each time. The memory of the rows is given back.
 void group_rows(GazeLog& log) {
-  std::vector<GazeSample>& samples = log.samples;
-  std::size_t times = samples.empty() ? 0 : 1;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    times += samples[i].t_ns != samples[i - 1].t_ns ? 1 : 0;
+  std::size_t times = log.samples.empty() ? 0 : 1;
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    times += log.samples[i].t_ns != log.samples[i - 1].t_ns ? 1 : 0;
   }
   log.eyes.reserve(times);
-  std::size_t kept = 0;
-  for (std::size_t begin = 0; begin < samples.size();) {
-    BothEyes eyes;
-    std::optional<GazeSample> own;
-    std::size_t end = begin;
-    for (; end < samples.size() && samples[end].t_ns == samples[begin].t_ns; ++end) {
-      const GazeSample& row = samples[end];
-      if (row.eye == Eye::cyclopean) {
-        own = row;
-      } else {
-        (row.eye == Eye::left ? eyes.left : eyes.right) = eye_gaze(row, log.kind);
-      }
-    }
-    samples[kept++] = own ? *own : missing_sample(samples[begin].t_ns, samples[begin].row, log.kind);
-    log.eyes.push_back(eyes);
-    begin = end;
+  RowGrouper grouper(log);
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample row = log.samples[i];  // a copy: the sample of an earlier time may take its place
+    grouper.add(row);
   }
-  samples.resize(kept);
+  grouper.finish();
+  log.samples.shrink_to_fit();
 }
 
 struct EyeQuality {
@@ -401,23 +382,47 @@ ChosenEye chosen_eye(const GazeLog& log) {
   return chosen;
 }
 
+void RowGrouper::add(const GazeSample& row) {
+  if (!is_open_ || row.t_ns != first_.t_ns) {
+    close();
+    first_ = row;
+    own_.reset();
+    eyes_ = {};
+    is_open_ = true;
+  }
+  if (row.eye == Eye::cyclopean) {
+    own_ = row;
+  } else {
+    (row.eye == Eye::left ? eyes_.left : eyes_.right) = eye_gaze(row, log_.kind);
+  }
+}
+
+void RowGrouper::close() {
+  if (is_open_) {
+    const GazeSample joined = own_ ? *own_ : missing_sample(first_.t_ns, first_.row, log_.kind);
+    if (count_ < log_.samples.size()) {
+      log_.samples[count_] = joined;
+    } else {
+      log_.samples.push_back(joined);
+    }
+    ++count_;
+    log_.eyes.push_back(eyes_);
+  }
+  is_open_ = false;
+}
+
+void RowGrouper::finish() {
+  close();
+  log_.samples.resize(count_);
+}
+
 void choose_eyes(GazeLog& log) {
-  const Conventions& c = log.conventions;
-  Rows rows;
+  RowsOfEyes rows;
   for (const GazeSample& sample : log.samples) {
     ++rows.of_eye[static_cast<std::size_t>(sample.eye)];
   }
-  const EyeChoice choice = c.eye;
-  if ((choice == EyeChoice::left && rows.left() == 0) || (choice == EyeChoice::right && rows.right() == 0)) {
-    no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
-  }
-  if (choice == EyeChoice::dominant && !c.dominant_eye) {
-    throw Error(ErrorKind::usage, "`gaze-eye`", "which eye is the dominant one is not known",
-                "give `gaze-dominant` left or right");
-  }
-  const std::size_t kinds =
-      static_cast<std::size_t>(std::count_if(rows.of_eye.begin(), rows.of_eye.end(), [](auto n) { return n > 0; }));
-  if (kinds < 2) {
+  check_eye_choice(log, rows);
+  if (rows.kinds() < 2) {
     note_taken(log,
                rows.own() > 0    ? TakenEye::combined
                : rows.left() > 0 ? TakenEye::left
@@ -426,6 +431,24 @@ void choose_eyes(GazeLog& log) {
     return;  // one eye, or one that stands for both
   }
   group_rows(log);
+  choose_grouped_eyes(log, rows);
+}
+
+void check_eye_choice(const GazeLog& log, const RowsOfEyes& rows) {
+  const Conventions& c = log.conventions;
+  const EyeChoice choice = c.eye;
+  if ((choice == EyeChoice::left && rows.left() == 0) || (choice == EyeChoice::right && rows.right() == 0)) {
+    no_such_eye(log, choice == EyeChoice::left ? "left" : "right");
+  }
+  if (choice == EyeChoice::dominant && !c.dominant_eye) {
+    throw Error(ErrorKind::usage, "`gaze-eye`", "which eye is the dominant one is not known",
+                "give `gaze-dominant` left or right");
+  }
+}
+
+void choose_grouped_eyes(GazeLog& log, const RowsOfEyes& rows) {
+  const Conventions& c = log.conventions;
+  const EyeChoice choice = c.eye;
   const AnglePlane plane(log);
   const Evidence evidence = choice == EyeChoice::automatic ? Evidence::format : Evidence::option;
   if (choice == EyeChoice::left || choice == EyeChoice::right) {

@@ -53,7 +53,12 @@ void lose(GazeValidity& validity) {
 // Whether the numbers of a row stand for a place that the tracker did not know.
 bool is_mark(const Vec3d& at, const Conventions& c) {
   const bool has_three = c.form == PlaceForm::vector;
-  const bool is_given = c.missing_value && at.x == *c.missing_value && at.y == at.x && (!has_three || at.z == at.x);
+  // A place on a display is unknown where one of its coordinates is. Zero alone is the display's edge, and a component
+  // of a direction may be any number.
+  const bool one_is_enough = !has_three && c.missing_value && *c.missing_value != 0;
+  const bool is_given =
+      c.missing_value && (one_is_enough ? at.x == *c.missing_value || at.y == *c.missing_value
+                                        : at.x == *c.missing_value && at.y == at.x && (!has_three || at.z == at.x));
   return is_given || is_missing_marker(at.x) || is_missing_marker(at.y) || (has_three && is_missing_marker(at.z));
 }
 
@@ -126,24 +131,85 @@ GazeSample sample_of(const RawSample& row) {
   return sample;
 }
 
-void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
-  const ToFractions to_fractions(c, raw.place);
-  const bool marks_off_screen = !c.off_screen_is_told && raw.kind == GazeKind::screen;
-  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    GazeSample sample = sample_of(raw.rows[i]);
+// Samples of the rows of a log of positions, one by one.
+class PositionRows {
+ public:
+  PositionRows(const RawGaze& raw, const Conventions& c)
+      : raw_(raw),
+        c_(c),
+        to_fractions_(c, raw.place),
+        marks_off_screen_(!c.off_screen_is_told && raw.kind == GazeKind::screen) {}
+
+  [[nodiscard]] GazeSample sample(std::size_t row) const {
+    GazeSample sample = sample_of(raw_.rows[row]);
     bool is_missing = false;
-    const Vec2d at = to_fractions(position_of(raw.rows[i], corner_of(raw, c, i), c, is_missing));
+    const Vec2d at = to_fractions_(position_of(raw_.rows[row], corner_of(raw_, c_, row), c_, is_missing));
     if (is_missing) {
       lose(sample.validity);
     }
-    sample.u = c.flip_x ? 1.0 - at.x : at.x;
-    sample.v = c.flip_y ? 1.0 - at.y : at.y;
+    sample.u = c_.flip_x ? 1.0 - at.x : at.x;
+    sample.v = c_.flip_y ? 1.0 - at.y : at.y;
     const bool inside = sample.u >= 0 && sample.u <= 1 && sample.v >= 0 && sample.v <= 1;
-    if (marks_off_screen && sample.validity == GazeValidity::ok && !inside) {
+    if (marks_off_screen_ && sample.validity == GazeValidity::ok && !inside) {
       sample.validity = GazeValidity::off_screen;
     }
-    log.samples.push_back(sample);
+    return sample;
   }
+
+ private:
+  const RawGaze& raw_;
+  const Conventions& c_;
+  ToFractions to_fractions_;
+  bool marks_off_screen_;
+};
+
+void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
+  const PositionRows rows(raw, c);
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    log.samples.push_back(rows.sample(i));
+  }
+}
+
+bool are_positions(const Conventions& c) {
+  return c.form == PlaceForm::position && !(c.degrees_are_directions && c.unit.value == PositionUnit::deg);
+}
+
+// The rows of each eye, where they stand in order, several eyes to a time and none of them twice; empty where they do
+// not.
+std::optional<RowsOfEyes> rows_in_groups(const RawGaze& raw) {
+  RowsOfEyes rows;
+  unsigned seen = 0;  // the eyes at the time of the row
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    const RawSample& row = raw.rows[i];
+    const auto eye = static_cast<std::size_t>(row.eye);
+    const bool goes_on = i > 0 && row.t_ns == raw.rows[i - 1].t_ns;
+    if ((i > 0 && row.t_ns < raw.rows[i - 1].t_ns) || (goes_on && ((seen >> eye) & 1U) != 0)) {
+      return std::nullopt;
+    }
+    seen = (goes_on ? seen : 0U) | (1U << eye);
+    ++rows.of_eye[eye];
+  }
+  return rows.kinds() > 1 ? std::optional(rows) : std::nullopt;
+}
+
+// As interpret_rows, order_samples, drop_duplicates and choose_eyes do in turn, without ever holding a sample for each
+// row.
+void interpret_in_groups(const RawGaze& raw, const Conventions& c, const RowsOfEyes& rows_of_eyes, GazeLog& log) {
+  std::size_t times = 0;
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    times += i == 0 || raw.rows[i].t_ns != raw.rows[i - 1].t_ns ? 1 : 0;
+  }
+  check_eye_choice(log, rows_of_eyes);
+  log.samples.reserve(times);
+  log.eyes.reserve(times);
+  const PositionRows rows(raw, c);
+  RowGrouper grouper(log);
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    grouper.add(rows.sample(i));
+  }
+  grouper.finish();
+  log.order.rows = raw.rows.size();
+  choose_grouped_eyes(log, rows_of_eyes);
 }
 
 // Degrees from straight ahead, azimuth and elevation taken as independent, as on a flat display: (tan az, tan el, -1).
@@ -297,6 +363,24 @@ void recount_times(GazeLog& log, int declared_exponent, int exponent) {
   for (GazeCalibration& calibration : log.calibrations) {
     recount(calibration.t_ns);
   }
+  for (GazeRecording& recording : log.recordings) {
+    recount(recording.first_ns);
+    recount(recording.last_ns);
+  }
+}
+
+// Differences of stamps are taken everywhere, and must fit into an int64; half of that leaves room for their sums.
+void check_span(const GazeLog& log) {
+  const auto [first, last] = std::minmax_element(
+      log.samples.begin(), log.samples.end(), [](const GazeSample& a, const GazeSample& b) { return a.t_ns < b.t_ns; });
+  constexpr std::int64_t kLongest = std::numeric_limits<std::int64_t>::max() / 2;
+  std::int64_t span_ns = 0;
+  if (__builtin_sub_overflow(last->t_ns, first->t_ns, &span_ns) || span_ns > kLongest) {
+    throw Error(
+        ErrorKind::input, fmt::format("{}:{}", log.source, std::max(first->row, last->row)),
+        fmt::format("the stamps reach from {} to {} ns, over more than a hundred years", first->t_ns, last->t_ns),
+        "check the unit of the time column (`gaze-time-unit`), or remove the rows with a damaged time");
+  }
 }
 
 }  // namespace
@@ -312,20 +396,30 @@ Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t 
 }
 
 std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions) {
-  std::vector<RawSample> rows = raw.rows;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    RawSample& row = rows[i];
+  // Of a long log some of the rows tell as much, and a copy of all of them would be as large as the log.
+  constexpr std::size_t kAllUpTo = 2'000'000;
+  std::size_t stride = raw.rows.size() / kAllUpTo + 1;
+  while (stride > 1 && (stride % 2 == 0 || stride % 3 == 0)) {
+    ++stride;  // or it would meet the same eye of two or three each time
+  }
+  std::vector<RawSample> rows;
+  rows.reserve(raw.rows.size() / stride + 1);
+  for (std::size_t i = 0; i < raw.rows.size(); i += stride) {
+    RawSample row = raw.rows[i];
     bool is_missing = false;
     const Vec2d at = position_of(row, corner_of(raw, conventions, i), conventions, is_missing);
     row.at = {at.x, at.y, 0};
     if (is_missing) {
       lose(row.validity);
     }
+    rows.push_back(row);
   }
   return rows;
 }
 
-GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
+namespace {
+
+GazeLog log_without_samples(const RawGaze& raw, const Conventions& conventions) {
   if (conventions.form == PlaceForm::position && conventions.unit.value == PositionUnit::automatic) {
     throw Error(ErrorKind::usage, raw.place, "the unit of the positions is not settled",
                 "conclude the conventions of the log before it is interpreted, or state their unit");
@@ -348,11 +442,21 @@ GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
   log.events = raw.events;
   log.calibrations = raw.calibrations;
   log.witnesses = raw.witnesses;
+  log.recordings = raw.recordings;
+  log.recording = raw.recording;
   log.warnings = raw.warnings;
+  log.warnings.insert(log.warnings.end(), raw.damages.begin(), raw.damages.end());
   log.warnings.insert(log.warnings.end(), conventions.warnings.begin(), conventions.warnings.end());
   log.conventions = conventions;
-  log.samples.reserve(raw.rows.size());
   turn_witnesses(log, conventions, grows_up(conventions) != grows_up(raw.declared));
+  return log;
+}
+
+}  // namespace
+
+GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
+  GazeLog log = log_without_samples(raw, conventions);
+  log.samples.reserve(raw.rows.size());
   if (conventions.form != PlaceForm::position) {
     interpret_vectors(raw, conventions, log);
   } else if (conventions.degrees_are_directions && conventions.unit.value == PositionUnit::deg) {
@@ -366,13 +470,25 @@ GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
 }
 
 GazeLog interpret(const RawGaze& raw, const Conventions& conventions) {
-  GazeLog log = interpret_rows(raw, conventions);
-  if (log.samples.empty()) {
-    throw Error(ErrorKind::input, log.source, "holds no sample", "a gaze log needs at least one row below its header");
+  const bool keeps_stamps = raw.declared.time_exponent.value == conventions.time_exponent.value;
+  const auto groups = keeps_stamps && are_positions(conventions) ? rows_in_groups(raw) : std::nullopt;
+  GazeLog log;
+  if (groups) {
+    log = log_without_samples(raw, conventions);
+    interpret_in_groups(raw, conventions, *groups, log);
+    finish_head(log);
+    check_span(log);
+  } else {
+    log = interpret_rows(raw, conventions);
+    if (log.samples.empty()) {
+      throw Error(ErrorKind::input, log.source, "holds no sample",
+                  "a gaze log needs at least one row below its header");
+    }
+    check_span(log);
+    order_samples(log, conventions.unordered);
+    drop_duplicates(log, conventions.unordered);
+    choose_eyes(log);
   }
-  order_samples(log, conventions.unordered);
-  drop_duplicates(log, conventions.unordered);
-  choose_eyes(log);
   align_origins(log);
   const auto usable = [](const GazeSample& sample) { return is_usable(sample.validity); };
   if (std::none_of(log.samples.begin(), log.samples.end(), usable)) {

@@ -14,8 +14,9 @@ bool is_missing_marker(double coordinate);
 // The file's x and y of the display's top left corner for the row of that index.
 Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t row);
 
-// The rows of a log of positions with x and y in `conventions.unit`: without the marks of missing values, counted from
-// the display's corner, and with the axes in their order. Guesses are made from these.
+// The rows of a log of positions (of more than two millions every n-th) with x and y in `conventions.unit`: without the
+// marks of missing values, counted from the display's corner, and with the axes in their order. Guesses are made from
+// these.
 std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions);
 
 // Makes one sample of each row, in the order of the file, and adds what holds for all of them: kind, geometry, origins,

@@ -2,16 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <utility>
 
 #include "core/text.hpp"
 #include "gazelog/decimal_comma.hpp"
+#include "gazelog/event_table.hpp"
 #include "gazelog/gaze_format.hpp"
-#include "gazelog/gzip.hpp"
+#include "gazelog/log_file.hpp"
 #include "gazelog/mending.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 #include "gazetrace/gaze_raw.hpp"
 
 namespace gazetrace {
@@ -79,32 +80,6 @@ auto with_a_hint_of_the_format(const std::string& named, const GazeFile& file, c
   }
 }
 
-// A folder stands for the recording in it.
-std::string file_of(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code code;
-  if (!fs::is_directory(path, code)) {
-    return path;
-  }
-  for (const char* const name : {"gazedata.gz", "livedata.json.gz", "gaze ps1.raw", "gaze_positions.csv", "gaze.csv"}) {
-    if (fs::exists(fs::path(path) / name, code)) {
-      return (fs::path(path) / name).string();
-    }
-  }
-  throw Error(ErrorKind::input, path, "is a folder without a recording of a known name", "name the log itself");
-}
-
-GazeFile open_file(const std::string& path) {
-  GazeFile file{file_of(path), {}};
-  std::string bytes = read_file_bytes(file.path);
-  if (is_gzip(bytes)) {
-    bytes = unpack_gzip(bytes, path);
-  }
-  // Records of numbers may begin like a byte-order mark.
-  file.text = file.path.ends_with(".raw") ? std::move(bytes) : utf8_text(std::move(bytes));
-  return file;
-}
-
 // Columns that decimal commas split, where the user says so or, where the log is only looked at, where they are seen.
 std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOptions& options, Mending mending) {
   if (!options.decimal_comma && mending == Mending::none) {
@@ -118,8 +93,8 @@ std::optional<RawFault> join_decimal_commas(GazeFile& file, const GazeReadOption
   if (commas.status == Status::ambiguous) {
     throw Error(
         ErrorKind::input, file.path,
-        "rows hold more cells than there are columns, as with decimal commas between commas, and cannot be told "
-        "apart for certain",
+        "rows hold more cells than there are columns, as with decimal commas or thousands separators between commas, "
+        "and cannot be told apart for certain",
         "export again with decimal points, or with tabs or semicolons between the columns");
   }
   file.fractions = std::move(commas.fractions);
@@ -175,6 +150,8 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
     format = guesses.front().format;
     confidence = guesses.front().confidence;
   }
+  refuse_other_tables(file, !options.format.empty());
+  refuse_thousands(file);
   const std::optional<RawFault> commas = join_decimal_commas(file, options, mending);
   RawGaze raw = format->read(file, options);
   if (commas) {
@@ -184,6 +161,11 @@ RawGaze read_opened(GazeFile& file, const std::string& path, const GazeReadOptio
   raw.source = path;
   raw.format = format->name;
   raw.format_confidence = confidence;
+  note_damages(file, raw);
+  choose_recording(raw, options.recording);
+  if (!options.events_file.empty()) {
+    take_events(options.events_file, raw);
+  }
   return raw;
 }
 
@@ -193,7 +175,7 @@ auto with_file(const std::string& path, const GazeReadOptions& options, const Ac
   if (!options.format.empty()) {
     format_by_name(options.format);  // a name that is not known is refused before anything is read
   }
-  GazeFile file = open_file(path);
+  GazeFile file = open_log_file(path);
   return with_a_hint_of_the_format(options.format, file, [&] { return act(file); });
 }
 
@@ -273,6 +255,8 @@ std::string_view to_string(GazeEventType type) {
       return "message";
     case GazeEventType::segment:
       return "segment";
+    case GazeEventType::aoi:
+      return "aoi";
   }
   return "message";
 }
@@ -287,7 +271,7 @@ std::vector<GazeFormatInfo> gaze_formats() {
 
 std::vector<GazeFormatGuess> sniff_gaze_format(const std::string& path) {
   std::vector<GazeFormatGuess> guesses;
-  for (const Guess& guess : sniff(open_file(path))) {
+  for (const Guess& guess : sniff(open_log_file(path))) {
     guesses.push_back({guess.format->name, guess.confidence});
   }
   return guesses;
@@ -306,6 +290,10 @@ GazeLog load_gaze_log(const std::string& path, const GazeReadOptions& options) {
     const RawGaze raw = read_opened(file, path, options, Mending::none);
     if (options.format.empty()) {
       file = {};  // no hint can be needed: the text is given back before samples are made of the rows
+    }
+    if (needs_a_choice(raw)) {
+      throw Error(ErrorKind::input, path, "holds " + recordings_in_words(raw.recordings),
+                  "say which of them is meant with `gaze-recording`, such as `gaze-recording` 1");
     }
     const Conventions conventions = conclude_conventions(raw, options);
     if (!raw.faults.empty()) {

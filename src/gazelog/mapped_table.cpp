@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -24,7 +25,10 @@ class RowReader {
         columns_(columns),
         style_(style),
         validity_(columns, style),
-        rows_(file, table, plan.needed_cells()),
+        recordings_(table, columns.recording,
+                    {"participant", "participant name", "participant id", "subject", "subject id", "session",
+                     "session id", "recording", "recording name", "recording id"}),
+        rows_(file, table, std::max(plan.needed_cells(), recordings_.needed_cells())),
         time_(time) {
     for (const GazeSource& source : plan.sources) {
       has_origins_ = has_origins_ || source.origin[0].has_value();
@@ -35,6 +39,9 @@ class RowReader {
   void read_all(RawGaze& raw) {
     while (rows_.next()) {
       rows_.check_length();
+      if (recordings_.note(rows_, raw)) {
+        last_frame_.clear();
+      }
       if (repeats_frame()) {
         continue;
       }
@@ -80,7 +87,7 @@ class RowReader {
     if (columns_.valid_mask != 0 && sample.pupil <= 0) {
       sample.pupil = nan_;  // SDKs with bit masks write -1
     }
-    if (plan_.eye && source.eye == Eye::cyclopean) {
+    if (plan_.eye && (source.eye == Eye::cyclopean || plan_.sources.size() == 1)) {
       const std::string_view text = rows_.cell(*plan_.eye);
       const auto eye = eye_from(text);
       if (!eye) {
@@ -156,6 +163,7 @@ class RowReader {
   const GazeColumns& columns_;
   ValidityStyle style_;
   ValidityReader validity_;
+  RecordingColumns recordings_;
   TableRows rows_;
   TimeScale time_;
   bool has_origins_ = false;

@@ -48,9 +48,21 @@ class Words {
     }
     return static_cast<Value>(fail(word, "one of the names known for it"));
   }
+  // A value behind its name, where the next word has one.
+  std::optional<double> named_number(std::string_view name) {
+    return take(name) ? std::optional(number()) : std::nullopt;
+  }
+  std::optional<std::int64_t> named_time_ns(std::string_view name) {
+    return take(name) ? std::optional(time_ns()) : std::nullopt;
+  }
   [[nodiscard]] std::string_view rest() const { return rest_; }
 
  private:
+  bool take(std::string_view name) {
+    const bool is_next = rest_.starts_with(name);
+    rest_.remove_prefix(is_next ? name.size() : 0);
+    return is_next;
+  }
   [[noreturn]] int fail(std::string_view word, std::string_view wanted) const {
     throw Error(ErrorKind::input, place_, fmt::format("`# {}` has '{}' where it needs {}", key_, word, wanted),
                 "mend the line, or leave it out");
@@ -67,7 +79,7 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
   if (key == "event") {
     GazeEvent event;
     event.type = words.one_of({GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                               GazeEventType::message, GazeEventType::segment});
+                               GazeEventType::message, GazeEventType::segment, GazeEventType::aoi});
     event.eye = words.one_of({Eye::left, Eye::right, Eye::cyclopean});
     event.begin_ns = words.time_ns();
     event.end_ns = words.time_ns();
@@ -76,6 +88,12 @@ bool read_record(std::string_view key, std::string_view rest, const PreambleLine
                   fmt::format("`# event` lasts from {} to {}, longer than int64 nanoseconds count", event.begin_ns,
                               event.end_ns),
                   "mend the line, or leave it out");
+    }
+    if (event.type == GazeEventType::fixation || event.type == GazeEventType::saccade ||
+        event.type == GazeEventType::blink) {
+      event.stated_duration_ns = words.named_time_ns("duration_ns=");
+      event.stated_amplitude_deg = words.named_number("amplitude_deg=");
+      event.stated_peak_velocity_deg_s = words.named_number("peak_deg_s=");
     }
     event.text = words.rest();
     event.row = line.line;

@@ -113,9 +113,10 @@ HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Q
   return {t_ns, position_m, q};
 }
 
-void LabelRuns::add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row) {
+void LabelRuns::add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row,
+                    std::string_view text) {
   if (!open_ || key_ != key || events_.back().type != type) {
-    events_.push_back({type, eye, t_ns, t_ns, std::string(), row});
+    events_.push_back({type, eye, t_ns, t_ns, std::string(text), row});
     key_ = key;
     open_ = true;
   }

@@ -60,7 +60,9 @@ class WitnessTally {
 // Makes events of the runs of rows with one label, such as "Fixation 12".
 class LabelRuns {
  public:
-  void add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row);
+  // `text` is that of the event, where the label has words that are to be kept.
+  void add(GazeEventType type, Eye eye, std::string_view key, std::int64_t t_ns, std::int64_t row,
+           std::string_view text = {});
   void end();  // ends the run, for a row without a label
   void finish(RawGaze& raw);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 
 #include "core/text.hpp"
@@ -82,6 +83,28 @@ std::optional<std::size_t> first_called(const std::vector<ColumnHeading>& headin
     }
   }
   return std::nullopt;
+}
+
+constexpr std::string_view kThousandsRemedy =
+    "export again without thousands separators, or remove the commas from the numbers of that column";
+
+// 1,234 and -12,345,678.9: a comma before every three digits of the whole part.
+bool is_grouped(std::string_view text) {
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
+    text.remove_prefix(1);
+  }
+  text = text.substr(0, text.find('.'));
+  const std::size_t first = text.find(',');
+  if (first == std::string_view::npos || first == 0 || first > 3 || text.front() == '0' ||
+      text.find_first_not_of("0123456789,") != std::string_view::npos) {
+    return false;
+  }
+  for (std::size_t at = first; at < text.size(); at += 4) {
+    if (text[at] != ',' || text.size() - at < 4 || text.substr(at + 1, 3).find(',') != std::string_view::npos) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool is_known_unit(std::string_view text) {
@@ -260,6 +283,14 @@ TableRows::TableRows(const GazeFile& file, const DelimitedTable& table, std::siz
     : file_(file), table_(table), needed_(needed), rest_(table.body), line_(table.lines_above) {}
 
 bool TableRows::next() {
+  const bool is_there = read();
+  if (!is_there && !commas_.empty()) {
+    refuse_thousands();
+  }
+  return is_there;
+}
+
+bool TableRows::read() {
   while (!rest_.empty()) {
     const std::size_t end = rest_.find('\n');
     std::string_view line = rest_.substr(0, end);
@@ -281,6 +312,43 @@ bool TableRows::next() {
   return false;
 }
 
+void TableRows::note_comma(std::size_t column, std::string_view text) {
+  Commas& commas = commas_[column];
+  if (!is_grouped(text)) {
+    ++commas.others;
+  } else if (commas.grouped++ == 0) {
+    commas.first = text;
+    commas.first_line = line_;
+  }
+}
+
+void TableRows::refuse_thousands() const {
+  constexpr std::size_t kLeast = 2;
+  for (const auto& [column, commas] : commas_) {
+    if (commas.grouped < kLeast || commas.others > 0) {
+      continue;
+    }
+    // Of a column of decimal fractions with three digits, one or another number would be whole, or above a thousand.
+    std::size_t below = 0;
+    std::size_t above = 0;
+    TableRows again(file_, table_, needed_);
+    while (again.read()) {
+      const std::string_view text = again.cell(column);
+      const auto value = text.find(',') == std::string_view::npos ? number_from(text) : std::nullopt;
+      below += value && std::abs(*value) < 1000 ? 1 : 0;
+      above += value && std::abs(*value) >= 1000 ? 1 : 0;
+    }
+    if (below > 0 && above == 0) {
+      throw Error(ErrorKind::input, place_of(file_, commas.first_line), thousands_problem(commas.first, column),
+                  kThousandsRemedy);
+    }
+  }
+}
+
+std::string TableRows::thousands_problem(std::string_view text, std::size_t column) const {
+  return fmt::format("'{}' in column '{}' has thousands separators", text.substr(0, 60), table_.headings[column].text);
+}
+
 void TableRows::check_length() const {
   if (is_short()) {
     fail(fmt::format("the row has {} of the {} cells that reach to column '{}'", cells_.size(), needed_,
@@ -296,7 +364,13 @@ std::string_view TableRows::cell(std::size_t column) {
 double TableRows::number(std::size_t column) {
   const std::string_view text = cell(column);
   if (const auto value = number_from(text)) {
+    if (text.find(',') != std::string_view::npos) {
+      note_comma(column, text);
+    }
     return *value;
+  }
+  if (is_grouped(text)) {
+    fail(thousands_problem(text, column), kThousandsRemedy);
   }
   if (!is_missing(text)) {
     const std::string lower = to_lower(text);
@@ -326,7 +400,13 @@ std::int64_t TableRows::time_ns(std::size_t column, const TimeScale& scale) {
     }
   }
   if (status == NumberStatus::ok) {
+    if (text.find(',') != std::string_view::npos) {
+      note_comma(column, text);
+    }
     return t_ns;
+  }
+  if (is_grouped(text)) {
+    fail(thousands_problem(text, column), kThousandsRemedy);
   }
   if (status == NumberStatus::overflow) {
     fail(fmt::format("time '{}' in {} does not fit int64 nanoseconds", text.substr(0, 60),

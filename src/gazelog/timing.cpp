@@ -8,6 +8,31 @@
 #include "core/statistics.hpp"
 
 namespace gazetrace {
+namespace {
+
+// A difference of integers: nanoseconds from 1970 do not fit into a double. A log is shorter than int64 counts.
+std::int64_t step_ns(const GazeLog& log, std::size_t sample) {
+  return log.samples[sample].t_ns - log.samples[sample - 1].t_ns;
+}
+
+}  // namespace
+
+std::vector<std::size_t> section_starts(const GazeLog& log) {
+  std::vector<std::size_t> starts{0};
+  for (const GazeEvent& event : log.events) {
+    if (event.type != GazeEventType::segment) {
+      continue;
+    }
+    const auto first = std::lower_bound(log.samples.begin(), log.samples.end(), event.begin_ns,
+                                        [](const GazeSample& sample, std::int64_t t) { return sample.t_ns < t; });
+    if (first != log.samples.end()) {
+      starts.push_back(static_cast<std::size_t>(first - log.samples.begin()));
+    }
+  }
+  std::sort(starts.begin(), starts.end());
+  starts.erase(std::unique(starts.begin(), starts.end()), starts.end());
+  return starts;
+}
 
 GazeTiming measure_timing(const GazeLog& log) {
   GazeTiming timing;
@@ -17,14 +42,7 @@ GazeTiming measure_timing(const GazeLog& log) {
   std::vector<double> steps;
   steps.reserve(log.samples.size());
   for (std::size_t i = 1; i < log.samples.size(); ++i) {
-    steps.push_back(static_cast<double>(log.samples[i].t_ns) - static_cast<double>(log.samples[i - 1].t_ns));
-  }
-  // Nanoseconds from 1970 do not fit into a double, but differences of the integers do.
-  for (std::size_t i = 1; i < log.samples.size(); ++i) {
-    std::int64_t step = 0;
-    if (!__builtin_sub_overflow(log.samples[i].t_ns, log.samples[i - 1].t_ns, &step)) {
-      steps[i - 1] = static_cast<double>(step);
-    }
+    steps.push_back(static_cast<double>(step_ns(log, i)));
   }
   if (steps.empty()) {
     return timing;
@@ -35,13 +53,25 @@ GazeTiming measure_timing(const GazeLog& log) {
   timing.median_rate_hz = median > 0 ? 1e9 / median : 0;
   RunningSpread between_gaps;
   for (const double step : steps) {
-    if (step > kGapInSteps * median) {
-      ++timing.gaps;
-      timing.gaps_total_ns += static_cast<std::int64_t>(std::min(step, 9e18));
-      timing.longest_gap_ns = std::max(timing.longest_gap_ns, static_cast<std::int64_t>(std::min(step, 9e18)));
+    if (!(step > kGapInSteps * median)) {
+      between_gaps.add(step);
+    }
+  }
+  const std::vector<std::size_t> starts = section_starts(log);
+  auto start = starts.begin();
+  for (std::size_t i = 1; i < log.samples.size(); ++i) {
+    while (start != starts.end() && *start < i) {
+      ++start;
+    }
+    const std::int64_t step = step_ns(log, i);
+    if (!(static_cast<double>(step) > kGapInSteps * median)) {
       continue;
     }
-    between_gaps.add(step);
+    const bool is_pause = start != starts.end() && *start == i;
+    ++(is_pause ? timing.pauses : timing.gaps);
+    std::int64_t& total_ns = is_pause ? timing.pauses_total_ns : timing.gaps_total_ns;
+    total_ns += step;
+    timing.longest_gap_ns = is_pause ? timing.longest_gap_ns : std::max(timing.longest_gap_ns, step);
   }
   timing.mean_rate_hz = between_gaps.mean() > 0 ? 1e9 / between_gaps.mean() : 0;
   timing.jitter_ns = between_gaps.deviation();

@@ -41,6 +41,21 @@ std::string one_heading(std::string text) {
   return one_line(std::move(text));
 }
 
+// " duration_ns=20000000 amplitude_deg=9 peak_deg_s=400", of which only what the tracker states.
+std::string stated_values(const GazeEvent& event) {
+  std::string text;
+  if (event.stated_duration_ns) {
+    text += fmt::format(" duration_ns={}", *event.stated_duration_ns);
+  }
+  if (event.stated_amplitude_deg) {
+    text += fmt::format(" amplitude_deg={}", *event.stated_amplitude_deg);
+  }
+  if (event.stated_peak_velocity_deg_s) {
+    text += fmt::format(" peak_deg_s={}", *event.stated_peak_velocity_deg_s);
+  }
+  return text;
+}
+
 std::string preamble(const GazeLog& log) {
   std::string text = "# gazetrace-gaze 1\n";
   text += log.kind == GazeKind::scene_camera ? "# kind scene-camera\n" : "";
@@ -79,8 +94,8 @@ std::string preamble(const GazeLog& log) {
     text += fmt::format("# calibration {} {} {} {}\n", to_string(c.eye), c.t_ns, c.mean_error_deg, c.max_error_deg);
   }
   for (const GazeEvent& event : log.events) {
-    text += fmt::format("# event {} {} {} {} {}\n", to_string(event.type), to_string(event.eye), event.begin_ns,
-                        event.end_ns, one_line(event.text));
+    text += fmt::format("# event {} {} {} {}{} {}\n", to_string(event.type), to_string(event.eye), event.begin_ns,
+                        event.end_ns, stated_values(event), one_line(event.text));
   }
   return text;
 }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // BIDS 1.11 eye tracking: ..._recording-<eye>_physio.tsv.gz without a header line, its sidecar, ..._physioevents.tsv.gz
-// for the events of that eye, and ..._events.json with the screen.
+// for the events of that eye, ..._events.tsv for what happened in the run, and ..._events.json with the screen.
 //
 // x and y are pixels, or degrees of azimuth and elevation for gaze in the head, as other programs expect them. Where
 // these do not give back every bit of what was read, columns of gazetrace's own follow that do. Other such columns hold
 // validity, confidence and the eye's position in the head, for which the standard has no names.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <tuple>
 
 #include "core/atomic_file.hpp"
 #include "gazelog/bids_sidecars.hpp"
@@ -195,6 +199,7 @@ class RecordingWriter {
     if (log_.sample_age_unknown) {
       json["SampleAge"] = "unknown";  // our own
     }
+    add_calibration(json);
     for (const GazeCalibration& c :
          log_.calibrations) {  // a key of gazetrace's own: ns, degrees, null where not stated
       json["Calibrations"].push_back({{"Eye", to_string(c.eye)},
@@ -218,7 +223,7 @@ class RecordingWriter {
       json["y_coordinate"]["Description"] = "Elevation";
     }
     if (has_pupil_) {
-      add("pupil_size", log_.pupil_unit, "Of the pupil, as the tracker gives it");
+      add_pupil(json);
     }
     add("validity", "", "ok, low_confidence, blink, lost, off_screen or interpolated");
     if (has_confidence_) {
@@ -242,6 +247,46 @@ class RecordingWriter {
   }
 
  private:
+  // The standard asks whether it is an area or a diameter. EyeLink's areas and diameters have no unit.
+  void add_pupil(Json& json) const {
+    const std::string& unit = log_.pupil_unit;
+    const bool is_bare = unit == "area" || unit == "diameter";
+    json["Columns"].push_back("pupil_size");
+    json["pupil_size"] = {{"Description", unit == "area" ? "The area of the pupil, as the tracker gives it"
+                                          : unit.empty()
+                                              ? "The pupil, as the tracker gives it; the log does not state whether "
+                                                "it is an area or a diameter"
+                                              : "The diameter of the pupil, as the tracker gives it"}};
+    if (!unit.empty()) {
+      json["pupil_size"]["Units"] = is_bare ? "arbitrary" : unit;
+    }
+    if (is_bare) {
+      json["pupil_size"]["Measure"] = unit;  // a key of gazetrace's own
+    }
+  }
+
+  // By the standard's names, which have room for one: the last that was measured for this eye.
+  void add_calibration(Json& json) const {
+    const GazeCalibration* last = nullptr;
+    int count = 0;
+    for (const GazeCalibration& c : log_.calibrations) {
+      if (c.eye == recording_.eye || c.eye == Eye::cyclopean) {
+        last = &c;
+        ++count;
+      }
+    }
+    if (last == nullptr) {
+      return;
+    }
+    json["CalibrationCount"] = count;
+    if (!std::isnan(last->mean_error_deg)) {
+      json["AverageCalibrationError"] = last->mean_error_deg;
+    }
+    if (!std::isnan(last->max_error_deg)) {
+      json["MaximalCalibrationError"] = last->max_error_deg;
+    }
+  }
+
   [[nodiscard]] double rate_hz() const {
     // The rate comes from the mean step, because the steps of a frame log have two or three lengths, and the median
     // would be one of these.
@@ -283,6 +328,8 @@ Json screen_json(const GazeLog& log) {
     if (g.eye_x_cm != 0 || g.eye_y_cm != 0) {
       screen["EyeOffsetCm"] = {g.eye_x_cm, g.eye_y_cm};
     }
+  }
+  if (log.kind == GazeKind::screen) {
     screen["ScreenOrigin"] = {"top", "left"};
   }
   if (log.pixels_per_degree) {
@@ -310,24 +357,145 @@ Eye home_of(const GazeEvent& event, const std::vector<Recording>& recordings, co
   return !moves ? recordings.front().eye : has(event.eye) ? event.eye : chosen ? *chosen : recordings.front().eye;
 }
 
-std::string events_table(const GazeLog& log, Eye eye, const std::vector<Recording>& recordings) {
+// What a tracker states of an event besides its begin and end.
+bool has_stated(const GazeEvent& event) {
+  return event.stated_duration_ns || event.stated_amplitude_deg || event.stated_peak_velocity_deg_s;
+}
+
+// The events of one recording, and whether any of them has columns of stated values.
+struct EventsOfEye {
+  std::vector<const GazeEvent*> events;
+  bool has_stated = false;
+};
+
+EventsOfEye events_of(const GazeLog& log, Eye eye, const std::vector<Recording>& recordings) {
   const std::optional<Eye> chosen = chosen_eye(log).eye;
-  std::string text;
+  EventsOfEye found;
   for (const GazeEvent& event : log.events) {
-    if (home_of(event, recordings, chosen) != eye) {
-      continue;
+    if (home_of(event, recordings, chosen) == eye) {
+      found.events.push_back(&event);
+      found.has_stated = found.has_stated || has_stated(event);
     }
+  }
+  return found;
+}
+
+// Seconds with as many digits as there are nanoseconds.
+std::string seconds(std::int64_t ns) {
+  const auto magnitude = ns < 0 ? 0 - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+  return fmt::format("{}{}.{:09d}", ns < 0 ? "-" : "", magnitude / 1'000'000'000, magnitude % 1'000'000'000);
+}
+
+std::string events_table(const EventsOfEye& of_eye) {
+  std::string text;
+  const auto or_missing = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : "n/a"; };
+  for (const GazeEvent* const e : of_eye.events) {
+    const GazeEvent& event = *e;
     // Unsigned, because the longest duration does not fit into the type of the times.
     const std::uint64_t length_ns = event.end_ns > event.begin_ns ? static_cast<std::uint64_t>(event.end_ns) -
                                                                         static_cast<std::uint64_t>(event.begin_ns)
                                                                   : 0;
     const bool is_blink = event.type == GazeEventType::blink;
     const bool is_message = event.type == GazeEventType::message;
-    fmt::format_to(std::back_inserter(text), "{}\t{}.{:09d}\t{}\t{}\t{}\n", event.begin_ns, length_ns / 1'000'000'000,
+    fmt::format_to(std::back_inserter(text), "{}\t{}.{:09d}\t{}\t{}\t{}", event.begin_ns, length_ns / 1'000'000'000,
                    length_ns % 1'000'000'000, is_blink || is_message ? std::string_view("n/a") : to_string(event.type),
                    is_blink ? "1" : "0", one_cell(event.text));
+    if (of_eye.has_stated) {
+      fmt::format_to(std::back_inserter(text), "\t{}\t{}\t{}",
+                     event.stated_duration_ns ? seconds(*event.stated_duration_ns) : "n/a",
+                     or_missing(event.stated_amplitude_deg), or_missing(event.stated_peak_velocity_deg_s));
+    }
+    text += '\n';
   }
   return text;
+}
+
+std::string seconds_since(std::int64_t t_ns, std::int64_t first_ns) {
+  std::int64_t since_ns = 0;
+  return __builtin_sub_overflow(t_ns, first_ns, &since_ns) ? "n/a" : seconds(since_ns);
+}
+
+// What happened in the run: when it was recorded, and the messages of the experiment. What the eye did stands in
+// physioevents, as the standard asks.
+std::string run_events_table(const GazeLog& log) {
+  struct RunEvent {
+    std::int64_t begin_ns, end_ns;
+    std::string_view type;
+    std::string message;
+  };
+  std::vector<RunEvent> rows;
+  for (const GazeEvent& event : log.events) {
+    if (event.type == GazeEventType::segment) {
+      rows.push_back({event.begin_ns, event.end_ns, "recording", {}});
+    } else if (event.type == GazeEventType::message) {
+      rows.push_back({event.begin_ns, event.begin_ns, "message", event.text});
+    }
+  }
+  const std::int64_t first_ns = log.samples.front().t_ns;
+  if (std::none_of(rows.begin(), rows.end(), [](const RunEvent& row) { return row.type == "recording"; })) {
+    rows.push_back({first_ns, log.samples.back().t_ns, "recording", {}});
+  }
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const RunEvent& a, const RunEvent& b) { return a.begin_ns < b.begin_ns; });
+  std::string text = "onset\tduration\ttrial_type\tmessage\n";
+  for (const RunEvent& row : rows) {
+    text += fmt::format("{}\t{}\t{}\t{}\n", seconds_since(row.begin_ns, first_ns),
+                        seconds_since(row.end_ns, row.begin_ns), row.type, one_cell(row.message));
+  }
+  return text;
+}
+
+std::string task_of(const BidsName& name) {
+  for (const std::string& entity : name.entities) {
+    if (entity.starts_with("task-")) {
+      return entity.substr(5);
+    }
+  }
+  return "";
+}
+
+// What the standard recommends for every sidecar of a task.
+Json with_task(Json json, const BidsName& name) {
+  if (const std::string task = task_of(name); !task.empty()) {
+    json["TaskName"] = task;
+  }
+  return json;
+}
+
+Json events_sidecar(Eye eye, bool has_stated) {
+  Json json{{kBidsWriterKey, kBidsWriter},
+            {"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
+            {"Description", fmt::format("What the log states of the movements of the {} eye", to_string(eye))},
+            {"OnsetSource", "timestamp"},
+            {"duration", {{"Units", "s"}}},
+            {"trial_type", {{"Description", "fixation, saccade, segment or aoi; n/a of blinks and messages"}}},
+            {"blink", {{"Description", "1 for a blink, else 0"}}},
+            {"message", {{"Description", "The words of a message, or the name of an area of interest"}}}};
+  if (has_stated) {
+    for (const auto& [column, unit, what] :
+         {std::tuple("stated_duration", "s", "The duration by the tracker, which may count the last sample's own time"),
+          std::tuple("amplitude", "deg", "The amplitude by the tracker"),
+          std::tuple("peak_velocity", "deg/s", "The peak velocity by the tracker")}) {
+      json["Columns"].push_back(column);
+      json[column] = {{"Description", what}, {"Units", unit}};
+    }
+  }
+  return json;
+}
+
+Json run_events_sidecar(const GazeLog& log) {
+  Json json{{kBidsWriterKey, kBidsWriter}};
+  if (const Json screen = screen_json(log); !screen.is_null()) {
+    json["StimulusPresentation"] = screen;
+  } else {
+    json["StimulusPresentation"] = {{"Description", "Gaze in the head: no screen is described"}};
+  }
+  json["trial_type"] = {{"Description", "What happened"},
+                        {"Levels",
+                         {{"recording", "Gaze was recorded without a pause"},
+                          {"message", "A message of the experiment or of the tracker"}}}};
+  json["message"] = {{"Description", "The words of a message"}};
+  return json;
 }
 
 std::string label_of(Eye eye) {
@@ -369,22 +537,38 @@ std::vector<File> files_of(const GazeLog& log, const std::string& path) {
     const RecordingWriter writer(log, recording, scale, is_exact);
     const std::string label = label_of(recording.eye);
     files.push_back({path_of(name, label, "physio.tsv.gz"), pack_gzip(writer.table())});
-    files.push_back({path_of(name, label, "physio.json"), json_text(writer.sidecar())});
-    if (const std::string events = events_table(log, recording.eye, recordings); !events.empty()) {
-      files.push_back({path_of(name, label, "physioevents.tsv.gz"), pack_gzip(events)});
+    files.push_back({path_of(name, label, "physio.json"), json_text(with_task(writer.sidecar(), name))});
+    if (const EventsOfEye events = events_of(log, recording.eye, recordings); !events.events.empty()) {
+      files.push_back({path_of(name, label, "physioevents.tsv.gz"), pack_gzip(events_table(events))});
       files.push_back({path_of(name, label, "physioevents.json"),
-                       json_text({{kBidsWriterKey, kBidsWriter},
-                                  {"Columns", {"onset", "duration", "trial_type", "blink", "message"}},
-                                  {"OnsetSource", "timestamp"},
-                                  {"duration", {{"Units", "s"}}}})});
+                       json_text(with_task(events_sidecar(recording.eye, events.has_stated), name))});
     }
   }
-  if (const Json screen = screen_json(log); !screen.is_null()) {
-    files.push_back({path_of(name, "", "events.json"),
-                     json_text({{kBidsWriterKey, kBidsWriter}, {"StimulusPresentation", screen}})});
-  }
+  files.push_back({path_of(name, "", "events.tsv"), run_events_table(log)});
+  files.push_back({path_of(name, "", "events.json"), json_text(with_task(run_events_sidecar(log), name))});
   return files;
 }
+
+// Held by one at a time, in any process, until it is destroyed. Where a file system has no locks, nothing is held.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : descriptor_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ >= 0) {
+      ::flock(descriptor_, LOCK_EX);
+    }
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) {
+      ::close(descriptor_);  // which gives the lock back
+    }
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
 
 }  // namespace
 
@@ -402,6 +586,8 @@ std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& 
 }
 
 void write_gaze_bids(const GazeLog& log, const std::string& path) {
+  // The files of one conversion belong together: another one into the same folder waits for this one.
+  const FolderLock lock(parse_bids_name(path).folder);
   for (const File& file : files_of(log, path)) {
     write_bytes_atomically(file.path, std::as_bytes(std::span(file.bytes)));
   }

@@ -53,6 +53,7 @@ PlanSettings plan_settings(const JobSettings& job, const std::vector<std::int32_
     decisions.emplace_back("gaze clock", clock);
   }
   settings.gaze_latency_ns = job.gaze_at ? 0 : job.gaze_latency.ns;
+  settings.most_frames_without_gaze = job.gaze_max_missing_frames;
   settings.width_px = job.size.width;
   settings.height_px = job.size.height;
   settings.display = screen_geometry(job.screen);

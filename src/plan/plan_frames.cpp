@@ -116,6 +116,33 @@ void say_what_the_eye_did(FrameRequest& request, std::int32_t frame_before, cons
   request.blink_since_last_frame = motion.did(EyeMovement::blink, since_ns, request.gaze_render.t_log_ns);
 }
 
+// Frames without gaze that follow each other. A plan is refused as soon as there are too many of them, before it grows
+// to the millions of frames that lie between two recordings.
+class FramesWithoutGaze {
+ public:
+  FramesWithoutGaze(const GazeLog* log, const PlanSettings& settings) : log_(log), settings_(settings) {}
+
+  void count(const FrameRequest& request) {
+    in_a_row_ = log_ != nullptr && request.gaze_true.no_gaze ? in_a_row_ + 1 : 0;
+    first_ = in_a_row_ == 1 ? request.frame : first_;
+    if (settings_.most_frames_without_gaze > 0 && in_a_row_ > settings_.most_frames_without_gaze) {
+      throw Error(ErrorKind::input, log_->source,
+                  fmt::format("has no usable gaze for more than {} frames in a row, from frame {} on: {}",
+                              settings_.most_frames_without_gaze, first_, request.gaze_true.reason),
+                  log_->recordings.size() > 1 && log_->recording == 0
+                      ? "take one block with `gaze-recording`, give `frames`, or allow it with "
+                        "`gaze-max-missing-frames` 0"
+                      : "give `frames`, or allow it with `gaze-max-missing-frames` 0");
+    }
+  }
+
+ private:
+  const GazeLog* log_;
+  const PlanSettings& settings_;
+  std::uint64_t in_a_row_ = 0;
+  std::int32_t first_ = 0;
+};
+
 // Fixes the beginning of the clock to the log's first sample, since processing may remove that sample.
 PlanSettings with_clock(const GazeLog* log, PlanSettings settings) {
   if (log != nullptr && !settings.gaze.event_ns && !log->samples.empty()) {
@@ -140,7 +167,7 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
   }
   check_coverage(camera, settings, plan.warnings);
   const GazeGeometry geometry(camera, log, settings, plan.warnings);
-  plan.frames.reserve(settings.frames.size());
+  FramesWithoutGaze without_gaze(log, settings);
   for (const std::int32_t frame : settings.frames) {
     FrameRequest request;
     request.frame = frame;
@@ -159,6 +186,7 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
     request.camera.shutter_poses = shutter_poses(camera, request.shutter_open_ns, request.shutter_close_ns);
     if (log != nullptr) {
       request.gaze_true = gaze_at(*log, settings.gaze, request.t_video_ns, motion.movements());
+      without_gaze.count(request);
       request.gaze_render =
           settings.gaze_latency_ns == 0 && steering_log == log
               ? request.gaze_true

@@ -2,6 +2,7 @@
 """Conversion to BIDS where recordings of the same name lie already."""
 
 import json
+import subprocess
 
 import harness
 
@@ -54,6 +55,26 @@ class BidsFolder(harness.CliTest):
     def test_without_overwrite_nothing_is_joined(self):
         self.convert("left.csv")
         self.refused(["recording-eye1_physio.tsv.gz", "--overwrite"], "gaze.csv")
+
+    def test_a_second_recording_of_the_same_eye_is_named(self):
+        self.convert("left.csv")
+        name = "sub-1_task-t_recording-eye1_physio"
+        for ending in (".json", ".tsv.gz"):
+            (self.folder / "b" / (name.replace("eye1", "again") + ending)).write_bytes((self.folder / "b" / (name + ending)).read_bytes())
+        warnings = self.run_ok("gaze", "convert", f"b/{name}.tsv.gz", "-o", "out.csv").stderr
+        self.assertIn("recording-again_physio.tsv.gz: is a recording of the left eye as well, and is not read", warnings)
+
+    def test_conversions_into_one_file_at_once_leave_a_whole_one(self):
+        for _ in range(2):
+            running = [subprocess.Popen([harness.PROGRAM, "gaze", "convert", source, "-o", "c.csv", "--overwrite"], cwd=self.folder,
+                                        stderr=subprocess.DEVNULL) for source in ("both.csv", "gaze.csv") * 2]
+            self.assertEqual([process.wait() for process in running], [0] * len(running))
+            whole = (self.folder / "c.csv").read_bytes()
+            self.assertIn(whole, [self.converted(source) for source in ("both.csv", "gaze.csv")])
+
+    def converted(self, source):
+        self.run_ok("gaze", "convert", source, "-o", "alone.csv", "--overwrite")
+        return (self.folder / "alone.csv").read_bytes()
 
     def test_recordings_of_others_stay(self):
         self.convert("both.csv")

@@ -119,6 +119,56 @@ class GazeTools(harness.CliTest):
         own = [[(e["movement"], e["onset_ns"], e["offset_ns"]) for e in self.events(log, "--method", "log")] for log in ("labels.asc", "labels.csv")]
         self.assertEqual([movement for movement, *_ in own[0]], ["fixation", "saccade", "fixation"])
         self.assertEqual(*own)
+        stated = [[(e["duration_ms"], e["amplitude_deg"], e["peak_velocity_deg_s"]) for e in self.events(log, "--method", "log")]
+                  for log in ("labels.asc", "labels.csv")]
+        self.assertEqual(*stated)
+
+    def test_events_of_a_log_keep_what_the_tracker_states(self):
+        self.write("labels.asc", eyelink())
+        events = self.events("labels.asc", "--method", "log")
+        # By EyeLink, the time of the last sample counts: from 1000 to 1196 ms at 250 Hz are 200 ms.
+        self.assertEqual([e["duration_ms"] for e in events], ["200", "20", "180"])
+        self.assertEqual([(e["amplitude_deg"], e["peak_velocity_deg_s"]) for e in events], [("n/a", "n/a"), ("9", "400"), ("n/a", "n/a")])
+        # Our own velocity is named after its filter. 400 px are 11.4 deg at 35 px a degree.
+        self.assertAlmostEqual(float(events[1]["measured_amplitude_deg"]), 11.4, delta=0.5)
+        self.assertNotIn(events[1]["two_point_20ms_peak_velocity_deg_s"], ("n/a", "400"))
+        self.run_ok("gaze", "events", "labels.asc", "--method", "log", "-o", "events.json")
+        saccade = json.loads((self.folder / "events.json").read_text())["events"][1]
+        self.assertEqual((saccade["duration_ms"], saccade["amplitude_deg"], saccade["peak_velocity_deg_s"]), (20, 9, 400))
+        # Two fixations that touch stay two, and keep their durations.
+        touching = eyelink().replace("EFIX L  1000\t1196\t200", "EFIX L  1000\t1100\t104\t  200.0\t  300.0\t  900\nEFIX L  1104\t1196\t96")
+        self.write("touching.asc", touching)
+        self.assertEqual([(e["movement"], e["duration_ms"]) for e in self.events("touching.asc", "--method", "log")],
+                         [("fixation", "104"), ("fixation", "96"), ("saccade", "20"), ("fixation", "180")])
+
+    def test_no_saccade_lasts_no_time_and_no_mean_is_above_the_peak(self):
+        for rate in ("60", "250", "1000"):
+            self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "20s", "--noise", "0.02", "--rate", rate, "--overwrite")
+            saccades = [row for row in self.events("log.csv") if row["movement"] == "saccade" and row["amplitude_deg"] != "n/a"]
+            self.assertGreater(len(saccades), 20)
+            for row in saccades:
+                self.assertGreaterEqual(float(row["duration_ms"]), 1e3 / float(rate) - 1e-3)
+                self.assertLessEqual(float(row["mean_velocity_deg_s"]), float(row["peak_velocity_deg_s"]))
+                self.assertRegex(row["duration_ms"], r"^\d+(\.\d{1,3})?$")
+
+    def test_detection_that_gives_nonsense_says_so(self):
+        """Noise of 0.3 degrees at 300 Hz: hundreds of saccades, where the truth has a hundred."""
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--noise", "0.3", "--rate", "300", "--duration", "20s")
+        noisy = self.run_ok("gaze", "events", "log.csv", "-o", "events.tsv")
+        for words in ("by ivt: noise of 0.", "deg RMS", "saccades begin at 30 deg/s", "saccades for", "not to be relied on", "--gaze-process "):
+            self.assertIn(words, noisy.stderr)
+        # What is offered leaves no doubt, and the method has not changed by itself.
+        self.assertIn("by ivt, ", noisy.stdout)
+        offered = noisy.stderr.split("--gaze-process ")[1].split(" ")[0]
+        processed = self.run_ok("gaze", "events", "log.csv", "--gaze-process", offered, "-o", "better.tsv")
+        self.assertNotIn("not to be relied on", processed.stderr)
+        self.assertLess((self.folder / "better.tsv").read_text().count("saccade"), (self.folder / "events.tsv").read_text().count("saccade"))
+        idt = self.run_ok("gaze", "events", "log.csv", "--method", "idt", "-o", "idt.tsv").stderr
+        self.assertIn("a fixation may spread over 1 deg", idt)
+        # Nothing is said of good data, at any rate.
+        for rate in ("50", "60", "120", "300", "1000"):
+            self.run_ok("gaze", "synth", "-o", "log.csv", "--truth", "truth.tsv", "--duration", "20s", "--noise", "0.02", "--rate", rate, "--overwrite")
+            self.assertEqual(self.run_ok("gaze", "events", "log.csv").stderr, "")
 
     def test_what_bids_has_no_place_for_is_said(self):
         self.head_log(repeats=True)  # not as many samples as poses

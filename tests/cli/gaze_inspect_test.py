@@ -45,7 +45,8 @@ class Doctor(harness.CliTest):
         return json.loads(self.run_ok("gaze", "inspect", *arguments, "--json").stdout)
 
     def accused(self, report):
-        return [finding for finding in report["findings"] if finding["kind"] != "note"]
+        # In SMI's recording the eye is indeed not found for the first 104 seconds, in one of Vive's it is lost for the last 2.
+        return [finding for finding in report["findings"] if finding["kind"] != "note" and not finding["code"].startswith("lost-")]
 
     def sample(self, name):
         return (SAMPLES / name).read_bytes().decode("utf-8-sig")
@@ -147,7 +148,7 @@ class Doctor(harness.CliTest):
         self.write("flipped.csv", breaking.cells_changed(text, breaking.begins_with_digit, ",", flip))
         report = self.inspect("flipped.csv", "--screen-px", "1280,1024")
         self.assertEqual([axis["verdict"] for axis in report["axes"]], ["undecided", "undecided"])
-        self.assertIn("no second account", report["axes"][1]["evidence"])
+        self.assertIn("nothing to test it against", report["axes"][1]["evidence"])
         self.assertEqual(self.accused(report), [])
 
     def test_one_eye_flipped(self):

@@ -20,10 +20,10 @@ class GazeLogText {
   explicit GazeLogText(const GazeLog& log) {
     const auto& [kind, samples, source, format, format_confidence, clock, pupil_unit, geometry, pixels_per_degree,
                  rate_hz, age_unknown, eyes, origins, head, events, calibrations, stated_eye, device, conventions,
-                 facts, warnings, order, witnesses] = log;
+                 facts, warnings, order, witnesses, recordings, recording] = log;
     put(kind, samples, source, format, format_confidence, clock, pupil_unit, geometry, pixels_per_degree, rate_hz,
         age_unknown, eyes, origins, head, events, calibrations, stated_eye, device, conventions, facts, warnings, order,
-        witnesses);
+        witnesses, recordings, recording);
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -102,8 +102,12 @@ class GazeLogText {
     put(t_ns, position_m, orientation);
   }
   void one(const GazeEvent& event) {
-    const auto& [type, eye, begin_ns, end_ns, words, row] = event;
-    put(type, eye, begin_ns, end_ns, words, row);
+    const auto& [type, eye, begin_ns, end_ns, words, row, duration_ns, amplitude_deg, peak_velocity_deg_s] = event;
+    put(type, eye, begin_ns, end_ns, words, row, duration_ns, amplitude_deg, peak_velocity_deg_s);
+  }
+  void one(const GazeRecording& recording) {
+    const auto& [name, is_block, rows, first_row, first_ns, last_ns] = recording;
+    put(name, is_block, rows, first_row, first_ns, last_ns);
   }
   void one(const GazeCalibration& calibration) {
     const auto& [t_ns, eye, mean_error_deg, max_error_deg, row] = calibration;

@@ -19,9 +19,10 @@
 
 namespace gazetrace {
 
-// "gaze-eyelink-asc", "camera-tum", ...; "gaze-any" and "camera-any" choose the format by sniffing.
+// "gaze-eyelink-asc", "camera-tum", ...; "gaze-any" and "camera-any" choose the format by sniffing, "gaze-recordings"
+// takes the second recording of such a file, and "gaze-event-table" reads the events of a log from the file.
 inline std::vector<std::string> fuzz_readers() {
-  std::vector<std::string> names{"gaze-any", "camera-any"};
+  std::vector<std::string> names{"gaze-any", "gaze-recordings", "gaze-event-table", "camera-any"};
   for (const GazeFormatInfo& format : gaze_formats()) {
     names.push_back("gaze-" + format.name);
   }
@@ -163,6 +164,28 @@ inline void read_gaze(const std::string& format, const std::string& path, std::s
   check_log(load_gaze_log(path, options));
 }
 
+// The second recording of a file, of whatever format.
+inline void read_second_recording(const std::string& path, std::size_t length) {
+  GazeReadOptions options;
+  options.recording = "2";
+  options.guess_display = true;
+  options.unordered = UnorderedPolicy::sort;
+  options.frame = length % 2 == 0 ? GazeFrame::head : GazeFrame::scene_camera;
+  check_log(load_gaze_log(path, options));
+}
+
+// The input as the events of a log of ten seconds.
+inline void read_events(FuzzFolder& folder, std::string_view input) {
+  std::string log = "t[ns],u[1],v[1]\n";
+  for (int i = 0; i <= 10; ++i) {
+    log += std::to_string(i * 1'000'000'000LL) + ",0.5,0.5\n";
+  }
+  GazeReadOptions options;
+  const std::string path = folder.put("log", log + "\n%%FILE events.csv\n" + std::string(input));
+  options.events_file = path.substr(0, path.size() - 3) + "events.csv";
+  check_log(load_gaze_log(path, options));
+}
+
 inline void read_camera(const std::string& format, const std::string& path, std::size_t length) {
   CameraReadOptions options;
   options.format = format;
@@ -179,8 +202,16 @@ inline bool fuzz_reader(const std::string& reader, std::string_view input, FuzzF
   const bool gaze = reader.starts_with("gaze-");
   const std::string name = reader.substr(reader.find('-') + 1);
   const std::string format = name == "any" ? "" : name;
-  const std::string path = folder.put(fuzz::first_name(reader), input);
   try {
+    if (reader == "gaze-event-table") {
+      fuzz::read_events(folder, input);
+      return true;
+    }
+    const std::string path = folder.put(fuzz::first_name(reader), input);
+    if (reader == "gaze-recordings") {
+      fuzz::read_second_recording(path, input.size());
+      return true;
+    }
     gaze ? fuzz::read_gaze(format, path, input.size()) : fuzz::read_camera(format, path, input.size());
     return true;
   } catch (const Error& error) {

@@ -97,8 +97,8 @@ TEST(Display, AspectMayDifferByTheRoundingOfAPixelOnly) {
   EXPECT_NO_THROW(view_of_display(paper(), {}, 1, 1));
   EXPECT_EQ(
       message_of([] { view_of_display(paper(), {}, 1280, 800); }),
-      "a frame of 1280x800 px does not have the shape of the 3840x2160 px of the display that it fills; change the "
-      "frame's size, or say with a frame rectangle where on the display it lies");
+      "a frame of 1280x800 px does not have the shape of the 3840x2160 px of the display that it fills; give `size` "
+      "1422x800, or say with `frame-rect` where on the display the frame lies");
   EXPECT_EQ(message_of([] {
               view_of_display(paper(), {3000, 0, 1000, 1000}, 10, 10);
             }),

@@ -44,8 +44,9 @@ TEST(GazeErrors, Columns) {
       {"timeless.csv", "frame,x,y\n1,2,3\n",
        "timeless.csv:1: no column for time is found; the columns are: frame, x, y; name it with `gaze-time-column`"},
       {"no_x.csv", "# a\nt[ms],left,right\n1,2,3\n",
-       "no_x.csv:2: no column for the horizontal position is found; the columns are: t[ms], left, right; name it with "
-       "`gaze-x-column`"},
+       "no_x.csv:2: no columns for the horizontal position and the vertical position are found; the columns are: "
+       "t[ms], "
+       "left, right; name them with `gaze-x-column` and `gaze-y-column`"},
       {"no_y.csv", "t[ms],x[px],right\n1,2,3\n",
        "no_y.csv:1: no column for the vertical position is found; the columns are: t[ms], x[px], right; name it with "
        "`gaze-y-column`"},

@@ -168,6 +168,55 @@ TEST_F(GazeEyes, PupilUnitAndOriginsSurviveWriting) {
   EXPECT_EQ(back.eyes[1].right.pupil, 4.0F);
 }
 
+// Rows in order are joined while they are read, others once they are sorted: both give one log.
+TEST_F(GazeEyes, RowsInOrderAndOthersGiveOneLog) {
+  std::vector<std::string> times;
+  for (int i = 0; i < 60; ++i) {
+    std::string rows;
+    for (const char* const eye : {"left", "right", "cyclopean"}) {
+      const bool is_there = !(eye[0] == 'c' && i % 7 == 0) && !(eye[0] == 'r' && i % 11 == 0);
+      const bool is_lost = eye[0] == 'l' && i % 5 == 0;
+      rows += !is_there ? ""
+              : is_lost
+                  ? fmt::format("{},,,lost,{},\n", i * 10'000'000LL, eye)
+                  : fmt::format("{},{},{},ok,{},{}\n", i * 10'000'000LL, 0.3 + 0.001 * i + (eye[0] == 'r' ? 0.01 : 0),
+                                i % 13 == 0 ? 1.2 : 0.5, eye, 3 + 0.01 * i);
+    }
+    times.push_back(rows);
+  }
+  const auto text = [&] {
+    std::string all = std::string(kPreamble) + "t[ns],u[1],v[1],valid,eye,pupil[mm]\n";
+    for (const std::string& rows : times) {
+      all += rows;
+    }
+    return all;
+  };
+  for (const EyeChoice eye : {EyeChoice::automatic, EyeChoice::left, EyeChoice::mean, EyeChoice::best}) {
+    GazeReadOptions options;
+    options.eye = eye;
+    options.unordered = UnorderedPolicy::sort;
+    const GazeLog in_order = load_gaze_log(files_.write("log.csv", text()), options);
+    std::swap(times[20], times[40]);
+    const GazeLog sorted = load_gaze_log(files_.write("log.csv", text()), options);
+    std::swap(times[20], times[40]);
+    ASSERT_EQ(in_order.samples.size(), 60U);
+    ASSERT_EQ(sorted.samples.size(), in_order.samples.size());
+    ASSERT_EQ(sorted.eyes.size(), in_order.eyes.size());
+    EXPECT_EQ(sorted.order.rows, in_order.order.rows);
+    const auto same = [](auto a, auto b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    for (std::size_t i = 0; i < in_order.samples.size(); ++i) {
+      const GazeSample& a = in_order.samples[i];
+      const GazeSample& b = sorted.samples[i];
+      EXPECT_EQ(a.t_ns, b.t_ns);
+      EXPECT_EQ(a.eye, b.eye);
+      EXPECT_EQ(a.validity, b.validity) << i;
+      EXPECT_TRUE(same(a.u, b.u) && same(a.v, b.v) && same(a.pupil, b.pupil)) << i;
+      EXPECT_TRUE(same(in_order.eyes[i].right.at.x, sorted.eyes[i].right.at.x)) << i;
+      EXPECT_EQ(in_order.eyes[i].left.validity, sorted.eyes[i].left.validity) << i;
+    }
+  }
+}
+
 TEST_F(GazeEyes, WhatIsNotThereCannotBeChosen) {
   const std::string left_only = "t[ns],u[1],v[1],valid,eye\n0,0.7,0.5,ok,left\n";
   for (const auto& [eye, message] : {std::pair(EyeChoice::right, "has no rows of the right eye"),

@@ -90,7 +90,11 @@ TEST_F(GazeMissingValues, TheUserNamesOne) {
   EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,-1"), options)), 0);
   options.missing_value = -1;
   EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,-1"), options)), 100);
-  EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,5"), options)), 0);  // in both axes
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("-1,5"), options)), 100);  // one axis is enough
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("5,-1"), options)), 100);
+  options.missing_value = 0;
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("0,5"), options)), 0);  // the left edge is a place
+  EXPECT_EQ(lost_rows(read("a.csv", with_marks("0,0"), options)), 100);
 }
 
 // `edf2asc -miss -1`; with corners that do not begin at zero the mark is still what the file has.

@@ -365,11 +365,11 @@ TEST_F(GazeRead, WritingAndReadingKeepsEveryBit) {
     log.recording_geometry = DisplayGeometry{
         .width_px = 1918, .height_px = 1079, .width_cm = 51.3 / 7, .height_cm = 35.3, .distance_cm = 1e2 / 3};
     log.recording_geometry->eye_x_cm = 1.0 / 3;
-    std::int64_t t = std::numeric_limits<std::int64_t>::min();
+    std::int64_t t = std::numeric_limits<std::int64_t>::min() / 5;
     for (int i = 0; i < 3000; ++i) {
       GazeSample sample;
-      sample.t_ns = i == 2999 ? std::numeric_limits<std::int64_t>::max() : t;
-      t += 1 + static_cast<std::int64_t>(random() % 6'000'000'000'000'000ULL);
+      sample.t_ns = i == 2999 ? std::numeric_limits<std::int64_t>::max() / 5 : t;
+      t += 1 + static_cast<std::int64_t>(random() % 1'000'000'000'000'000ULL);
       sample.validity = static_cast<GazeValidity>(random() % 6);
       const bool known = is_usable(sample.validity) || random() % 2 == 0;
       sample.eye = Eye::right;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 
 #include "gaze/angles.hpp"
 #include "gaze/events/event_method.hpp"
@@ -26,6 +27,39 @@ Eye eye_of_events(const GazeLog& log) {
   return static_cast<Eye>(std::max_element(count.begin(), count.end()) - count.begin());
 }
 
+// The directions of a log whose places mean no angles: none is known.
+GazeDirections unknown_directions(const std::vector<std::int64_t>& t_ns) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  return {t_ns, std::vector<Vec3d>(t_ns.size(), Vec3d{kNan, kNan, kNan})};
+}
+
+// Where on the display a fixation was does not depend on angles.
+void place_fixations(const GazeLog& log, EyeEvents& events) {
+  for (EyeEvent& event : events.events) {
+    if (event.movement != EyeMovement::fixation) {
+      continue;
+    }
+    double u = 0;
+    double v = 0;
+    double count = 0;
+    for (std::size_t i = event.first; i <= event.last; ++i) {
+      const GazeSample& sample = log.samples[i];
+      if (is_usable(sample.validity)) {
+        u += sample.u;
+        v += sample.v;
+        ++count;
+      }
+    }
+    event.u = count > 0 ? u / count : event.u;
+    event.v = count > 0 ? v / count : event.v;
+  }
+}
+
+EyeEvent::Stated what_is_stated(const GazeEvent& event) {
+  return {event.begin_ns, event.end_ns, event.stated_duration_ns, event.stated_amplitude_deg,
+          event.stated_peak_velocity_deg_s};
+}
+
 }  // namespace
 
 EyeEvents events_of_log(const GazeLog& log) {
@@ -38,6 +72,7 @@ EyeEvents events_of_log(const GazeLog& log) {
                             : sample.validity == GazeValidity::blink ? EyeMovement::blink
                                                                      : EyeMovement::lost);
   }
+  std::map<std::size_t, EyeEvent::Stated> stated;  // by the first sample
   const Eye eye = eye_of_events(log);
   for (const GazeEvent& event : log.events) {
     const bool moves = event.type == GazeEventType::fixation || event.type == GazeEventType::saccade;
@@ -52,28 +87,28 @@ EyeEvents events_of_log(const GazeLog& log) {
     if (event.type == GazeEventType::saccade && blinks) {
       continue;
     }
+    bool is_first = true;
     for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); ++i) {
       // Lost samples belong to it as well: where a tracker bridged a gap, the event went on.
       if (events.labels[i] == EyeMovement::unclassified || events.labels[i] == EyeMovement::lost) {
         events.labels[i] = event.type == GazeEventType::fixation ? EyeMovement::fixation : EyeMovement::saccade;
+        if (is_first) {
+          stated.emplace(i, what_is_stated(event));
+          events.cuts.push_back(i);
+          is_first = false;
+        }
       }
     }
   }
-  if (knows_angles(log)) {
-    events.events = measure_events(log, gaze_directions(log), events);
-  } else {
-    for (const LabelRun& run : label_runs(events.labels, t_ns)) {
-      EyeEvent event;
-      event.movement = run.movement;
-      event.first = run.first;
-      event.last = run.last;
-      event.begin_ns = t_ns[run.first];
-      event.end_ns = t_ns[run.last];
-      const double nan = std::numeric_limits<double>::quiet_NaN();
-      event.direction = {nan, nan, nan};
-      event.u = event.v = event.amplitude_deg = event.peak_velocity_deg_s = event.mean_velocity_deg_s = nan;
-      event.angle_deg = event.dispersion_deg = nan;
-      events.events.push_back(event);
+  std::sort(events.cuts.begin(), events.cuts.end());
+  const bool has_angles = knows_angles(log);
+  events.events = measure_events(log, has_angles ? gaze_directions(log) : unknown_directions(t_ns), events);
+  if (!has_angles && log.kind == GazeKind::screen) {
+    place_fixations(log, events);
+  }
+  for (EyeEvent& event : events.events) {
+    if (const auto found = stated.find(event.first); found != stated.end()) {
+      event.stated = found->second;
     }
   }
   return events;

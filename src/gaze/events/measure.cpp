@@ -47,6 +47,19 @@ class Measures {
     return peak;
   }
 
+  // Of the same filtered speeds, so that it is never above the peak.
+  [[nodiscard]] double mean_speed(const EyeEvent& event) const {
+    double sum = 0;
+    double count = 0;
+    for (std::size_t i = event.first; i <= event.last; ++i) {
+      if (!std::isnan(speed_[i])) {
+        sum += speed_[i];
+        ++count;
+      }
+    }
+    return count > 0 ? sum / count : kNan;
+  }
+
   void measure_fixation(EyeEvent& event) const {
     Vec3d sum;
     double u = 0;
@@ -105,7 +118,7 @@ class Measures {
     const TangentFrame frame(a);
     event.angle_deg = std::atan2(dot(b, frame.up), dot(b, frame.right)) * kDegPerRad;
     event.peak_velocity_deg_s = peak_speed(event);
-    event.mean_velocity_deg_s = event.amplitude_deg / (static_cast<double>(gaze_.t_ns[to] - gaze_.t_ns[from]) * 1e-9);
+    event.mean_velocity_deg_s = mean_speed(event);
   }
 
   const GazeLog& log_;

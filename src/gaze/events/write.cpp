@@ -3,8 +3,12 @@
 
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "gaze/angles.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
@@ -12,20 +16,52 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view kStatedByLog = "log";  // as `events_of_log` calls it
+
 struct Column {
-  const char* name;
+  std::string name;
   double EyeEvent::*value;
 };
-constexpr Column kMeasures[] = {{"amplitude_deg", &EyeEvent::amplitude_deg},
-                                {"peak_velocity_deg_s", &EyeEvent::peak_velocity_deg_s},
-                                {"mean_velocity_deg_s", &EyeEvent::mean_velocity_deg_s},
-                                {"angle_deg", &EyeEvent::angle_deg},
-                                {"dispersion_deg", &EyeEvent::dispersion_deg},
-                                {"u", &EyeEvent::u},
-                                {"v", &EyeEvent::v}};
 
-double milliseconds(const EyeEvent& event) {
-  return static_cast<double>(event.end_ns - event.begin_ns) * 1e-6;
+// The filter of the velocities, by name and window: the angle between the ends of the window over the time between them
+// (`angular_speed_deg_s`).
+std::string velocity_filter(const EyeEvents& events) {
+  return fmt::format("two_point_{:g}ms", static_cast<double>(events.settings.velocity_window_ns) * 1e-6);
+}
+
+// Our own measures. Beside events that a tracker states they carry names that keep them apart from its own.
+std::vector<Column> measures(const EyeEvents& events) {
+  const bool are_stated = events.preset == kStatedByLog;
+  const std::string own = are_stated ? "measured_" : "";
+  const std::string filter = are_stated ? velocity_filter(events) + "_" : "";
+  return {{own + "amplitude_deg", &EyeEvent::amplitude_deg},
+          {filter + "peak_velocity_deg_s", &EyeEvent::peak_velocity_deg_s},
+          {filter + "mean_velocity_deg_s", &EyeEvent::mean_velocity_deg_s},
+          {"angle_deg", &EyeEvent::angle_deg},
+          {"dispersion_deg", &EyeEvent::dispersion_deg},
+          {"u", &EyeEvent::u},
+          {"v", &EyeEvent::v}};
+}
+
+// n samples last n steps of the clock, so that an event of one sample does not last 0 ms.
+std::int64_t measured_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
+  return event.end_ns - event.begin_ns + step_ns;
+}
+
+// What a tracker says, where it says so; else the time from begin to end.
+std::int64_t stated_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
+  return !event.stated               ? measured_duration_ns(event, step_ns)
+         : event.stated->duration_ns ? *event.stated->duration_ns
+                                     : event.stated->end_ns - event.stated->begin_ns;
+}
+
+// Milliseconds to the microsecond, without zeros at the end.
+std::string milliseconds(std::int64_t duration_ns) {
+  const std::int64_t us = duration_ns / 1000 + (duration_ns % 1000 >= 500 ? 1 : 0);
+  std::string text = fmt::format("{}.{:03d}", us / 1000, us % 1000);
+  text.erase(text.find_last_not_of('0') + 1);
+  return text.back() == '.' ? text.substr(0, text.size() - 1) : text;
 }
 
 std::int64_t row_of(const GazeLog& log, std::size_t sample) {
@@ -40,6 +76,19 @@ void append_number(std::string& text, double value) {
   }
 }
 
+std::int64_t onset_ns(const EyeEvent& event) {
+  return event.stated ? event.stated->begin_ns : event.begin_ns;
+}
+std::int64_t offset_ns(const EyeEvent& event) {
+  return event.stated ? event.stated->end_ns : event.end_ns;
+}
+double stated_amplitude_deg(const EyeEvent& event) {
+  return event.stated ? event.stated->amplitude_deg.value_or(kNan) : kNan;
+}
+double stated_peak_velocity_deg_s(const EyeEvent& event) {
+  return event.stated ? event.stated->peak_velocity_deg_s.value_or(kNan) : kNan;
+}
+
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
@@ -47,15 +96,25 @@ Json number(double value) {
 }  // namespace
 
 std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
+  const bool are_stated = events.preset == kStatedByLog;
+  const std::vector<Column> columns = measures(events);
+  const std::int64_t step_ns = median_step_ns(times_of(log));
   std::string text = "movement\tonset_ns\toffset_ns\tduration_ms\tfirst_row\tlast_row";
-  for (const Column& column : kMeasures) {
-    text += std::string("\t") + column.name;
+  text += are_stated ? "\tamplitude_deg\tpeak_velocity_deg_s\tmeasured_duration_ms" : "";
+  for (const Column& column : columns) {
+    text += "\t" + column.name;
   }
   text += "\tdx\tdy\tdz\n";
   for (const EyeEvent& event : events.events) {
-    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", to_string(event.movement), event.begin_ns,
-                   event.end_ns, milliseconds(event), row_of(log, event.first), row_of(log, event.last));
-    for (const Column& column : kMeasures) {
+    fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", to_string(event.movement), onset_ns(event),
+                   offset_ns(event), milliseconds(stated_duration_ns(event, step_ns)), row_of(log, event.first),
+                   row_of(log, event.last));
+    if (are_stated) {
+      append_number(text, stated_amplitude_deg(event));
+      append_number(text, stated_peak_velocity_deg_s(event));
+      text += "\t" + milliseconds(measured_duration_ns(event, step_ns));
+    }
+    for (const Column& column : columns) {
       append_number(text, event.*column.value);
     }
     append_number(text, event.direction.x);
@@ -68,15 +127,23 @@ std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
 
 std::string events_as_json(const EyeEvents& events, const GazeLog& log) {
   const EventSettings& s = events.settings;
+  const bool are_stated = events.preset == kStatedByLog;
+  const std::vector<Column> columns = measures(events);
+  const std::int64_t step_ns = median_step_ns(times_of(log));
   Json list = Json::array();
   for (const EyeEvent& event : events.events) {
     Json item{{"movement", to_string(event.movement)},
-              {"onset_ns", event.begin_ns},
-              {"offset_ns", event.end_ns},
-              {"duration_ms", milliseconds(event)},
+              {"onset_ns", onset_ns(event)},
+              {"offset_ns", offset_ns(event)},
+              {"duration_ms", std::stod(milliseconds(stated_duration_ns(event, step_ns)))},
               {"first_row", row_of(log, event.first)},
               {"last_row", row_of(log, event.last)}};
-    for (const Column& column : kMeasures) {
+    if (are_stated) {
+      item["amplitude_deg"] = number(stated_amplitude_deg(event));
+      item["peak_velocity_deg_s"] = number(stated_peak_velocity_deg_s(event));
+      item["measured_duration_ms"] = std::stod(milliseconds(measured_duration_ns(event, step_ns)));
+    }
+    for (const Column& column : columns) {
       item[column.name] = number(event.*column.value);
     }
     item["direction"] = Json::array({number(event.direction.x), number(event.direction.y), number(event.direction.z)});

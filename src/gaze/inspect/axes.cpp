@@ -22,7 +22,10 @@ class Axes {
   bool examine(bool unit_is_wrong) {
     for (const char axis : {'x', 'y'}) {
       report_.axes.push_back(
-          {axis, AxisVerdict::undecided, "nothing in the log speaks for or against: no second account of the gaze"});
+          {axis, AxisVerdict::undecided,
+           fmt::format("the log holds nothing to test it against. To decide it, look at a target at the {} of the view "
+                       "and see in `svg` that the gaze goes there, or export the tracker's fixations with the gaze",
+                       axis == 'x' ? "left edge" : "top")});
     }
     if (unit_is_wrong) {
       report_.axes[0].evidence = report_.axes[1].evidence = "not tested: the unit or the origin is wrong";
@@ -89,7 +92,9 @@ class Axes {
     }
     test.verdict = vor.verdict;
     if (vor.stretches == 0) {
-      test.evidence = "the head turns too little about it for the vestibulo-ocular reflex to tell";
+      test.evidence =
+          "the head turns too little about it to tell. To decide it, record while the wearer looks at one thing and "
+          "turns the head to and fro";
       return;
     }
     test.evidence = fmt::format(

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "gaze/inspect/inspect.hpp"
 #include "gaze/inspect/recurring_place.hpp"
@@ -49,6 +50,7 @@ class Doctor {
     const bool unit_is_wrong = position_unit();
     zeros();
     recurring_place();
+    mark_in_one_axis();
     if (!examine_axes(log_, unit_is_wrong, report_)) {
       swapped_by_extent();
     }
@@ -93,6 +95,16 @@ class Doctor {
   void faults_of_reading() {
     if (whole_ == nullptr) {
       return;
+    }
+    if (whole_->is_first_of_several) {
+      add(FindingKind::fault, "several-recordings",
+          fmt::format("the file holds {} recordings, and this is the first of them; nothing but an inspection reads it "
+                      "until one is chosen",
+                      log_.recordings.size()),
+          "the columns or lines that begin a recording", "`gaze-recording` 1");
+    }
+    for (const std::string& damage : whole_->raw.damages) {
+      add(FindingKind::fault, "damaged", damage, "the bytes of the file");
     }
     for (const RawFault& fault : whole_->raw.faults) {
       add(FindingKind::fault, fault.code, fault.found, "the rows themselves", fault.setting);
@@ -261,6 +273,47 @@ class Doctor {
         option_takes_it ? fmt::format("`gaze-missing-value` {}", x) : "");
   }
 
+  // Trackers that lose one axis alone write their mark, a whole negative number, into that one.
+  void mark_in_one_axis() {
+    if (whole_ == nullptr || whole_->conventions.form != PlaceForm::position || whole_->conventions.missing_value ||
+        log_.conventions.origin.value == PositionOrigin::center) {
+      return;
+    }
+    std::map<double, std::size_t> counts;
+    const std::vector<RawSample>& rows = whole_->raw.rows;
+    const std::size_t stride = rows.size() / kMostLookedAt + 1;
+    for (std::size_t i = 0; i < rows.size(); i += stride) {
+      const RawSample& row = rows[i];
+      for (const double value : {row.at.x, row.at.y}) {
+        if (is_usable(row.validity) && value < 0 && value == std::floor(value) && !is_missing_marker(value)) {
+          ++counts[value];
+        }
+      }
+    }
+    const auto most = std::max_element(counts.begin(), counts.end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    constexpr std::size_t kLeast = 3;
+    if (most == counts.end() || most->second < kLeast || most->second * 200 * stride < rows.size()) {
+      return;
+    }
+    // Gaze beside the display comes to many places there, and none stands out.
+    std::size_t all = 0;
+    for (const auto& [value, count] : counts) {
+      all += count;
+    }
+    const bool is_known = std::any_of(report_.findings.begin(), report_.findings.end(),
+                                      [](const GazeFinding& finding) { return finding.code == "missing-value"; });
+    if (most->second * 2 < all || is_known) {
+      return;
+    }
+    add(FindingKind::suspicion, "missing-value",
+        fmt::format("{} coordinates are exactly {} and count as good: a mark of missing values, in one axis alone",
+                    most->second * stride, most->first),
+        "statistics: a whole number beside the display that comes again and again" +
+            read_otherwise([&](Conventions& c) { c.missing_value = most->first; }),
+        fmt::format("`gaze-missing-value` {}", most->first));
+  }
+
   // Positions that exceed the display's height but never its width suggest exchanged axes.
   void swapped_by_extent() {
     const Vec2d size = picture_px();
@@ -302,6 +355,12 @@ class Doctor {
           "a display to render from",
           "the format; where the log has directions, `gaze-frame` head takes them; else map gaze onto the display");
     }
+    if (loss.samples == 1) {
+      add(FindingKind::suspicion, "one-row",
+          "the log holds one row: neither its rate nor a movement of the eye can be told from it",
+          "the file; was it cut off?");
+    }
+    lost_ends();
     if (loss.usable == 0) {
       add(FindingKind::suspicion, "nothing-usable", "no sample is usable",
           "check which column says what is valid: `gaze-validity-column`, `gaze-valid-values`");
@@ -355,6 +414,33 @@ class Doctor {
     }
   }
 
+  // A log that begins before the eye is found, or goes on after it was lost for good.
+  void lost_ends() {
+    constexpr double kLongNs = 1e9;
+    constexpr double kLargeShare = 0.05;
+    const GazeLoss& loss = report_.loss;
+    const double span_ns = static_cast<double>(report_.timing.last_ns - report_.timing.first_ns);
+    const auto is_long = [&](std::int64_t lost_ns) {
+      return loss.usable > 0 && static_cast<double>(lost_ns) > std::max(kLongNs, kLargeShare * span_ns);
+    };
+    const auto in_words = [&](std::int64_t lost_ns) {
+      return fmt::format("{:.0f} % of the log ({:.1f} s)", 100 * static_cast<double>(lost_ns) / span_ns,
+                         static_cast<double>(lost_ns) * 1e-9);
+    };
+    if (is_long(loss.leading_ns)) {
+      add(FindingKind::suspicion, "lost-beginning",
+          fmt::format("the eye is not found in the first {}, up to line {}", in_words(loss.leading_ns),
+                      loss.first_usable_row),
+          "the log's own validity; begin later (`gaze-start`), or leave these rows out");
+    }
+    if (is_long(loss.trailing_ns)) {
+      add(FindingKind::suspicion, "lost-end",
+          fmt::format("the eye is lost for good in line {}: there is no gaze in the last {}", loss.last_usable_row,
+                      in_words(loss.trailing_ns)),
+          "the log's own validity; render fewer frames (`frames`), or leave these rows out");
+    }
+  }
+
   // A flipped axis cannot be found without a second account of the gaze.
   [[nodiscard]] std::string untested_axes() const {
     std::string names;
@@ -363,7 +449,8 @@ class Doctor {
         names += fmt::format("{}{}", names.empty() ? "" : " and ", test.axis);
       }
     }
-    return names.empty() ? "" : fmt::format("; the direction of {} could not be tested", names);
+    return names.empty() ? ""
+                         : fmt::format("; the direction of {} could not be tested, see there how to decide it", names);
   }
 
   void verdict() {

@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "gazelog/mending.hpp"
+#include "gazelog/recordings.hpp"
 #include "gazelog/timing.hpp"
 
 namespace gazetrace {
@@ -73,6 +74,11 @@ GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, con
   }
   report.geometry = log.recording_geometry;
   report.calibrations = log.calibrations;
+  report.recordings = log.recordings;
+  report.recording = log.recording;
+  for (GazeRecording& recording : report.recordings) {
+    recording.name = options.keep_ids ? recording.name : "";
+  }
   for (const GazeEvent& event : log.events) {
     ++report.events[static_cast<std::size_t>(event.type)];
   }
@@ -80,6 +86,7 @@ GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, con
   report.both_eyes = !log.eyes.empty();
   report.order = log.order;
   report.timing = measure_timing(log);
+  report.span_ns = report.timing.last_ns - report.timing.first_ns;
   const double step_ns = report.timing.median_rate_hz > 0 ? 1e9 / report.timing.median_rate_hz : 0;
   report.loss = measure_loss(log, step_ns);
   report.frozen = measure_frozen(log);
@@ -101,6 +108,10 @@ GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, con
     for (GazeCalibration& calibration : report.calibrations) {
       calibration.t_ns = 0;
     }
+    for (GazeRecording& recording : report.recordings) {
+      recording.last_ns = duration_ns(recording);
+      recording.first_ns = 0;
+    }
   }
   return report;
 }
@@ -112,6 +123,10 @@ GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions
   read.frame = read.frame == GazeFrame::automatic ? GazeFrame::scene_camera : read.frame;
   GazeUnderInspection gaze;
   gaze.raw = read_raw_gaze(path, read, Mending::decimal_commas);
+  if (needs_a_choice(gaze.raw)) {
+    gaze.is_first_of_several = true;
+    choose_recording(gaze.raw, "1");
+  }
   gaze.conventions = conclude_conventions(gaze.raw, read);
   gaze.is_sorted_by_option = gaze.conventions.unordered == UnorderedPolicy::sort;
   gaze.conventions.unordered = UnorderedPolicy::sort;

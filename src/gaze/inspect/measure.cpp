@@ -46,30 +46,60 @@ class Stretch {
   double squares_ = 0, steps_ = 0;
 };
 
+// How long the eye is lost before it is seen for the first time, and after it is seen for the last time.
+void measure_ends(const GazeLog& log, GazeLoss& loss) {
+  const auto usable = [](const GazeSample& sample) { return is_usable(sample.validity); };
+  const auto first = std::find_if(log.samples.begin(), log.samples.end(), usable);
+  if (first == log.samples.end()) {
+    loss.leading_ns = log.samples.back().t_ns - log.samples.front().t_ns;
+    return;
+  }
+  const auto last = std::find_if(log.samples.rbegin(), log.samples.rend(), usable);
+  loss.leading_ns = first->t_ns - log.samples.front().t_ns;
+  loss.trailing_ns = log.samples.back().t_ns - last->t_ns;
+  loss.first_usable_row = first->row;
+  loss.last_usable_row = last->row;
+}
+
 }  // namespace
 
 GazeLoss measure_loss(const GazeLog& log, double median_step_ns) {
   GazeLoss loss;
   loss.samples = log.samples.size();
   std::vector<double> blinks_ms;
-  const GazeSample* before = nullptr;
-  for (const GazeSample& sample : log.samples) {
-    ++loss.by_validity[static_cast<std::size_t>(sample.validity)];
-    if (!is_usable(sample.validity)) {
-      continue;
+  const auto count = [&](double lost_ns) {
+    const double lost_ms = lost_ns * 1e-6;
+    if (lost_ms >= kBlinkLeastMs && lost_ms <= kBlinkMostMs) {
+      blinks_ms.push_back(lost_ms);
     }
-    ++loss.usable;
-    if (before != nullptr) {
-      const double lost_ns = static_cast<double>(sample.t_ns - before->t_ns) - median_step_ns;
-      const double lost_ms = lost_ns * 1e-6;
-      if (lost_ms >= kBlinkLeastMs && lost_ms <= kBlinkMostMs) {
-        blinks_ms.push_back(lost_ms);
+    loss.longer += lost_ms > kBlinkMostMs ? 1 : 0;
+    loss.longest_ns = std::max(loss.longest_ns, static_cast<std::int64_t>(std::min(lost_ns, 9e18)));
+  };
+  std::vector<std::size_t> bounds = section_starts(log);
+  bounds.push_back(log.samples.size());
+  for (std::size_t section = 0; section + 1 < bounds.size(); ++section) {
+    const GazeSample& first = log.samples[bounds[section]];
+    const GazeSample& last = log.samples[bounds[section + 1] - 1];
+    const GazeSample* before = nullptr;
+    for (std::size_t i = bounds[section]; i < bounds[section + 1]; ++i) {
+      const GazeSample& sample = log.samples[i];
+      ++loss.by_validity[static_cast<std::size_t>(sample.validity)];
+      if (!is_usable(sample.validity)) {
+        continue;
       }
-      loss.longer += lost_ms > kBlinkMostMs ? 1 : 0;
-      loss.longest_ns = std::max(loss.longest_ns, static_cast<std::int64_t>(std::min(lost_ns, 9e18)));
+      ++loss.usable;
+      if (before != nullptr) {
+        count(static_cast<double>(sample.t_ns - before->t_ns) - median_step_ns);
+      } else if (sample.t_ns > first.t_ns) {
+        count(static_cast<double>(sample.t_ns - first.t_ns));
+      }
+      before = &sample;
     }
-    before = &sample;
+    if (before == nullptr || last.t_ns > before->t_ns) {
+      count(static_cast<double>(last.t_ns - (before == nullptr ? first : *before).t_ns));
+    }
   }
+  measure_ends(log, loss);
   loss.blink_like = blinks_ms.size();
   loss.blink_like_median_ms = blinks_ms.empty() ? 0 : lower_quantile(blinks_ms, 0.5);
   if (!log.eyes.empty()) {

@@ -187,6 +187,9 @@ std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<Fr
 std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Conventions& conventions) {
   const bool has_three = conventions.form == PlaceForm::vector;
   const std::vector<FrequentPlace> frequent = frequent_places(raw.rows, has_three);
+  if (frequent.empty()) {
+    return std::nullopt;  // no second log is made of the rows
+  }
   const std::optional<RecurringPlace> mark = find_mark(interpret_rows(raw, conventions), frequent);
   // Of directions, only those that loggers write as marks count: three times the same number, and straight ahead.
   const bool is_plain =

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gaze/inspect/inspect.hpp"
+#include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
@@ -13,7 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array kValidities{GazeValidity::ok,   GazeValidity::low_confidence, GazeValidity::blink,
                                  GazeValidity::lost, GazeValidity::off_screen,     GazeValidity::interpolated};
 constexpr std::array kEvents{GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                             GazeEventType::message, GazeEventType::segment};
+                             GazeEventType::message,  GazeEventType::segment, GazeEventType::aoi};
 
 Json facts(const GazeInspection& r) {
   Json json = Json::array();
@@ -33,12 +34,14 @@ void add_timing(const GazeInspection& r, Json& json) {
   json["wall_clock"] = r.is_wall_clock;
   json["first_ns"] = hidden ? Json() : Json(t.first_ns);
   json["last_ns"] = hidden ? Json() : Json(t.last_ns);
+  json["duration_ns"] = r.span_ns;
   json["nominal_rate_hz"] = t.nominal_rate_hz > 0 ? Json(t.nominal_rate_hz) : Json();
   json["median_rate_hz"] = t.median_rate_hz;
   json["mean_rate_hz"] = t.mean_rate_hz;
   json["step_quartiles_ns"] = {t.step_q1_ns, t.step_q3_ns};
   json["jitter_ns"] = t.jitter_ns;
   json["gaps"] = {{"count", t.gaps}, {"longest_ns", t.longest_gap_ns}, {"total_ns", t.gaps_total_ns}};
+  json["pauses"] = {{"count", t.pauses}, {"total_ns", t.pauses_total_ns}};
   json["order"] = {{"rows", r.order.rows},
                    {"backward_steps", r.order.backward_steps},
                    {"duplicates", r.order.duplicates},
@@ -56,10 +59,9 @@ void add_quality(const GazeInspection& r, Json& json) {
   for (const GazeValidity validity : kValidities) {
     json["validity"][std::string(to_string(validity))] = loss.by_validity[static_cast<std::size_t>(validity)];
   }
-  json["losses"] = {{"blink_like", loss.blink_like},
-                    {"blink_like_median_ms", loss.blink_like_median_ms},
-                    {"longer", loss.longer},
-                    {"longest_ns", loss.longest_ns}};
+  json["losses"] = {{"blink_like", loss.blink_like}, {"blink_like_median_ms", loss.blink_like_median_ms},
+                    {"longer", loss.longer},         {"longest_ns", loss.longest_ns},
+                    {"leading_ns", loss.leading_ns}, {"trailing_ns", loss.trailing_ns}};
   json["frozen"] = {{"runs", r.frozen.runs},
                     {"samples", r.frozen.samples},
                     {"longest_ns", r.frozen.longest_ns},
@@ -103,6 +105,17 @@ std::string inspection_json(const GazeInspection& r) {
     json["geometry"] = {
         {"px", {g.width_px, g.height_px}}, {"cm", {g.width_cm, g.height_cm}}, {"distance_cm", g.distance_cm}};
   }
+  json["recordings"] = Json::array();
+  for (const GazeRecording& recording : r.recordings) {
+    json["recordings"].push_back({{"kind", recording.is_block ? "block" : "recording"},
+                                  {"rows", recording.rows},
+                                  {"first_line", recording.first_row},
+                                  {"duration_ns", duration_ns(recording)}});
+    if (!recording.name.empty()) {
+      json["recordings"].back()["name"] = recording.name;
+    }
+  }
+  json["recording"] = r.recording > 0 ? Json(r.recording) : Json();
   add_timing(r, json);
   add_quality(r, json);
   json["both_eyes"] = r.both_eyes;

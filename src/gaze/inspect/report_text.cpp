@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "gaze/inspect/inspect.hpp"
+#include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
@@ -14,10 +15,20 @@ namespace {
 constexpr std::array kValidities{GazeValidity::ok,   GazeValidity::low_confidence, GazeValidity::blink,
                                  GazeValidity::lost, GazeValidity::off_screen,     GazeValidity::interpolated};
 constexpr std::array kEvents{GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                             GazeEventType::message, GazeEventType::segment};
+                             GazeEventType::message,  GazeEventType::segment, GazeEventType::aoi};
 
 double ms(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-6;
+}
+
+// Nanoseconds in the unit that people would choose.
+std::string duration_text(std::int64_t ns) {
+  const double s = static_cast<double>(ns) * 1e-9;
+  return s < 1       ? fmt::format("{:.1f} ms", ms(ns))
+         : s < 120   ? fmt::format("{:.2f} s", s)
+         : s < 7200  ? fmt::format("{:.1f} min", s / 60)
+         : s < 1.7e5 ? fmt::format("{:.1f} h", s / 3600)
+                     : fmt::format("{:.1f} days", s / 86400);
 }
 
 class Text {
@@ -35,6 +46,23 @@ class Text {
   std::string text_;
 };
 
+// What a fact rests on.
+std::string_view evidence_text(Evidence evidence) {
+  switch (evidence) {
+    case Evidence::option:
+      return "as you say";
+    case Evidence::sidecar:
+      return "by the sidecar";
+    case Evidence::header:
+      return "stated in the file";
+    case Evidence::format:
+      return "by the definition of the format";
+    case Evidence::statistics:
+      return "a guess from the numbers";
+  }
+  return "a guess from the numbers";
+}
+
 std::string geometry_text(const DisplayGeometry& g) {
   const auto px = g.width_px > 0 ? fmt::format("{} x {} px", g.width_px, g.height_px) : "pixels not stated";
   const auto size = g.width_cm > 0 ? fmt::format("{:.5g} x {:.5g} cm", g.width_cm, g.height_cm) : "size not stated";
@@ -44,33 +72,63 @@ std::string geometry_text(const DisplayGeometry& g) {
 
 void write_log(const GazeInspection& r, Text& text) {
   text.plain(r.source);
-  text.line("format", "{} ({:.0f} % sure), {}", r.format, 100 * r.format_confidence,
+  text.line("format", "{}{}, {}", r.format,
+            r.format_confidence < 1 ? fmt::format(" (known by the content of the file, with {:.0f} % certainty; "
+                                                  "`gaze-format` names another)",
+                                                  100 * r.format_confidence)
+                                    : "",
             r.kind == GazeKind::direction ? "directions from the head"
             : r.kind == GazeKind::screen  ? "on a screen"
                                           : "on a scene camera's picture");
   for (const GazeFact& fact : r.facts) {
-    text.plain(fmt::format("  {:<17} {} ({}{}{})", fact.what, fact.value,
-                           fact.evidence == Evidence::statistics ? "a guess by statistics" : to_string(fact.evidence),
+    text.plain(fmt::format("  {:<17} {} ({}{}{})", fact.what, fact.value, evidence_text(fact.evidence),
                            fact.detail.empty() ? "" : ": ", fact.detail));
   }
   text.line("geometry", "{}", r.geometry ? geometry_text(*r.geometry) : "not stated by the log");
 }
 
+void write_recordings(const GazeInspection& r, Text& text) {
+  if (r.recordings.empty()) {
+    return;
+  }
+  text.line("recordings", "the file holds {} {}; {}", r.recordings.size(),
+            r.recordings.front().is_block ? "blocks of one recording" : "recordings",
+            r.recording == 0 ? "this is all of them, and `gaze-recording` takes one"
+                             : fmt::format("this is number {}", r.recording));
+  for (std::size_t i = 0; i < r.recordings.size(); ++i) {
+    const GazeRecording& recording = r.recordings[i];
+    const double seconds = static_cast<double>(duration_ns(recording)) * 1e-9;
+    text.plain(fmt::format("  {:<17} {} rows from line {} on, {:.1f} s{}", i + 1, recording.rows, recording.first_row,
+                           seconds, recording.name.empty() ? "" : ", " + recording.name));
+  }
+}
+
 void write_time(const GazeInspection& r, Text& text) {
   const GazeTiming& t = r.timing;
   if (r.is_wall_clock && t.first_ns == 0) {
-    text.line("time", "a clock that counts from 1970; stamps are not shown without `keep-ids`");
+    text.line("time", "{}; the stamps are times of day, and are not shown without `keep-ids`",
+              duration_text(r.span_ns));
   } else {
-    text.line("time", "{} ns to {} ns{}", t.first_ns, t.last_ns, r.clock.empty() ? "" : " (clock: " + r.clock + ")");
+    text.line("time", "{}, from {:.3f} s to {:.3f} s{} ({} ns to {} ns)", duration_text(r.span_ns),
+              static_cast<double>(t.first_ns) * 1e-9, static_cast<double>(t.last_ns) * 1e-9,
+              r.clock.empty() ? "" : " of the clock: " + r.clock, t.first_ns, t.last_ns);
+  }
+  if (r.loss.samples < 2) {
+    text.line("rate", "not known: the log holds one row");
+    return;
   }
   text.line("rate", "{:.2f} Hz by the median step, {:.2f} Hz by the mean; {}", t.median_rate_hz, t.mean_rate_hz,
             t.nominal_rate_hz > 0 ? fmt::format("the log states {:g} Hz", t.nominal_rate_hz) : "the log states none");
-  text.line("steps", "{:.3f} to {:.3f} ms (middle half), jitter {:.3f} ms", t.step_q1_ns * 1e-6, t.step_q3_ns * 1e-6,
-            t.jitter_ns * 1e-6);
+  text.line("steps", "half of them last {:.3f} to {:.3f} ms; their standard deviation (jitter) is {:.3f} ms",
+            t.step_q1_ns * 1e-6, t.step_q3_ns * 1e-6, t.jitter_ns * 1e-6);
   text.line("gaps", "{}{}", t.gaps,
-            t.gaps == 0
-                ? ""
-                : fmt::format(", longest {:.1f} ms, {:.1f} ms in all", ms(t.longest_gap_ns), ms(t.gaps_total_ns)));
+            t.gaps == 0 ? ""
+                        : fmt::format(", longest {}, {} in all", duration_text(t.longest_gap_ns),
+                                      duration_text(t.gaps_total_ns)));
+  if (t.pauses > 0) {
+    text.line("pauses", "{} between blocks of the recording, {} in all; they are no losses", t.pauses,
+              duration_text(t.pauses_total_ns));
+  }
   text.line("order", "{} of {} rows go back in time, {} repeat a time", r.order.backward_steps, r.order.rows,
             r.order.duplicates);
 }
@@ -89,13 +147,17 @@ void write_quality(const GazeInspection& r, Text& text) {
       text.plain(fmt::format("  {:<17} {} ({:.2f} %)", to_string(validity), count, percent(count)));
     }
   }
-  text.line("losses", "{} like blinks (50 to 500 ms{}), {} longer, longest {:.1f} ms", loss.blink_like,
+  text.line("losses", "{} as long as blinks (50 to 500 ms{}), {} longer, the longest {}{}{}", loss.blink_like,
             loss.blink_like > 0 ? fmt::format(", median {:.0f} ms", loss.blink_like_median_ms) : "", loss.longer,
-            ms(loss.longest_ns));
-  text.line("frozen", "{} runs of one position{}; {:.2f} % of the samples repeat the one before", r.frozen.runs,
-            r.frozen.runs > 0
-                ? fmt::format(", longest {:.0f} ms in line {}", ms(r.frozen.longest_ns), r.frozen.longest_row)
-                : "",
+            duration_text(loss.longest_ns),
+            loss.leading_ns > 0 ? ", " + duration_text(loss.leading_ns) + " at the beginning" : "",
+            loss.trailing_ns > 0 ? ", " + duration_text(loss.trailing_ns) + " at the end" : "");
+  text.line("frozen",
+            "the position stands still for 100 ms or more {} times{}; {:.2f} % of the samples repeat the one before",
+            r.frozen.runs,
+            r.frozen.runs > 0 ? fmt::format(", at most for {} from line {} on", duration_text(r.frozen.longest_ns),
+                                            r.frozen.longest_row)
+                              : "",
             100 * r.frozen.repeated_share);
   if (loss.usable > 0) {
     const bool screen = r.kind != GazeKind::direction;
@@ -104,13 +166,15 @@ void write_quality(const GazeInspection& r, Text& text) {
   }
   const int digits = r.unit == "of the picture" ? 5 : r.unit == "px" ? 2 : 3;
   if (r.precision) {
-    text.line("precision", "RMS-S2S {:.{}f} {}, SD {:.{}f} {}, medians of {} fixations", r.precision->rms_s2s, digits,
-              r.unit, r.precision->sd, digits, r.unit, r.precision->fixations);
+    text.line(
+        "precision",
+        "{:.{}f} {} from sample to sample (RMS-S2S), standard deviation {:.{}f} {}; medians of {} still stretches",
+        r.precision->rms_s2s, digits, r.unit, r.precision->sd, digits, r.unit, r.precision->fixations);
   } else {
-    text.line("precision", "no stretch of 100 ms is still enough to measure it");
+    text.line("precision", "not known: gaze never stands still for 100 ms");
   }
   if (r.calibrations.empty()) {
-    text.line("accuracy", "the log has no validation");
+    text.line("accuracy", "not known: the log has no validation by the tracker");
   }
   for (const GazeCalibration& c : r.calibrations) {
     text.line("accuracy", "{} eye: {} deg mean, {} deg at most, by the validation in line {}", to_string(c.eye),
@@ -140,6 +204,7 @@ void write_quality(const GazeInspection& r, Text& text) {
 std::string inspection_text(const GazeInspection& r) {
   Text text;
   write_log(r, text);
+  write_recordings(r, text);
   write_time(r, text);
   write_quality(r, text);
   for (const GazeAxisTest& test : r.axes) {

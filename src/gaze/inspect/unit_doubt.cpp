@@ -56,7 +56,11 @@ struct Positions {
 // Tests degrees, and lengths on a display whose size is known.
 std::optional<BetterUnit> doubt_angles_and_lengths(const Positions& p, PositionUnit stated, PositionOrigin origin,
                                                    const DisplayGeometry& display) {
-  const auto& [x, y, most, spread] = p;
+  // No structured binding: not every compiler lets a lambda take one.
+  const Extent& x = p.x;
+  const Extent& y = p.y;
+  const double most = p.most;
+  const double spread = p.spread;
   const Vec2d size_cm{display.width_cm, display.height_cm};
   const Vec2d size_mm{10 * size_cm.x, 10 * size_cm.y};
   const Vec2d size_px{static_cast<double>(display.width_px), static_cast<double>(display.height_px)};

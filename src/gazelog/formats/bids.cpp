@@ -63,7 +63,13 @@ void join_other_eyes(const BidsName& name, const Sidecars& sidecars, const BidsC
                                          other.text("PhysioType").substr(0, 40)));
     }
     const Eye eye = recorded_eye(other);
-    if (signal != BidsSignal::gaze || std::find(read.begin(), read.end(), eye) != read.end()) {
+    if (signal != BidsSignal::gaze) {
+      continue;
+    }
+    if (std::find(read.begin(), read.end(), eye) != read.end()) {
+      raw.warnings.push_back(
+          fmt::format("{}: is a recording of the {} eye as well, and is not read; name it to read it in place of {}",
+                      path, to_string(eye), file_name(raw.source)));
       continue;
     }
     read.push_back(eye);
@@ -111,6 +117,15 @@ void read_own_keys(const Sidecars& sidecars, RawGaze& raw) {
     calibration.eye = eye == "left" ? Eye::left : eye == "right" ? Eye::right : Eye::cyclopean;
     calibration.mean_error_deg = sidecars.number(key + "MeanError").value_or(kNan);
     calibration.max_error_deg = sidecars.number(key + "MaxError").value_or(kNan);
+    raw.calibrations.push_back(calibration);
+  }
+  // The standard's own names, which other writers use.
+  const auto mean = sidecars.number("AverageCalibrationError");
+  if (raw.calibrations.empty() && mean) {
+    GazeCalibration calibration;
+    calibration.eye = recorded_eye(sidecars);
+    calibration.mean_error_deg = *mean;
+    calibration.max_error_deg = sidecars.number("MaximalCalibrationError").value_or(kNan);
     raw.calibrations.push_back(calibration);
   }
 }

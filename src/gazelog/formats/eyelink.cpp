@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "gazelog/interpret.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
@@ -43,6 +44,11 @@ std::size_t rows_that_begin_with_a_digit(std::string_view text) {
 
 struct Span {
   std::int64_t begin_ns, end_ns;
+};
+
+// A block, with the messages that stand between the block before it and its START.
+struct BlockBegin {
+  std::int64_t line, begin_ns;
 };
 
 class AscReader {
@@ -107,6 +113,8 @@ class AscReader {
       read_message(line);
     } else if (key == "START") {
       block_start_ = time(word(1));
+      blocks_.push_back({line_after_end_.value_or(line_), block_start_});
+      line_after_end_.reset();
       in_block_ = true;
       last_stamp_.clear();
       compared_.fill(raw_.rows.size());  // the clock may start anew
@@ -145,6 +153,7 @@ class AscReader {
 
   void read_end() {
     const std::int64_t t_ns = time(word(1));
+    line_after_end_ = line_ + 1;
     if (in_block_) {
       raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, t_ns, "recording block", line_});
     }
@@ -219,7 +228,9 @@ class AscReader {
     }
   }
 
-  // EFIX L begin end duration ...; durations can be garbage, so only begin and end are believed.
+  // EFIX L begin end duration x y pupil; ESACC L begin end duration x y x y amplitude velocity, with two more where
+  // the resolution is written. Durations count the time of the last sample, too. They can be garbage, and are believed
+  // where they fit begin and end.
   void read_event(std::string_view key) {
     if (words_.size() < 4) {
       return;
@@ -233,7 +244,20 @@ class AscReader {
     const GazeEventType type = key == "EFIX"    ? GazeEventType::fixation
                                : key == "ESACC" ? GazeEventType::saccade
                                                 : GazeEventType::blink;
-    raw_.events.push_back({type, eye, begin, end, {}, line_});
+    GazeEvent event{type, eye, begin, end, {}, line_};
+    constexpr std::int64_t kLongestSampleNs = 20'000'000;
+    std::int64_t duration_ns = 0;
+    std::int64_t length_ns = 0;
+    if (scaled_integer(word(4), exponent_, duration_ns) == NumberStatus::ok &&
+        !__builtin_sub_overflow(end, begin, &length_ns) && duration_ns >= length_ns &&
+        duration_ns - length_ns <= kLongestSampleNs) {
+      event.stated_duration_ns = duration_ns;
+    }
+    if (type == GazeEventType::saccade && (words_.size() == 11 || words_.size() == 13)) {
+      event.stated_amplitude_deg = number_from(word(9));
+      event.stated_peak_velocity_deg_s = number_from(word(10));
+    }
+    raw_.events.push_back(std::move(event));
     if (type == GazeEventType::fixation) {
       compare_fixation(eye, begin, end);
     }
@@ -317,8 +341,11 @@ class AscReader {
     RawSample sample = position_row(t_ns, line_, eye, {number(column), number(column + 1)}, number(column + 2));
     // What the tracker says of its own sample is not believed where the user says that there is none.
     const auto both_are = [&](double value) { return sample.at.x == value && sample.at.y == value; };
+    const auto is_given = [&](double mark) {
+      return mark == 0 ? both_are(0) : sample.at.x == mark || sample.at.y == mark;
+    };
     const bool is_mark =
-        (options_.zero_is_missing && both_are(0)) || (options_.missing_value && both_are(*options_.missing_value));
+        (options_.zero_is_missing && both_are(0)) || (options_.missing_value && is_given(*options_.missing_value));
     if (is_mark) {
       sample.validity = GazeValidity::lost;
     } else if (sample.validity == GazeValidity::ok && !flags.empty()) {
@@ -367,10 +394,28 @@ class AscReader {
     }
   }
 
+  // A tracker that was started anew counts from another zero: then another session begins.
+  void divide() {
+    std::size_t sessions = 1;
+    for (std::size_t i = 1; i < blocks_.size(); ++i) {
+      sessions += blocks_[i].begin_ns < blocks_[i - 1].begin_ns ? 1 : 0;
+    }
+    std::size_t session = 1;
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      session += i > 0 && blocks_[i].begin_ns < blocks_[i - 1].begin_ns ? 1 : 0;
+      if (sessions == 1) {
+        begin_block(raw_, blocks_[i].line);
+      } else {
+        begin_recording(raw_, std::to_string(session), blocks_[i].line);
+      }
+    }
+  }
+
   void finish() {
     if (raw_.rows.empty()) {
       return;
     }
+    divide();
     mark_blinks();
     if (in_block_) {
       raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, raw_.rows.back().t_ns,
@@ -411,6 +456,8 @@ class AscReader {
   std::vector<std::string_view> words_;
   std::string last_stamp_;
   std::int64_t block_start_ = 0;
+  std::optional<std::int64_t> line_after_end_ = 1;  // of the block before; empty: it has not ended
+  std::vector<BlockBegin> blocks_;
   bool in_block_ = false;
   bool coordinates_are_gaze_ = false;
   std::string coordinates_;

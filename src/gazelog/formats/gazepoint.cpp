@@ -2,10 +2,15 @@
 // Gazepoint Analysis, `User N_all_gaze.csv`: TIME(date) in seconds from the start of the recording or of each medium,
 // TIMETICK(f=10000000) in ticks of the frequency that its name states. BPOG, the best point of gaze, and LPOG and RPOG
 // of each eye are fractions of the screen from the top left, with a validity of 0 or 1. A lost point keeps its last
-// value. FPOG is the running mean of a fixation, which is smoother than BPOG. Every line ends with a comma.
+// value. FPOG is the running mean of a fixation, which is smoother than BPOG: FPOGID counts the fixations, FPOGS says
+// when one began and FPOGD how long it has lasted so far, both in seconds. FPOGV is 1 only from the row on in which the
+// fixation was recognized, so that runs of it begin late. LPMM and RPMM are diameters of the pupils in millimetres,
+// with LPMMV and RPMMV; LPD and RPD, with LPV and RPV, in pixels of the camera's picture. AOI names the area of
+// interest under the gaze. Every line ends with a comma. (Gazepoint API and Gazepoint Analysis manuals.)
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
@@ -16,10 +21,103 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
 
 namespace {
 
+struct Pupil {
+  std::optional<std::size_t> size, valid;
+};
+
 struct Point {
   Eye eye = Eye::cyclopean;
   std::size_t x = 0, y = 0;
-  std::optional<std::size_t> valid, pupil;
+  std::optional<std::size_t> valid;
+};
+
+// The pupils of the left and the right eye, in one unit.
+struct Pupils {
+  std::array<Pupil, 2> eyes;
+  std::string unit;
+
+  // Of one eye; of both, the mean of those that were measured. NaN where there is none.
+  [[nodiscard]] double of(TableRows& rows, Eye eye) const {
+    double sum = 0;
+    double count = 0;
+    for (const Eye side : {Eye::left, Eye::right}) {
+      const Pupil& pupil = eyes[side == Eye::left ? 0 : 1];
+      const double size = rows.number(pupil.size);
+      const bool is_measured = size > 0 && (!pupil.valid || rows.number(*pupil.valid) == 1);
+      if (is_measured && (eye == side || eye == Eye::cyclopean)) {
+        sum += size;
+        ++count;
+      }
+    }
+    return count > 0 ? sum / count : kNan;
+  }
+};
+
+Pupils find_pupils(const DelimitedTable& table, RawGaze& raw) {
+  Pupils pupils;
+  const auto has = [&](const char* name) { return table.find(name).has_value(); };
+  const bool in_mm = has("LPMM") || has("RPMM");
+  if (in_mm) {
+    pupils = {{{{table.find("LPMM"), table.find("LPMMV")}, {table.find("RPMM"), table.find("RPMMV")}}}, "mm"};
+    add_note(raw, "pupil columns", "LPMM, RPMM", Evidence::header,
+             has("LPD") || has("RPD") ? "LPD and RPD, in pixels of the camera, are left out" : "");
+  } else if (has("LPD") || has("RPD")) {
+    pupils = {{{{table.find("LPD"), table.find("LPV")}, {table.find("RPD"), table.find("RPV")}}}, "px"};
+    add_note(raw, "pupil columns", "LPD, RPD", Evidence::header, "diameters in pixels of the camera");
+  }
+  return pupils;
+}
+
+// The fixations that the log states. A fixation's last row has its whole duration.
+class StatedFixations {
+ public:
+  StatedFixations(const DelimitedTable& table, std::optional<std::size_t> seconds, std::size_t time,
+                  const TimeScale& scale)
+      : id_(table.find("FPOGID")),
+        start_(table.find("FPOGS")),
+        duration_(table.find("FPOGD")),
+        seconds_(seconds),
+        time_(time),
+        scale_(scale) {}
+
+  [[nodiscard]] bool are_stated() const { return id_ && start_ && duration_ && seconds_; }
+  [[nodiscard]] std::size_t needed_cells() const {
+    return are_stated() ? std::max({*id_, *start_, *duration_, *seconds_}) + 1 : 0;
+  }
+
+  void read(TableRows& rows, std::int64_t t_ns) {
+    const double length_s = rows.number(*duration_);
+    if (!(length_s > 0) || is_missing(rows.cell(*start_)) || is_missing(rows.cell(*seconds_))) {
+      return;
+    }
+    if (open_.empty() || rows.cell(*id_) != open_) {
+      events_.push_back({GazeEventType::fixation, Eye::cyclopean, 0, 0, {}, rows.line()});
+      open_ = rows.cell(*id_);
+    }
+    // FPOGS counts from where TIME does, whatever column the stamps are taken from.
+    const TimeScale in_seconds{seconds_ == time_ ? scale_.exponent : 9, 0};
+    std::int64_t ago_ns = 0;
+    std::int64_t length_ns = 0;
+    GazeEvent& event = events_.back();
+    const bool fits =
+        !__builtin_sub_overflow(rows.time_ns(*seconds_, in_seconds), rows.time_ns(*start_, in_seconds), &ago_ns) &&
+        scaled_integer(rows.cell(*duration_), in_seconds.exponent, length_ns) == NumberStatus::ok &&
+        !__builtin_sub_overflow(t_ns, ago_ns, &event.begin_ns) &&
+        !__builtin_add_overflow(event.begin_ns, length_ns, &event.end_ns);
+    if (!fits) {
+      rows.fail("the fixation's begin (FPOGS) or duration (FPOGD) does not fit the row's time", "mend the row");
+    }
+    event.stated_duration_ns = length_ns;
+  }
+  void begin_anew() { open_.clear(); }
+  void finish(RawGaze& raw) const { raw.events.insert(raw.events.end(), events_.begin(), events_.end()); }
+
+ private:
+  std::optional<std::size_t> id_, start_, duration_, seconds_;
+  std::size_t time_;
+  TimeScale scale_;
+  std::string open_;
+  std::vector<GazeEvent> events_;
 };
 
 std::optional<std::size_t> column_starting(const DelimitedTable& table, std::string_view prefix) {
@@ -35,12 +133,12 @@ std::optional<std::size_t> column_starting(const DelimitedTable& table, std::str
 
 std::vector<Point> find_points(const DelimitedTable& table, const std::string& place) {
   std::vector<Point> points;
-  for (const auto& [stem, pupil, eye] : {std::tuple("BPOG", "", Eye::cyclopean), std::tuple("LPOG", "LPD", Eye::left),
-                                         std::tuple("RPOG", "RPD", Eye::right)}) {
+  for (const auto& [stem, eye] :
+       {std::pair("BPOG", Eye::cyclopean), std::pair("LPOG", Eye::left), std::pair("RPOG", Eye::right)}) {
     const auto x = table.find(fmt::format("{}X", stem));
     const auto y = table.find(fmt::format("{}Y", stem));
     if (x && y) {
-      points.push_back({eye, *x, *y, table.find(fmt::format("{}V", stem)), table.find(pupil)});
+      points.push_back({eye, *x, *y, table.find(fmt::format("{}V", stem))});
     }
   }
   if (points.empty()) {
@@ -97,7 +195,8 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   RawGaze raw;
   raw.source = file.path;
   raw.format = "gazepoint";
-  raw.pupil_unit = "px";
+  const Pupils pupils = find_pupils(table, raw);
+  raw.pupil_unit = pupils.unit;
   raw.clock = "recording, from its start";
   const std::size_t time = time_column(table, options, seconds ? *seconds : ticks.value_or(0), place);
   const bool is_tick = ticks && time == *ticks;
@@ -107,18 +206,26 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
   const auto media = table.find("MEDIA_ID");
   const auto fixation = table.find("FPOGID");
   const auto fixation_valid = table.find("FPOGV");
+  const auto aoi = table.find("AOI");
   // The date in the header is the wall clock of the start, and is not kept.
   const TimeScale scale = declare_time(raw, options,
                                        is_tick                       ? "TIMETICK"
                                        : seconds && time == *seconds ? "TIME"
                                                                      : table.headings[time].text,
                                        tick.value_or(9), Evidence::format, place);
-  std::size_t needed =
-      std::max({time, blink.value_or(0), media.value_or(0), fixation.value_or(0), fixation_valid.value_or(0)}) + 1;
+  StatedFixations fixations(table, seconds, time, scale);
+  std::size_t needed = std::max({time, blink.value_or(0), media.value_or(0), fixation.value_or(0),
+                                 fixation_valid.value_or(0), aoi.value_or(0)}) +
+                       1;
+  needed = std::max(needed, fixations.needed_cells());
+  for (const Pupil& pupil : pupils.eyes) {
+    needed = std::max({needed, pupil.size.value_or(0) + 1, pupil.valid.value_or(0) + 1});
+  }
   for (const Point& point : points) {
-    needed = std::max({needed, point.x + 1, point.y + 1, point.valid.value_or(0) + 1, point.pupil.value_or(0) + 1});
+    needed = std::max({needed, point.x + 1, point.y + 1, point.valid.value_or(0) + 1});
   }
   LabelRuns runs;
+  LabelRuns areas;
   std::string medium;
   std::int64_t last = 0;
   TableRows rows(file, table, needed);
@@ -135,24 +242,34 @@ RawGaze read_gaze_gazepoint(const GazeFile& file, const GazeReadOptions& options
         rows.fail(fmt::format("{} starts anew with another medium", time_name), "export one medium a file");
       }
       medium = rows.cell(*media);
+      fixations.begin_anew();
       raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "medium " + medium, rows.line()});
     }
     last = t_ns;
     const bool blinks = blink && rows.number(*blink) > 0;
     for (const Point& point : points) {
       RawSample sample = position_row(t_ns, rows.line(), point.eye, {rows.number(point.x), rows.number(point.y)},
-                                      rows.number(point.pupil));
+                                      pupils.of(rows, point.eye));
       const bool good = !point.valid || rows.number(*point.valid) == 1;
       sample.validity = blinks ? GazeValidity::blink : good ? sample.validity : GazeValidity::lost;
       raw.rows.push_back(sample);
     }
-    if (fixation && fixation_valid && rows.number(*fixation_valid) == 1) {
+    if (fixations.are_stated()) {
+      fixations.read(rows, t_ns);
+    } else if (fixation && fixation_valid && rows.number(*fixation_valid) == 1) {
       runs.add(GazeEventType::fixation, Eye::cyclopean, std::string(rows.cell(*fixation)), t_ns, rows.line());
     } else {
       runs.end();
     }
+    if (const std::string_view area = rows.cell(aoi); !is_missing(area)) {
+      areas.add(GazeEventType::aoi, Eye::cyclopean, area, t_ns, rows.line(), area);
+    } else {
+      areas.end();
+    }
   }
   runs.finish(raw);
+  fixations.finish(raw);
+  areas.finish(raw);
   declare_places(raw,
                  {PositionUnit::fraction, PositionOrigin::top_left, Evidence::format,
                   table.headings[points.front().x].text + ", " + table.headings[points.front().y].text},

@@ -6,7 +6,8 @@
 namespace gazetrace {
 
 double sniff_gaze_generic(const GazeFile& file) {
-  if (head_of(file).find_first_of(std::string_view("\0\xFF", 2)) != std::string_view::npos) {
+  constexpr std::size_t kLooked = 256;  // further on, zeros are damage
+  if (head_of(file, kLooked).find_first_of(std::string_view("\0\xFF", 2)) != std::string_view::npos) {
     return 0.0;  // binary
   }
   LineReader lines(file.text);

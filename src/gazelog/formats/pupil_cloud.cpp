@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pupil Invisible's and Neon's gaze.csv from Pupil Cloud: `timestamp [ns]` from 1970, `gaze x [px]` on the scene
 // camera's picture from the top left, `azimuth [deg]` and `elevation [deg]` from the scene camera's axis, right and up,
-// `worn`, `blink id`. During a blink the places go on and mean nothing.
+// `worn`, `fixation id`, `blink id`, and `recording id` where several recordings were exported together. During a blink
+// the places go on and mean nothing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 
@@ -49,14 +51,19 @@ RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const std::size_t time = time_column(table, options, *own_time, place);
   const TimeScale scale = declare_time(raw, options, table.headings[time].text, 0, Evidence::header, place);
+  RecordingColumns recordings(table, options.columns.recording, {"recording id"});
   LabelRuns runs;
   WitnessTally angles;
-  TableRows rows(file, table,
-                 std::max({time, *x, *y, azimuth.value_or(0), elevation.value_or(0), worn.value_or(0),
-                           blink.value_or(0), fixation.value_or(0)}) +
-                     1);
+  TableRows rows(
+      file, table,
+      std::max(recordings.needed_cells(), std::max({time, *x, *y, azimuth.value_or(0), elevation.value_or(0),
+                                                    worn.value_or(0), blink.value_or(0), fixation.value_or(0)}) +
+                                              1));
   while (rows.next()) {
     rows.check_length();
+    if (recordings.note(rows, raw)) {
+      runs.end();
+    }
     RawSample sample = missing_row(rows.time_ns(time, scale), rows.line(), Eye::cyclopean);
     if (raw.kind == GazeKind::scene_camera && azimuth && elevation) {
       angles.add(rows.number(*x), rows.number(*y), rows.number(*azimuth), -rows.number(*elevation));

@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
@@ -42,6 +43,7 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
   }
   const auto confidence = table.find("confidence");
   const auto blink = table.find("blink id");
+  const auto fixation = table.find("fixation id");
   RawGaze raw;
   raw.source = file.path;
   raw.format = "pupil-surface";
@@ -50,9 +52,17 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
   const TimeScale scale = declare_time(raw, options, table.headings[time_at].text, cloud ? 0 : 9,
                                        cloud ? Evidence::header : Evidence::format, place);
   const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
-  TableRows rows(file, table, std::max({time_at, *x, *y, confidence.value_or(0), blink.value_or(0)}) + 1);
+  RecordingColumns recordings(table, options.columns.recording, {"recording id"});
+  LabelRuns runs;
+  TableRows rows(
+      file, table,
+      std::max(recordings.needed_cells(),
+               std::max({time_at, *x, *y, confidence.value_or(0), blink.value_or(0), fixation.value_or(0)}) + 1));
   while (rows.next()) {
     rows.check_length();
+    if (recordings.note(rows, raw)) {
+      runs.end();
+    }
     RawSample sample;
     sample.t_ns = rows.time_ns(time_at, scale);
     sample.row = rows.line();
@@ -65,11 +75,17 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
     } else if (sample.confidence < least) {
       sample.validity = GazeValidity::low_confidence;
     }
-    if (!is_missing(rows.cell(blink))) {
+    if (const std::string_view blink_id = rows.cell(blink); !is_missing(blink_id)) {
       sample.validity = GazeValidity::blink;
+      runs.add(GazeEventType::blink, Eye::cyclopean, std::string(blink_id), sample.t_ns, sample.row);
+    } else if (const std::string_view id = rows.cell(fixation); !is_missing(id)) {
+      runs.add(GazeEventType::fixation, Eye::cyclopean, std::string(id), sample.t_ns, sample.row);
+    } else {
+      runs.end();
     }
     raw.rows.push_back(sample);
   }
+  runs.finish(raw);
   declare_places(raw,
                  {PositionUnit::fraction, cloud ? PositionOrigin::top_left : PositionOrigin::bottom_left,
                   Evidence::format, table.headings[*x].text + ", " + table.headings[*y].text},

@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 #include "gazelog/validity.hpp"
 
 namespace gazetrace {
@@ -165,11 +166,15 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
   const bool unit_stated = !table.headings[c.time].unit.empty();
   const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, c.time_exponent,
                                        unit_stated ? Evidence::header : Evidence::format, place);
+  RecordingColumns recordings(table, options.columns.recording, {"Participant name", "Recording name"});
   LabelRuns runs;
   std::size_t others = 0;
-  TableRows rows(file, table, c.needed);
+  TableRows rows(file, table, std::max(c.needed, recordings.needed_cells()));
   while (rows.next()) {
     rows.check_length();
+    if (recordings.note(rows, raw)) {
+      runs.end();
+    }
     const std::int64_t t_ns = rows.time_ns(c.time, scale);
     if (const std::string_view event = rows.cell(c.event); !event.empty()) {
       raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(event), rows.line()});

@@ -11,6 +11,7 @@
 #include "core/statistics.hpp"
 #include "core/text.hpp"
 #include "gazelog/read_support.hpp"
+#include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
@@ -101,7 +102,8 @@ class StudioReader {
         table_(open_table(file)),
         place_(place_of(file, table_.header_line)),
         c_(find_columns(table_, options, place_)),
-        rows_(file, table_, c_.needed) {
+        recordings_(table_, options.columns.recording, {"ParticipantName", "RecordingName"}),
+        rows_(file, table_, std::max(c_.needed, recordings_.needed_cells())) {
     raw_.source = file.path;
     raw_.format = "tobii-studio";
     raw_.clock = "recording, from its start";
@@ -116,6 +118,9 @@ class StudioReader {
     const auto resolution = table_.find("RecordingResolution");
     while (rows_.next()) {
       rows_.check_length();
+      if (recordings_.note(rows_, raw_)) {
+        runs_.end();
+      }
       if (resolution && !raw_.recording_geometry) {
         read_resolution(rows_.cell(*resolution));
       }
@@ -262,6 +267,7 @@ class StudioReader {
   DelimitedTable table_;
   std::string place_;
   StudioColumns c_;
+  RecordingColumns recordings_;
   TableRows rows_;
   RawGaze raw_;
   TimeScale scale_;

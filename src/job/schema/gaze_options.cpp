@@ -27,6 +27,8 @@ void add_column_options(OptionSchema<GazeFileSettings>& schema) {
                "Column of the confidence");
   schema.value("--gaze-pupil-column", column(&GazeColumns::pupil), "NAME", Touch::gaze, "Column of the pupil's size");
   schema.value("--gaze-eye-column", column(&GazeColumns::eye), "NAME", Touch::gaze, "Column of the eye");
+  schema.value("--gaze-recording-column", column(&GazeColumns::recording), "NAME", Touch::gaze,
+               "Column that tells the recordings of a file apart");
   schema.value("--gaze-time-unit", column(&GazeColumns::time_unit), choices<TimeUnit>(), Touch::gaze,
                "Unit of the stamps");
   schema.value("--gaze-unit", column(&GazeColumns::position_unit), choices<PositionUnit>(), Touch::gaze,
@@ -84,6 +86,11 @@ void add_time_options(JobSchema& schema) {
       .value("--gaze-missing", &JobSettings::gaze_missing, choices<NoGazePolicy>(), Touch::gaze,
              "What happens in frames without usable gaze: hold the last one (the centre before the first), look at the "
              "centre, render uniformly, or stop with an error")
+      .idle_when({without_gaze_log()});
+  schema
+      .value("--gaze-max-missing-frames", &JobSettings::gaze_max_missing_frames, "N", Touch::gaze,
+             "More frames than this in a row without usable gaze are refused; 0: any number")
+      .decides_nothing()
       .idle_when({without_gaze_log()});
   schema
       .value("--gaze-max-age", &JobSettings::gaze_max_age, "DURATION", Touch::gaze, "An older sample counts as no gaze")
@@ -149,6 +156,12 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
   schema.group("Gaze log");
   schema.value("--gaze-format", read(&GazeReadOptions::format), "NAME", Touch::gaze,
                "Format of the log ('gazetrace list gaze-formats'); default: found by its content");
+  schema.value("--gaze-recording", read(&GazeReadOptions::recording), "NUMBER|NAME", Touch::gaze,
+               "Which recording, or which block, of a file that holds several: 'gazetrace gaze inspect' lists them");
+  schema
+      .value("--gaze-events", read(&GazeReadOptions::events_file), "FILE", Touch::gaze,
+             "A table of fixations, saccades or blinks that another program found in this log: they become its events")
+      .decides_by_file();
   add_column_options(schema);
   schema.flag("--gaze-sort", &GazeFileSettings::sort, Touch::gaze,
               "Sorts unordered stamps and keeps the last of equal ones");
@@ -172,8 +185,8 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
   schema.flag("--gaze-zero-missing", read(&GazeReadOptions::zero_is_missing), Touch::gaze,
               "Takes positions of exactly (0, 0) for missing ones");
   schema.value("--gaze-missing-value", read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
-               "The number, such as -1, that the log has in both axes where it has no position; -32768, and magnitudes "
-               "from 1e7 on, always mean that");
+               "The number, such as -1, that the log has where it has no position, in both axes or in one; 0 counts in "
+               "both only; -32768, and magnitudes from 1e7 on, always mean that");
   schema.flag("--gaze-swap-xy", read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
   schema.flag("--gaze-flip-x", read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
   schema.flag("--gaze-flip-y", read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");

@@ -84,10 +84,10 @@ int run_convert(const ConvertArguments& arguments) {
     return exit_done;
   }
   const std::vector<std::string> written = bids_file_names(log, arguments.output);
+  const std::vector<BidsLeftover> leftovers = removable_leftovers(written, arguments);
   for (const std::string& path : written) {
     check_output_file(path, arguments.overwrite);
   }
-  const std::vector<BidsLeftover> leftovers = removable_leftovers(written, arguments);
   if (!log.head.empty()) {
     print_warnings(
         {fmt::format("{}: {} poses of the head are left out: BIDS eye tracking has no place for them, "

@@ -8,6 +8,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/output.hpp"
@@ -20,6 +21,7 @@ struct EventsArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   std::string method = "auto";
+  std::vector<std::string> steps;
   std::optional<GazeDevice> device;
   std::string output;
   bool overwrite = false;
@@ -53,6 +55,26 @@ std::string summary(const EyeEvents& events, const GazeLog& log) {
   return text + "\n";
 }
 
+// What speaks against the events, and what would suit the log. The method itself never changes, since the participants
+// of a study must stay comparable.
+std::vector<std::string> doubts(const EyeEvents& events, const GazeLog& log) {
+  std::vector<std::string> lines;
+  const std::vector<EventDoubt> found = doubt_events(log, events);
+  for (const EventDoubt& doubt : found) {
+    lines.push_back(fmt::format("{}: events by {}: {}", log.source, events.preset, doubt.what));
+  }
+  if (!found.empty()) {
+    const std::vector<std::string> better = better_event_methods(log, events);
+    lines.push_back(fmt::format(
+        "{}: these events are not to be relied on; {}", log.source,
+        better.empty()
+            ? "no method and no single step of processing here suits this log: use the tracker's own events "
+              "(`method` log), or record with less noise"
+            : fmt::format("without such doubts: {}; choose one for all participants", fmt::join(better, ", "))));
+  }
+  return lines;
+}
+
 int run_events(const EventsArguments& arguments) {
   if (!arguments.output.empty()) {
     check_output_file(arguments.output, arguments.overwrite);
@@ -68,7 +90,15 @@ int run_events(const EventsArguments& arguments) {
                                    "from where the stamps do"});
     }
   }
+  if (!arguments.steps.empty()) {
+    ProcessedGaze processed = process_gaze(log, gaze_steps_of(arguments.steps));
+    print_warnings(processed.reports);
+    log = std::move(processed.log);
+  }
   const EyeEvents events = find_events(arguments, log);
+  if (arguments.method != "log") {
+    print_warnings(doubts(events, log));
+  }
   const bool json = arguments.output.ends_with(".json");
   const std::string text = json ? events_as_json(events, log) : events_as_tsv(events, log);
   if (arguments.output.empty()) {
@@ -95,6 +125,8 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
       "What it was recorded on, where places or directions do not tell: gaze in degrees from a desktop tracker");
   schema.include(gaze_file_schema(), &EventsArguments::gaze);
   schema.include(screen_schema(), &EventsArguments::screen);
+  schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
+                 &EventsArguments::steps);
   const auto options = std::make_shared<CommandOptions<EventsArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");

@@ -2,12 +2,12 @@
 #include "gazetrace/gaze_inspect.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
 #include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
@@ -28,12 +28,7 @@ void write_picture(const InspectArguments& arguments, const GazeLog& log, const 
   GazePictureOptions options;
   options.frame_image = arguments.frame_image;
   const std::string text = with_flags(inspection_svg(log, inspection, options));
-  std::FILE* const file = std::fopen(arguments.svg.c_str(), "wb");
-  bool good = file != nullptr && std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  good = (file == nullptr || std::fclose(file) == 0) && good;
-  if (!good) {
-    throw Error(ErrorKind::runtime, arguments.svg, "cannot be written", "check that its folder exists and has room");
-  }
+  write_text_atomically(arguments.svg, text);
 }
 
 // The raw numbers of the trial alone, which an inspection interprets again.
