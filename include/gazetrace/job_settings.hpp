@@ -93,6 +93,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   bool part = false;
   std::optional<Chunk> chunk;
   int chunk_frames = 0;  // 0: chunks are balanced by what their frames cost
+  SequenceStage stage = SequenceStage::whole;
 
   // How it is rendered
   FoveationSettings foveation;

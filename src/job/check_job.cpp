@@ -134,6 +134,30 @@ void check_sample_range(const JobSettings& job) {
   }
 }
 
+void check_stage(const JobSettings& job) {
+  if (job.stage == SequenceStage::whole) {
+    return;
+  }
+  const auto refuse = [](const char* reason) {
+    throw Error(ErrorKind::usage, "`stage`", reason, "leave it out, or change that");
+  };
+  if (job.accumulate.mode == AccumulateMode::two_sided) {
+    refuse("frames read the samples of those around them, and each part traces those by itself");
+  }
+  if (job.trace.samples) {
+    refuse("`sample-range` leaves sums, which `merge` finishes");
+  }
+  if (job.foveation.target.jod) {
+    refuse("the rate needs a pilot of the sequence");
+  }
+  if (job.only_pixel) {
+    refuse("only one pixel is traced");
+  }
+  if (job.stage == SequenceStage::trace && (!job.checkpoint.empty() || !job.resume_from.empty() || job.preroll > 0)) {
+    refuse("tracing needs no history: checkpoints and preroll belong to finish");
+  }
+}
+
 void check_chunk(const JobSettings& job) {
   if (job.chunk_frames > 0 && !job.chunk) {
     throw Error(ErrorKind::usage, "`chunk-frames`", "which chunk is it?", "give `chunk` K");
@@ -176,6 +200,7 @@ void check_job(const Job& whole, const JobSchema& schema) {
   check_target(job);
   check_sample_range(job);
   check_chunk(job);
+  check_stage(job);
   if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
     throw Error(ErrorKind::usage, "`gaze-at`",
                 fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
@@ -187,9 +212,9 @@ void check_job(const Job& whole, const JobSchema& schema) {
         ErrorKind::usage, "`only-pixel`",
         fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height));
   }
-  if (job.progress != "auto" && job.progress != "always" && job.progress != "never") {
-    throw Error(ErrorKind::usage, "`progress`",
-                unknown_name_message("progress mode", job.progress, {"auto", "always", "never"}));
+  const std::vector<std::string> progress_modes{"auto", "always", "never", "openjd"};
+  if (std::find(progress_modes.begin(), progress_modes.end(), job.progress) == progress_modes.end()) {
+    throw Error(ErrorKind::usage, "`progress`", unknown_name_message("progress mode", job.progress, progress_modes));
   }
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);

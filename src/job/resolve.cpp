@@ -200,16 +200,15 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
 }
 
 // Takes the frames of the job's chunk out of those of the whole sequence.
-void choose_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+void keep_to_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   Decisions unused;
   const FramePlan whole =
       plan_frames(camera, log, plan_settings(job, resolved.frames, log, taken_off_ns, unused), nullptr);
-  std::string decision;
-  std::vector<std::int32_t> frames = frames_of_chunk(job, whole, decision);
-  resolved.chunk_borders = chunk_borders(job, whole);
-  resolved.frames = std::move(frames);
-  resolved.decisions.emplace_back("chunk", decision);
+  ChosenChunk chosen = choose_chunk(job, whole);
+  resolved.frames = std::move(chosen.frames);
+  resolved.chunk_borders = std::move(chosen.borders);
+  resolved.decisions.emplace_back("chunk", chosen.decision);
 }
 
 void warn_of_filter(const JobSettings& job, Warnings& warnings) {
@@ -274,7 +273,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
   if (job.chunk) {
-    choose_chunk(job, camera, taken_off_ns, resolved);
+    keep_to_chunk(job, camera, taken_off_ns, resolved);
   }
   make_plan(job, camera, taken_off_ns, resolved);
   if (job.foveation.target.jod) {

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/version.hpp"
 #include "pipeline/file_journal.hpp"
 
 namespace gazetrace {
+
+namespace fs = std::filesystem;
 
 RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
                            const std::vector<std::string>& command_line) {
@@ -29,6 +32,8 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
     record.files = read_earlier_files(outputs.front());  // the file of the record is about to be replaced
   }
   record.is_part = settings.is_part || settings.trace.samples.has_value();
+  record.stage = settings.stage == SequenceStage::trace ? format_value(settings.stage) : "";
+  record.chunk_file = fs::path(resolved.chunk_borders.path).filename().string();
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = resolved.warnings;
   for (const auto& [name, text] : resolved.decisions) {

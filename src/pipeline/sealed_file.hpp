@@ -40,6 +40,10 @@ class SealedWriter {
     (*this)(static_cast<std::uint64_t>(values.size()));
     add(values.data(), values.size() * sizeof(T));
   }
+  void operator()(const std::string& text) {
+    (*this)(static_cast<std::uint64_t>(text.size()));
+    add(text.data(), text.size());
+  }
   template <class T>
   void operator()(const Image<T>& image) {
     (*this)(image.width_px);
@@ -75,6 +79,11 @@ class SealedReader {
     }
     values.resize(count);
     take(values.data(), values.size() * sizeof(T));
+  }
+  void operator()(std::string& text) {
+    std::vector<char> letters;
+    (*this)(letters);
+    text.assign(letters.begin(), letters.end());
   }
   template <class T>
   void operator()(Image<T>& image) {
