@@ -231,6 +231,19 @@ void load_viewing(ResolvedJob& resolved) {
   }
 }
 
+// Sums, picture and map of a frame take at least so much. More than the machine has is found out before a scene is
+// loaded, and not by what the system then does.
+void check_frame_memory(const JobSettings& job) {
+  constexpr double kLeastBytesOfAPixel = 40;
+  const double bytes = kLeastBytesOfAPixel * job.size.width * job.size.height;
+  if (const auto most = static_cast<double>(most_memory_bytes()); bytes > most) {
+    throw Error(ErrorKind::usage, "`size`",
+                fmt::format("a frame of {}x{} pixels takes more than {:.0f} GiB of memory, and there are {:.1f}",
+                            job.size.width, job.size.height, bytes / 1073741824.0, most / 1073741824.0),
+                "give a smaller one");
+  }
+}
+
 // A single picture is the same for every frame.
 void check_density_maps(const FoveationSettings& foveation, const FramePlan& plan) {
   for (const std::vector<FrameRequest>* frames : {&plan.frames, &plan.around}) {
@@ -307,6 +320,9 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   check_job(job);
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(job);
+  }
+  if (options.scope == ResolveScope::render) {
+    check_frame_memory(job.settings);
   }
   const FilterChoice filter = filter_of(job.settings);
   resolved.job.settings.filter = filter.name;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -127,9 +128,15 @@ bool fits_together(const TracedFrame& traced) {
     }
   }
   for (const Site& site : map.sites) {
-    if (site.region >= map.regions.size()) {
+    if (site.region >= map.regions.size() || map.regions[site.region].block_px < 1 ||
+        std::int64_t{site.block_x} * map.regions[site.region].block_px >= map.width_px ||
+        std::int64_t{site.block_y} * map.regions[site.region].block_px >= map.height_px) {
       return false;
     }
+  }
+  if (std::any_of(map.region.pixels.begin(), map.region.pixels.end(),
+                  [&](std::uint8_t region) { return region >= map.regions.size(); })) {
+    return false;
   }
   for (std::size_t i = 1; i < sparse.first_surface.size(); ++i) {
     if (sparse.first_surface[i] < sparse.first_surface[i - 1] ||
