@@ -114,6 +114,12 @@ int run_retry(const FarmArguments& arguments) {
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
   }
+  for (const TaskStatus& task : status.tasks) {
+    if (task.state == TaskState::running) {
+      throw Error(ErrorKind::usage, arguments.folder,
+                  "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
+    }
+  }
   return hand_over(plan, chunks_to_retry(status), arguments);
 }
 
