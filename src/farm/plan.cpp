@@ -29,6 +29,16 @@ std::string absolute(const std::string& path) {
   return fs::absolute(path.empty() ? "." : path).lexically_normal().string();
 }
 
+// Engines read the name within lines of their own.
+std::string plain_name(std::string name) {
+  for (char& letter : name) {
+    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                          (letter >= '0' && letter <= '9') || letter == '-' || letter == '.';
+    letter = is_plain ? letter : '_';
+  }
+  return name.empty() ? "gazetrace" : name;
+}
+
 std::uint64_t memory_mib(const JobSettings& job, const FramePlan& frames) {
   std::uint64_t bytes = estimate_scene(job.scene, scene_read_options(job)).total_bytes();
   std::uint64_t largest = 0;
@@ -120,8 +130,12 @@ FarmPlan plan_farm(const FarmSettings& settings) {
   plan.work_folder = absolute("");
   plan.run_folder = absolute(resolved.pipeline.output.run_directory);
   plan.folder = (fs::path(plan.run_folder) / "farm").string();
-  plan.name = fs::path(settings.job_file).stem().string();
+  plan.name = plain_name(fs::path(settings.job_file).stem().string());
   plan.traces_first = uses_history(resolved.pipeline) && resolved.job.settings.preroll == 0;
+  if (plan.traces_first) {
+    job.settings.stage = SequenceStage::trace;
+    check_job(job);
+  }
   plan.division = settings.chunk_frames > 0 ? fmt::format(" --chunk-frames {}", settings.chunk_frames)
                                             : fmt::format("/{}", settings.chunks);
   for (const FrameChunk& chunk : chunks) {

@@ -153,8 +153,8 @@ void check_stage(const JobSettings& job) {
   if (job.only_pixel) {
     refuse("only one pixel is traced");
   }
-  if (job.stage == SequenceStage::trace && (!job.checkpoint.empty() || !job.resume_from.empty() || job.preroll > 0)) {
-    refuse("tracing needs no history: checkpoints and preroll belong to finish");
+  if (job.preroll > 0) {
+    refuse("tracing needs no history, and `preroll` is for frames whose history is missing");
   }
 }
 

@@ -176,6 +176,10 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.threads = job.threads;
   settings.is_part = job.part || job.chunk.has_value() || job.stage == SequenceStage::trace;
   settings.stage = job.stage;
+  if (job.stage == SequenceStage::trace) {  // history belongs to the run that finishes
+    settings.checkpoint.clear();
+    settings.resume_from.clear();
+  }
   return settings;
 }
 

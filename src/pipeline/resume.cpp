@@ -15,6 +15,7 @@
 #include "output/written_file.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/sample_sums_file.hpp"
+#include "pipeline/sealed_file.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
 #include "pipeline/traced_file.hpp"
@@ -155,13 +156,16 @@ std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const Pipeline
   for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
     const std::int32_t frame = plan.frames[i].frame;
     bool is_other = false;
+    // Damage may have changed the digest itself: a file that is not whole is nobody's finished work.
+    const auto is_of_others = [&](const std::string& path, const std::string& digest) {
+      return !digest.empty() && digest != settings.settings_digest && is_sealed(path);
+    };
     if (settings.trace.samples) {
-      const std::string digest =
-          read_samples_digest(samples_file_name(output.run_directory, frame, *settings.trace.samples));
-      is_other = !digest.empty() && digest != settings.settings_digest;
+      const std::string path = samples_file_name(output.run_directory, frame, *settings.trace.samples);
+      is_other = is_of_others(path, read_samples_digest(path));
     } else if (settings.stage == SequenceStage::trace) {
-      const std::string digest = read_traced_digest(traced_file_name(output.run_directory, frame));
-      is_other = !digest.empty() && digest != settings.settings_digest;
+      const std::string path = traced_file_name(output.run_directory, frame);
+      is_other = is_of_others(path, read_traced_digest(path));
     } else {
       for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
         if (pattern.empty() || !fs::exists(frame_file_name(pattern, frame))) {

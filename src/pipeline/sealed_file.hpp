@@ -109,7 +109,11 @@ class SealedReader {
   std::size_t at_ = 0, end_ = 0;
 };
 
-// The settings' digest in the first line of a file; empty where there is no file, or one of another kind.
+// The settings' digest in the first line of a file; empty where there is no file, one of another kind, or one that is
+// cut within this line.
 std::string read_sealed_digest(const SealedKind& kind, const std::string& path);
+
+// Whether the file is as it was written, whatever it holds. Error(input) where it cannot be read.
+bool is_sealed(const std::string& path);
 
 }  // namespace gazetrace

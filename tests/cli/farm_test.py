@@ -74,6 +74,14 @@ class TracedFirst(Farm):
         self.trace("out", "--chunk", "2", "--chunk-frames", "4")
         shutil.copyfile(self.folder / "out/traced.0005.sparse", self.folder / "out/traced.0006.sparse")
         self.assertIn("traced.0006.sparse: holds frame 5", self.finish("out", "--resume", program=self.run_program).stderr)
+        # Cut within the line that says under which settings it was made, and that line changed: damaged, not another's.
+        first = self.folder / "out/traced.0001.sparse"
+        content = first.read_bytes()
+        line = content.index(b"\n")
+        for broken in (content[:line - 5], content[:line - 1] + bytes([content[line - 1] ^ 1]) + content[line:]):
+            first.write_bytes(broken)
+            self.trace("out", "--chunk", 1, "--chunk-frames", "4", "--resume")
+            self.assertEqual(first.read_bytes()[:line], content[:line])
         damaged = self.folder / "out/traced.0002.sparse"
         damaged.write_bytes(damaged.read_bytes()[:-5])
         again = self.finish("out", "--resume", program=self.run_program)
@@ -194,6 +202,19 @@ class Engines(Farm):
         self.assertEqual(self.pictures("out"), self.whole("history.toml"))
         self.assertEqual(self.status()["tasks"][-1]["done"], 6)
 
+    def test_a_job_with_a_checkpoint_and_a_name_of_words(self):
+        self.write("my job.toml", FARM_TOML + HISTORY_TOML + 'checkpoint = "out/history"\n')
+        self.farm("--engine", "slurm", "--chunks", "2", job="my job.toml")
+        self.assertIn("#SBATCH --job-name=my_job\n", (self.folder / "out/farm/task.sbatch").read_text())
+        for task in ("1-2", "finish"):
+            done = subprocess.run(["sh", str(self.folder / "out/farm/task.sh"), task], capture_output=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("history", self.files("out"))
+        self.assertEqual(self.pictures("out"), self.whole("history.toml"))
+        self.write("wrong.toml", FARM_TOML + 'exposure-smoothing = "1s"\nonly-pixel = [3, 3]\n')
+        refused = self.farm("--chunks", "2", job="wrong.toml", program=self.run_program)
+        self.assertEqual(refused.returncode, 2)
+
     def test_what_failed_is_named_and_tried_again(self):
         (self.folder / "out").mkdir()
         broken = self.folder / "out/f.0003.exr"
@@ -265,7 +286,27 @@ class Engines(Farm):
         job = json.loads((self.folder / "out/farm/job.json").read_text())
         self.assertEqual(job["settings"]["chunks"], "1,2,3")
         self.assertEqual(job["settings"]["after"], "finish,after-1")
-        self.assertIn("function compileJob(job)", (self.folder / "out/farm/gazetrace_farm.js").read_text())
+        script = (self.folder / "out/farm/gazetrace_farm.js").read_text()
+        self.assertIn("function compileJob(job)", script)
+        if shutil.which("node") is None:
+            self.skipTest("no node, which stands in for the manager")
+        # The manager's own objects, as far as the script uses them.
+        stand_in = """
+            const author = { Task: (name, type) => ({ name, type, commands: [], needs: [],
+                                 addCommand(command) { this.commands.push(command); },
+                                 addDependency(task) { this.needs.push(task.name); } }),
+                             Command: (name, parameters) => ({ name, parameters }) };
+            const job = { settings: SETTINGS, tasks: [], addTask(task) { this.tasks.push(task); } };
+            compileJob(job);
+            console.log(JSON.stringify(job.tasks));"""
+        told = subprocess.run(["node", "-e", script + stand_in.replace("SETTINGS", json.dumps(job["settings"]))],
+                              capture_output=True, text=True, check=True)
+        tasks = {task["name"]: task for task in json.loads(told.stdout)}
+        self.assertEqual(list(tasks), ["1", "2", "3", "finish", "after-1"])
+        self.assertEqual(tasks["finish"]["needs"], ["1", "2", "3"])
+        self.assertEqual(tasks["after-1"]["needs"], ["finish"])
+        self.assertEqual(tasks["2"]["commands"], [{"name": "exec", "parameters": {
+            "exe": "sh", "args": [str((self.folder / "out/farm/task.sh").resolve()), "2"]}}])
 
     def test_what_is_no_farm(self):
         for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks or --chunk-frames"),
