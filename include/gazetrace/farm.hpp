@@ -44,6 +44,8 @@ struct FarmPlan {
   // Frames depend on those before them: tasks trace (SequenceStage::trace), and one run finishes. Otherwise tasks
   // render and `merge` joins.
   bool traces_first = false;
+  // Where the run that finishes keeps its history, so that one which is interrupted does not begin again.
+  std::string checkpoint;
   std::string division;              // what follows `--chunk K`: "/8", or " --chunk-frames 20"
   std::vector<std::string> chunks;   // the frames of each
   std::vector<double> samples;       // that the plan expects of each; 0: not known

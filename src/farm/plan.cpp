@@ -135,6 +135,8 @@ FarmPlan plan_farm(const FarmSettings& settings) {
   if (plan.traces_first) {
     job.settings.stage = SequenceStage::trace;
     check_job(job);
+    plan.checkpoint =
+        job.settings.checkpoint.empty() ? (fs::path(plan.folder) / "history").string() : job.settings.checkpoint;
   }
   plan.division = settings.chunk_frames > 0 ? fmt::format(" --chunk-frames {}", settings.chunk_frames)
                                             : fmt::format("/{}", settings.chunks);

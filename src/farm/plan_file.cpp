@@ -25,6 +25,7 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("run_folder", plan.run_folder);
   visit("work_folder", plan.work_folder);
   visit("traces_first", plan.traces_first);
+  visit("checkpoint", plan.checkpoint);
   visit("division", plan.division);
   visit("chunks", plan.chunks);
   visit("samples", plan.samples);

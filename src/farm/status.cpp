@@ -103,12 +103,14 @@ Observed observe_run(const FarmPlan& plan, const std::string& task, const std::s
   return run;
 }
 
-// Parts that are joined leave a record of all frames.
-TaskStatus observe_merge(const FarmPlan& plan) {
+// What follows the frames leaves no record of a run: all that is known is how it ended.
+TaskStatus observe_exit(const FarmPlan& plan, const std::string& name) {
   TaskStatus task;
-  task.name = "finish";
-  task.exit_code = exit_code_of(plan, task.name);
-  task.state = !task.exit_code ? TaskState::missing : *task.exit_code == 0 ? TaskState::done : TaskState::failed;
+  task.name = name;
+  task.exit_code = exit_code_of(plan, name);
+  if (task.exit_code) {
+    task.state = *task.exit_code == 0 ? TaskState::done : TaskState::failed;
+  }
   return task;
 }
 
@@ -121,7 +123,7 @@ std::string all_frames(const FarmPlan& plan) {
   return format_frame_list(frames);
 }
 
-std::string age_text(double seconds) {
+std::string duration_words(double seconds) {
   return seconds < 90
              ? fmt::format("{:.0f} s", seconds)
              : (seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600));
@@ -172,14 +174,10 @@ FarmStatus farm_status(const FarmPlan& plan) {
   if (plan.traces_first) {
     status.tasks.push_back(observe_run(plan, "finish", all_frames(plan), false, plan.files_per_frame).task);
   } else {
-    status.tasks.push_back(observe_merge(plan));
+    status.tasks.push_back(observe_exit(plan, "finish"));
   }
   for (std::size_t i = 1; i <= plan.then.size(); ++i) {
-    TaskStatus task = observe_merge(plan);
-    task.name = fmt::format("after-{}", i);
-    task.exit_code = exit_code_of(plan, task.name);
-    task.state = !task.exit_code ? TaskState::missing : *task.exit_code == 0 ? TaskState::done : TaskState::failed;
-    status.tasks.push_back(task);
+    status.tasks.push_back(observe_exit(plan, fmt::format("after-{}", i)));
   }
   return status;
 }
@@ -206,7 +204,7 @@ std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status) {
   text += fmt::format("{} of {} frames are {}", status.frames_done, status.frames,
                       plan.traces_first ? "traced" : "rendered");
   if (status.seconds_left && status.frames_done < status.frames) {
-    text += fmt::format(", about {} left", age_text(*status.seconds_left));
+    text += fmt::format(", about {} left", duration_words(*status.seconds_left));
   }
   return text + "\n";
 }

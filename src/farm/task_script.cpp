@@ -13,6 +13,9 @@ namespace {
 // Seconds between the end of a run by `max-time` and the engine's own limit.
 constexpr std::int64_t kReserve_s = 60;
 
+// So many frames are filtered and accumulated once more, at most, when the run that finishes is killed.
+constexpr int kCheckpointEvery = 50;
+
 constexpr const char* kBeginning = R"(#!/bin/sh
 # Runs tasks of the farm in this folder: task.sh 3, task.sh 3-5,8, task.sh finish, task.sh after-1.
 # Exit codes are those of gazetrace: 2 will fail again, 3 may be worth another try, 4 was interrupted and goes on.
@@ -72,7 +75,8 @@ std::string finish_words(const FarmPlan& plan) {
   if (!plan.traces_first) {
     return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(plan.run_folder));
   }
-  return fmt::format("{} render --config {} --stage finish --resume{}", program_words(plan), shell_word(plan.job_file),
+  return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
+                     program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,
                      limits(plan));
 }
 

@@ -214,8 +214,8 @@ class Soak:
     def change_input(self, step, reference):
         """Another gaze log: finished frames must not be rendered over."""
         before = self.pictures()
-        if step[0] != "render" or "--stage" in step or "--sample-range" in step or not any(reference.get(k) == v for k, v in before.items()):
-            return None
+        if step != RENDER or not any(reference.get(name) == content for name, content in before.items()):
+            return None  # a run over other frames than those that are finished may well render
         log = self.folder / "log.csv"
         text = log.read_text()
         log.write_text(text.replace("0.2000,0.5", "0.2500,0.5", 1))

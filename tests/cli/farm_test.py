@@ -199,6 +199,7 @@ class Engines(Farm):
 
     def test_local_with_history(self):
         self.farm("--chunks", "3", "--processes", "2", "--threads", "1", job="history.toml")
+        self.assertIn("farm/history", self.files("out"))
         self.assertEqual(self.pictures("out"), self.whole("history.toml"))
         self.assertEqual(self.status()["tasks"][-1]["done"], 6)
 
@@ -235,18 +236,19 @@ class Engines(Farm):
     def test_a_task_that_runs_is_seen(self):
         self.farm("--engine", "slurm", "--chunks", "2")
         self.assertEqual([task["state"] for task in self.status()["tasks"]], ["missing"] * 3)
-        self.write("slow.toml", FARM_TOML.replace("[4, 2, 1]", "[4096, 2048, 1024]").replace("48x27", "96x54"))
+        # It would take minutes, and a frame in hand is given up soon.
+        self.write("slow.toml", FARM_TOML.replace("[4, 2, 1]", "[8192, 8192, 8192]").replace("48x27", "256x144") + 'grace = "1s"\n')
         self.farm("--engine", "slurm", "--chunks", "2", job="slow.toml")
         task = subprocess.Popen(["sh", str(self.folder / "out/farm/task.sh"), "1"], stdout=subprocess.DEVNULL,
                                 stderr=subprocess.DEVNULL)
         seen = set()
         begin = time.monotonic()
-        while time.monotonic() - begin < 30 and "running" not in seen:
+        while time.monotonic() - begin < 100 and "running" not in seen:
             seen.add(self.status()["tasks"][0]["state"])
         task.send_signal(signal.SIGTERM)
-        self.assertIn(task.wait(timeout=60), (0, 4))
+        self.assertEqual(task.wait(timeout=100), 4)
         self.assertEqual(seen - {"missing"}, {"running"})
-        self.assertIn(self.status()["tasks"][0]["state"], ("interrupted", "done"))
+        self.assertEqual(self.status()["tasks"][0]["state"], "interrupted")
 
     def test_files_for_slurm(self):
         self.run_ok("render", "--config", "farm.toml", "-o", "whole/f.####.exr", "--quiet")
