@@ -86,6 +86,13 @@ bool may_be_tried_again(int code) {
 class Runner {
  public:
   Runner(const FarmPlan& plan, const LocalSettings& settings) : plan_(plan), settings_(settings) {}
+  ~Runner() {
+    for (const auto& [child, task] : running_) {  // an error ends the farm: nobody waits for them any more
+      ::kill(child, SIGTERM);
+    }
+  }
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
 
   // The last exit code that was not 0. Whatever is waiting is begun, as many at a time as are wanted.
   int run(std::deque<std::string> waiting) {

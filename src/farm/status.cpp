@@ -129,6 +129,28 @@ std::string duration_words(double seconds) {
              : (seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600));
 }
 
+// Traced frames may be removed once their pictures are there.
+void count_as_traced(FarmStatus& status) {
+  for (TaskStatus& task : status.tasks) {
+    task.done = task.all;
+    task.state = TaskState::done;
+  }
+  status.frames_done = status.frames;
+}
+
+// What follows the chunks has to be done again where something before it is not done any more.
+void forget_what_was_before(std::size_t chunks, FarmStatus& status) {
+  bool all_done = true;
+  for (std::size_t i = 0; i < status.tasks.size(); ++i) {
+    TaskStatus& task = status.tasks[i];
+    if (i >= chunks && !all_done && task.state == TaskState::done) {
+      task.state = TaskState::missing;
+      task.exit_code.reset();
+    }
+    all_done = all_done && task.state == TaskState::done;
+  }
+}
+
 }  // namespace
 
 const char* to_string(TaskState state) {
@@ -173,12 +195,16 @@ FarmStatus farm_status(const FarmPlan& plan) {
   }
   if (plan.traces_first) {
     status.tasks.push_back(observe_run(plan, "finish", all_frames(plan), false, plan.files_per_frame).task);
+    if (status.tasks.back().state == TaskState::done) {
+      count_as_traced(status);
+    }
   } else {
     status.tasks.push_back(observe_exit(plan, "finish"));
   }
   for (std::size_t i = 1; i <= plan.then.size(); ++i) {
     status.tasks.push_back(observe_exit(plan, fmt::format("after-{}", i)));
   }
+  forget_what_was_before(plan.chunks.size(), status);
   return status;
 }
 

@@ -202,6 +202,10 @@ class Engines(Farm):
         self.assertIn("farm/history", self.files("out"))
         self.assertEqual(self.pictures("out"), self.whole("history.toml"))
         self.assertEqual(self.status()["tasks"][-1]["done"], 6)
+        # What was traced is not needed any more.
+        for path in (self.folder / "out").glob("traced.*"):
+            path.unlink()
+        self.assertTrue(self.status()["is_done"])
 
     def test_a_job_with_a_checkpoint_and_a_name_of_words(self):
         self.write("my job.toml", FARM_TOML + HISTORY_TOML + 'checkpoint = "out/history"\n')
@@ -266,6 +270,8 @@ class Engines(Farm):
             self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(self.status()["is_done"])
         (self.folder / "out/f.0001.exr").unlink()
+        states = {task["task"]: task["state"] for task in self.status()["tasks"]}
+        self.assertEqual((states["2"], states["finish"], states["after-1"]), ("done", "missing", "missing"))
         self.run_ok("farm", "retry", "out")
         self.assertIn("--array=1 ", (self.folder / "out/farm/submit.sh").read_text())
 
