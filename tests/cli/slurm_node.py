@@ -67,6 +67,14 @@ class Node:
                             "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
 
     def __enter__(self):
+        try:
+            self.begin()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def begin(self):
         for name in ("state", "spool", "munge"):
             (self.folder / name).mkdir(parents=True)
         with open("/proc/meminfo", encoding="ascii") as file:
@@ -77,7 +85,6 @@ class Node:
         self.start("slurmctld", "-D", "-f", self.folder / "slurm.conf")
         self.start("slurmd", "-D", "-f", self.folder / "slurm.conf", "-N", self.host)
         self.wait_for(lambda: "idle" in self.run("sinfo", "-h", "-o", "%t"), 60, "the node is not idle")
-        return self
 
     def start_munge(self):
         munge = self.folder / "munge"
@@ -87,9 +94,8 @@ class Node:
         for path in (munge, munge / "key"):
             shutil.chown(path, account.pw_uid, account.pw_gid)
         munge.chmod(0o755)
-        for at in munge.parents:
-            if at != Path("/tmp") and at != Path("/"):
-                at.chmod(at.stat().st_mode | 0o055)
+        for at in (self.folder, self.folder.parent):  # both are of this test, and munged runs as another user
+            at.chmod(0o755)
         self.start("munged", "--foreground", "--force", f"--key-file={munge}/key", f"--socket={munge}/socket",
                    f"--pid-file={munge}/pid", f"--log-file={munge}/log", f"--seed-file={munge}/seed",
                    user="munge")
