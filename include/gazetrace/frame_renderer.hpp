@@ -112,6 +112,8 @@ class FrameRenderer {
 
   // The first two stages alone. With TraceSettings::samples their sums are what can be joined with other parts'.
   [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;
+  // All stages after them: render() is finish(request, trace(request), history), in one process or in two.
+  [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
 
  private:
   PathTracer* tracer_;

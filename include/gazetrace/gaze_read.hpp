@@ -97,6 +97,9 @@ struct GazeReadOptions {
   // For inspecting a log, never for rendering. Where pixels need the size of a display that is stated nowhere, a common
   // size that holds them is assumed, with a warning and with `Evidence::statistics`; degrees then become directions.
   bool guess_display = false;
+  // What belongs to a BIDS recording, its sidecars and those of other eyes, may be symbolic links that lead out of its
+  // data set. Otherwise the links are followed, and must end in it.
+  bool allow_outside = false;
 };
 
 // Returns `stated`, with what it leaves open taken from `by`: the pixels, the size, or the distance together with the

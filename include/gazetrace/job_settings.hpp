@@ -46,6 +46,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   ByteCount max_memory;  // 0: most_memory_bytes()
   SceneLimits limits;    // all but its memory
   bool allow_outside = false;
+  bool confine = false;
 
   // Scene camera
   std::string camera;
@@ -96,6 +97,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   bool part = false;
   std::optional<Chunk> chunk;
   int chunk_frames = 0;  // 0: chunks are balanced by what their frames cost
+  SequenceStage stage = SequenceStage::whole;
 
   // How it is rendered
   FoveationSettings foveation;

@@ -18,6 +18,7 @@
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_trials.hpp"
 #include "gazetrace/output.hpp"
+#include "gazetrace/pipeline.hpp"
 #include "gazetrace/plan.hpp"
 #include "gazetrace/temporal.hpp"
 #include "gazetrace/trace.hpp"
@@ -163,6 +164,7 @@ GAZETRACE_ENUM_NAMES(AccumulateMode, "accumulation", {E::off, "off"}, {E::runnin
 GAZETRACE_ENUM_NAMES(AccumulateOrder, "order of accumulation", {E::before, "before"}, {E::after, "after"})
 GAZETRACE_ENUM_NAMES(ViewPrecision, "view precision", {E::automatic, "auto"}, {E::exact, "exact"}, {E::baked, "baked"})
 GAZETRACE_ENUM_NAMES(ExrPixels, "EXR pixel type", {E::half, "half"}, {E::float32, "float"})
+GAZETRACE_ENUM_NAMES(SequenceStage, "stage", {E::whole, "whole"}, {E::trace, "trace"}, {E::finish, "finish"})
 #undef GAZETRACE_ENUM_NAMES
 
 template <class E>

@@ -177,10 +177,12 @@ struct RunRecord {
   std::string frames;                                // a frame list, see format_frame_list()
   bool is_part = false;                              // a part of a longer sequence
   std::string samples;                               // "0:1024": a part of the samples; empty: all of them
-  std::map<std::string, std::string> facts;          // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
+  std::string stage;       // "trace": its files are traced frames (save_traced()); empty: pictures or sums
+  std::string chunk_file;  // the ChunkFile that its frames come from, in its folder; empty: none
+  std::map<std::string, std::string> facts;  // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
   Warnings warnings;
   std::vector<BadSample> bad_samples;
-  WrittenFiles files;  // pictures, maps and sums of samples, as they were written
+  WrittenFiles files;  // pictures, maps, sums of samples and traced frames, as they were written
 };
 std::string run_record_json(const RunRecord& record);
 RunRecord read_run_record(const std::string& path);  // Error(input)
@@ -193,6 +195,20 @@ std::string run_record_file_name(const std::string& directory, const std::string
 std::string part_of_samples_name(const std::string& frames, const SampleRange& samples);
 // The file of a frame's sums over a part of the samples: samples.0001.0-1024.sums
 std::string samples_file_name(const std::string& directory, std::int32_t frame, const SampleRange& samples);
+// The file of a frame that was traced and not yet reconstructed: traced.0001.sparse
+std::string traced_file_name(const std::string& directory, std::int32_t frame);
+
+// How the frames of a sequence were divided among the tasks of an array job. The first task that comes writes it down
+// beside the outputs, and it is never replaced: so all tasks have the same borders, and a chunk that never began is
+// known to be missing.
+struct ChunkFile {
+  std::string digest;               // of what the borders follow from
+  std::string frames;               // all of them, a frame list
+  std::vector<std::string> chunks;  // the frames of each; an empty text: none
+  std::vector<double> samples;      // that the plan expects of each; 0: not known
+};
+std::string chunk_file_text(const ChunkFile& file);
+ChunkFile read_chunk_file(const std::string& path);  // Error(input)
 
 // What the run over one part left in a directory.
 struct RunPart {

@@ -21,6 +21,11 @@
 
 namespace gazetrace {
 
+// Which stages of a frame a run does. Where frames depend on those before them, many machines can trace at the same
+// time and write what they found (save_traced()); one run then finishes all frames in their order, with the bits of a
+// run that does both.
+enum class SequenceStage : std::uint8_t { whole, trace, finish };
+
 // What every frame is made with, and what becomes of the frames.
 struct PipelineSettings : FrameSettings {
   OutputSettings output;  // without any pattern nothing is written, not even timing and run record
@@ -36,7 +41,11 @@ struct PipelineSettings : FrameSettings {
   // The plan is a part of a longer sequence: timing.csv and run.json carry the range of frames in their names. With
   // `trace.samples` it is a part of the samples: their sums are written instead of pictures, for merge_samples().
   bool is_part = false;
+  SequenceStage stage = SequenceStage::whole;
 };
+
+// Whether a frame of this run depends on those before it: uses_history(), unless it is only traced.
+bool needs_history(const PipelineSettings& settings);
 
 // Called from the rendering thread. Any of them may be empty.
 struct PipelineObserver {
@@ -63,8 +72,9 @@ struct SequenceResult {
 };
 
 // The history that PipelineSettings::resume_from holds, or an empty one. Error(usage) unless it ends before the plan's
-// first frame. It warns where frames are missing in between, and where a part of a sequence begins without the history
-// of the frames before it.
+// first frame. Where an interrupted run that is resumed has put its own checkpoint in the place of that file, the
+// result is hollow: it says which frames were in the history (`passed`), and holds nothing of them. It warns where
+// frames are missing in between, and where a part of a sequence begins without the history of the frames before it.
 TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings);
 
 // Renders the frames of a plan in order. With OutputSettings::resume, frames are skipped whose files carry this
@@ -128,6 +138,11 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
 // The sums of one frame's samples in a file, to the bit, in the manner of save_checkpoint and load_checkpoint.
 WrittenFile save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest);
 SampleSums load_samples(const std::string& path, const std::string& settings_digest);
+
+// A traced frame in a file, to the bit, in the same manner; `frame` is its number.
+WrittenFile save_traced(const std::string& path, std::int32_t frame, const TracedFrame& traced,
+                        const std::string& settings_digest);
+TracedFrame load_traced(const std::string& path, std::int32_t frame, const std::string& settings_digest);
 
 // The scene file and every buffer and image it names, in the order of the file. Error(input) when the file is missing,
 // and where it names files outside of its data set, see SceneReadOptions.

@@ -51,9 +51,10 @@ struct ResolveOptions {
   bool tell_idle = true;
 };
 
-// What the tasks of an array job share: how the frames are divided, for the first task to write down.
+// What the tasks of an array job share: how the frames are divided (ChunkFile), for the first task to write down.
 struct ChunkBorders {
-  std::string path, text;  // empty: there is nothing to write
+  std::string path;  // empty: nothing is divided
+  std::string text;  // empty: it is written
 };
 
 struct ResolvedJob {
@@ -64,7 +65,7 @@ struct ResolvedJob {
   PlanSettings plan_settings;
   FramePlan plan;                                    // with the frames of `preroll` at its beginning
   std::vector<std::int32_t> frames;                  // those that are wanted
-  ChunkBorders chunk_borders;                        // prepare_outputs() writes them
+  ChunkBorders chunk_borders;                        // prepare_outputs() writes them once
   PipelineSettings pipeline;                         // with its digest, from the scope `digests` on
   TemporalHistory history;                           // what the first frame starts from; with the scope render
   std::map<std::string, std::string> input_digests;  // path -> content hash

@@ -21,6 +21,9 @@ std::string bar_text(std::size_t done, std::size_t total) {
 }  // namespace
 
 ProgressStyle progress_style(const std::string& choice, bool quiet) {
+  if (choice == "openjd") {
+    return ProgressStyle::openjd;
+  }
   if (quiet || choice == "never") {
     return ProgressStyle::none;
   }
@@ -66,6 +69,8 @@ void Progress::frame_done(std::int32_t frame, double frame_ms, bool skipped) {
     draw_bar();
   } else if (style_ == ProgressStyle::lines && !skipped) {
     print_line(frame, frame_ms);
+  } else if (style_ == ProgressStyle::openjd) {
+    tell_engine(frame);
   }
 }
 
@@ -87,6 +92,19 @@ void Progress::print_line(std::int32_t frame, double frame_ms) {
   const std::string text =
       fmt::format("frame {} done in {:.0f} ms ({}/{}){}\n", frame, frame_ms, done_, frames_, time_left());
   std::fputs(text.c_str(), stderr);
+}
+
+// At most a line a second, since workers pass each on.
+void Progress::tell_engine(std::int32_t frame) {
+  const Clock::time_point now = Clock::now();
+  if (done_ != frames_ && done_ != 1 && now - last_line_ < std::chrono::seconds(1)) {
+    return;
+  }
+  last_line_ = now;
+  std::printf("openjd_progress: %.1f\nopenjd_status: frame %d done, %zu of %zu%s\n",
+              100.0 * static_cast<double>(done_) / static_cast<double>(frames_), frame, done_, frames_,
+              time_left().c_str());
+  std::fflush(stdout);
 }
 
 std::string Progress::time_left() const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a run is: a bar on a terminal, plain lines elsewhere. Always on stderr.
+// How far a run is: a bar on a terminal, plain lines elsewhere, on stderr; or lines on stdout for an engine that runs
+// it.
 #pragma once
 
 #include <chrono>
@@ -9,9 +10,10 @@
 
 namespace gazetrace {
 
-enum class ProgressStyle { none, bar, lines };
+// openjd: what workers of Open Job Description read, "openjd_progress: 42.0" and "openjd_status: ...".
+enum class ProgressStyle { none, bar, lines, openjd };
 
-// auto: a bar on a terminal, else lines.
+// auto: a bar on a terminal, else lines. Engines are told even where people want quiet.
 ProgressStyle progress_style(const std::string& choice, bool quiet);
 
 class Progress {
@@ -29,6 +31,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   void draw_bar() const;
   void print_line(std::int32_t frame, double frame_ms);
+  void tell_engine(std::int32_t frame);
   [[nodiscard]] std::string time_left() const;
 
   ProgressStyle style_;

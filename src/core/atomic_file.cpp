@@ -69,12 +69,30 @@ class TemporaryFile {
     }
   }
 
+  // False where there is a file of the final name.
+  bool put_in_place_once() {
+    if (temporary_.empty() ? link_unnamed(final_path_.c_str()) : ::link(temporary_.c_str(), final_path_.c_str()) == 0) {
+      return true;
+    }
+    if (errno == EEXIST) {
+      return false;
+    }
+    // A file system without links: the name is taken first, and the file under it replaced at once.
+    const int taken = ::open(final_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (taken < 0) {
+      if (errno == EEXIST) {
+        return false;
+      }
+      fail(final_path_, "cannot create the file", errno);
+    }
+    ::close(taken);
+    put_in_place();
+    return true;
+  }
+
   void put_in_place() {
     if (temporary_.empty()) {
-      const std::string unnamed = "/proc/self/fd/" + std::to_string(descriptor_);
-      const auto link_to = [&](const char* name) {
-        return ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
-      };
+      const auto link_to = [this](const char* name) { return link_unnamed(name); };
       if (link_to(final_path_.c_str())) {
         return;
       }
@@ -95,6 +113,10 @@ class TemporaryFile {
   }
 
  private:
+  [[nodiscard]] bool link_unnamed(const char* name) const {
+    const std::string unnamed = "/proc/self/fd/" + std::to_string(descriptor_);
+    return ::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+  }
   // Takes the first free name: another thread, another process, or a process of the same number on another machine that
   // shares the folder may have taken some.
   template <class Make>
@@ -115,6 +137,12 @@ class TemporaryFile {
 };
 
 }  // namespace
+
+bool create_file_once(const std::string& path, std::span<const std::byte> bytes) {
+  TemporaryFile file(path);
+  file.write(bytes);
+  return file.put_in_place_once();
+}
 
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes) {
   TemporaryFile file(path);

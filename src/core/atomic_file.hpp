@@ -14,4 +14,8 @@ namespace gazetrace {
 // was under `path` stays as it was, and Error(runtime) gives the path and the system's reason.
 void write_bytes_atomically(const std::string& path, std::span<const std::byte> bytes);
 
+// The same for a file that must not replace another one: false where the name is taken, by whomever and however
+// recently. Of several writers exactly one gets true.
+bool create_file_once(const std::string& path, std::span<const std::byte> bytes);
+
 }  // namespace gazetrace

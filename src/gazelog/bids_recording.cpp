@@ -214,7 +214,10 @@ void read_bids_events(const Sidecars& physio, const std::string& path, RawGaze& 
       continue;
     }
     const Eye eye = recorded_eye(physio);
-    const Sidecars sidecars(name, "physioevents");
+    if (!physio.allow_outside()) {
+      check_in_data_set(path, events_path);
+    }
+    const Sidecars sidecars(name, "physioevents", physio.allow_outside());
     const GazeFile file{events_path, read_bids_table(events_path)};
     const DelimitedTable table = open_headerless(file.text, '\t', sidecars.texts("Columns"));
     const auto onset = table.find("onset");

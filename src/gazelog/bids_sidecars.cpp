@@ -54,7 +54,15 @@ BidsName parse_bids_name(const std::string& path) {
   return name;
 }
 
-Sidecars::Sidecars(const BidsName& name, std::string_view suffix) {
+void check_in_data_set(const std::string& recording, const std::string& path) {
+  std::error_code code;
+  std::vector<fs::path> roots = data_roots(recording);
+  roots.push_back(fs::weakly_canonical(fs::absolute(recording).parent_path(), code));
+  check_within(roots, path, fs::path(path).filename().string(), path,
+               "put the file itself there, or give `allow-outside` where you trust the data");
+}
+
+Sidecars::Sidecars(const BidsName& name, std::string_view suffix, bool allow_outside) : allow_outside_(allow_outside) {
   std::error_code code;
   fs::path folder = fs::absolute(name.folder.empty() ? "." : name.folder, code);
   for (int level = 0; level < kMostLevels; ++level) {
@@ -66,10 +74,10 @@ Sidecars::Sidecars(const BidsName& name, std::string_view suffix) {
       }
     }
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::vector<fs::path> roots = data_roots((folder / "any").string());
-    roots.push_back(fs::weakly_canonical(folder, code));
     for (const auto& [entities, path] : found) {
-      check_within(roots, path, fs::path(path).filename().string(), path, "put the file itself there");
+      if (!allow_outside) {
+        check_in_data_set((folder / "any").string(), path);
+      }
       files_.push_back({path, JsonLeaves(read_text_file(path), path)});
     }
     if (fs::exists(folder / "dataset_description.json", code) || folder == folder.root_path()) {

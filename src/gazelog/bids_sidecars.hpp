@@ -24,14 +24,15 @@ BidsName parse_bids_name(const std::string& path);
 class Sidecars {
  public:
   // Reads the sidecars of `suffix` that apply to `name`, from its folder upwards to the data set's root. Throws
-  // Error(input) for broken JSON.
-  Sidecars(const BidsName& name, std::string_view suffix);
+  // Error(input) for broken JSON, and for links out of the data set unless these are allowed.
+  Sidecars(const BidsName& name, std::string_view suffix, bool allow_outside = false);
 
   [[nodiscard]] std::string text(std::string_view path) const;
   [[nodiscard]] std::optional<double> number(std::string_view path) const;
   [[nodiscard]] std::vector<double> numbers(std::string_view path) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view path) const;
   [[nodiscard]] bool empty() const { return files_.empty(); }
+  [[nodiscard]] bool allow_outside() const { return allow_outside_; }
   [[nodiscard]] std::string source(std::string_view path) const;  // the file that states it
 
  private:
@@ -41,7 +42,11 @@ class Sidecars {
   };
   [[nodiscard]] const File* file_with(std::string_view path) const;
   std::vector<File> files_;  // the most specific first
+  bool allow_outside_;
 };
+
+// Error(input) where the file `path`, which belongs to a recording, is a link out of the recording's data set.
+void check_in_data_set(const std::string& recording, const std::string& path);
 
 // Files in the folder of `name` with the same entities except for `recording`.
 std::vector<std::string> files_of_bids_name(const BidsName& name);

@@ -166,6 +166,33 @@ void check_sample_range(const JobSettings& job) {
   }
 }
 
+void check_stage(const JobSettings& job) {
+  if (job.stage == SequenceStage::whole) {
+    return;
+  }
+  const auto refuse = [](const char* reason) {
+    throw Error(ErrorKind::usage, "`stage`", reason, "leave it out, or change that");
+  };
+  if (job.accumulate.mode == AccumulateMode::two_sided) {
+    refuse("frames read the samples of those around them, and each part traces those by itself");
+  }
+  if (job.trace.samples) {
+    refuse("`sample-range` leaves sums, which `merge` finishes");
+  }
+  if (job.foveation.target.jod || job.foveation.target.flip) {
+    refuse("the rate needs a pilot of the sequence");
+  }
+  if (job.foveation.target.time_s) {
+    refuse("`time-budget` counts the whole time of a frame, which is spent in two places");
+  }
+  if (job.only_pixel) {
+    refuse("only one pixel is traced");
+  }
+  if (job.preroll > 0) {
+    refuse("tracing needs no history, and `preroll` is for frames whose history is missing");
+  }
+}
+
 void check_chunk(const JobSettings& job) {
   if (job.chunk_frames > 0 && !job.chunk) {
     throw Error(ErrorKind::usage, "`chunk-frames`", "which chunk is it?", "give `chunk` K");
@@ -209,6 +236,7 @@ void check_job(const Job& whole, const JobSchema& schema) {
   check_time_budget(job);
   check_sample_range(job);
   check_chunk(job);
+  check_stage(job);
   if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
     throw Error(ErrorKind::usage, "`gaze-at`",
                 fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
@@ -220,9 +248,9 @@ void check_job(const Job& whole, const JobSchema& schema) {
         ErrorKind::usage, "`only-pixel`",
         fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height));
   }
-  if (job.progress != "auto" && job.progress != "always" && job.progress != "never") {
-    throw Error(ErrorKind::usage, "`progress`",
-                unknown_name_message("progress mode", job.progress, {"auto", "always", "never"}));
+  const std::vector<std::string> progress_modes{"auto", "always", "never", "openjd"};
+  if (std::find(progress_modes.begin(), progress_modes.end(), job.progress) == progress_modes.end()) {
+    throw Error(ErrorKind::usage, "`progress`", unknown_name_message("progress mode", job.progress, progress_modes));
   }
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);

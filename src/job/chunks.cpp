@@ -6,18 +6,18 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
+#include <span>
+#include <system_error>
 #include <utility>
 
+#include "core/atomic_file.hpp"
 #include "gazetrace/error.hpp"
 #include "job/outputs.hpp"
 
 namespace gazetrace {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A frame costs about as much as so many samples a pixel even where it has fewer: first hits, filter, view and files.
 constexpr double kSamplesOfAPixel = 1;
@@ -91,9 +91,29 @@ std::vector<FrameChunk> balanced(const std::vector<std::int32_t>& frames, const 
   return chunks;
 }
 
+// Chunks of equally many frames, however many chunks that makes.
+std::vector<FrameChunk> chunks_of_length(const std::vector<std::int32_t>& frames, std::size_t length) {
+  const std::vector<double> unknown(frames.size(), 0);
+  std::vector<FrameChunk> chunks;
+  for (std::size_t begin = 0; begin < frames.size(); begin += length) {
+    chunks.push_back(chunk_of(frames, unknown, begin, std::min(frames.size(), begin + length)));
+  }
+  return chunks;
+}
+
+std::vector<FrameChunk> chunks_of(const JobSettings& job, const FramePlan& whole) {
+  return job.chunk_frames > 0 ? chunks_of_length(numbers_of(whole), static_cast<std::size_t>(job.chunk_frames))
+                              : balanced_chunks(job, whole, job.chunk->count);
+}
+
+// "5" chunks, or chunks "of-20" frames.
+std::string division_name(const JobSettings& job) {
+  return job.chunk_frames > 0 ? fmt::format("of-{}", job.chunk_frames) : std::to_string(job.chunk->count);
+}
+
 std::string digest_of_borders(const JobSettings& job, const std::vector<std::int32_t>& frames) {
   std::vector<std::pair<std::string, std::string>> parts{{"frames", format_frame_list(frames)},
-                                                         {"count", std::to_string(job.chunk->count)}};
+                                                         {"division", division_name(job)}};
   for (const OptionOf<JobSettings>& option : job_schema().options()) {
     if (option.decides != Decides::nothing) {
       parts.emplace_back(option.name, fmt::format("{}", fmt::join(option.values(job), "\n")));
@@ -102,34 +122,47 @@ std::string digest_of_borders(const JobSettings& job, const std::vector<std::int
   return digest_settings(parts);
 }
 
-std::string borders_path(const JobSettings& job) {
+// The name holds a digest, so that another job in the folder has a file of its own, and none is ever replaced.
+std::string borders_path(const JobSettings& job, const std::string& digest) {
   const std::string folder = output_settings(job).run_directory;
   return folder.empty() ? std::string()
-                        : (std::filesystem::path(folder) / fmt::format("chunks.{}.json", job.chunk->count)).string();
+                        : (std::filesystem::path(folder) /
+                           fmt::format("chunks.{}.{}.json", division_name(job), digest.substr(0, 8)))
+                              .string();
 }
 
-// The borders that an earlier task wrote for the same frames and settings; nothing where there are none.
-std::vector<std::vector<std::int32_t>> written_borders(const JobSettings& job,
-                                                       const std::vector<std::int32_t>& frames) {
-  const std::string path = borders_path(job);
-  std::ifstream file(path);
-  if (path.empty() || !file) {
-    return {};
+std::vector<FrameChunk> chunks_in(const ChunkFile& file) {
+  std::vector<FrameChunk> chunks;
+  for (std::size_t i = 0; i < file.chunks.size(); ++i) {
+    const std::string& list = file.chunks[i];
+    chunks.push_back({list.empty() ? std::vector<std::int32_t>() : parse_frame_list(list), file.samples.at(i)});
   }
-  std::vector<std::vector<std::int32_t>> chunks;
+  return chunks;
+}
+
+// What an earlier task wrote; nothing where there is no such file, or a damaged one.
+std::optional<std::vector<FrameChunk>> written_chunks(const std::string& path, const std::string& digest) {
+  std::error_code missing;
+  if (path.empty() || !std::filesystem::exists(path, missing)) {
+    return std::nullopt;
+  }
   try {
-    const Json json = Json::parse(file);
-    if (json.at("digest") != digest_of_borders(job, frames)) {
-      return {};
-    }
-    for (const Json& list : json.at("chunks")) {
-      const auto text = list.get<std::string>();
-      chunks.push_back(text.empty() ? std::vector<std::int32_t>() : parse_frame_list(text));
-    }
+    const ChunkFile file = read_chunk_file(path);
+    return file.digest == digest ? std::optional(chunks_in(file)) : std::nullopt;
   } catch (const std::exception&) {
-    return {};  // damaged: they are computed again, and are the same
+    return std::nullopt;  // it is made again
   }
-  return chunks.size() == job.chunk->count ? chunks : std::vector<std::vector<std::int32_t>>();
+}
+
+std::string words_for(const JobSettings& job, const ChunkBorders& borders) {
+  if (borders.text.empty() && !borders.path.empty()) {
+    return "as written in " + borders.path;
+  }
+  if (job.chunk_frames > 0) {
+    return fmt::format("of {} frames each", job.chunk_frames);
+  }
+  return samples_are_known(job.foveation) ? "balanced by the samples of the plan"
+                                          : "of equally many frames, since pilots decide the samples";
 }
 
 }  // namespace
@@ -138,57 +171,57 @@ std::vector<FrameChunk> balanced_chunks(const JobSettings& job, const FramePlan&
   return balanced(numbers_of(plan), predict(job, plan), count);
 }
 
-std::vector<std::int32_t> frames_of_chunk(const JobSettings& job, const FramePlan& whole, std::string& decision) {
+DividedFrames divide_frames(const JobSettings& job, const FramePlan& whole) {
   const std::vector<std::int32_t> frames = numbers_of(whole);
-  const std::uint32_t number = job.chunk->number;
-  std::vector<std::int32_t> chosen;
-  if (job.chunk_frames > 0) {
-    const auto length = static_cast<std::size_t>(job.chunk_frames);
-    const std::size_t begin = std::min(frames.size(), (number - 1) * length);
-    const std::size_t end = std::min(frames.size(), begin + length);
-    chosen.assign(frames.begin() + static_cast<std::ptrdiff_t>(begin),
-                  frames.begin() + static_cast<std::ptrdiff_t>(end));
-    decision = fmt::format("chunk {} of {} frames each", number, length);
-  } else if (const auto written = written_borders(job, frames); !written.empty()) {
-    chosen = written[number - 1];
-    decision = fmt::format("chunk {} of {}, as written in {}", number, job.chunk->count, borders_path(job));
-  } else {
-    chosen = balanced_chunks(job, whole, job.chunk->count)[number - 1].frames;
-    decision =
-        fmt::format("chunk {} of {}, {}", number, job.chunk->count,
-                    samples_are_known(job.foveation) ? "balanced by the samples of the plan"
-                                                     : "of equally many frames, since pilots decide the samples");
+  const std::string digest = digest_of_borders(job, frames);
+  DividedFrames divided;
+  divided.borders.path = borders_path(job, digest);
+  if (auto written = written_chunks(divided.borders.path, digest)) {
+    divided.chunks = std::move(*written);
+    return divided;
   }
-  if (chosen.empty()) {
-    throw Error(ErrorKind::nothing_to_do, "`chunk`",
-                fmt::format("chunk {} has none of the {} frames", number, frames.size()));
+  divided.chunks = chunks_of(job, whole);
+  ChunkFile file{digest, format_frame_list(frames), {}, {}};
+  for (const FrameChunk& chunk : divided.chunks) {
+    file.chunks.push_back(chunk.frames.empty() ? std::string() : format_frame_list(chunk.frames));
+    file.samples.push_back(chunk.samples);
   }
-  return chosen;
+  divided.borders.text = chunk_file_text(file);
+  return divided;
 }
 
-ChunkBorders chunk_borders(const JobSettings& job, const FramePlan& whole) {
-  ChunkBorders borders;
-  if (!job.chunk || job.chunk_frames > 0) {
-    return borders;
+void write_down(const ChunkBorders& borders) {
+  const std::string& text = borders.text;
+  if (text.empty() || borders.path.empty() ||
+      create_file_once(borders.path, std::as_bytes(std::span(text.data(), text.size())))) {
+    return;
   }
-  const std::vector<std::int32_t> frames = numbers_of(whole);
-  borders.path = borders_path(job);
-  if (borders.path.empty() || !written_borders(job, frames).empty()) {
-    return {};
+  ChunkFile first;
+  try {
+    first = read_chunk_file(borders.path);
+  } catch (const Error&) {
+    write_text_atomically(borders.path, text);  // damaged
+    return;
   }
-  Json lists = Json::array();
-  Json samples = Json::array();
-  for (const FrameChunk& chunk : balanced_chunks(job, whole, job.chunk->count)) {
-    lists.push_back(chunk.frames.empty() ? std::string() : format_frame_list(chunk.frames));
-    samples.push_back(chunk.samples);
+  if (chunk_file_text(first) != text) {
+    throw Error(ErrorKind::runtime, borders.path, "another task has just written down other borders",
+                "start this task again: it will keep to them");
   }
-  borders.text = Json{{"digest", digest_of_borders(job, frames)},
-                      {"frames", format_frame_list(frames)},
-                      {"chunks", lists},
-                      {"samples", samples}}
-                     .dump(2) +
-                 "\n";
-  return borders;
+}
+
+ChosenChunk choose_chunk(const JobSettings& job, const FramePlan& whole) {
+  DividedFrames divided = divide_frames(job, whole);
+  const std::vector<FrameChunk>& chunks = divided.chunks;
+  const std::uint32_t number = job.chunk->number;
+  if (number > chunks.size() || chunks[number - 1].frames.empty()) {
+    throw Error(ErrorKind::nothing_to_do, "`chunk`",
+                fmt::format("chunk {} has none of the {} frames", number, whole.frames.size()));
+  }
+  ChosenChunk chosen;
+  chosen.borders = std::move(divided.borders);
+  chosen.frames = chunks[number - 1].frames;
+  chosen.decision = fmt::format("chunk {} of {}, {}", number, chunks.size(), words_for(job, chosen.borders));
+  return chosen;
 }
 
 }  // namespace gazetrace

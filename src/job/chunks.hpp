@@ -10,12 +10,26 @@
 
 namespace gazetrace {
 
-// The frames of the chunk that the job asks for. All tasks find the same borders: these follow from the plan alone, and
-// the first task that renders has written them down. Error(nothing_to_do) for a chunk without frames. `whole`: the plan
-// of all frames. `decision` says in words what the borders follow from.
-std::vector<std::int32_t> frames_of_chunk(const JobSettings& job, const FramePlan& whole, std::string& decision);
+struct DividedFrames {
+  std::vector<FrameChunk> chunks;
+  ChunkBorders borders;  // to be written down where they are not; without a path where there is no output
+};
 
-// The borders to be written down; an empty path where they are, or where there is nothing to balance or no output.
-ChunkBorders chunk_borders(const JobSettings& job, const FramePlan& whole);
+// How `chunk` and `chunk-frames` divide the frames; which chunk it is does not matter. As the first task wrote it down
+// or, for that task, as it follows from the plan alone. `whole`: the plan of all frames.
+DividedFrames divide_frames(const JobSettings& job, const FramePlan& whole);
+
+// Writes the file of the borders unless it is there. Tasks that begin at the same moment have all computed them; those
+// of the first one count, and Error(runtime) tells a task that found others.
+void write_down(const ChunkBorders& borders);
+
+struct ChosenChunk {
+  std::vector<std::int32_t> frames;
+  std::string decision;  // in words, what the borders follow from
+  ChunkBorders borders;  // to be written down where they are not; without a path where there is no output
+};
+
+// The chunk that the job asks for. Error(nothing_to_do) where it has no frames.
+ChosenChunk choose_chunk(const JobSettings& job, const FramePlan& whole);
 
 }  // namespace gazetrace

@@ -29,6 +29,7 @@ GazeLog fixed_gaze(const Vec2d& at) {
 GazeLog read_job_gaze(const JobSettings& job) {
   GazeReadOptions options = read_options(job.gaze, {});
   options.fallback_display = screen_geometry(job.screen);
+  options.allow_outside = job.allow_outside;
   if (!job.recording_screen.empty()) {
     options.display = known_screen(job.recording_screen, "`recording-screen`");
   }

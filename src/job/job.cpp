@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "gazetrace/error.hpp"
+#include "job/confine.hpp"
 #include "job/preset_by_name.hpp"
 
 namespace gazetrace {
@@ -108,6 +109,9 @@ std::string option_text(const Job& job, const std::string& option, const JobSche
 }
 
 void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy) {
+  if (job.settings.confine) {
+    check_confined(text, path);
+  }
   for (const TomlSetting& setting : read_toml_settings(text, path, job_schema().list(), remedy)) {
     set_option(job, setting.name, setting.values, {Origin::file, setting.place, {}},
                setting.place + ": " + setting.name);

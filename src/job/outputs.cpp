@@ -15,6 +15,7 @@
 
 #include "gazetrace/error.hpp"
 #include "job/changed_inputs.hpp"
+#include "job/chunks.hpp"
 #include "output/aovs.hpp"
 
 namespace gazetrace {
@@ -173,7 +174,12 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.output = output_settings(job);
   settings.fps = job.fps;
   settings.threads = job.threads;
-  settings.is_part = job.part || job.chunk.has_value();
+  settings.is_part = job.part || job.chunk.has_value() || job.stage == SequenceStage::trace;
+  settings.stage = job.stage;
+  if (job.stage == SequenceStage::trace) {  // history belongs to the run that finishes
+    settings.checkpoint.clear();
+    settings.resume_from.clear();
+  }
   return settings;
 }
 
@@ -202,9 +208,7 @@ void prepare_outputs(const ResolvedJob& resolved) {
   for (const fs::path& folder : output_folders(settings.output, settings.checkpoint)) {
     prove_writable(folder);
   }
-  if (!resolved.chunk_borders.path.empty()) {
-    write_text_atomically(resolved.chunk_borders.path, resolved.chunk_borders.text);
-  }
+  write_down(resolved.chunk_borders);
   for (const std::string& path : output_files(settings, frames)) {
     if (const fs::path folder = fs::path(path).parent_path(); !folder.empty() && !fs::exists(folder)) {
       prove_writable(folder);  // a frame's own

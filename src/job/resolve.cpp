@@ -201,16 +201,15 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
 }
 
 // Takes the frames of the job's chunk out of those of the whole sequence.
-void choose_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+void keep_to_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   Decisions unused;
   const FramePlan whole =
       plan_frames(camera, log, plan_settings(job, resolved.frames, log, taken_off_ns, unused), nullptr);
-  std::string decision;
-  std::vector<std::int32_t> frames = frames_of_chunk(job, whole, decision);
-  resolved.chunk_borders = chunk_borders(job, whole);
-  resolved.frames = std::move(frames);
-  resolved.decisions.emplace_back("chunk", decision);
+  ChosenChunk chosen = choose_chunk(job, whole);
+  resolved.frames = std::move(chosen.frames);
+  resolved.chunk_borders = std::move(chosen.borders);
+  resolved.decisions.emplace_back("chunk", chosen.decision);
 }
 
 void warn_of_filter(const JobSettings& job, Warnings& warnings) {
@@ -230,6 +229,19 @@ void load_viewing(ResolvedJob& resolved) {
   resolved.plan_settings = plan_settings(job, {}, log, taken_off_ns, resolved.decisions);
   if (log != nullptr) {
     append(resolved.warnings, log->warnings);
+  }
+}
+
+// Sums, picture and map of a frame take at least so much. More than the machine has is found out before a scene is
+// loaded, and not by what the system then does.
+void check_frame_memory(const JobSettings& job) {
+  constexpr double kLeastBytesOfAPixel = 40;
+  const double bytes = kLeastBytesOfAPixel * job.size.width * job.size.height;
+  if (const auto most = static_cast<double>(most_memory_bytes()); bytes > most) {
+    throw Error(ErrorKind::usage, "`size`",
+                fmt::format("a frame of {}x{} pixels takes more than {:.0f} GiB of memory, and there are {:.1f}",
+                            job.size.width, job.size.height, bytes / 1073741824.0, most / 1073741824.0),
+                "give a smaller one");
   }
 }
 
@@ -275,7 +287,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
   if (job.chunk) {
-    choose_chunk(job, camera, taken_off_ns, resolved);
+    keep_to_chunk(job, camera, taken_off_ns, resolved);
   }
   make_plan(job, camera, taken_off_ns, resolved);
   if (job.foveation.target.jod || job.foveation.target.flip) {
@@ -309,6 +321,9 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   check_job(job);
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(job);
+  }
+  if (options.scope == ResolveScope::render) {
+    check_frame_memory(job.settings);
   }
   const FilterChoice filter = filter_of(job.settings);
   resolved.job.settings.filter = filter.name;

@@ -13,6 +13,8 @@
 
 namespace gazetrace {
 
+namespace fs = std::filesystem;
+
 namespace {
 
 // The rate that an earlier run of the same settings chose: where all its frames are there, it is not chosen again.
@@ -54,6 +56,8 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
     keep_chosen_rate(outputs.front(), record);
   }
   record.is_part = settings.is_part || settings.trace.samples.has_value();
+  record.stage = settings.stage == SequenceStage::trace ? format_value(settings.stage) : "";
+  record.chunk_file = fs::path(resolved.chunk_borders.path).filename().string();
   record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = resolved.warnings;
   for (const auto& [name, text] : resolved.decisions) {

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool has_stamp(const std::string& path) {
-  return !path.ends_with(".sums");
+  return !path.ends_with(".sums") && !path.ends_with(".sparse");
 }
 
 // Why the content of a file may be another one than was written, as far as its header tells.

@@ -22,17 +22,32 @@ std::vector<std::int32_t> frames_of(const FrameOwners& owners) {
   return frames;
 }
 
-// Frames that a part lists but did not render, and gaps between the frames of all parts, where the step of the sequence
-// is the smallest distance between neighbours.
-std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, const FrameOwners& owners) {
-  std::set<std::int32_t> missing;
+// Those of chunks of which no task has begun are known from what the first task wrote down.
+void add_divided_frames(const std::vector<RunPart>& parts, std::set<std::int32_t>& frames) {
+  std::set<std::string> files;
   for (const RunPart& part : parts) {
-    for (const std::int32_t frame : parse_frame_list(part.record.frames)) {
-      if (!owners.contains(frame)) {
-        missing.insert(frame);
-      }
+    if (!part.record.chunk_file.empty()) {
+      files.insert((std::filesystem::path(part.record_path).parent_path() / part.record.chunk_file).string());
     }
   }
+  for (const std::string& path : files) {
+    if (std::filesystem::exists(path)) {
+      const std::vector<std::int32_t> all = parse_frame_list(read_chunk_file(path).frames);
+      frames.insert(all.begin(), all.end());
+    }
+  }
+}
+
+// Frames that a part lists but did not render, frames of chunks that never began, and gaps between the frames of all
+// parts, where the step of the sequence is the smallest distance between neighbours.
+std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, const FrameOwners& owners) {
+  std::set<std::int32_t> missing;
+  add_divided_frames(parts, missing);
+  for (const RunPart& part : parts) {
+    const std::vector<std::int32_t> listed = parse_frame_list(part.record.frames);
+    missing.insert(listed.begin(), listed.end());
+  }
+  std::erase_if(missing, [&](std::int32_t frame) { return owners.contains(frame); });
   std::set<std::int32_t> known = missing;
   for (const auto& [frame, part] : owners) {
     known.insert(frame);
@@ -80,6 +95,15 @@ void continue_history(RunRecord& whole, const RunPart& first) {
   }
 }
 
+void refuse_traced_parts(const std::vector<RunPart>& parts) {
+  for (const RunPart& part : parts) {
+    if (!part.record.stage.empty()) {
+      throw Error(ErrorKind::usage, part.record_path, "its frames are traced, and there are no pictures to join",
+                  "make them by `render` of the same job with `stage` finish, which needs no merge");
+    }
+  }
+}
+
 // Frames of which a file is bad count as missing.
 void leave_out(const std::vector<BadFile>& bad, std::vector<RunPart>& parts, Warnings& warnings) {
   for (const BadFile& file : bad) {
@@ -102,6 +126,7 @@ MergeResult merge_runs(const std::string& directory, const MergeOptions& options
     }
   }
   std::vector<RunPart> parts = read_run_parts(directory);
+  refuse_traced_parts(parts);
   MergeResult result;
   if (!options.trust_files) {
     const std::vector<BadFile> bad = find_bad_files(parts, options.threads);

@@ -135,6 +135,7 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
   RunRecord whole = parts.front().record;
   whole.is_part = false;
   whole.samples.clear();
+  whole.chunk_file.clear();
   whole.frames = frames;
   whole.facts.clear();
   whole.warnings.clear();

@@ -50,6 +50,10 @@ std::string samples_file_name(const std::string& directory, std::int32_t frame, 
   return directory + fmt::format("/samples.{:04}.{}-{}.sums", frame, samples.begin, samples.end);
 }
 
+std::string traced_file_name(const std::string& directory, std::int32_t frame) {
+  return directory + fmt::format("/traced.{:04}.sparse", frame);
+}
+
 std::string run_record_json(const RunRecord& record) {
   Json bad_samples = Json::array();
   for (const BadSample& bad : record.bad_samples) {
@@ -74,6 +78,8 @@ std::string run_record_json(const RunRecord& record) {
                   {"frames", record.frames},
                   {"is_part", record.is_part},
                   {"samples", record.samples},
+                  {"stage", record.stage},
+                  {"chunk_file", record.chunk_file},
                   {"input_digests", record.input_digests},
                   {"facts", record.facts},
                   {"warnings", record.warnings},
@@ -100,8 +106,10 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    // Records of earlier versions have no samples, parts, history and files.
+    // Records of earlier versions have no samples, stage, parts, history and files.
     record.samples = json.value("samples", "");
+    record.stage = json.value("stage", "");
+    record.chunk_file = json.value("chunk_file", "");
     record.part_digests = json.value("part_digests", record.part_digests);
     if (const auto history = json.find("history"); history != json.end()) {
       history->at("settings_digest").get_to(record.history.settings_digest);

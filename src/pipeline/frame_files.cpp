@@ -106,6 +106,10 @@ std::vector<std::string> output_files(const PipelineSettings& settings, const st
       files.push_back(samples_file_name(output.run_directory, frame, *samples));
       continue;
     }
+    if (settings.stage == SequenceStage::trace) {
+      files.push_back(traced_file_name(output.run_directory, frame));
+      continue;
+    }
     for (const std::string& pattern : {output.map_pattern, output.display.pattern, output.exr.pattern}) {
       if (!pattern.empty()) {
         files.push_back(frame_file_name(pattern, frame));

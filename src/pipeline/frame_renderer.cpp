@@ -65,7 +65,10 @@ RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory
     throw Error(ErrorKind::usage, "`accumulate`", "two-sided reads the frames around a frame, and here is one alone",
                 "reconstruct them and join them, or call render_sequence()");
   }
-  TracedFrame traced = trace(request);
+  return finish(request, trace(request), history);
+}
+
+RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const {
   const PosedScene scene = tracer_->at(shutter_of(request));
   RenderedFrame rendered;
   rendered.times = traced.times;

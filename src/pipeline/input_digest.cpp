@@ -90,7 +90,8 @@ std::vector<std::string> scene_files(const std::string& path, bool allow_outside
       if (text.starts_with("data:")) {
         continue;
       }
-      const std::string file = (fs::path(path).parent_path() / percent_decoded(text)).string();
+      // As the reader of scenes names it: where a folder on the way is a link, `..` behind it leads elsewhere.
+      const std::string file = (fs::path(path).parent_path() / percent_decoded(text)).lexically_normal().string();
       if (!allow_outside) {
         check_within(roots, file, text, path + ": " + kind);
       }

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -25,6 +27,7 @@
 #include "pipeline/time_budget.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
+#include "pipeline/traced_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -68,6 +71,52 @@ void render_samples(const FrameRenderer& renderer, const FrameRequest& request, 
   row.write_ms += watch.elapsed_ms();
 }
 
+// The first half of the stages: what was found is all that becomes of the frame until a run finishes it.
+void trace_to_file(const FrameRenderer& renderer, const FrameRequest& request, const PipelineSettings& settings,
+                   TimingRow& row, SequenceResult& result) {
+  const TracedFrame traced = renderer.trace(request);
+  add_samples(traced.sparse.stats, traced.first_look, traced.map, row);
+  keep_bad_samples(traced.sparse.stats, result);
+  add_times(traced.times, row);
+  add_prediction(traced.prediction, row);
+  const Stopwatch watch;
+  const std::string path = traced_file_name(settings.output.run_directory, request.frame);
+  result.files.insert_or_assign(name_in_record(settings.output.run_directory, path),
+                                save_traced(path, request.frame, traced, settings.settings_digest));
+  row.write_ms += watch.elapsed_ms();
+}
+
+// The second half. The row counts what tracing took, on whatever machine that was.
+RenderedFrame finish_from_file(const FrameRenderer& renderer, const FrameRequest& request,
+                               const PipelineSettings& settings, TemporalHistory& history, TimingRow& row) {
+  TracedFrame traced = load_traced(traced_file_name(settings.output.run_directory, request.frame), request.frame,
+                                   settings.settings_digest);
+  if (traced.map.width_px != request.width_px || traced.map.height_px != request.height_px) {
+    throw Error(ErrorKind::input, traced_file_name(settings.output.run_directory, request.frame),
+                "holds a frame of another size", "trace it again");
+  }
+  row.total_ms += traced.times.plan_ms + traced.times.pilot_ms + traced.times.trace_ms;
+  return renderer.finish(request, std::move(traced), history);
+}
+
+// Found out before anything is rendered: one frame that is not there ends the sequence.
+void check_traced_files(const FramePlan& plan, const PipelineSettings& settings, const ResumePlan& resume) {
+  std::vector<std::int32_t> missing;
+  for (std::size_t i = 0; i < plan.frames.size(); ++i) {
+    const std::int32_t frame = plan.frames[i].frame;
+    if (resume.work[i] != FrameWork::skip &&
+        read_traced_digest(traced_file_name(settings.output.run_directory, frame)) != settings.settings_digest) {
+      missing.push_back(frame);
+    }
+  }
+  if (!missing.empty()) {
+    throw Error(ErrorKind::input, settings.output.run_directory,
+                fmt::format("{} frames are not traced under these settings: {}", missing.size(),
+                            bounded(format_frame_list(missing), 200)),
+                "trace them with `stage` trace");
+  }
+}
+
 RunPaths paths_of(const FramePlan& plan, const PipelineSettings& settings) {
   std::vector<std::int32_t> frames;
   for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
@@ -88,6 +137,42 @@ void list_what_is_left(const FramePlan& plan, const ResumePlan& resume, Sequence
       result.left.push_back(plan.frames[i].frame);
     }
   }
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code missing;
+  return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, missing);
+}
+
+// Of a history that an interrupted run has carried on beyond its own first frame, what that frame found is gone. Which
+// frames had gone into it is known still, and that is enough where the run goes on behind them.
+void take_back(std::int32_t first, TemporalHistory& history) {
+  if (history.passed.empty() || history.passed.back() < first) {
+    return;
+  }
+  std::vector<std::int32_t> before = std::move(history.passed);
+  std::erase_if(before, [&](std::int32_t frame) { return frame >= first; });
+  history = {};
+  history.passed = std::move(before);
+}
+
+bool is_hollow(const TemporalHistory& history) {
+  return !history.passed.empty() && history.radiance_sum.pixels.empty() && !history.smoothed_ev;
+}
+
+void refuse_hollow_history(const FramePlan& plan, const PipelineSettings& settings, const ResumePlan& resume,
+                           const TemporalHistory& history) {
+  const auto needed =
+      std::find_if(resume.work.begin(), resume.work.end(), [](FrameWork work) { return work != FrameWork::skip; });
+  if (needed == resume.work.end()) {
+    return;
+  }
+  throw Error(
+      ErrorKind::input, settings.resume_from,
+      fmt::format("frame {} must be made again, and the history after frame {} is gone: this run's own "
+                  "checkpoint has taken its place",
+                  plan.frames[static_cast<std::size_t>(needed - resume.work.begin())].frame, history.passed.back()),
+      "begin from an earlier checkpoint; different names for `checkpoint` and `resume-from` keep both");
 }
 
 bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::size_t total) {
@@ -131,13 +216,17 @@ class JudgedRate {
 
 }  // namespace
 
+bool needs_history(const PipelineSettings& settings) {
+  return settings.stage != SequenceStage::trace && uses_history(settings);
+}
+
 TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& settings, Warnings& warnings) {
   if (plan.frames.empty()) {
     return {};
   }
   const std::int32_t first = plan.frames.front().frame;
   if (settings.resume_from.empty()) {
-    if (settings.is_part && first > 1 && settings.preroll == 0 && uses_history(settings)) {
+    if (settings.is_part && first > 1 && settings.preroll == 0 && needs_history(settings)) {
       warnings.push_back(
           fmt::format("`part`: frame {} begins without the history of those before it; where the sequence begins "
                       "earlier, this part differs from one run: give `resume-from`, or `preroll`",
@@ -150,6 +239,9 @@ TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& 
                 "resolve the job, or set PipelineSettings::settings_digest");
   }
   TemporalHistory history = load_checkpoint(settings.resume_from, settings.settings_digest);
+  if (settings.output.resume && is_same_file(settings.resume_from, settings.checkpoint)) {
+    take_back(first, history);
+  }
   const std::int32_t last = history.passed.empty() ? 0 : history.passed.back();
   if (last >= first) {
     throw Error(ErrorKind::usage, "`resume-from`",
@@ -176,6 +268,12 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     history = std::move(*resume.taken_up);
   }
   result.warnings = resume.warnings;
+  if (is_hollow(history)) {
+    refuse_hollow_history(plan, settings, resume, history);
+  }
+  if (settings.stage == SequenceStage::finish) {
+    check_traced_files(plan, settings, resume);
+  }
   FrameSettings own = frame_settings(settings, color);
   JudgedRate judged;
   if ((own.foveation.target.jod || own.foveation.target.flip) &&
@@ -224,9 +322,13 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     result.files.clear();
     if (settings.trace.samples) {
       render_samples(renderer, request, settings, row, result);
+    } else if (settings.stage == SequenceStage::trace) {
+      trace_to_file(renderer, request, settings, row, result);
     } else {
       const std::string behind = uses_history(settings) ? history_text(history.passed) : std::string();
-      const RenderedFrame rendered = render_one(request);
+      const RenderedFrame rendered = settings.stage == SequenceStage::finish
+                                         ? finish_from_file(renderer, request, settings, history, row)
+                                         : render_one(request);
       add_samples(rendered.samples, rendered.first_look, rendered.map, row);
       add_others(rendered.others, row);
       keep_bad_samples(rendered.samples, result);

@@ -15,8 +15,10 @@
 #include "output/written_file.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/sample_sums_file.hpp"
+#include "pipeline/sealed_file.hpp"
 #include "pipeline/timing_log.hpp"
 #include "pipeline/timing_row.hpp"
+#include "pipeline/traced_file.hpp"
 
 namespace gazetrace {
 namespace {
@@ -41,6 +43,10 @@ class FinishedFrames {
     if (settings_.trace.samples) {
       const std::string path = samples_file_name(output.run_directory, frame, *settings_.trace.samples);
       return is_as_written(path) && read_samples_digest(path) == settings_.settings_digest;
+    }
+    if (settings_.stage == SequenceStage::trace) {
+      const std::string path = traced_file_name(output.run_directory, frame);
+      return is_as_written(path) && read_traced_digest(path) == settings_.settings_digest;
     }
     for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
       if (!pattern.empty()) {
@@ -131,7 +137,7 @@ bool read_rows(const std::string& path, ResumePlan& resume) {
 std::vector<std::string> expected_histories(const FramePlan& plan, const PipelineSettings& settings,
                                             const TemporalHistory& history) {
   std::vector<std::string> texts(plan.frames.size());
-  if (!uses_history(settings)) {
+  if (!needs_history(settings)) {
     return texts;
   }
   std::vector<std::int32_t> passed = history.passed;
@@ -150,10 +156,16 @@ std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const Pipeline
   for (std::size_t i = static_cast<std::size_t>(settings.preroll); i < plan.frames.size(); ++i) {
     const std::int32_t frame = plan.frames[i].frame;
     bool is_other = false;
+    // Damage may have changed the digest itself: a file that is not whole is nobody's finished work.
+    const auto is_of_others = [&](const std::string& path, const std::string& digest) {
+      return !digest.empty() && digest != settings.settings_digest && is_sealed(path);
+    };
     if (settings.trace.samples) {
-      const std::string digest =
-          read_samples_digest(samples_file_name(output.run_directory, frame, *settings.trace.samples));
-      is_other = !digest.empty() && digest != settings.settings_digest;
+      const std::string path = samples_file_name(output.run_directory, frame, *settings.trace.samples);
+      is_other = is_of_others(path, read_samples_digest(path));
+    } else if (settings.stage == SequenceStage::trace) {
+      const std::string path = traced_file_name(output.run_directory, frame);
+      is_other = is_of_others(path, read_traced_digest(path));
     } else {
       for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
         if (pattern.empty() || !fs::exists(frame_file_name(pattern, frame))) {
@@ -174,7 +186,7 @@ std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const Pipeline
 RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
                                  const TemporalHistory& history) {
   RecordedHistory recorded;
-  if (!uses_history(settings)) {
+  if (!needs_history(settings)) {
     return recorded;
   }
   std::vector<std::int32_t> passed = history.passed;
@@ -229,9 +241,10 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
     const std::int32_t frame = plan.frames[i].frame;
     const std::string& pattern = settings.output.exr.pattern.empty() ? settings.output.display.pattern  //
                                                                      : settings.output.exr.pattern;
-    resume.kept_rows[frame] = lost_timing_row(
-        plan.frames[i],
-        settings.trace.samples ? std::nullopt : read_frame_stamp(frame_file_name(pattern, frame)).exposure_ev);
+    resume.kept_rows[frame] =
+        lost_timing_row(plan.frames[i], settings.trace.samples || settings.stage == SequenceStage::trace
+                                            ? std::nullopt
+                                            : read_frame_stamp(frame_file_name(pattern, frame)).exposure_ev);
   }
   if (!without_row.empty()) {
     resume.warnings.push_back(std::to_string(without_row.size()) + " complete frames have no row in " + paths.timing +
@@ -263,7 +276,7 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
   if (end == 0) {
     std::fill(resume.work.begin(), resume.work.begin() + static_cast<std::ptrdiff_t>(first_wanted), FrameWork::skip);
   }
-  if (uses_history(settings) || resume.writes_checkpoint) {
+  if (needs_history(settings) || resume.writes_checkpoint) {
     for (std::size_t i = begin; i < end; ++i) {
       if (resume.work[i] == FrameWork::skip) {
         resume.work[i] = FrameWork::replay;

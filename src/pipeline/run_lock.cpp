@@ -26,6 +26,7 @@
 #include <utility>
 
 #include "gazetrace/pipeline.hpp"
+#include "pipeline/lock_state.hpp"
 
 namespace gazetrace {
 namespace {
@@ -341,5 +342,18 @@ RunLock::RunLock(const RunRecord& record, const std::string& record_path,
 }
 
 RunLock::~RunLock() = default;
+
+bool is_locked(const std::string& record_path) {
+  const std::string path = record_path + ".lock";
+  const std::optional<Holder> holder = read_lock(path);
+  if (!holder) {
+    return false;
+  }
+  if (!holder->host.empty() && holder->machine == this_machine()) {
+    return process_lives(*holder);
+  }
+  const std::optional<std::int64_t> renewed = time_of(path);
+  return renewed && std::time(nullptr) - *renewed <= kSilence.count();
+}
 
 }  // namespace gazetrace

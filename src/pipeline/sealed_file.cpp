@@ -109,10 +109,16 @@ std::string read_sealed_digest(const SealedKind& kind, const std::string& path) 
   std::ifstream file(path, std::ios::binary);
   std::string line;
   const std::string beginning = beginning_of(kind);
-  if (!std::getline(file, line) || !line.starts_with(beginning)) {
+  if (!std::getline(file, line) || file.eof() || !line.starts_with(beginning)) {  // eof: cut within the line
     return {};
   }
   return line.substr(beginning.size());
+}
+
+bool is_sealed(const std::string& path) {
+  const std::string bytes = read_all(path);
+  const std::size_t end = bytes.size() - std::min(kDigestLength, bytes.size());
+  return digest_of(bytes.data(), end) == bytes.substr(end);
 }
 
 }  // namespace gazetrace

@@ -40,6 +40,10 @@ class SealedWriter {
     (*this)(static_cast<std::uint64_t>(values.size()));
     add(values.data(), values.size() * sizeof(T));
   }
+  void operator()(const std::string& text) {
+    (*this)(static_cast<std::uint64_t>(text.size()));
+    add(text.data(), text.size());
+  }
   template <class T>
   void operator()(const Image<T>& image) {
     (*this)(image.width_px);
@@ -76,6 +80,11 @@ class SealedReader {
     values.resize(count);
     take(values.data(), values.size() * sizeof(T));
   }
+  void operator()(std::string& text) {
+    std::vector<char> letters;
+    (*this)(letters);
+    text.assign(letters.begin(), letters.end());
+  }
   template <class T>
   void operator()(Image<T>& image) {
     (*this)(image.width_px);
@@ -100,7 +109,11 @@ class SealedReader {
   std::size_t at_ = 0, end_ = 0;
 };
 
-// The settings' digest in the first line of a file; empty where there is no file, or one of another kind.
+// The settings' digest in the first line of a file; empty where there is no file, one of another kind, or one that is
+// cut within this line.
 std::string read_sealed_digest(const SealedKind& kind, const std::string& path);
+
+// Whether the file is as it was written, whatever it holds. Error(input) where it cannot be read.
+bool is_sealed(const std::string& path);
 
 }  // namespace gazetrace

@@ -26,7 +26,7 @@ const std::vector<std::vector<std::string>> kLayers = {
     {"reconstruct", "temporal", "color", "output", "metrics", "visible"},
     {"pipeline", "compare", "results"},
     {"job"},
-    {"sweep", "report", "study", "video"},
+    {"sweep", "report", "study", "video", "farm"},
     {"cli"},
 };
 const std::map<std::string, int> kLayer = [] {
@@ -84,6 +84,7 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"sweep", {"sweep", "sweep_plan"}},
     {"report", {"report"}},
     {"video", {"video"}},
+    {"farm", {"farm"}},
 };
 const std::map<std::string, std::string> kPublicHeader = [] {
   std::map<std::string, std::string> module_of;

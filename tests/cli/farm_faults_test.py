@@ -301,12 +301,51 @@ class Confined(Farm):
         self.run_ok("scene", "linked/scene.gltf")
 
 
+    def test_settings_that_are_not_trusted(self):
+        secret = self.write("secret/log.csv", harness.moving_gaze())
+        self.write("jobs/glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
+        (self.folder / "jobs/link.csv").symlink_to(secret)
+        common = 'scene = "jobs/glide.gltf"\nsize = "32x18"\nscreen-px = "64,36"\nscreen-cm = "64,36"\nscreen-distance-cm = 60\n'
+        for more, named in (('gaze = "secret/log.csv"', "gaze"), ('gaze = "jobs/link.csv"', "gaze"),
+                            ('env = "secret/log.csv"', "env"), ('output = ["elsewhere/f.####.exr"]', "output"),
+                            ('checkpoint = "jobs/../history"', "checkpoint"), ('falloff-table = "secret/log.csv"', "falloff-table")):
+            with self.subTest(more):
+                self.write("jobs/job.toml", common + more)
+                self.assert_refused(["plan", "--config", "jobs/job.toml", "--frames", "1", "--confine"], [named, "leads outside"])
+        self.write("jobs/job.toml", common + 'env = "sky"\noutput = ["jobs/out/f.####.exr"]\n')
+        self.run_ok("plan", "--config", "jobs/job.toml", "--frames", "1", "--confine")
+        # What the user says himself is not the settings' word.
+        self.run_ok("plan", "--config", "jobs/job.toml", "--frames", "1", "--confine", "--gaze", "secret/log.csv")
+
+    def test_what_belongs_to_a_bids_recording(self):
+        eyes = "".join(f"{i * 10_000_000},0.{400 + i},0.5,ok,{eye}\n" for i in range(20) for eye in ("left", "right"))
+        self.write("both.csv", "# gazetrace-gaze 1\n# display_px 1000 500\nt[ns],u[1],v[1],valid,eye\n" + eyes)
+        (self.folder / "b").mkdir()
+        (self.folder / "b/dataset_description.json").write_text("{}")
+        self.run_ok("gaze", "convert", "both.csv", "-o", "b/sub-1_task-t_physio.tsv.gz")
+        recording, other = sorted(path.name for path in (self.folder / "b").glob("*recording-eye[12]_physio.tsv.gz"))
+        plan = ["plan", "glide.gltf", "--gaze", f"b/{recording}", "--frames", "1", "--screen-px", "64,36", "--screen-cm", "64,36",
+                "--screen-distance-cm", "60", "--gaze-transfer", "fraction"]
+        self.run_ok(*plan)
+        for name in (other, other.replace(".tsv.gz", ".json")):
+            with self.subTest(name):
+                path = self.folder / "b" / name
+                away = self.folder / name
+                path.rename(away)
+                path.symlink_to(away)
+                self.assert_refused(plan, [name, "leads outside", "--allow-outside"])
+                self.run_ok(*plan, "--allow-outside")
+                path.unlink()
+                away.rename(path)
+
+
 class Chunks(Farm):
     def test_chunks_are_the_whole(self):
         self.render("whole", "--frames", "1-7")
         for number in (3, 1, 2):
             self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-7", "--chunk", f"{number}/3")
-        borders = json.loads((self.folder / "out/chunks.3.json").read_text())
+        [written] = (self.folder / "out").glob("chunks.3.*.json")
+        borders = json.loads(written.read_text())
         self.assertEqual([name for name in self.files("out") if name.startswith("run.")],
                          sorted(f"run.{frames}.json" for frames in borders["chunks"]))
         self.assertIn("frames 1-7", self.run_ok("merge", "out").stdout)
@@ -319,9 +358,10 @@ class Chunks(Farm):
 
     def test_borders_that_are_written_down_stay(self):
         self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "1/2")
-        borders = json.loads((self.folder / "out/chunks.2.json").read_text())
+        [written] = (self.folder / "out").glob("chunks.2.*.json")
+        borders = json.loads(written.read_text())
         borders["chunks"] = ["1-4", "5-6"]
-        self.write("out/chunks.2.json", json.dumps(borders))
+        written.write_text(json.dumps(borders))
         self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "2/2")
         self.assertIn("run.5-6.json", self.files("out"))
 

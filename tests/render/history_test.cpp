@@ -109,6 +109,65 @@ TEST(History, TwoRunsJoinedByACheckpointAreOneRunToTheBit) {
   }
 }
 
+TEST(History, FramesThatAreTracedInPartsAndFinishedInOrderAreOneRunToTheBit) {
+  const Scene scene = room();
+  for (const char* filter : {"linear", "guided"}) {
+    const TemporaryFolder folder;
+    PipelineSettings settings = settings_of();
+    settings.reconstruction.filter = filter;
+    const auto whole = render(scene, plan_of(1, 6), settings);
+    settings.output.run_directory = folder / ".";
+    settings.output.exr.pattern = folder / "f.####.exr";
+    PipelineSettings tracing = settings;
+    tracing.stage = SequenceStage::trace;
+    tracing.is_part = true;
+    // Nobody is told of frames, since there are none yet.
+    EXPECT_TRUE(render(scene, plan_of(4, 6), tracing).empty());
+    PipelineSettings finishing = settings;
+    finishing.stage = SequenceStage::finish;
+    EXPECT_THROW(render(scene, plan_of(1, 6), finishing), Error);  // frames 1 to 3 are not traced
+    (void)render(scene, plan_of(1, 3), tracing);
+    EXPECT_EQ(render(scene, plan_of(1, 6), finishing), whole) << filter;
+  }
+}
+
+TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
+  const Scene scene = room();
+  const TemporaryFolder folder;
+  const std::string a = folder / "a";
+  const std::string b = folder / "b";
+  PipelineSettings settings = settings_of();
+  settings.reconstruction.filter = "guided";
+  PathTracer tracer(scene, threads(2));
+  const TracedFrame traced = FrameRenderer(tracer, settings).trace(plan_of(3, 3).frames.front());
+  ASSERT_FALSE(traced.sparse.surfaces.empty());
+  save_traced(a, 3, traced, "d");
+  const TracedFrame back = load_traced(a, 3, "d");
+  EXPECT_EQ(back.sparse.stats.kernel, traced.sparse.stats.kernel);
+  EXPECT_EQ(back.map.regions.front().name, traced.map.regions.front().name);
+  save_traced(b, 3, back, "d");
+  EXPECT_EQ(file_bytes(a), file_bytes(b));
+  EXPECT_THROW((void)load_traced(a, 4, "d"), Error);
+  EXPECT_THROW((void)load_traced(a, 3, "e"), Error);
+  // Sealed as it should be, and wrong all the same.
+  const std::vector<void (*)(TracedFrame&)> changes{
+      [](TracedFrame& frame) { frame.sparse.count.pop_back(); },
+      [](TracedFrame& frame) { frame.map.sites.front().region = 77; },
+      [](TracedFrame& frame) { frame.map.sites.front().block_x = 60000; },
+      [](TracedFrame& frame) { frame.map.tiles.front().first_site = 4'000'000'000U; },
+      [](TracedFrame& frame) { frame.map.region.pixels.front() = 200; },
+      [](TracedFrame& frame) { frame.sparse.first_surface.back() += 5; },
+      [](TracedFrame& frame) { frame.map.width_px += 1; },
+      [](TracedFrame& frame) { frame.sparse.stats.regions.clear(); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    TracedFrame wrong = traced;
+    changes[i](wrong);
+    save_traced(b, 3, wrong, "d");
+    EXPECT_THROW((void)load_traced(b, 3, "d"), Error) << i;
+  }
+}
+
 TEST(History, CheckpointsComeAsOftenAsAskedAndTheLastOneStays) {
   const Scene scene = room();
   const TemporaryFolder folder;

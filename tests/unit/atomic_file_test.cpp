@@ -8,8 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -97,6 +99,32 @@ TEST(AtomicFile, AProcessThatIsKilledWhileItWritesLeavesNothing) {
   ASSERT_TRUE(WIFSIGNALED(status));
   EXPECT_EQ(WTERMSIG(status), SIGXFSZ);
   EXPECT_EQ(folder.names(), std::vector<std::string>());
+}
+
+// Of many that begin at the same moment one makes the file, and all others find it whole.
+TEST(AtomicFile, AFileThatIsMadeOnceHasOneWriter) {
+  for (int round = 0; round < 50; ++round) {
+    const TemporaryFolder folder;
+    const std::string path = folder / "borders.json";
+    std::vector<int> made(kWriters);
+    std::vector<std::string> found(kWriters);
+    std::vector<std::thread> threads;
+    for (int i = 0; i < kWriters; ++i) {
+      threads.emplace_back([&, i] {
+        const auto at = static_cast<std::size_t>(i);
+        const std::vector<std::byte> bytes(5000, static_cast<std::byte>(i));
+        made[at] = create_file_once(path, bytes) ? 1 : 0;
+        found[at] = file_bytes(path);
+      });
+    }
+    for (std::thread& thread : threads) {
+      thread.join();
+    }
+    EXPECT_EQ(std::accumulate(made.begin(), made.end(), 0), 1);
+    const auto winner = static_cast<char>(std::find(made.begin(), made.end(), 1) - made.begin());
+    EXPECT_EQ(found, std::vector<std::string>(kWriters, std::string(5000, winner)));
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"borders.json"});
+  }
 }
 
 }  // namespace

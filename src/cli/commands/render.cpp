@@ -169,6 +169,11 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
     print_result(pixels);
   }
   if (result.interrupted) {
+    if (job.progress == "openjd") {
+      std::printf("openjd_fail: interrupted by %s, %zu frames are left\n", interruption.reason().c_str(),
+                  result.left.size());
+      std::fflush(stdout);
+    }
     std::fprintf(stderr, "gazetrace: interrupted by %s: %zu of %zu frames are done, %s left; go on with --resume\n",
                  interruption.reason().c_str(), resolved.frames.size() - result.left.size(), resolved.frames.size(),
                  bounded(format_frame_list(result.left), 200).c_str());
@@ -190,7 +195,15 @@ Command add_render_command(CLI::App& app, const Invocation& invocation) {
       print_result(job_as_toml(arguments->job));
       return static_cast<int>(exit_done);
     }
-    return run_render(*arguments, invocation);
+    try {
+      return run_render(*arguments, invocation);
+    } catch (const Error& error) {
+      if (arguments->job.settings.progress == "openjd" && error.kind() != ErrorKind::nothing_to_do) {
+        std::printf("openjd_fail: %s\n", bounded(with_flags(error.what()), 500).c_str());
+        std::fflush(stdout);
+      }
+      throw;
+    }
   };
   return {run, [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
 }

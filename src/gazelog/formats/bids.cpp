@@ -56,7 +56,10 @@ void join_other_eyes(const BidsName& name, const Sidecars& sidecars, const BidsC
                      const GazeReadOptions& options, RawGaze& raw) {
   std::vector<Eye> read{recorded_eye(sidecars)};
   for (const std::string& path : sibling_recordings(name, name.suffix)) {
-    const Sidecars other(parse_bids_name(path), name.suffix);
+    if (!options.allow_outside) {
+      check_in_data_set(raw.source, path);
+    }
+    const Sidecars other(parse_bids_name(path), name.suffix, options.allow_outside);
     const BidsSignal signal = recorded_signal(other, options.columns.x);
     if (signal == BidsSignal::mislabeled) {
       raw.warnings.push_back(fmt::format("{}: has positions, but its PhysioType is '{}', not eyetrack; not read", path,
@@ -146,7 +149,7 @@ double sniff_gaze_bids(const GazeFile& file) {
 
 RawGaze read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
   const BidsName name = parse_bids_name(file.path);
-  const Sidecars sidecars(name, name.suffix);
+  const Sidecars sidecars(name, name.suffix, options.allow_outside);
   RawGaze raw;
   raw.source = file.path;
   raw.format = "bids";
@@ -158,7 +161,7 @@ RawGaze read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
     throw Error(ErrorKind::input, file.path, fmt::format("its SampleCoordinateSystem is '{}'", space.substr(0, 40)),
                 "gaze-on-screen and eye-in-head can be read");
   }
-  const Sidecars events(name, "events");
+  const Sidecars events(name, "events", options.allow_outside);
   read_bids_screen(events, raw);
   const BidsColumns columns = read_bids_samples(file, sidecars, options, raw);
   read_bids_events(sidecars, file.path, raw);

@@ -38,6 +38,13 @@ void add_frame_options(JobSchema& schema) {
       .with(Trait::one_run)
       .need("`chunk`");
   schema
+      .value("--stage", &JobSettings::stage, choices<SequenceStage>(), Touch::frames,
+             "For frames that depend on those before them: trace only traces frames, on any number of machines, and "
+             "writes what was found beside the outputs (traced.0001.sparse); finish makes the pictures of such files, "
+             "in order, to the bit those of a single run")
+      .decides_nothing()
+      .with(Trait::one_run);
+  schema
       .value("--sample-range", at(&JobSettings::trace, &TraceSettings::samples), "A:B", Touch::frames,
              "Traces only the samples A to B - 1 of every pixel or block, and writes their sums instead of pictures; "
              "once all parts are there, 'gazetrace merge' makes the pictures, to the bit those of a single run with "

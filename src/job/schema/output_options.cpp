@@ -78,8 +78,10 @@ void add_output_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema.group("Talk");
   schema
-      .value("--progress", &JobSettings::progress, "auto|always|never", Touch::talk,
-             "A bar on a terminal, plain lines elsewhere (auto); always: the bar")
+      .value(
+          "--progress", &JobSettings::progress, "auto|always|never|openjd", Touch::talk,
+          "A bar on a terminal, plain lines elsewhere (auto); always: the bar; openjd: lines on stdout for workers of "
+          "Open Job Description")
       .decides_nothing()
       .with(Trait::one_run);
   schema.flag("--quiet", &JobSettings::quiet, Touch::talk, "No progress and no summary; warnings and errors stay")

@@ -13,9 +13,17 @@ void add_limit_options(JobSchema& schema) {
   schema.group("Limits");
   schema
       .flag("--allow-outside", &JobSettings::allow_outside, Touch::scene,
-            "The scene may name files outside of its folder, or of the data set that it belongs to; give it for scenes "
-            "that you trust")
+            "The scene and a BIDS gaze log may lead to files outside of their folder, or of the data set that they "
+            "belong "
+            "to; give it for data that you trust")
       .decides_nothing();
+  schema
+      .flag(
+          "--confine", &JobSettings::confine, Touch::output,
+          "The settings file must not name files outside of its own folder, or of the data set that it belongs to, to "
+          "read or to write; give it on the command line for settings that you do not trust")
+      .decides_nothing()
+      .with(Trait::one_run);
   schema
       .value("--max-memory", &JobSettings::max_memory, "BYTES", Touch::scene,
              "Refuses a scene that will take more memory ('gazetrace scene' tells), before it is loaded: 8G, 500M; 0: "

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// A job as tasks for many machines: an array that renders chunks of the frames, what makes one sequence of them, and
+// what follows. Every engine runs the same tasks, by one script that lies in the farm's folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gazetrace/job.hpp"
+
+namespace gazetrace {
+
+struct FarmEngineInfo {
+  std::string name, description;
+};
+std::vector<FarmEngineInfo> farm_engines();
+
+struct FarmSettings {
+  std::string job_file;            // TOML, as `render` takes it; its outputs say where the farm is
+  std::string engine;              // a name of farm_engines()
+  std::string program;             // gazetrace itself, as the tasks call it
+  std::uint32_t chunks = 0;        // so many, of about equal cost; 0: `chunk_frames` counts
+  std::int32_t chunk_frames = 0;   // so many frames each
+  int threads = 0;                 // of a task; 0: what its machine has
+  int retries = 3;                 // of a task that failed by chance or was interrupted
+  ByteCount memory;                // of a task; 0: by estimate_scene() and the size of the pictures
+  std::optional<DurationNs> time;  // limit of a task; empty: by `rate_from`, else none is stated
+  std::string rate_from;           // the timing.csv of an earlier run of the job; empty: no time is predicted
+  std::string container;           // words before the program: "apptainer exec gazetrace.sif"
+  std::vector<std::string> then;   // commands of the shell after the sequence is whole: a video, a report
+};
+
+// What is to be done, for status, retry and every engine; farm.json in the farm's folder.
+struct FarmPlan {
+  std::string name, engine, program, container, job_file;
+  std::string folder;       // of the farm: `farm` in that of the run, absolute like the other paths
+  std::string run_folder;   // where the outputs lie
+  std::string work_folder;  // where the tasks are started, since paths in the job count from there
+  // Frames depend on those before them: tasks trace (SequenceStage::trace), and one run finishes. Otherwise tasks
+  // render and `merge` joins.
+  bool traces_first = false;
+  // Where the run that finishes keeps its history, so that one which is interrupted does not begin again.
+  std::string checkpoint;
+  std::string division;              // what follows `--chunk K`: "/8", or " --chunk-frames 20"
+  std::vector<std::string> chunks;   // the frames of each
+  std::vector<double> samples;       // that the plan expects of each; 0: not known
+  std::int32_t files_per_frame = 1;  // of what the whole sequence has
+  int threads = 0, retries = 0;
+  std::uint64_t memory_mib = 0;
+  std::int64_t time_s = 0;          // limit of a task; 0: none
+  std::vector<double> predicted_s;  // of each chunk; empty: not known
+  std::uint64_t traced_bytes = 0;   // that a traced frame takes at most, roughly; 0 where none is written
+  std::vector<std::string> then;
+};
+
+// Reads job and plan, and predicts memory and, where it can, time. Error(usage, input) as resolve() does, and for a job
+// without outputs. It writes nothing.
+FarmPlan plan_farm(const FarmSettings& settings);
+std::string farm_plan_text(const FarmPlan& plan);  // for people
+// Error(input) for a folder without a farm; `folder` is that of the run or of the farm.
+FarmPlan read_farm(const std::string& folder);
+
+// The names of a plan's tasks: "1" to the number of chunks, "finish", "after-1", ...
+std::vector<std::string> farm_tasks(const FarmPlan& plan);
+// What the engine reads, for these chunks; by names within the farm's folder.
+std::map<std::string, std::string> farm_files(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
+// Writes farm.json, the borders of the chunks, the script of the tasks and the engine's files.
+void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
+// The command of the shell that hands the farm's files over to the engine; empty: run_local() is what runs it.
+std::string submit_command(const FarmPlan& plan);
+
+enum class TaskState : std::uint8_t { missing, running, interrupted, failed, done };
+const char* to_string(TaskState state);
+
+struct TaskStatus {
+  std::string name;    // "3", "finish"
+  std::string frames;  // a frame list; empty for what follows the sequence
+  TaskState state = TaskState::missing;
+  std::size_t all = 0, done = 0;  // frames
+  std::optional<int> exit_code;   // of the last attempt, where the script of the tasks saw it end
+};
+struct FarmStatus {
+  std::vector<TaskStatus> tasks;            // as farm_tasks()
+  std::size_t frames = 0, frames_done = 0;  // pictures of the sequence; of a farm that traces first, traced frames
+  std::optional<double> seconds_left;       // at the rate so far, with as many tasks as run now; empty: not known
+  [[nodiscard]] bool is_done() const;
+};
+// From records, journals and locks that lie in the folder, on any machine that sees it. A run on another machine counts
+// as ended a minute after it last renewed its lock.
+FarmStatus farm_status(const FarmPlan& plan);
+std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status);
+std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status);
+// The chunks that are neither done nor running, counted from 0.
+std::vector<std::size_t> chunks_to_retry(const FarmStatus& status);
+
+struct LocalSettings {
+  int processes = 1;           // at the same time
+  std::function<bool()> stop;  // asked often; true: running tasks are asked to end, and no other begins
+  std::function<void(const std::string& task, const std::string& what)> tell;  // "1", "begins"; "1", "exit code 0"
+};
+// Runs these chunks on this machine, and what follows once all chunks of the plan are done. The last exit code that was
+// not 0, or 0. A task that ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
+int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings);
+
+}  // namespace gazetrace

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/interruption.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/farm.hpp"
+
+namespace gazetrace {
+namespace {
+
+struct FarmArguments {
+  FarmSettings settings;
+  std::string memory, time;
+  std::string folder;  // of status and retry
+  int processes = 1;
+  bool submit = false;
+  bool json = false;
+};
+
+std::string own_program() {
+  std::error_code failed;
+  const auto path = std::filesystem::read_symlink("/proc/self/exe", failed);
+  return failed ? std::string("gazetrace") : path.string();
+}
+
+std::vector<std::size_t> all_chunks(const FarmPlan& plan) {
+  std::vector<std::size_t> chunks(plan.chunks.size());
+  std::iota(chunks.begin(), chunks.end(), std::size_t{0});
+  return chunks;
+}
+
+int run_here(const FarmPlan& plan, const std::vector<std::size_t>& chunks, int processes) {
+  // The tasks have grace times of their own.
+  Interruption interruption(std::chrono::hours(24), std::nullopt);
+  interruption.frames_begin();
+  LocalSettings local;
+  local.processes = processes;
+  local.stop = [&] { return interruption.stop_before_frame(0); };
+  local.tell = [](const std::string& task, const std::string& what) {
+    std::fprintf(stderr, "task %s: %s\n", task.c_str(), what.c_str());
+  };
+  const int code = run_local(plan, chunks, local);
+  print_result(farm_status_text(plan, farm_status(plan)));
+  if (code != 0) {
+    std::fprintf(stderr, "gazetrace: %s; its log is in %s/logs, and 'gazetrace farm retry %s' goes on\n",
+                 code == exit_interrupted ? "interrupted" : "a task has failed", plan.folder.c_str(),
+                 plan.run_folder.c_str());
+  }
+  return code;
+}
+
+int hand_over(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const FarmArguments& arguments) {
+  write_farm(plan, chunks);
+  const std::string command = submit_command(plan);
+  if (command.empty()) {
+    return run_here(plan, chunks, arguments.processes);
+  }
+  if (!arguments.submit) {
+    print_result(fmt::format("{} is written; hand it over with --submit, or by\n  {}\n", plan.folder, command));
+    return exit_done;
+  }
+  std::fflush(nullptr);
+  const int state = std::system(command.c_str());  // NOLINT: the command of the shell that was printed
+  if (state != 0) {
+    throw Error(ErrorKind::runtime, plan.engine, "did not take the farm: " + command, "see what it said above");
+  }
+  return exit_done;
+}
+
+int run_farm(FarmArguments& arguments) {
+  FarmSettings& settings = arguments.settings;
+  if (settings.job_file.empty()) {
+    throw Error(ErrorKind::usage, "", "no job was given", "gazetrace farm JOB.toml --engine slurm --chunks 8");
+  }
+  if (!arguments.memory.empty()) {
+    parse_value(arguments.memory, "`memory`", settings.memory);
+  }
+  if (!arguments.time.empty()) {
+    DurationNs time;
+    parse_value(arguments.time, "`time`", time);
+    settings.time = time;
+  }
+  if (settings.program.empty()) {
+    settings.program = own_program();
+  }
+  const FarmPlan plan = plan_farm(settings);
+  std::fputs(farm_plan_text(plan).c_str(), stderr);
+  return hand_over(plan, all_chunks(plan), arguments);
+}
+
+int run_status(const FarmArguments& arguments) {
+  const FarmPlan plan = read_farm(arguments.folder);
+  const FarmStatus status = farm_status(plan);
+  print_result(arguments.json ? farm_status_json(plan, status) : farm_status_text(plan, status));
+  return exit_done;
+}
+
+int run_retry(const FarmArguments& arguments) {
+  const FarmPlan plan = read_farm(arguments.folder);
+  const FarmStatus status = farm_status(plan);
+  if (status.is_done()) {
+    throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
+  }
+  for (const TaskStatus& task : status.tasks) {
+    if (task.state == TaskState::running) {
+      throw Error(ErrorKind::usage, arguments.folder,
+                  "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
+    }
+  }
+  return hand_over(plan, chunks_to_retry(status), arguments);
+}
+
+std::string engines_text() {
+  std::string text;
+  for (const FarmEngineInfo& info : farm_engines()) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", info.name, info.description);
+  }
+  return text;
+}
+
+void add_hand_over_options(CLI::App& app, FarmArguments& arguments) {
+  app.add_flag("--submit", arguments.submit, "Hands the files over to the engine; local always runs");
+  app.add_option("--processes", arguments.processes, "local: so many tasks at the same time")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+}
+
+}  // namespace
+
+Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
+  auto arguments = std::make_shared<FarmArguments>();
+  FarmSettings& settings = arguments->settings;
+  app.add_option("job", settings.job_file, "A settings file as 'render' takes it, with frames and output")
+      ->type_name("JOB.toml");
+  app.add_option("--engine", settings.engine, "Which queue runs the tasks; " + engines_text())
+      ->default_str("local")
+      ->type_name("NAME");
+  settings.engine = "local";
+  app.add_option("--chunks", settings.chunks, "Divides the frames into N tasks of about equal cost")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_option("--chunk-frames", settings.chunk_frames, "Divides them into tasks of N frames each")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_option("--threads", settings.threads, "Of each task; 0: as many as its machine has")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+  app.add_option("--retries", settings.retries, "How often a task is tried again that was interrupted or killed")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+  app.add_option("--memory", arguments->memory,
+                 "Of each task, such as 8G; default: by the scene and the pictures' size")
+      ->type_name("BYTES");
+  app.add_option("--time", arguments->time, "Limit of each task, such as 2h; default: by --rate-from, else none")
+      ->type_name("DURATION");
+  app.add_option("--rate-from", settings.rate_from,
+                 "A timing.csv of the same job on such a machine, by which times are predicted")
+      ->type_name("FILE");
+  app.add_option("--container", settings.container, "Words before the program, such as 'apptainer exec gazetrace.sif'")
+      ->type_name("WORDS");
+  app.add_option("--program", settings.program, "gazetrace as the tasks find it; default: this one")->type_name("FILE");
+  app.add_option("--then", settings.then,
+                 "A command of the shell for when the sequence is whole, such as 'gazetrace video out/f.####.png "
+                 "film.mp4'; each waits for the one before")
+      ->type_name("COMMAND");
+  add_hand_over_options(app, *arguments);
+
+  CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");
+  status->footer(kExitCodesHelp);
+  status->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
+  status->add_flag("--json", arguments->json, "As JSON");
+  CLI::App* const retry = app.add_subcommand("retry", "Do again what is neither done nor running, and what follows");
+  retry->footer(kExitCodesHelp);
+  retry->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
+  add_hand_over_options(*retry, *arguments);
+  app.require_subcommand(0, 1);
+
+  const auto run = [arguments, status, retry] {
+    return status->parsed() ? run_status(*arguments) : retry->parsed() ? run_retry(*arguments) : run_farm(*arguments);
+  };
+  return {run, {}};
+}
+
+}  // namespace gazetrace

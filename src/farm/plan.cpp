@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a job to the tasks of a farm, and what each will take.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "farm/engine.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/resolve.hpp"
+#include "job/chunks.hpp"
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kReserveOfMemory = 1.25;  // over what is predicted
+constexpr double kReserveOfTime = 2;
+constexpr std::uint64_t kProgramMib = 256;
+// What a run holds of a frame while it renders: sums, guides, the picture, its view and history, with copies of some.
+constexpr std::uint64_t kBytesOfAPixel = 600;
+// What a traced frame takes in its file for a site: sums, up to three surfaces and first hits.
+constexpr std::uint64_t kBytesOfASite = 12 + 12 + 4 + 4 + 3 * sizeof(SurfaceSums) + 4 + sizeof(FirstHitSums);
+
+std::string absolute(const std::string& path) {
+  return fs::absolute(path.empty() ? "." : path).lexically_normal().string();
+}
+
+// Engines read the name within lines of their own.
+std::string plain_name(std::string name) {
+  for (char& letter : name) {
+    const bool is_plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                          (letter >= '0' && letter <= '9') || letter == '-' || letter == '.';
+    letter = is_plain ? letter : '_';
+  }
+  return name.empty() ? "gazetrace" : name;
+}
+
+std::uint64_t memory_mib(const JobSettings& job, const FramePlan& frames) {
+  std::uint64_t bytes = estimate_scene(job.scene, scene_read_options(job)).total_bytes();
+  std::uint64_t largest = 0;
+  for (const FrameRequest& request : frames.frames) {
+    largest =
+        std::max(largest, static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px));
+  }
+  bytes += largest * kBytesOfAPixel;
+  return static_cast<std::uint64_t>(kReserveOfMemory * static_cast<double>(bytes) / 1048576.0) + kProgramMib;
+}
+
+// Seconds of a sample, and of a frame where samples are not known, by the rows of an earlier run.
+struct Rate {
+  double s_per_sample = 0, s_per_frame = 0;
+};
+
+Rate rate_of(const std::string& timing_path) {
+  double ms = 0;
+  double samples = 0;
+  double frames = 0;
+  for (const TimingRow& row : read_timing_csv(timing_path)) {
+    if (std::isfinite(row.total_ms) && row.samples > 0) {
+      ms += row.total_ms;
+      samples += static_cast<double>(row.samples);
+      frames += 1;
+    }
+  }
+  if (frames == 0) {
+    throw Error(ErrorKind::input, timing_path, "no row of it tells how long a frame took", "name another timing.csv");
+  }
+  return {ms / 1000 / samples, ms / 1000 / frames};
+}
+
+void predict_times(const FarmSettings& settings, const std::vector<FrameChunk>& chunks, FarmPlan& plan) {
+  if (settings.time) {
+    plan.time_s = settings.time->ns / 1'000'000'000;
+  }
+  if (settings.rate_from.empty()) {
+    return;
+  }
+  const Rate rate = rate_of(settings.rate_from);
+  double longest = 0;
+  for (const FrameChunk& chunk : chunks) {
+    plan.predicted_s.push_back(chunk.samples > 0 ? chunk.samples * rate.s_per_sample
+                                                 : static_cast<double>(chunk.frames.size()) * rate.s_per_frame);
+    longest = std::max(longest, plan.predicted_s.back());
+  }
+  if (!settings.time) {
+    plan.time_s = static_cast<std::int64_t>(std::ceil(kReserveOfTime * longest)) + 300;
+  }
+}
+
+void check_settings(const FarmSettings& settings, const JobSettings& job) {
+  farm_engine(settings.engine);
+  if ((settings.chunks > 0) == (settings.chunk_frames > 0)) {
+    throw Error(ErrorKind::usage, "`chunks`", "into how many tasks are the frames divided?",
+                "give `chunks` or `chunk-frames`");
+  }
+  if (job.outputs.empty()) {
+    throw Error(ErrorKind::input, settings.job_file, "the job has no output, which says where the farm is",
+                "add output = [\"out/frame.####.exr\"]");
+  }
+  if (job.chunk || job.part || job.frames == std::nullopt) {
+    throw Error(ErrorKind::input, settings.job_file,
+                job.frames ? "the job is a part of a sequence already" : "the job does not say which frames it has",
+                job.frames ? "leave `chunk` and `part` out" : "add frames = \"1-100\"");
+  }
+}
+
+}  // namespace
+
+FarmPlan plan_farm(const FarmSettings& settings) {
+  Job job = load_job(settings.job_file);
+  check_settings(settings, job.settings);
+  ResolveOptions options;
+  options.scope = ResolveScope::plan;
+  options.tell_idle = false;
+  const ResolvedJob resolved = resolve(job, options);
+  JobSettings divided = resolved.job.settings;
+  divided.chunk = Chunk{1, settings.chunks};
+  divided.chunk_frames = settings.chunk_frames;
+  const std::vector<FrameChunk> chunks = divide_frames(divided, resolved.plan).chunks;
+
+  FarmPlan plan;
+  plan.engine = settings.engine;
+  plan.program = settings.program.find('/') == std::string::npos ? settings.program : absolute(settings.program);
+  plan.container = settings.container;
+  plan.job_file = absolute(settings.job_file);
+  plan.work_folder = absolute("");
+  plan.run_folder = absolute(resolved.pipeline.output.run_directory);
+  plan.folder = (fs::path(plan.run_folder) / "farm").string();
+  plan.name = plain_name(fs::path(settings.job_file).stem().string());
+  plan.traces_first = uses_history(resolved.pipeline) && resolved.job.settings.preroll == 0;
+  if (plan.traces_first) {
+    job.settings.stage = SequenceStage::trace;
+    check_job(job);
+    plan.checkpoint =
+        job.settings.checkpoint.empty() ? (fs::path(plan.folder) / "history").string() : job.settings.checkpoint;
+  }
+  plan.division = settings.chunk_frames > 0 ? fmt::format(" --chunk-frames {}", settings.chunk_frames)
+                                            : fmt::format("/{}", settings.chunks);
+  for (const FrameChunk& chunk : chunks) {
+    if (!chunk.frames.empty()) {
+      plan.chunks.push_back(format_frame_list(chunk.frames));
+      plan.samples.push_back(chunk.samples);
+    }
+  }
+  const OutputSettings& output = resolved.pipeline.output;
+  plan.files_per_frame = static_cast<std::int32_t>(!output.exr.pattern.empty()) +
+                         static_cast<std::int32_t>(!output.display.pattern.empty()) +
+                         static_cast<std::int32_t>(!output.map_pattern.empty());
+  plan.threads = settings.threads;
+  plan.retries = settings.retries;
+  plan.memory_mib = settings.memory.bytes > 0 ? (settings.memory.bytes + 1048575) / 1048576
+                                              : memory_mib(resolved.job.settings, resolved.plan);
+  plan.then = settings.then;
+  predict_times(settings, chunks, plan);
+  if (plan.traces_first && !resolved.plan.frames.empty()) {
+    const FrameRequest& first = resolved.plan.frames.front();
+    plan.traced_bytes =
+        kBytesOfASite * static_cast<std::uint64_t>(first.width_px) * static_cast<std::uint64_t>(first.height_px);
+  }
+  return plan;
+}
+
+void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
+  std::error_code failed;
+  for (const char* folder : {"tasks", "logs"}) {
+    fs::create_directories(fs::path(plan.folder) / folder, failed);
+  }
+  if (failed) {
+    throw Error(ErrorKind::input, plan.folder, "the folder cannot be made: " + failed.message(),
+                "choose another output folder");
+  }
+  for (const auto& [name, text] : farm_files(plan, chunks)) {
+    write_text_atomically((fs::path(plan.folder) / name).string(), text);
+  }
+  write_text_atomically((fs::path(plan.folder) / "farm.json").string(), farm_plan_json(plan));
+}
+
+std::string farm_plan_text(const FarmPlan& plan) {
+  std::string text = fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", "chunk", "frames", "samples", "minutes", "which");
+  for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
+    text += fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", i + 1, parse_frame_list(plan.chunks[i]).size(),
+                        plan.samples[i] > 0 ? fmt::format("{:.0f}", plan.samples[i]) : "not known",
+                        i < plan.predicted_s.size() ? fmt::format("{:.2f}", plan.predicted_s[i] / 60) : "-",
+                        plan.chunks[i]);
+  }
+  text += fmt::format("each task: {}{} MiB{}\n", plan.threads > 0 ? fmt::format("{} threads, ", plan.threads) : "",
+                      plan.memory_mib, plan.time_s > 0 ? fmt::format(", at most {} min", (plan.time_s + 59) / 60) : "");
+  if (plan.traces_first) {
+    text += fmt::format(
+        "frames depend on those before them: the tasks trace, and one run finishes all frames in order; a traced frame "
+        "takes up to {:.1f} MiB until then\n",
+        static_cast<double>(plan.traced_bytes) / 1048576.0);
+  }
+  return text + fmt::format("then: {}", plan.traces_first ? "finish" : "merge") +
+         (plan.then.empty() ? "" : fmt::format("; {}", fmt::join(plan.then, "; "))) + "\n";
+}
+
+}  // namespace gazetrace

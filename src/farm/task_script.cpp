@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The script that runs a task of a farm, whichever engine calls it. It passes signals on to the program, so that a
+// frame can be finished, and keeps the exit code for the status.
+#include <fmt/format.h>
+
+#include <string>
+
+#include "farm/engine.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Seconds between the end of a run by `max-time` and the engine's own limit.
+constexpr std::int64_t kReserve_s = 60;
+
+// So many frames are filtered and accumulated once more, at most, when the run that finishes is killed.
+constexpr int kCheckpointEvery = 50;
+
+constexpr const char* kBeginning = R"(#!/bin/sh
+# Runs tasks of the farm in this folder: task.sh 3, task.sh 3-5,8, task.sh finish, task.sh after-1.
+# Exit codes are those of gazetrace: 2 will fail again, 3 may be worth another try, 4 was interrupted and goes on.
+)";
+
+constexpr const char* kRunning = R"(
+child=
+ended=0  # asked from outside to end: the task is not put into the queue again
+pass() { [ -z "$child" ] || kill "-$1" "$child" 2>/dev/null; }
+trap 'ended=1; pass TERM' TERM INT
+trap 'pass USR1' USR1 XCPU
+
+run() {
+  name=$1
+  shift
+  rm -f "$tasks/$name.exit"
+  "$@" &
+  child=$!
+  while :; do
+    wait "$child"
+    code=$?
+    # A signal ends the waiting, and not the child.
+    { [ "$code" -gt 128 ] && kill -0 "$child" 2>/dev/null; } || break
+  done
+  child=
+  echo "$code" > "$tasks/.$name.$$" && mv "$tasks/.$name.$$" "$tasks/$name.exit"
+  return "$code"
+}
+
+each_chunk() {
+  for part in $(echo "$1" | tr ',' ' '); do
+    case $part in
+      *-*) seq "${part%-*}" "${part#*-}" ;;
+      *) echo "$part" ;;
+    esac
+  done
+}
+)";
+
+// The program with what stands before it, for the shell.
+std::string program_words(const FarmPlan& plan) {
+  return (plan.container.empty() ? std::string() : plan.container + " ") + shell_word(plan.program);
+}
+
+std::string limits(const FarmPlan& plan) {
+  std::string words;
+  if (plan.threads > 0) {
+    words += fmt::format(" --threads {}", plan.threads);
+  }
+  if (plan.time_s > 2 * kReserve_s) {
+    words += fmt::format(" --max-time {}s", plan.time_s - kReserve_s);
+  }
+  return words + farm_engine(plan.engine).progress;
+}
+
+std::string finish_words(const FarmPlan& plan) {
+  if (!plan.traces_first) {
+    return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(plan.run_folder));
+  }
+  return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
+                     program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,
+                     limits(plan));
+}
+
+}  // namespace
+
+std::string task_script(const FarmPlan& plan) {
+  std::string text = kBeginning;
+  text += fmt::format("tasks={}\nmkdir -p \"$tasks\" && cd {} || exit 3\n", shell_word(plan.folder + "/tasks"),
+                      shell_word(plan.work_folder));
+  text += kRunning;
+  text += fmt::format(R"(
+chunk() {{
+  run "$1" {} render --config {} --chunk "$1"{} --resume{}{}
+}}
+
+code=0
+case $1 in
+  finish)
+    run finish {}
+    code=$?
+    ;;
+)",
+                      program_words(plan), shell_word(plan.job_file), plan.division,
+                      plan.traces_first ? " --stage trace" : "", limits(plan), finish_words(plan));
+  for (std::size_t i = 0; i < plan.then.size(); ++i) {
+    text += fmt::format("  after-{0})\n    run after-{0} sh -c {1}\n    code=$?\n    ;;\n", i + 1,
+                        shell_word(plan.then[i]));
+  }
+  text += R"(  *)
+    worst=0
+    for number in $(each_chunk "$1"); do
+      chunk "$number"
+      code=$?
+      [ "$code" -eq 0 ] || worst=$code
+      { [ "$code" -eq 4 ] || [ "$ended" -eq 1 ]; } && break
+    done
+    code=$worst
+    ;;
+esac
+)";
+  const std::string again = farm_engine(plan.engine).again(plan);
+  if (!again.empty()) {
+    text += fmt::format(R"(
+if [ "$ended" -eq 0 ] && {{ [ "$code" -eq 3 ] || [ "$code" -eq 4 ] || [ "$code" -gt 128 ]; }}; then
+{}fi
+)",
+                        again);
+  }
+  return text + "exit \"$code\"\n";
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace gazetrace {
+
+// Error(input) where a settings file that is not trusted (`confine`) names a file to read or to write outside of its
+// own folder, or of the data set that it belongs to. Nothing that it names is opened. `text`: the file's content.
+void check_confined(const std::string& text, const std::string& path);
+
+}  // namespace gazetrace

@@ -1,0 +1,329 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Farms: frames that are traced by many and finished by one, borders of chunks, and the tasks of every engine."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+import harness
+from farm_faults_test import JOB_TOML, Farm
+
+HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
+FRAMES = ["--frames", "1-6"]
+
+
+class TracedFirst(Farm):
+    history = HISTORY
+
+    def trace(self, folder, *more):
+        return self.run_ok("render", "--config", "job.toml", *self.history, *FRAMES, "-o", f"{folder}/f.####.exr", "-o",
+                           f"{folder}/f.####.png", "--stage", "trace", *more)
+
+    def finish(self, folder, *more, program=None):
+        run = program or self.run_ok
+        return run("render", "--config", "job.toml", *self.history, *FRAMES, "-o", f"{folder}/f.####.exr", "-o",
+                   f"{folder}/f.####.png", "--stage", "finish", *more)
+
+    def whole(self):
+        self.render("whole", *self.history, *FRAMES)
+        return self.pictures("whole")
+
+    def test_the_bits_are_those_of_one_run(self):
+        whole = self.whole()
+        for number in (2, 3, 1):
+            self.trace("out", "--chunk", f"{number}/3")
+        self.assertEqual(self.pictures("out"), {})
+        self.assertEqual(sum(name.endswith(".sparse") for name in self.files("out")), 6)
+        self.finish("out")
+        self.assertEqual(self.pictures("out"), whole)
+        # The table of the whole counts what tracing took, wherever that was.
+        one, two = self.rows("whole/timing.csv"), self.rows("out/timing.csv")
+        self.assertEqual([row["samples"] for row in one.values()], [row["samples"] for row in two.values()])
+        self.assertTrue(all(float(row["trace_ms"]) > 0 for row in two.values()))
+
+    def test_other_histories_and_samples_that_follow_the_picture(self):
+        for self.history in (["--accumulate", "running", "--filter", "linear", "--aov", "albedo,depth"],
+                             ["--accumulate", "reproject", "--accumulate-order", "before", "--filter", "linear"],
+                             [*HISTORY, "--falloff", "linear", "--contrast-strength", "0.5"],
+                             [*HISTORY, "--falloff", "visible", "--budget-spp", "8"]):
+            with self.subTest(self.history):
+                for folder in ("whole", "out"):
+                    shutil.rmtree(self.folder / folder, ignore_errors=True)
+                for number in (1, 2):
+                    self.trace("out", "--chunk", f"{number}/2")
+                self.finish("out")
+                self.assertEqual(self.pictures("out"), self.whole())
+
+    def test_a_run_that_finishes_goes_on(self):
+        whole = self.whole()
+        self.trace("out")
+        early = self.finish("out", "--max-time", "0s", program=self.run_program)
+        self.assertEqual(early.returncode, 4, early.stderr)
+        self.finish("out", "--resume")
+        (self.folder / "out/f.0003.png").unlink()
+        self.finish("out", "--resume")
+        self.assertEqual(self.pictures("out"), whole)
+
+    def test_frames_that_are_not_traced_are_named(self):
+        self.trace("out", "--chunk", "1", "--chunk-frames", "4")
+        self.assertIn("2 frames are not traced under these settings: 5-6",
+                      self.finish("out", program=self.run_program).stderr)
+        self.trace("out", "--chunk", "2", "--chunk-frames", "4")
+        shutil.copyfile(self.folder / "out/traced.0005.sparse", self.folder / "out/traced.0006.sparse")
+        self.assertIn("traced.0006.sparse: holds frame 5", self.finish("out", "--resume", program=self.run_program).stderr)
+        # Cut within the line that says under which settings it was made, and that line changed: damaged, not another's.
+        first = self.folder / "out/traced.0001.sparse"
+        content = first.read_bytes()
+        line = content.index(b"\n")
+        for broken in (content[:line - 5], content[:line - 1] + bytes([content[line - 1] ^ 1]) + content[line:]):
+            first.write_bytes(broken)
+            self.trace("out", "--chunk", 1, "--chunk-frames", "4", "--resume")
+            self.assertEqual(first.read_bytes()[:line], content[:line])
+        damaged = self.folder / "out/traced.0002.sparse"
+        damaged.write_bytes(damaged.read_bytes()[:-5])
+        again = self.finish("out", "--resume", program=self.run_program)
+        self.assertEqual(again.returncode, 2)
+        self.assertIn("traced.0002.sparse: the file of a traced frame is damaged", again.stderr)
+        for number in (1, 2):
+            self.trace("out", "--chunk", number, "--chunk-frames", "4", "--resume")
+        self.finish("out", "--resume")
+        self.assertEqual(self.pictures("out"), self.whole())
+
+    def test_what_cannot_be_divided_so(self):
+        for more, words in ((["--accumulate", "two-sided"], "frames read the samples of those around them"),
+                            ([*HISTORY, "--preroll", "2"], "tracing needs no history"),
+                            ([*HISTORY, "--only-pixel", "3,3"], "only one pixel")):
+            refused = self.run_program("render", "--config", "job.toml", *FRAMES, "-o", "out/f.####.exr", "--stage", "trace",
+                                       *more)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(words, refused.stderr)
+        self.trace("out")
+        self.assertIn("there are no pictures to join", self.run_program("merge", "out").stderr)
+
+
+class Borders(Farm):
+    def chunk(self, number, *more):
+        return self.render("out", *FRAMES, "--chunk", f"{number}/3", *more)
+
+    def test_a_chunk_that_never_began_is_missing(self):
+        self.chunk(1)
+        self.chunk(2)
+        self.assert_refused(["merge", "out"], ["frames are missing", "6"])
+        self.assertIn("2 parts joined", self.run_ok("merge", "out", "--allow-missing").stdout)
+
+    def test_a_damaged_file_of_borders_is_made_again(self):
+        self.chunk(1)
+        [borders] = (self.folder / "out").glob("chunks.3.*.json")
+        before = borders.read_text()
+        borders.write_text(before[:40])
+        self.chunk(2)
+        self.assertEqual(borders.read_text(), before)
+
+    def test_other_settings_have_borders_of_their_own(self):
+        self.chunk(1)
+        self.run_ok("render", "--config", "job.toml", "-o", "out/g.####.exr", *FRAMES, "--chunk", "2/3", "--seed", "7")
+        self.assertEqual(len(list((self.folder / "out").glob("chunks.3.*.json"))), 2)
+
+
+class OneCheckpoint(Farm):
+    """A run whose checkpoint takes the place of the one that it began from."""
+
+    def part(self, frames, *more, program=None):
+        run = program or self.run_ok
+        return run("render", "--config", "job.toml", *HISTORY, "--frames", frames, "--part", "-o", "out/f.####.exr", "-o",
+                   "out/f.####.png", "--checkpoint", "out/history", *more)
+
+    def test_it_goes_on_when_it_was_interrupted(self):
+        self.write("job.toml", JOB_TOML.replace("[4, 2, 1]", "[512, 256, 128]"))
+        self.render("whole", *HISTORY, *FRAMES)
+        self.part("1-2")
+        # A checkpoint after every frame is what an interrupted run leaves behind.
+        arguments = ["render", "--config", "job.toml", *HISTORY, "--frames", "3-6", "--part", "-o", "out/f.####.exr", "-o",
+                     "out/f.####.png", "--checkpoint", "out/history", "--checkpoint-every", "1", "--resume-from", "out/history"]
+        run = subprocess.Popen([harness.PROGRAM, *arguments], cwd=self.folder)
+        while run.poll() is None and not (self.folder / "out/f.0004.exr").exists():
+            time.sleep(0.002)
+        run.send_signal(signal.SIGTERM)
+        self.assertIn(run.wait(), (0, 4))
+        went_on = self.run_program(*arguments, "--resume")
+        self.assertEqual(went_on.returncode, 0, went_on.stderr)
+        self.assertEqual(self.pictures("out"), self.pictures("whole"))
+        self.run_ok(*arguments, "--resume")  # there is nothing left to do
+        (self.folder / "out/f.0003.png").unlink()
+        gone = self.run_program(*arguments, "--resume")
+        self.assertEqual(gone.returncode, 2)
+        self.assertIn("frame 3 must be made again, and the history after frame 2 is gone", gone.stderr)
+
+
+FARM_TOML = """
+scene = "glide.gltf"
+gaze = "log.csv"
+size = "48x27"
+frame-rect = [0, 0, 64, 36]
+region-samples = [4, 2, 1]
+exposure = 0.5
+frames = "1-6"
+output = ["out/f.####.exr", "out/f.####.png"]
+"""
+HISTORY_TOML = 'accumulate = "reproject"\nfilter = "guided"\n'
+
+
+class Engines(Farm):
+    def setUp(self):
+        super().setUp()
+        self.write("farm.toml", FARM_TOML)
+        self.write("history.toml", FARM_TOML + HISTORY_TOML)
+
+    def farm(self, *arguments, job="farm.toml", program=None):
+        return (program or self.run_ok)("farm", job, *arguments)
+
+    def status(self):
+        return json.loads(self.run_ok("farm", "status", "out", "--json").stdout)
+
+    def whole(self, job):
+        self.run_ok("render", "--config", job, "-o", "whole/f.####.exr", "-o", "whole/f.####.png", "--quiet")
+        return self.pictures("whole")
+
+    def test_local(self):
+        told = self.farm("--chunks", "3", "--processes", "2", "--threads", "1", "--then", "echo made > film.txt")
+        self.assertIn("6 of 6 frames are rendered", told.stdout)
+        self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
+        self.assertEqual(self.pictures("out"), self.whole("farm.toml"))
+        status = self.status()
+        self.assertTrue(status["is_done"])
+        self.assertEqual([task["state"] for task in status["tasks"]], ["done"] * 5)
+        self.assertIn("nothing to do", self.run_ok("farm", "retry", "out").stderr)
+
+    def test_local_with_history(self):
+        self.farm("--chunks", "3", "--processes", "2", "--threads", "1", job="history.toml")
+        self.assertIn("farm/history", self.files("out"))
+        self.assertEqual(self.pictures("out"), self.whole("history.toml"))
+        self.assertEqual(self.status()["tasks"][-1]["done"], 6)
+        # What was traced is not needed any more.
+        for path in (self.folder / "out").glob("traced.*"):
+            path.unlink()
+        self.assertTrue(self.status()["is_done"])
+
+    def test_a_job_with_a_checkpoint_and_a_name_of_words(self):
+        self.write("my job.toml", FARM_TOML + HISTORY_TOML + 'checkpoint = "out/history"\n')
+        self.farm("--engine", "slurm", "--chunks", "2", job="my job.toml")
+        self.assertIn("#SBATCH --job-name=my_job\n", (self.folder / "out/farm/task.sbatch").read_text())
+        for task in ("1-2", "finish"):
+            done = subprocess.run(["sh", str(self.folder / "out/farm/task.sh"), task], capture_output=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("history", self.files("out"))
+        self.assertEqual(self.pictures("out"), self.whole("history.toml"))
+        self.write("wrong.toml", FARM_TOML + 'exposure-smoothing = "1s"\nonly-pixel = [3, 3]\n')
+        refused = self.farm("--chunks", "2", job="wrong.toml", program=self.run_program)
+        self.assertEqual(refused.returncode, 2)
+
+    def test_what_failed_is_named_and_tried_again(self):
+        (self.folder / "out").mkdir()
+        broken = self.folder / "out/f.0003.exr"
+        broken.mkdir()  # a folder in the place of a picture: no file can be made there
+        failed = self.farm("--chunks", "3", "--retries", "1", program=self.run_program)
+        self.assertNotEqual(failed.returncode, 0, failed.stderr)
+        status = self.status()
+        self.assertFalse(status["is_done"])
+        states = {task["task"]: task["state"] for task in status["tasks"]}
+        self.assertEqual(states["1"], "done")
+        self.assertIn("failed", states.values())
+        self.assertEqual(states["finish"], "missing")
+        broken.rmdir()
+        self.run_ok("farm", "retry", "out")
+        self.assertTrue(self.status()["is_done"])
+        self.assertEqual(self.pictures("out"), self.whole("farm.toml"))
+
+    def test_a_task_that_runs_is_seen(self):
+        self.farm("--engine", "slurm", "--chunks", "2")
+        self.assertEqual([task["state"] for task in self.status()["tasks"]], ["missing"] * 3)
+        # It would take minutes, and a frame in hand is given up soon.
+        self.write("slow.toml", FARM_TOML.replace("[4, 2, 1]", "[8192, 8192, 8192]").replace("48x27", "256x144") + 'grace = "1s"\n')
+        self.farm("--engine", "slurm", "--chunks", "2", job="slow.toml")
+        task = subprocess.Popen(["sh", str(self.folder / "out/farm/task.sh"), "1"], stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL)
+        seen = set()
+        begin = time.monotonic()
+        while time.monotonic() - begin < 100 and "running" not in seen:
+            seen.add(self.status()["tasks"][0]["state"])
+        task.send_signal(signal.SIGTERM)
+        self.assertEqual(task.wait(timeout=100), 4)
+        self.assertEqual(seen - {"missing"}, {"running"})
+        self.assertEqual(self.status()["tasks"][0]["state"], "interrupted")
+
+    def test_files_for_slurm(self):
+        self.run_ok("render", "--config", "farm.toml", "-o", "whole/f.####.exr", "--quiet")
+        self.farm("--engine", "slurm", "--chunks", "3", "--threads", "2", "--rate-from", "whole/timing.csv", "--then",
+                  "echo 'it is done'")
+        batch = (self.folder / "out/farm/task.sbatch").read_text()
+        for words in ("#SBATCH --cpus-per-task=2", "#SBATCH --mem=", "#SBATCH --time=", "--requeue", "--signal=B:USR1@90"):
+            self.assertIn(words, batch)
+        submit = (self.folder / "out/farm/submit.sh").read_text()
+        for words in ("--array=1-3", "--dependency=afterok:$job --output=logs/finish.log", "task.sbatch after-1"):
+            self.assertIn(words, submit)
+        # The script that every engine runs does the tasks.
+        for task in ("3", "1-2", "finish", "after-1"):
+            done = subprocess.run(["sh", str(self.folder / "out/farm/task.sh"), task], capture_output=True, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(self.status()["is_done"])
+        (self.folder / "out/f.0001.exr").unlink()
+        states = {task["task"]: task["state"] for task in self.status()["tasks"]}
+        self.assertEqual((states["2"], states["finish"], states["after-1"]), ("done", "missing", "missing"))
+        self.run_ok("farm", "retry", "out")
+        self.assertIn("--array=1 ", (self.folder / "out/farm/submit.sh").read_text())
+
+    def test_files_for_openjd(self):
+        self.farm("--engine", "openjd", "--chunks", "3", job="history.toml")
+        job = json.loads((self.folder / "out/farm/template.json").read_text())
+        self.assertEqual((job["specificationVersion"], job["extensions"]), ("jobtemplate-2023-09", ["TASK_CHUNKING"]))
+        chunks, finish = job["steps"]
+        self.assertEqual(chunks["parameterSpace"]["taskParameterDefinitions"][0]["type"], "CHUNK[INT]")
+        self.assertEqual(chunks["script"]["actions"]["onRun"]["cancelation"]["mode"], "NOTIFY_THEN_TERMINATE")
+        self.assertEqual(finish["dependencies"], [{"dependsOn": "Chunks"}])
+        told = self.run_ok("render", "--config", "farm.toml", "--progress", "openjd", "-o", "o/f.####.exr").stdout.splitlines()
+        self.assertIn("openjd_progress: 100.0", told)
+        self.assertTrue(any(line.startswith("openjd_status: frame 6 done, 6 of 6") for line in told))
+        wrong = self.run_program("render", "--config", "farm.toml", "--progress", "openjd", "--gaze", "none.csv", "-o", "p/f.####.exr")
+        self.assertTrue(wrong.stdout.startswith("openjd_fail: none.csv"), wrong.stdout)
+
+    def test_files_for_flamenco(self):
+        self.farm("--engine", "flamenco", "--chunks", "3", "--then", "true")
+        job = json.loads((self.folder / "out/farm/job.json").read_text())
+        self.assertEqual(job["settings"]["chunks"], "1,2,3")
+        self.assertEqual(job["settings"]["after"], "finish,after-1")
+        script = (self.folder / "out/farm/gazetrace_farm.js").read_text()
+        self.assertIn("function compileJob(job)", script)
+        if shutil.which("node") is None:
+            self.skipTest("no node, which stands in for the manager")
+        # The manager's own objects, as far as the script uses them.
+        stand_in = """
+            const author = { Task: (name, type) => ({ name, type, commands: [], needs: [],
+                                 addCommand(command) { this.commands.push(command); },
+                                 addDependency(task) { this.needs.push(task.name); } }),
+                             Command: (name, parameters) => ({ name, parameters }) };
+            const job = { settings: SETTINGS, tasks: [], addTask(task) { this.tasks.push(task); } };
+            compileJob(job);
+            console.log(JSON.stringify(job.tasks));"""
+        told = subprocess.run(["node", "-e", script + stand_in.replace("SETTINGS", json.dumps(job["settings"]))],
+                              capture_output=True, text=True, check=True)
+        tasks = {task["name"]: task for task in json.loads(told.stdout)}
+        self.assertEqual(list(tasks), ["1", "2", "3", "finish", "after-1"])
+        self.assertEqual(tasks["finish"]["needs"], ["1", "2", "3"])
+        self.assertEqual(tasks["after-1"]["needs"], ["finish"])
+        self.assertEqual(tasks["2"]["commands"], [{"name": "exec", "parameters": {
+            "exe": "sh", "args": [str((self.folder / "out/farm/task.sh").resolve()), "2"]}}])
+
+    def test_what_is_no_farm(self):
+        for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks or --chunk-frames"),
+                                 (["--chunks", "2", "--rate-from", "none.csv"], "none.csv")):
+            refused = self.farm(*arguments, program=self.run_program)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(words, refused.stderr)
+        self.assert_refused(["farm", "status", "nowhere"], ["there is no farm in it"])
+
+
+if __name__ == "__main__":
+    harness.main()
