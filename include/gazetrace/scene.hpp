@@ -46,7 +46,7 @@ struct Instance {
   Affine to_world;                // at rest, for an instance that moves
   std::int32_t motion = -1;       // index into Scene::motions; -1: stands still
   std::int32_t deformation = -1;  // index into Scene::deformations; -1: keeps its shape
-  std::string node;               // name of the glTF node that places it; "#3" for node 3 without a name
+  std::string node{};             // name of the glTF node that places it; "#3" for node 3 without a name
 };
 
 // Where an instance is over time: a node's animation together with those of its parents. May be called with any time;

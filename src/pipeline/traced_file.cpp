@@ -42,7 +42,6 @@ void each_part_of_map(Map& map, Visit& visit) {
   visit(map.sites);
   visit(map.tiles);
   visit(map.expected_samples);
-  visit(map.full_rate_spp);
 }
 
 template <class Region, class Visit>

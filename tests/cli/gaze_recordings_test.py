@@ -138,6 +138,20 @@ class Recordings(harness.CliTest):
         self.assert_refused(["gaze", "convert", "sessions.asc", "-o", "no.csv"], ["2 recordings", "--gaze-recording"])
         self.assertEqual(self.converted("sessions.asc", "--gaze-recording", "2")[0]["t[ns]"], "5000000000")
 
+    def test_three_recordings_of_four_blocks_are_planned_trial_by_trial(self):
+        self.write("sessions.asc", eyelink([10_000, 20_000, 5_000, 3_000]))
+        plan = ["plan", "--gaze", "sessions.asc", *VIEW, *SCREEN, "--fps", "24", "--gaze-transfer", "fraction"]
+        lengths = []
+        for recording, blocks in (("1", 2), ("2", 1), ("3", 1)):
+            one = ["--gaze-recording", recording]
+            listed = json.loads(self.run_ok("gaze", "trials", "sessions.asc", *one, "--fps", "24", "--json").stdout)
+            self.assertEqual(len(listed["trials"]), blocks)
+            planned = [json.loads(self.run_ok(*plan, *one, "--trial", str(trial), "--json").stdout)["frames"]
+                       for trial in range(1, blocks + 1)]
+            self.assertEqual(listed["frames"], sum(len(frames) for frames in planned))
+            lengths += [len(frames) for frames in planned]
+        self.assertEqual(lengths, [24] * 4)  # a second each
+
     def test_a_plan_of_hours_without_gaze_is_refused(self):
         self.write("hours.asc", eyelink([10_000, 72_010_000]))
         plan = ["plan", "--gaze", "hours.asc", *VIEW, *SCREEN, "--fps", "60", "--gaze-transfer", "fraction"]

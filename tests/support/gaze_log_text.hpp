@@ -20,10 +20,10 @@ class GazeLogText {
   explicit GazeLogText(const GazeLog& log) {
     const auto& [kind, samples, source, format, format_confidence, clock, pupil_unit, geometry, pixels_per_degree,
                  rate_hz, age_unknown, eyes, origins, head, events, calibrations, stated_eye, device, conventions,
-                 facts, warnings, order, witnesses, recordings, recording] = log;
+                 facts, warnings, order, witnesses, trial, recordings, recording] = log;
     put(kind, samples, source, format, format_confidence, clock, pupil_unit, geometry, pixels_per_degree, rate_hz,
         age_unknown, eyes, origins, head, events, calibrations, stated_eye, device, conventions, facts, warnings, order,
-        witnesses, recordings, recording);
+        witnesses, trial, recordings, recording);
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -104,6 +104,10 @@ class GazeLogText {
   void one(const GazeEvent& event) {
     const auto& [type, eye, begin_ns, end_ns, words, row, duration_ns, amplitude_deg, peak_velocity_deg_s] = event;
     put(type, eye, begin_ns, end_ns, words, row, duration_ns, amplitude_deg, peak_velocity_deg_s);
+  }
+  void one(const GazeTrial& trial) {
+    const auto& [number, name, begin_ns, end_ns, block] = trial;
+    put(number, name, begin_ns, end_ns, block);
   }
   void one(const GazeRecording& recording) {
     const auto& [name, is_block, rows, first_row, first_ns, last_ns] = recording;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
@@ -364,6 +365,47 @@ TEST(FovVideoVdp, PicturesOffTheMiddleAreSeenWhereTheyLie) {
           << b;
     }
   }
+}
+
+// Noise that is three times as strong on the right; windows there are half as dense as on the left.
+TEST(FovVideoVdp, WindowsStandForTheWholeByTheirWeights) {
+  constexpr int kWidth = 768;
+  constexpr int kHeight = 384;
+  constexpr int kSide = 96;
+  const ImageGray reference(kWidth, kHeight, 40);
+  ImageGray whole = reference;
+  ImageGray windows = reference;
+  ImageGray weights(kWidth, kHeight, 0);
+  std::mt19937 random(17);
+  std::normal_distribution<float> normal;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const bool right = x >= kWidth / 2;
+      whole(x, y) += (right ? 6.0F : 2.0F) * normal(random);
+      const int column = x / kSide;
+      const int row = y / kSide;
+      if ((column + row) % 2 == 0 && (!right || row % 2 == 0)) {
+        windows(x, y) = whole(x, y);
+        weights(x, y) = right ? 4.0F : 2.0F;
+      }
+    }
+  }
+  FovVideoVdpSettings settings;
+  settings.geometry = geometry_from_horizontal_fov(kWidth, kHeight, 768.0 / 28);
+  const auto jod_of = [&](const ImageGray& test, const ImageGray& pooling) {
+    settings.pooling_weights = pooling;
+    return fovvideovdp_jod(FovVideoVdp(settings, kWidth, kHeight).add(reference, test, Vec2d{200, 100}).q);
+  };
+  const double expected = jod_of(whole, {});
+  EXPECT_LT(expected, 9.8);
+  EXPECT_NEAR(jod_of(windows, weights), expected, 0.05);
+  EXPECT_GT(jod_of(windows, {}), expected + 0.2);
+  EXPECT_EQ(jod_of(whole, ImageGray(kWidth, kHeight, 2)), expected);
+
+  EXPECT_THROW(jod_of(whole, ImageGray(kWidth, kHeight, 0)), Error);
+  EXPECT_THROW(jod_of(whole, ImageGray(kWidth / 2, kHeight, 1)), Error);
+  weights(3, 4) = -1;
+  EXPECT_THROW(jod_of(whole, weights), Error);
 }
 
 TEST(FovVideoVdp, SameBitsForAnyNumberOfThreadsAndPlaces) {
