@@ -10,8 +10,8 @@
 
 namespace gazetrace {
 
-// Throws Error(input) for a table that holds no gaze, saying what it holds and what it is good for. `is_named`: the user
-// names the format, so that only what is certain is refused.
+// Throws Error(input) for a table that holds no gaze, saying what it holds and what it is good for. `is_named`: the
+// user names the format, so that only what is certain is refused.
 void refuse_other_tables(const GazeFile& file, bool is_named);
 
 // The events of a table with one row for each. Throws Error(input) for a file that is no such table.
