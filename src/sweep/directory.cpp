@@ -4,7 +4,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/sweep.hpp"
-#include "sweep/file_lock.hpp"
+#include "core/file_lock.hpp"
 
 namespace gazetrace {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "core/parallel.hpp"
-#include "sweep/file_lock.hpp"
+#include "core/file_lock.hpp"
 #include "sweep/scorer.hpp"
 #include "sweep/state.hpp"
 

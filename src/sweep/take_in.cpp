@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gazetrace/error.hpp"
-#include "sweep/file_lock.hpp"
+#include "core/file_lock.hpp"
 #include "sweep/state.hpp"
 
 namespace gazetrace {
