@@ -168,6 +168,33 @@ TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
   }
 }
 
+TEST(History, CheckpointsThatDoNotFitTogetherAreRefused) {
+  const Scene scene = room();
+  const TemporaryFolder folder;
+  const std::string path = folder / "history.bin";
+  PathTracer tracer(scene, threads(2));
+  TemporalHistory history;
+  (void)FrameRenderer(tracer, settings_of()).render(plan_of(1, 1).frames.front(), history);
+  save_checkpoint(path, history, "d");
+  EXPECT_NO_THROW((void)load_checkpoint(path, "d"));
+  const std::vector<void (*)(TemporalHistory&)> changes{
+      [](TemporalHistory& wrong) { wrong.count_sum = Image<double>(1, 1); },
+      [](TemporalHistory& wrong) { wrong.variance_weight_sum = {}; },
+      [](TemporalHistory& wrong) { wrong.radiance_sum = Image<Vec3d>(48, 31); },
+      [](TemporalHistory& wrong) { wrong.surfaces.depth_m = {}; },
+      [](TemporalHistory& wrong) { wrong.surfaces.object = {}; },
+      [](TemporalHistory& wrong) { wrong.surfaces.residual = ImageGray(32, 48); },
+      [](TemporalHistory& wrong) { wrong.frames = -1; },
+      [](TemporalHistory& wrong) { wrong.camera->projection.kind = static_cast<ProjectionKind>(9); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    TemporalHistory wrong = history;
+    changes[i](wrong);
+    save_checkpoint(path, wrong, "d");
+    EXPECT_THROW((void)load_checkpoint(path, "d"), Error) << i;
+  }
+}
+
 TEST(History, CheckpointsComeAsOftenAsAskedAndTheLastOneStays) {
   const Scene scene = room();
   const TemporaryFolder folder;
