@@ -158,6 +158,10 @@ TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
       [](TracedFrame& frame) { frame.map.region.pixels.front() = 200; },
       [](TracedFrame& frame) { frame.sparse.first_surface.back() += 5; },
       [](TracedFrame& frame) { frame.map.width_px += 1; },
+      [](TracedFrame& frame) { frame.map.tiles.front().x_px = -1; },
+      [](TracedFrame& frame) { frame.map.sites.front().pixels = 0; },
+      [](TracedFrame& frame) { frame.map.regions.front().block_px = 2'000'000'000; },
+      [](TracedFrame& frame) { frame.map.region.pixels.front() ^= 1U; },
       [](TracedFrame& frame) { frame.sparse.stats.regions.clear(); },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
