@@ -34,6 +34,7 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
   }
   Job asked = job;
   asked.settings.gaze_uncertainty = true;  // has the plan take accuracy and precision from the log
+  asked.settings.gaze_latency = {};        // what steers a rendering late was not seen late
   const Scene scene = load_job_scene(asked.settings);
   ResolveOptions options;
   options.scope = ResolveScope::plan;
@@ -41,6 +42,13 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
   options.tell_idle = false;
   GazeOnScene seen{resolve(asked, options), {}};
   seen.resolved.warnings.insert(seen.resolved.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  if (seen.resolved.steering) {
+    // The processing that was asked for is of the gaze itself here, as nothing is steered.
+    for (FrameRequest& request : seen.resolved.plan.frames) {
+      request.gaze_true = request.gaze_render;
+      request.gaze_direction_true = request.gaze_direction_render;
+    }
+  }
   settings.uncertainty = *seen.resolved.plan_settings.uncertainty;
   PathTracer tracer(scene, tracer_options(asked.settings));
   seen.objects = gaze_objects(tracer, scene, seen.resolved.plan, settings);

@@ -81,6 +81,12 @@ class Study(harness.CliTest):
         down = 0.2 * math.tan(0.4)
         self.assertAlmostEqual(float(rows[0]["distance_m"]), 3.5 * math.hypot(1, down), places=2)
         self.assertAlmostEqual(float(rows[0]["y_m"]), 0.5 - 3.5 * down, places=2)
+        # One sample beside the box, in the middle of the first frame: processing takes it out.
+        self.write("jumps.csv", harness.gaze_csv(f"{i * 10_000_000},0.5,{0.05 if i == 5 else 0.6},ok,cyclopean" for i in range(50)))
+        jumps = [*common[:2], "jumps.csv", *common[3:]]
+        of_frame_1 = lambda *more: table(self.run_ok("gaze", "objects", *jumps, *more).stdout)[0]
+        self.assertNotEqual(of_frame_1()["node"], "#0")
+        self.assertEqual(of_frame_1("--gaze-process", "median:samples=5")["node"], "#0")
         self.run_ok("gaze", "objects", *common, "--recorded-here", "--table", "objects.json")
         report = json.loads((self.folder / "objects.json").read_text())
         self.assertEqual(report["stimulus"], "recorded")
