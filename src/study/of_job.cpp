@@ -25,7 +25,7 @@ bool knows_uncertainty(const JobSettings& settings, const GazeLog& log) {
 
 }  // namespace
 
-GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
+GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings, const std::optional<SceneHeatSettings>& heat) {
   if (job.settings.scene.empty()) {
     throw Error(ErrorKind::usage, "", "no scene was given", "name a .gltf or .glb file");
   }
@@ -40,7 +40,7 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
   options.scope = ResolveScope::plan;
   options.loaded = &scene;
   options.tell_idle = false;
-  GazeOnScene seen{resolve(asked, options), {}};
+  GazeOnScene seen{resolve(asked, options), {}, {}};
   seen.resolved.warnings.insert(seen.resolved.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
   if (seen.resolved.steering) {
     // The processing that was asked for is of the gaze itself here, as nothing is steered.
@@ -51,7 +51,13 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
   }
   settings.uncertainty = *seen.resolved.plan_settings.uncertainty;
   PathTracer tracer(scene, tracer_options(asked.settings));
+  settings.keep_hits = settings.keep_hits || heat.has_value();
   seen.objects = gaze_objects(tracer, scene, seen.resolved.plan, settings);
+  if (heat) {
+    const FrameRate& fps = seen.resolved.plan_settings.fps;
+    const double frame_s = static_cast<double>(fps.denominator) / static_cast<double>(fps.numerator);
+    seen.heat_svg = scene_heat_svg(tracer, seen.resolved.plan, frame_s, seen.objects, *heat);
+  }
   return seen;
 }
 
