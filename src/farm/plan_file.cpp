@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/json_whole.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
 
@@ -88,11 +89,14 @@ FarmPlan read_farm(const std::string& folder) {
       throw refuse(std::string("is not the plan of a farm of this version: it does not tell '") + name + "'");
     }
     try {
-      found->get_to(value);
+      read_json(*found, path, value);
     } catch (const Json::exception&) {
       throw refuse(std::string("is damaged: '") + name + "' has a value of another kind");
     }
   });
+  if (Json(plan.kind) != json.at("kind")) {
+    throw refuse("is damaged: chunks are of frames, samples or sweep");
+  }
   if (plan.samples.size() != plan.chunks.size() ||
       (plan.kind == FarmKind::samples && plan.ranges.size() != plan.chunks.size())) {
     throw refuse("is damaged: it does not tell the same of every chunk");
