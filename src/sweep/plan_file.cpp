@@ -435,8 +435,8 @@ SweepFile read_sweep_file(const std::string& path, const JobSchema& schema) {
 bool is_sweep_plan(const std::string& path) {
   try {
     const TomlNode root = parse_toml(text_of(path), path);
-    return std::any_of(root.members.begin(), root.members.end(), [](const auto& member) {
-      return is_among(kTables, member.first) && member.second.kind != TomlNode::Kind::scalar;
+    return std::any_of(root.members.begin(), root.members.end(), [](const TomlMember& member) {
+      return is_among(kTables, member.key) && member.node.kind != TomlNode::Kind::scalar;
     });
   } catch (const Error&) {
     return false;  // the reader of jobs says what is wrong

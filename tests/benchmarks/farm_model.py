@@ -14,9 +14,7 @@ without work at the end and lose more when one fails."""
 
 import argparse
 import heapq
-import json
 import math
-import os
 import random
 import statistics
 import subprocess
@@ -95,29 +93,16 @@ def table():
               f"{exact_s / 3600:.2f} | {one / exact_s:.0f} |", flush=True)
 
 
-JOB = """
-scene = "glide.gltf"
-gaze = "log.csv"
-size = "192x108"
-frame-rect = [0, 0, 64, 36]
-region-samples = [512, 256, 128]
-exposure = 0.5
-frames = "1-{frames}"
-output = ["{folder}/f.####.exr"]
-threads = 1
-"""
-
-
 def measure(frames):
     """Local farms on this machine, beside the model with the frame's and the start's time from one run of the job."""
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
     import csv
 
+    import gliding_job
     import harness
     with tempfile.TemporaryDirectory(prefix="gazetrace_model_") as folder:
         folder = Path(folder)
-        (folder / "glide.gltf").write_text(json.dumps(harness.box_gltf(camera_seconds=frames / 24 + 1)))
-        (folder / "log.csv").write_text(harness.moving_gaze(samples=frames * 5 + 100))
+        gliding_job.write_inputs(folder, frames / 24 + 1)
 
         def run(*words):
             begin = time.monotonic()
@@ -131,7 +116,7 @@ def measure(frames):
                 return [float(row["total_ms"]) / 1000 for row in csv.DictReader(file)]
 
         def job(name):
-            (folder / f"{name}.toml").write_text(JOB.format(frames=frames, folder=name))
+            (folder / f"{name}.toml").write_text(gliding_job.job_toml("192x108", "512, 256, 128", frames, name, "threads = 1\n"))
             return f"{name}.toml"
 
         # Two at the same time, as the farms below have it: cores share what they do not have twice.

@@ -14,7 +14,6 @@ of a round is printed with what went wrong; --seed N --rounds 1 repeats it, apar
 import argparse
 import collections
 import json
-import os
 import random
 import resource
 import shutil
@@ -26,22 +25,12 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
+import gliding_job  # noqa: E402
 import harness  # noqa: E402
 
 FRAMES = 6
-JOB = """
-scene = "glide.gltf"
-gaze = "log.csv"
-size = "{size}"
-frame-rect = [0, 0, 64, 36]
-region-samples = [16, 8, 4]
-exposure = 0.5
-frames = "1-{frames}"
-threads = 1
-output = ["out/f.####.exr", "out/f.####.png"]
-"""
 HISTORY = 'accumulate = "reproject"\nfilter = "guided"\n'
-SAMPLES = 'filter = "linear"\nexr-pixels = "float"\n'
+SAMPLES = 'falloff = "uniform"\nspp = 16\nfilter = "linear"\nexr-pixels = "float"\n'
 RENDER = ["render", "--config", "job.toml", "--resume", "--quiet", "--grace", "50ms"]
 
 
@@ -78,8 +67,7 @@ class Soak:
         self.outcomes = collections.Counter()
         self.rounds = 0
         self.references = {}
-        (self.folder / "glide.gltf").write_text(json.dumps(harness.box_gltf(camera_seconds=1.0)))
-        (self.folder / "log.csv").write_text(harness.moving_gaze())
+        gliding_job.write_inputs(self.folder)
 
     @property
     def out(self):
@@ -95,11 +83,9 @@ class Soak:
         return process.returncode, text
 
     def prepare(self, way):
-        text = JOB.format(size=self.size, frames=FRAMES)
-        if way.name == "samples":
-            text = text.replace("region-samples = [16, 8, 4]", 'falloff = "uniform"\nspp = 16')
-        (self.folder / "job.toml").write_text(text + way.more)
-        (self.folder / "farm.toml").write_text(text + way.more)
+        text = gliding_job.job_toml(self.size, "16, 8, 4", FRAMES, "out", "threads = 1\n" + way.more)
+        for name in ("job.toml", "farm.toml"):
+            (self.folder / name).write_text(text)
         shutil.rmtree(self.out, ignore_errors=True)
 
     def reference(self, way):
@@ -114,11 +100,7 @@ class Soak:
         return self.references[way.name]
 
     def pictures(self):
-        found = {}
-        for path in self.out.glob("f.*"):
-            if path.suffix in (".exr", ".png"):
-                found[path.name] = path.read_bytes()
-        return found
+        return gliding_job.pictures(self.out)
 
     def listed(self):
         """Files that a record or a journal vouches for: what else is damaged cannot be known."""
@@ -152,18 +134,8 @@ class Soak:
 
     def wait_for_orphans(self):
         """Tasks of a farm whose runner was killed end by themselves."""
-        mark = str(self.folder).encode()
         end = time.monotonic() + 60
-        while time.monotonic() < end:
-            living = False
-            for entry in Path("/proc").iterdir():
-                try:
-                    living = living or (entry.name.isdigit() and os.readlink(entry / "cwd").encode() == mark
-                                        and int(entry.name) != os.getpid())
-                except OSError:
-                    continue
-            if not living:
-                return
+        while time.monotonic() < end and gliding_job.processes_in(self.folder):
             time.sleep(0.05)
 
     def damage(self, rng, damaged):

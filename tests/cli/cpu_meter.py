@@ -20,7 +20,8 @@ def main():
     with open(sys.argv[1], "a", encoding="utf-8") as file:
         file.write(line)
     if code < 0:
-        signal.signal(-code, signal.SIG_DFL)
+        if -code != signal.SIGKILL:
+            signal.signal(-code, signal.SIG_DFL)
         os.kill(os.getpid(), -code)
     return code
 

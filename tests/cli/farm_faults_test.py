@@ -13,16 +13,9 @@ import time
 import zlib
 
 import harness
+from gliding_job import job_toml, write_inputs
 
-JOB_TOML = """
-scene = "glide.gltf"
-gaze = "log.csv"
-size = "48x27"
-frame-rect = [0, 0, 64, 36]
-region-samples = [4, 2, 1]
-exposure = 0.5
-quiet = true
-"""
+JOB_TOML = job_toml(more="quiet = true\n")
 JOB = ["--config", "job.toml"]
 
 
@@ -33,8 +26,7 @@ def outputs(folder):
 class Farm(harness.CliTest):
     def setUp(self):
         super().setUp()
-        self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
-        self.write("log.csv", harness.moving_gaze())
+        write_inputs(self.folder)
         self.write("job.toml", JOB_TOML)
 
     def render(self, folder, *more):

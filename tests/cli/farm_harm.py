@@ -8,15 +8,16 @@ import signal
 import sys
 from pathlib import Path
 
+from gliding_job import processes_in
+
 METER = Path(__file__).with_name("cpu_meter.py")
 
 
 class Harm:
-    def __init__(self, folder, program, random, chunks):
-        self.folder = Path(os.path.realpath(folder))
+    def __init__(self, folder, program, random):
+        self.folder = folder
         self.program = os.path.realpath(program).encode()
         self.random = random
-        self.chunks = chunks
         self.done = {}  # chunk -> what was done to it
 
     def __str__(self):
@@ -27,16 +28,9 @@ class Harm:
 
     def renderers(self):
         """The processes that render a chunk of this farm, by chunk."""
-        found = {}
-        for entry in Path("/proc").iterdir():
-            try:
-                words = (entry / "cmdline").read_bytes().split(b"\0") if entry.name.isdigit() else []
-                if words[:2] == [self.program, b"render"] and b"--chunk" in words and \
-                        os.readlink(entry / "cwd") == str(self.folder):
-                    found[int(re.match(rb"\d+", words[words.index(b"--chunk") + 1])[0])] = int(entry.name)
-            except (OSError, TypeError):
-                continue
-        return found
+        return {int(re.match(rb"\d+", words[words.index(b"--chunk") + 1])[0]): process
+                for process, words in processes_in(self.folder).items()
+                if words[:2] == [self.program, b"render"] and b"--chunk" in words}
 
     def kill(self, only=None):
         """Ends one that renders without a word; nothing where all that run were harmed before."""

@@ -11,6 +11,7 @@ import time
 import harness
 from farm_faults_test import JOB_TOML, Farm
 from farm_harm import Harm
+from gliding_job import job_toml
 
 HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
 FRAMES = ["--frames", "1-6"]
@@ -159,16 +160,7 @@ class OneCheckpoint(Farm):
         self.assertIn("frame 3 must be made again, and the history after frame 2 is gone", gone.stderr)
 
 
-FARM_TOML = """
-scene = "glide.gltf"
-gaze = "log.csv"
-size = "48x27"
-frame-rect = [0, 0, 64, 36]
-region-samples = [4, 2, 1]
-exposure = 0.5
-frames = "1-6"
-output = ["out/f.####.exr", "out/f.####.png"]
-"""
+FARM_TOML = job_toml(frames=6, folder="out")
 SWEEP_TOML = """
 [common]
 size = "48x27"
@@ -393,7 +385,7 @@ class Engines(Farm):
         (self.folder / "out").mkdir()
         broken = self.folder / "out/f.0001.exr"
         broken.mkdir()  # the first chunk fails, and the second one is held up
-        harm = Harm(self.folder, harness.PROGRAM, None, 2)
+        harm = Harm(self.folder, harness.PROGRAM, None)
         first = subprocess.Popen([harness.PROGRAM, "farm", "slow.toml", "--chunks", "2", "--processes", "2", "--threads", "1",
                                   "--retries", "0"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(first.kill)

@@ -37,7 +37,7 @@ constexpr const char* kBesideEarlier = R"(
 queued=
 known() { sed -n "s/^$1 //p" jobs 2>/dev/null; }
 for job in $(known chunks); do
-  for task in $(squeue -h -r -j "$job" -o %K 2>/dev/null); do
+  for task in $(squeue -h -r -j "$job" -t PD,R,S,CF -o %K 2>/dev/null); do
     queued="$queued ${job}_$task"
   done
 done
