@@ -393,7 +393,8 @@ class Locks(Running):
         first = self.start(*self.SLOW)
         lock = self.folder / "out/run.json.lock"
         self.wait_for(lock.exists, first)
-        self.wait_for((self.folder / "out/run.json").exists, first)
+        # From then on it makes no file until its first picture, which takes a while.
+        self.wait_for(lambda: all((self.folder / "out" / name).exists() for name in ("run.json", "run.files", "timing.csv")), first)
         words = ["run.json.lock", f"process {first.pid}", "frames 1-4", "wait for it"]
         self.assert_refused(["render", *JOB, *outputs("out"), *self.SLOW, "--resume"], words)
         # A part whose frames it makes as well; others are free.
