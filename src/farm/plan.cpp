@@ -108,6 +108,14 @@ void check_settings(const FarmSettings& settings, const JobSettings& job) {
   }
 }
 
+// Every handing over has its own retries.
+void forget_tries(const FarmPlan& plan) {
+  std::error_code failed;
+  for (const std::string& task : farm_tasks(plan)) {
+    fs::remove(fs::path(plan.folder) / "tasks" / (task + ".tries"), failed);
+  }
+}
+
 }  // namespace
 
 FarmPlan plan_farm(const FarmSettings& settings) {
@@ -173,6 +181,7 @@ void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
     throw Error(ErrorKind::input, plan.folder, "the folder cannot be made: " + failed.message(),
                 "choose another output folder");
   }
+  forget_tries(plan);
   for (const auto& [name, text] : farm_files(plan, chunks)) {
     write_text_atomically((fs::path(plan.folder) / name).string(), text);
   }

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/json_whole.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
 
@@ -60,7 +61,7 @@ FarmPlan read_farm(const std::string& folder) {
   try {
     const Json json = Json::parse(file);
     FarmPlan plan;
-    each_member(plan, [&](const char* name, auto& value) { json.at(name).get_to(value); });
+    each_member(plan, [&](const char* name, auto& value) { read_json(json.at(name), path, value); });
     return plan;
   } catch (const Json::exception& e) {
     throw Error(ErrorKind::input, path, "is not the plan of a farm: " + bounded(e.what(), 200),

@@ -204,6 +204,8 @@ std::string label_of(const SweepFileSetting& setting) {
   return text;
 }
 
+constexpr std::size_t kMostSettings = 100'000;  // a few lists of a few values would fill any memory
+
 std::vector<SweepFileSetting> read_settings(const TomlNode& root, const RenderOptions& options,
                                             const std::string& path) {
   std::vector<SweepFileSetting> settings;
@@ -234,6 +236,10 @@ std::vector<SweepFileSetting> read_settings(const TomlNode& root, const RenderOp
     checked_kind(values, TomlNode::Kind::array, path, wish);
     if (values.items.empty()) {
       refuse(toml_place(path, values), wish + ", and it is empty");
+    }
+    if (settings.size() * values.items.size() > kMostSettings) {
+      refuse(toml_place(path, values), fmt::format("[grid] has more than {} combinations", kMostSettings),
+             "give fewer values, or several plans");
     }
     std::vector<SweepFileSetting> combined;
     for (const SweepFileSetting& setting : settings) {
@@ -285,7 +291,7 @@ void read_reference(const TomlNode& root, const RenderOptions& options, SweepFil
   for (const auto& [key, value] : table->members) {
     if (own.find(key) != nullptr) {
       TomlNode alone;
-      alone.members.emplace_back(key, value);
+      alone.members.push_back({key, value});
       read_table(own, alone, file.reference, file);
     } else {
       file.reference.options.push_back(options.assignment(key, value, file.path, names_of(own.list())));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slurm: a script for sbatch, which is an array of the chunks and, by its argument, each task after them.
-// https://slurm.schedmd.com/sbatch.html: --signal=B: reaches the batch shell alone, --kill-on-invalid-dep ends a job
-// whose dependency can no longer be fulfilled, and a requeued job counts SLURM_RESTART_COUNT.
+// https://slurm.schedmd.com/sbatch.html: --signal=B: reaches the batch shell alone, and --kill-on-invalid-dep ends a
+// job whose dependency can no longer be fulfilled.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,12 +59,20 @@ std::string submit(const FarmPlan& plan) {
   return "sh " + shell_word(plan.folder + "/submit.sh");
 }
 
+// One task of an array has the array's own number for its SLURM_JOB_ID, and a requeue of that number puts every task of
+// the array back, the finished ones, too: a task is named by array and index. Its tries are counted in a file, because
+// SLURM_RESTART_COUNT also counts what others do to it, such as preemption.
 std::string again(const FarmPlan& plan) {
   return fmt::format(
-      R"(  if [ -n "${{SLURM_JOB_ID:-}}" ] && [ "${{SLURM_RESTART_COUNT:-0}}" -lt {} ] && scontrol requeue "$SLURM_JOB_ID"; then
-    trap 'exit 4' TERM
-    sleep 60 &
-    wait  # Slurm ends this attempt
+      R"(  tries=$(cat "$tasks/$1.tries" 2>/dev/null || echo 0)
+  slurm_task=${{SLURM_ARRAY_TASK_ID:+${{SLURM_ARRAY_JOB_ID}}_}}${{SLURM_ARRAY_TASK_ID:-${{SLURM_JOB_ID:-}}}}
+  if [ -n "$slurm_task" ] && [ "$tries" -lt {} ]; then
+    echo $((tries + 1)) > "$tasks/$1.tries"
+    if scontrol requeue "$slurm_task"; then
+      trap 'exit 4' TERM
+      sleep 60 &
+      wait  # Slurm ends this attempt
+    fi
   fi
 )",
       plan.retries);
