@@ -13,6 +13,7 @@
 #include <iterator>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/sweep_plan.hpp"
 #include "job/toml_tree.hpp"
 #include "job/toml_values.hpp"
 
@@ -429,6 +430,17 @@ SweepFile read_sweep_file(const std::string& path, const JobSchema& schema) {
   read_reference(root, options, file);
   read_measure(root, file);
   return file;
+}
+
+bool is_sweep_plan(const std::string& path) {
+  try {
+    const TomlNode root = parse_toml(text_of(path), path);
+    return std::any_of(root.members.begin(), root.members.end(), [](const auto& member) {
+      return is_among(kTables, member.first) && member.second.kind != TomlNode::Kind::scalar;
+    });
+  } catch (const Error&) {
+    return false;  // the reader of jobs says what is wrong
+  }
 }
 
 std::string place_of(const SweepFile& file, const std::string& key) {
