@@ -436,7 +436,7 @@ bool is_sweep_plan(const std::string& path) {
   try {
     const TomlNode root = parse_toml(text_of(path), path);
     return std::any_of(root.members.begin(), root.members.end(), [](const auto& member) {
-      return is_among(kTables, member.first) && member.second.kind != TomlNode::Kind::scalar;
+      return is_among(kTables, member.key) && member.node.kind != TomlNode::Kind::scalar;
     });
   } catch (const Error&) {
     return false;  // the reader of jobs says what is wrong
