@@ -94,6 +94,9 @@ FarmPlan read_farm(const std::string& folder) {
       throw refuse(std::string("is damaged: '") + name + "' has a value of another kind");
     }
   });
+  if (Json(plan.kind) != json.at("kind")) {
+    throw refuse("is damaged: chunks are of frames, samples or sweep");
+  }
   if (plan.samples.size() != plan.chunks.size() ||
       (plan.kind == FarmKind::samples && plan.ranges.size() != plan.chunks.size())) {
     throw refuse("is damaged: it does not tell the same of every chunk");

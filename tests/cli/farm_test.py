@@ -434,7 +434,8 @@ class Engines(Farm):
                             (json.dumps({**plan, "chunks": ["1-3", "x"]}), "'x' is no list of frames"),
                             (json.dumps({**plan, "samples": []}), "does not tell the same of every chunk"),
                             (json.dumps({key: value for key, value in plan.items() if key != "then"}), "does not tell 'then'"),
-                            (json.dumps({**plan, "kind": "frames", "engine": "condor"}), "condor")):
+                            (json.dumps({**plan, "kind": "stars"}), "chunks are of frames, samples or sweep"),
+                            (json.dumps({**plan, "engine": "condor"}), "condor")):
             path.write_text(text)
             for command in ("status", "retry"):
                 told = self.run_program("farm", command, "out")
