@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/json_problem.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
 
@@ -63,7 +64,7 @@ FarmPlan read_farm(const std::string& folder) {
     each_member(plan, [&](const char* name, auto& value) { json.at(name).get_to(value); });
     return plan;
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, path, "is not the plan of a farm: " + bounded(e.what(), 200),
+    throw Error(ErrorKind::input, path, "is not the plan of a farm: " + bounded(json_problem(e.what()), 200),
                 "call `farm` again, which keeps finished frames");
   }
 }
