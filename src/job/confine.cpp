@@ -2,27 +2,17 @@
 #include "job/confine.hpp"
 
 #include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include "core/data_root.hpp"
 #include "gazetrace/job_schema.hpp"
+#include "job/settings_paths.hpp"
 #include "job/toml_values.hpp"
 
 namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Some options take a name of ours or a file.
-bool names_file(const Option& option, const std::string& value) {
-  if (option.unit == "FILE" || option.unit == "PATTERN") {
-    return true;
-  }
-  std::error_code ignored;
-  return option.unit.find("FILE") != std::string::npos &&
-         (value.find('/') != std::string::npos || fs::exists(value, ignored));
-}
 
 }  // namespace
 
@@ -36,7 +26,7 @@ void check_confined(const std::string& text, const std::string& path) {
     }
     for (const std::string& value : toml_values(node, *option, path)) {
       if (names_file(*option, value)) {
-        check_within(roots, value, value, toml_place(path, node) + ": " + key,
+        check_within(roots, located_file(*option, value, path).value, value, toml_place(path, node) + ": " + key,
                      "put the file there, or leave `confine` out where you trust the settings");
       }
     }
