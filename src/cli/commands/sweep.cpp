@@ -6,11 +6,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "gazetrace/error.hpp"
@@ -24,13 +26,26 @@ struct SweepArguments {
   std::optional<FrameList> frames;
   std::optional<int> threads;
   bool dry_run = false, restart = false, quiet = false;
+  JsonOutput json;
 };
 
 // A guess to tell minutes from days: a core traces about this many camera samples a second in a scene like Sponza.
 constexpr double kSamplesPerCoreSecond = 2.5e5;
 
-std::string estimate_text(const SweepPlan& plan, int threads) {
-  const SweepEstimate estimate = estimate_sweep(plan);
+std::string estimate_json(const SweepEstimate& estimate) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const SweepEstimate::Row& row : estimate.rows) {
+    rows.push_back({{"id", row.id},
+                    {"role", row.role},
+                    {"samples", row.samples},
+                    {"repeats", row.repeats},
+                    {"setting", row.label}});
+  }
+  const nlohmann::ordered_json json{{"rows", std::move(rows)}, {"samples", estimate.samples}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string estimate_text(const SweepEstimate& estimate, int threads) {
   std::string text = fmt::format("{:<34} {:<24}{:>16}{:>9}  {}\n", "id", "role", "samples", "repeats", "setting");
   for (const SweepEstimate::Row& row : estimate.rows) {
     text += fmt::format("{:<34} {:<24}{:>16.0f}{:>9}  {}\n", row.id, row.role, row.samples, row.repeats, row.label);
@@ -54,10 +69,12 @@ int run_sweep_command(const SweepArguments& arguments) {
   if (!arguments.quiet) {
     print_warnings(jobs.warnings);
   }
+  arguments.json.check();
   if (arguments.dry_run) {
     const int given = plan.tests.front().pipeline.threads;
-    print_result(
-        estimate_text(plan, given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))));
+    const int threads = given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const SweepEstimate estimate = estimate_sweep(plan);
+    arguments.json.print(estimate_text(estimate, threads), [&] { return estimate_json(estimate); });
     return exit_done;
   }
   const SweepDirectory directory = prepare_sweep(plan);
@@ -70,7 +87,7 @@ int run_sweep_command(const SweepArguments& arguments) {
   write_text_atomically(plan.directory + "/results.csv", results_csv(results));
   write_text_atomically(plan.directory + "/methods.txt", results_methods(results));
   write_text_atomically(plan.directory + "/results.json", results_json(results));
-  print_result(results_table(results));
+  arguments.json.print(results_table(results), [&] { return results_json(results); });
   return exit_done;
 }
 
@@ -90,6 +107,7 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   schema.flag("--quiet", &SweepArguments::quiet, "Tells nothing but the table");
   const auto options = std::make_shared<CommandOptions<SweepArguments>>(std::move(schema));
   options->bind(app, *arguments);
+  add_json_option(app, arguments->json);
   app.footer(kExitCodesHelp);
   return {[arguments, options] { return run_sweep_command(*arguments); }, {}};
 }

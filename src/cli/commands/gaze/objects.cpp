@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
 
@@ -19,6 +20,7 @@ struct ObjectsArguments {
   GazeObjectsSettings objects;
   bool recorded_here = false;
   std::string table;
+  JsonOutput json;
 };
 
 std::string summary(const ObjectsArguments& arguments, const GazeObjects& objects) {
@@ -35,16 +37,18 @@ int run_objects(ObjectsArguments& arguments) {
   if (!arguments.table.empty()) {
     check_output_file(arguments.table, arguments.job.settings.overwrite);
   }
+  arguments.json.check();
   arguments.objects.stimulus = arguments.recorded_here ? Stimulus::recorded : Stimulus::replayed;
   const GazeOnScene seen = look_at_scene(arguments.job, arguments.objects);
   print_warnings(seen.resolved.warnings);
   const bool json = arguments.table.ends_with(".json");
   const std::string text = json ? objects_as_json(seen.objects) : objects_as_tsv(seen.objects);
+  const auto as_json = [&] { return objects_as_json(seen.objects); };
   if (arguments.table.empty()) {
-    print_result(text);
+    arguments.json.print(text, as_json);
   } else {
     write_text_atomically(arguments.table, text);
-    print_result(summary(arguments, seen.objects));
+    arguments.json.print(summary(arguments, seen.objects), as_json);
   }
   return exit_done;
 }
@@ -68,6 +72,7 @@ Command add_gaze_objects_command(CLI::App& app, const Invocation& /*invocation*/
                  "Rays over the frame that look for these; they are found to half a step of the grid")
       ->type_name("N")
       ->capture_default_str();
+  add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   return {[arguments] { return run_objects(*arguments); },
           [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
 }
