@@ -4,6 +4,7 @@ root."""
 
 import os
 import pwd
+import re
 import shutil
 import socket
 import subprocess
@@ -11,7 +12,6 @@ import time
 from pathlib import Path
 
 PROGRAMS = ("slurmctld", "slurmd", "sbatch", "munged")
-# Below sixteen, a requeued job of this Slurm waits for two minutes; a test lets it begin at once.
 CONFIGURATION = """
 ClusterName=one
 SlurmctldHost={host}(127.0.0.1)
@@ -63,6 +63,7 @@ class Node:
         self.host = socket.gethostname().split(".")[0]
         self.cpus = cpus
         self.daemons = []
+        self.waiting_since = {}
         self.environment = {**os.environ, "SLURM_CONF": str(self.folder / "slurm.conf"),
                             "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
 
@@ -124,11 +125,21 @@ class Node:
         lines = self.run("squeue", "-h", "-r", "-o", "%i %T %r").splitlines()
         return {words[0]: words[1:] for words in (line.split() for line in lines)}
 
-    def begin_at_once(self):
-        """A requeued task need not wait for its two minutes."""
-        for job, state in self.jobs().items():
-            if state[0] == "PENDING" and state[1] == "BeginTime":
+    def begin_soon(self):
+        """A requeued task need not wait for its two minutes, but for three seconds: slurmd knows by the second when it
+        ended a job, and takes one that begins again within that second for the ended one. Such a task fails without
+        having begun, and Slurm cancels what depends on it."""
+        waiting = [job for job, state in self.jobs().items() if state[0] == "PENDING" and state[1] == "BeginTime"]
+        now = time.monotonic()
+        self.waiting_since = {job: self.waiting_since.get(job, now) for job in waiting}
+        for job, since in self.waiting_since.items():
+            if now - since > 3:
                 self.run("scontrol", "update", f"JobId={job}", "StartTime=now")
+
+    def restarts(self, job):
+        """How often each task of an array was put back into the queue, by its index."""
+        told = self.run("scontrol", "show", "job", job)
+        return {int(index): int(count) for index, count in re.findall(r"ArrayTaskId=(\d+) .*?Restarts=(\d+)", told, re.DOTALL)}
 
     def wait_for(self, condition, seconds, complaint):
         end = time.monotonic() + seconds
