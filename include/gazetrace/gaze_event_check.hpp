@@ -35,6 +35,9 @@ struct EventDoubt {
 // The limits here are two to three times as wide, and are not applied to fewer events than a statement needs.
 std::vector<EventDoubt> doubt_events(const GazeLog& log, const EyeEvents& events);
 
+// events_as_json (gaze_events.hpp) with "doubts", a list of codes and sentences; an empty list: none was found.
+std::string events_as_json(const EyeEvents& events, const GazeLog& log, const std::vector<EventDoubt>& doubts);
+
 // What would suit the log better, found by trying: presets for the same device and steps of processing, as options with
 // what they find, such as "`method` idt (47 fixations, 46 saccades)". Only those that leave no doubt; empty: none does.
 std::vector<std::string> better_event_methods(const GazeLog& log, const EyeEvents& events);

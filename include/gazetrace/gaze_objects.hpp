@@ -31,6 +31,17 @@ std::vector<Vec3d> gaze_cone(const Vec3d& direction, const GazeUncertainty& unce
 // The angle from the gaze within which 95 % of them lie: sqrt(-2 ln 0.05) standard deviations.
 double gaze_cone_95_deg(const GazeUncertainty& uncertainty);
 
+// A heat map on the surfaces of the scene, as one frame sees them: the hits of the cones of *all* frames stay in the
+// world where they fell, and of these the frame shows those that nothing hides from it. Each hit spreads over the
+// surface around it, on the same body, as a normal distribution whose standard deviation is seen under `sigma_deg` from
+// where the eye was; values are seconds of gaze per square metre of surface. A body that moves keeps the hits where
+// they fell in the world.
+struct SceneHeatSettings {
+  std::optional<std::int32_t> frame;  // empty: the middle one of those that are planned
+  double sigma_deg = 0.5;             // above 0, at most 10
+  std::string picture;                // .png or .jpg of that frame, to be drawn upon; empty: its surfaces in grey
+};
+
 struct GazeObjectsSettings {
   GazeUncertainty uncertainty;
   int rays = 256;  // in the cone of each frame, 16..65536
@@ -38,6 +49,7 @@ struct GazeObjectsSettings {
   // Of the grid over the frame by which the nearest objects are found; 0: none are sought.
   int grid_rays = 100'000;
   Stimulus stimulus = Stimulus::replayed;
+  bool keep_hits = false;  // FrameObjects::hits
 };
 
 // What carries a name: a node of the glTF, as far as it has one material. Instances of one node are one object, and so
@@ -66,6 +78,7 @@ struct FrameObjects {
   std::vector<ObjectShare> shares;  // the largest first
   double beside_share = 0;          // of the cone that falls beside the picture
   std::vector<NearObject> nearest;  // of all nodes in the picture, the nearest first
+  std::vector<RayHit> hits;         // of the cone's rays; empty unless they are kept
 };
 
 struct GazeObjects {
@@ -85,8 +98,15 @@ GazeObjects gaze_objects(PathTracer& tracer, const Scene& scene, const FramePlan
 struct GazeOnScene {
   ResolvedJob resolved;
   GazeObjects objects;
+  std::string heat_svg;  // where a heat map was asked for
 };
-GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings);
+GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings,
+                          const std::optional<SceneHeatSettings>& heat = std::nullopt);
+
+// `objects` with their hits, and the frame of the plan upon which they are drawn. Throws Error(usage) for a frame that
+// is not in the plan and for settings out of range, Error(input) for a picture that cannot be read.
+std::string scene_heat_svg(PathTracer& tracer, const FramePlan& plan, double frame_s, const GazeObjects& objects,
+                           const SceneHeatSettings& settings);
 
 // One row for each frame: frame, t_video_ns, t_log_ns, gaze, movement, stimulus, node, material, share, distance_m,
 // x_m, y_m, z_m, also (other objects with at least 0.5 % as "node (material)=share"), beside_share, cone95_deg, near_1,

@@ -9,23 +9,10 @@
 #include <vector>
 
 #include "gazetrace/gaze_log.hpp"
+#include "gazetrace/gaze_raw_rows.hpp"
 #include "gazetrace/gaze_read.hpp"
 
 namespace gazetrace {
-
-// A row of the file for one eye, or for a gaze that the log itself combined.
-struct RawSample {
-  // The stamp in nanoseconds, if its unit is the one of `RawGaze::declared.time_exponent`. Every digit down to a
-  // nanosecond is kept.
-  std::int64_t t_ns = 0;
-  // x, y and, for directions, z, in the unit, axes and order of the file; NaN where the row has none.
-  Vec3d at;
-  GazeValidity validity = GazeValidity::ok;  // as the row states it for this eye
-  Eye eye = Eye::cyclopean;
-  float confidence = 1.0F;  // 0..1, NaN where the log has none
-  float pupil = 0.0F;       // in `RawGaze::pupil_unit`, NaN where missing
-  std::int64_t row = 0;     // 1-based line (binary formats: record) in the source file
-};
 
 // The x and y that the display's top left corner has from a row of the file on.
 struct CornerFromRow {
@@ -54,7 +41,7 @@ struct RawFault {
 
 struct RawGaze {
   GazeKind kind = GazeKind::screen;  // whether rows hold places on a display or on a picture, or directions
-  std::vector<RawSample> rows;       // in the order of the file
+  RawRows rows;                      // in the order of the file
   std::string source, format;
   double format_confidence = 1;
   std::string clock, pupil_unit;

@@ -25,6 +25,8 @@ namespace {
 constexpr int kMaxSidePx = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30U;        // 4 GiB of bytes, 16 of floats
 constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;  // whatever its size
+// Environments and pictures to compare: of one colour or nearly, 8192 x 5461 half floats may come from a few bytes.
+constexpr PictureLimits kFloatLimits{kMaxSidePx, 200, std::uint64_t{256} << 20U};
 
 // OpenImageIO multiplies PNG colour by alpha unless told otherwise, which would lose the colour where alpha is 0.
 OIIO::ImageSpec keep_alpha_unassociated() {
@@ -42,15 +44,19 @@ struct OpenPicture {
   std::vector<std::uint8_t> bytes;
   std::unique_ptr<OIIO::Filesystem::IOMemReader> reader;
   std::unique_ptr<OIIO::ImageInput> input;
+  std::string problem;  // why there is no input
   std::uint64_t file_size = 0;
 };
 
 // The most pixels that a byte of a file can stand for, by OpenImageIO's name of the format. PNG: deflate's 1032 bytes
-// of 8 pixels each, rounded up; other formats: more than any real picture has. Formats that are not listed may hold any
-// number of equal pixels.
+// of 8 pixels each, rounded up; EXR: three times what black ones have in dwab; others: more than any real picture has.
+// Formats that are not listed may hold any number of equal pixels.
 std::uint64_t most_pixels_a_byte(std::string_view format) {
-  constexpr std::array<std::string_view, 4> kOthers{"jpeg", "hdr", "bmp", "openexr"};
-  return format == "png" ? 8448 : std::find(kOthers.begin(), kOthers.end(), format) != kOthers.end() ? 65536 : 0;
+  constexpr std::array<std::string_view, 3> kOthers{"jpeg", "hdr", "bmp"};
+  return format == "png"                                                      ? 8448
+         : format == "openexr"                                                ? 8192
+         : std::find(kOthers.begin(), kOthers.end(), format) != kOthers.end() ? 65536
+                                                                              : 0;
 }
 
 // Called before any memory is allocated, since the size is only the claim of a header of a few bytes.
@@ -92,7 +98,7 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
                     std::to_string(static_cast<std::uint64_t>(decoded) >> 20U) + " MiB; the limit is " +
                     std::to_string(limits.free_bytes >> 20U) + " MiB and " +
                     std::to_string(static_cast<std::uint64_t>(limits.expansion)) + " times the file",
-                "make the picture smaller, or raise `max-expansion`");
+                limits.side_px < kMaxSidePx ? "make the picture smaller, or raise `max-expansion`" : "make it smaller");
   }
   return spec;
 }
@@ -196,64 +202,93 @@ ImageRgb read_rgb_float(OIIO::ImageInput& input, const std::string& place) {
   return image;
 }
 
-// OpenImageIO chooses its reader by the suffix of the name. Bytes in memory have none, so their magic number decides.
-const char* name_by_content(std::span<const std::uint8_t> bytes) {
+// OpenImageIO chooses a reader by the suffix of the name and, where that one fails, tries all it has: films, raw
+// photographs, medical volumes. Here the content decides, and only among the kinds that a picture of ours may be.
+const char* format_by_content(std::span<const std::uint8_t> bytes) {
+  using namespace std::string_view_literals;
   const std::string_view head(reinterpret_cast<const char*>(bytes.data()), std::min<std::size_t>(bytes.size(), 16));
   struct Magic {
     std::string_view start;
-    const char* name;
+    const char* format;  // OpenImageIO's name of it
   };
-  constexpr std::array<Magic, 8> kMagics{{{"\x89PNG", "memory.png"},
-                                          {"\xff\xd8\xff", "memory.jpg"},
-                                          {"#?R", "memory.hdr"},
-                                          {"\x76\x2f\x31\x01", "memory.exr"},
-                                          {"RIFF", "memory.webp"},
-                                          {"GIF8", "memory.gif"},
-                                          {"BM", "memory.bmp"},
-                                          {"DDS ", "memory.dds"}}};
+  constexpr std::array<Magic, 14> kMagics{{{"\x89PNG\r\n\x1a\n"sv, "png"},
+                                           {"\xff\xd8\xff"sv, "jpeg"},
+                                           {"#?R"sv, "hdr"},
+                                           {"\x76\x2f\x31\x01"sv, "openexr"},
+                                           {"RIFF"sv, "webp"},
+                                           {"II*\0"sv, "tiff"},
+                                           {"MM\0*"sv, "tiff"},
+                                           {"II+\0"sv, "tiff"},
+                                           {"MM\0+"sv, "tiff"},
+                                           {"SDPX"sv, "dpx"},
+                                           {"XPDS"sv, "dpx"},
+                                           {"GIF8"sv, "gif"},
+                                           {"BM"sv, "bmp"},
+                                           {"DDS "sv, "dds"}}};
   for (const Magic& magic : kMagics) {
     if (head.starts_with(magic.start)) {
-      return magic.name;
+      return magic.format;
     }
   }
   return nullptr;
 }
 
-// `name` gives the format. `bytes` must be the picture's own, or outlive it.
-void open_memory(OpenPicture& picture, std::span<const std::uint8_t> bytes, const char* name, OIIO::ImageSpec config) {
+constexpr const char* kNoKnownKind = "it is no picture of a known kind (PNG, JPEG, WebP, TIFF, DPX, EXR, HDR, ...)";
+
+// `input` is empty, and `problem` says why, where it cannot be opened. With `reader` the bytes come from there.
+void open_as(OpenPicture& picture, const char* format, const std::string& name, OIIO::ImageSpec config) {
+  picture.input = OIIO::ImageInput::create(format);
+  if (!picture.input) {
+    picture.problem = OIIO::geterror();
+    return;
+  }
+  if (picture.reader) {
+    // Also as an attribute, since some readers of OpenImageIO 2.4 lose a proxy that comes with a config.
+    void* proxy = picture.reader.get();
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
+    picture.input->set_ioproxy(picture.reader.get());
+  }
+  OIIO::ImageSpec unused;
+  if (!picture.input->open(name, unused, config)) {
+    picture.problem = picture.input->geterror();
+    picture.input.reset();
+  }
+}
+
+// `bytes` must be the picture's own, or outlive it.
+void open_memory(OpenPicture& picture, std::span<const std::uint8_t> bytes, const char* format,
+                 const OIIO::ImageSpec& config) {
   picture.reader = std::make_unique<OIIO::Filesystem::IOMemReader>(
       OIIO::cspan<unsigned char>(bytes.data(), static_cast<std::ptrdiff_t>(bytes.size())));
-  // Passed as an attribute, since OpenImageIO 2.4 loses a proxy that is passed to open() together with a config.
-  void* proxy = picture.reader.get();
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
-  picture.input = OIIO::ImageInput::open(name, &config, picture.reader.get());
+  open_as(picture, format, std::string("memory.") + format, config);
 }
 
 void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, const OIIO::ImageSpec& config,
               const std::string& place) {
   picture.bytes = essential_png(file_bytes, place);
-  open_memory(picture, picture.bytes, "memory.png", config);
+  open_memory(picture, picture.bytes, "png", config);
 }
 
-// Error(input) where the file begins as PNG does but is broken; `input` is empty where there is no reader for the file.
+// Error(input) where the file begins as PNG does but is broken.
 OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, const std::string& place) {
   OpenPicture picture;
   std::error_code ignored;
   picture.file_size = std::filesystem::file_size(path, ignored);
   std::ifstream stream(path, std::ios::binary);
   std::vector<std::uint8_t> bytes(8);
-  const auto read = [&](std::size_t from) {
-    return static_cast<bool>(
-        stream.read(reinterpret_cast<char*>(bytes.data() + from), static_cast<std::streamsize>(bytes.size() - from)));
-  };
-  if (read(0) && is_png(bytes)) {
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  const char* const format = format_by_content(bytes);
+  if (format == nullptr) {
+    picture.problem = kNoKnownKind;
+  } else if (is_png(bytes)) {
     bytes.resize(std::max<std::uint64_t>(picture.file_size, 8));
-    if (read(8)) {
+    if (stream.read(reinterpret_cast<char*>(bytes.data() + 8), static_cast<std::streamsize>(bytes.size() - 8))) {
       open_png(picture, bytes, config, place);
-      return picture;
     }
+  } else {
+    open_as(picture, format, path, config);
   }
-  picture.input = OIIO::ImageInput::open(path, &config);
   return picture;
 }
 
@@ -268,14 +303,14 @@ OpenPicture open_picture(const std::string& path, const std::string& place) {
   }
   OpenPicture picture = open_file(path, keep_alpha_unassociated(), place_of(path, place));
   if (!picture.input) {
-    throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(OIIO::geterror()));
+    throw Error(ErrorKind::input, place, "cannot read the picture '" + path + "': " + reason(picture.problem));
   }
   return picture;
 }
 
 OpenPicture open_picture(std::span<const std::uint8_t> file_bytes, const std::string& place) {
-  const char* name = name_by_content(file_bytes);
-  if (name == nullptr) {
+  const char* const format = format_by_content(file_bytes);
+  if (format == nullptr) {
     throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
   }
   OpenPicture picture;
@@ -283,10 +318,10 @@ OpenPicture open_picture(std::span<const std::uint8_t> file_bytes, const std::st
   if (is_png(file_bytes)) {
     open_png(picture, file_bytes, keep_alpha_unassociated(), place);
   } else {
-    open_memory(picture, file_bytes, name, keep_alpha_unassociated());
+    open_memory(picture, file_bytes, format, keep_alpha_unassociated());
   }
   if (!picture.input) {
-    throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(OIIO::geterror()));
+    throw Error(ErrorKind::input, place, "cannot read the picture: " + reason(picture.problem));
   }
   return picture;
 }
@@ -337,9 +372,9 @@ ImageRgb read_image_rgb_float(const std::string& path) {
   }
   const OpenPicture picture = open_file(path, OIIO::ImageSpec(), path);
   if (!picture.input) {
-    throw Error(ErrorKind::input, path, "cannot be read: " + reason(OIIO::geterror()));
+    throw Error(ErrorKind::input, path, "cannot be read: " + reason(picture.problem));
   }
-  check_pixels_of_png(picture, path, {});
+  check_pixels_of_png(picture, path, kFloatLimits);
   const OIIO::ImageSpec& spec = picture.input->spec();
   try {
     return read_rgb_float(*picture.input, path);
@@ -407,9 +442,14 @@ std::string read_image_note(const std::string& path) {
   if (const std::optional<std::string> note = png_description(path)) {
     return *note;
   }
-  const auto input = OIIO::ImageInput::open(path);
-  if (!input) {
-    OIIO::geterror();  // clears the error, which would otherwise be printed when the program ends
+  OpenPicture picture;
+  try {
+    picture = open_file(path, OIIO::ImageSpec(), path);
+  } catch (const Error&) {
+    return {};
+  }
+  const OIIO::ImageInput* const input = picture.input.get();
+  if (input == nullptr) {
     return {};
   }
   // DPX keeps the whole text in the document name only; other formats have no name, or the same text in both.

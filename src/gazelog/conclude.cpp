@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/statistics.hpp"
-#include "gazelog/interpret.hpp"
 #include "gazelog/recording_geometry.hpp"
+#include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -23,7 +23,7 @@ void refuse_scene_camera(const RawGaze& raw, const GazeReadOptions& options) {
 }
 
 // x and y as the file has them, but for marks of missing values: a unit is guessed before anything else is known.
-std::vector<RawSample> rows_for_a_guess(const RawGaze& raw, const Conventions& c) {
+RawRows rows_for_a_guess(const RawGaze& raw, const Conventions& c) {
   Conventions plain;
   plain.missing_value = c.missing_value;
   plain.corner = c.corner;
@@ -90,7 +90,7 @@ void guess_display(const RawGaze& raw, Conventions& c) {
                                                               {7680, 4320}}};
   std::size_t usable = 0;
   std::array<std::size_t, kUsual.size()> inside{};
-  for (const RawSample& row : measurable_rows(raw, c)) {
+  for (const RawSample row : measurable_rows(raw, c)) {
     if (!is_usable(row.validity)) {
       continue;
     }

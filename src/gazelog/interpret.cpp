@@ -12,180 +12,27 @@
 #include "gazelog/conventions_text.hpp"
 #include "gazelog/eyes.hpp"
 #include "gazelog/row_order.hpp"
-#include "gazelog/scene_lens.hpp"
+#include "gazelog/row_samples.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInt16Min = -32768;
-constexpr double kLarge = 1e7;
 __extension__ using Int128 = __int128;
-
-// Size of the display in the unit of the positions.
-Vec2d display_size(PositionUnit unit, const DisplayGeometry& d, const std::string& place) {
-  const auto missing = [&](std::string_view what, std::string_view remedy) {
-    throw Error(
-        ErrorKind::input, place,
-        fmt::format("positions are in {}, and {} of the display of the recording is not known", to_string(unit), what),
-        remedy);
-  };
-  if (unit == PositionUnit::px) {
-    if (d.width_px <= 0 || d.height_px <= 0) {
-      missing("the size in pixels", "give `screen-px` W,H, or write `# display_px W H` above the header");
-    }
-    return {static_cast<double>(d.width_px), static_cast<double>(d.height_px)};
-  }
-  if (!(d.width_cm > 0) || !(d.height_cm > 0)) {
-    missing("the size in cm", "give `screen-cm` W,H, or write `# display_mm W H` above the header");
-  }
-  if (unit == PositionUnit::deg && !(d.distance_cm > 0)) {
-    missing("the eye's distance", "give `screen-distance-cm`, or write `# distance_mm D` above the header");
-  }
-  const double per_cm = unit == PositionUnit::mm ? 10.0 : 1.0;
-  return {d.width_cm * per_cm, d.height_cm * per_cm};
-}
-
-void lose(GazeValidity& validity) {
-  validity = is_usable(validity) ? GazeValidity::lost : validity;
-}
-
-// Whether the numbers of a row stand for a place that the tracker did not know.
-bool is_mark(const Vec3d& at, const Conventions& c) {
-  const bool has_three = c.form == PlaceForm::vector;
-  // A place on a display is unknown where one of its coordinates is. Zero alone is the display's edge, and a component
-  // of a direction may be any number.
-  const bool one_is_enough = !has_three && c.missing_value && *c.missing_value != 0;
-  const bool is_given =
-      c.missing_value && (one_is_enough ? at.x == *c.missing_value || at.y == *c.missing_value
-                                        : at.x == *c.missing_value && at.y == at.x && (!has_three || at.z == at.x));
-  return is_given || is_missing_marker(at.x) || is_missing_marker(at.y) || (has_three && is_missing_marker(at.z));
-}
-
-// x and y of a row of positions, in `c.unit`; NaN where they are a mark.
-Vec2d position_of(const RawSample& row, const Vec2d& corner, const Conventions& c, bool& is_missing) {
-  Vec2d at{row.at.x - corner.x, row.at.y - corner.y};
-  // As the file has it, or counted from the corner of the display.
-  const bool is_zero = (row.at.x == 0 && row.at.y == 0) || (at.x == 0 && at.y == 0);
-  is_missing = is_mark(row.at, c) || (c.zero_is_missing && is_zero);
-  if (is_missing) {
-    return {kNan, kNan};
-  }
-  if (c.swap_xy) {
-    std::swap(at.x, at.y);
-  }
-  return c.unit_scale == 1 ? at : Vec2d{at.x * c.unit_scale, at.y * c.unit_scale};
-}
-
-// From positions in a unit to fractions of the display.
-class ToFractions {
- public:
-  ToFractions(const Conventions& c, const std::string& place) : unit_(c.unit.value), origin_(c.origin.value) {
-    const DisplayGeometry display = c.display ? c.display->value : DisplayGeometry{};
-    if (unit_ == PositionUnit::deg && origin_ != PositionOrigin::center) {
-      throw Error(ErrorKind::usage, place,
-                  fmt::format("positions in degrees cannot count from the {}", to_string(origin_)),
-                  "degrees count from straight ahead: `gaze-origin` center");
-    }
-    // Centred fractions count half the display: -1..1.
-    size_ = unit_ != PositionUnit::fraction     ? display_size(unit_, display, place)
-            : origin_ == PositionOrigin::center ? Vec2d{2, 2}
-                                                : Vec2d{1, 1};
-    display_ = display;
-  }
-
-  [[nodiscard]] Vec2d operator()(const Vec2d& at) const {
-    if (unit_ == PositionUnit::deg) {
-      // Azimuth and elevation taken as independent: x = d tan(azimuth), y = d tan(elevation).
-      const double right = std::tan(at.x * kRadPerDeg) * display_.distance_cm + display_.eye_x_cm;
-      const double up = std::tan(at.y * kRadPerDeg) * display_.distance_cm + display_.eye_y_cm;
-      return {0.5 + right / size_.x, 0.5 - up / size_.y};
-    }
-    const double u = at.x / size_.x;
-    const double v = at.y / size_.y;
-    switch (origin_) {
-      case PositionOrigin::bottom_left:
-        return {u, 1.0 - v};
-      case PositionOrigin::center:
-        return {0.5 + u, 0.5 - v};
-      default:
-        return {u, v};
-    }
-  }
-
- private:
-  PositionUnit unit_;
-  PositionOrigin origin_;
-  Vec2d size_;
-  DisplayGeometry display_;
-};
-
-GazeSample sample_of(const RawSample& row) {
-  GazeSample sample;
-  sample.t_ns = row.t_ns;
-  sample.validity = row.validity;
-  sample.eye = row.eye;
-  sample.confidence = row.confidence;
-  sample.pupil = row.pupil;
-  sample.row = row.row;
-  return sample;
-}
-
-// Samples of the rows of a log of positions, one by one.
-class PositionRows {
- public:
-  PositionRows(const RawGaze& raw, const Conventions& c)
-      : raw_(raw),
-        c_(c),
-        to_fractions_(c, raw.place),
-        marks_off_screen_(!c.off_screen_is_told && raw.kind == GazeKind::screen) {}
-
-  [[nodiscard]] GazeSample sample(std::size_t row) const {
-    GazeSample sample = sample_of(raw_.rows[row]);
-    bool is_missing = false;
-    const Vec2d at = to_fractions_(position_of(raw_.rows[row], corner_of(raw_, c_, row), c_, is_missing));
-    if (is_missing) {
-      lose(sample.validity);
-    }
-    sample.u = c_.flip_x ? 1.0 - at.x : at.x;
-    sample.v = c_.flip_y ? 1.0 - at.y : at.y;
-    const bool inside = sample.u >= 0 && sample.u <= 1 && sample.v >= 0 && sample.v <= 1;
-    if (marks_off_screen_ && sample.validity == GazeValidity::ok && !inside) {
-      sample.validity = GazeValidity::off_screen;
-    }
-    return sample;
-  }
-
- private:
-  const RawGaze& raw_;
-  const Conventions& c_;
-  ToFractions to_fractions_;
-  bool marks_off_screen_;
-};
-
-void interpret_positions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
-  const PositionRows rows(raw, c);
-  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    log.samples.push_back(rows.sample(i));
-  }
-}
-
-bool are_positions(const Conventions& c) {
-  return c.form == PlaceForm::position && !(c.degrees_are_directions && c.unit.value == PositionUnit::deg);
-}
 
 // The rows of each eye, where they stand in order, several eyes to a time and none of them twice; empty where they do
 // not.
 std::optional<RowsOfEyes> rows_in_groups(const RawGaze& raw) {
   RowsOfEyes rows;
   unsigned seen = 0;  // the eyes at the time of the row
+  std::int64_t before_ns = 0;
   for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    const RawSample& row = raw.rows[i];
-    const auto eye = static_cast<std::size_t>(row.eye);
-    const bool goes_on = i > 0 && row.t_ns == raw.rows[i - 1].t_ns;
-    if ((i > 0 && row.t_ns < raw.rows[i - 1].t_ns) || (goes_on && ((seen >> eye) & 1U) != 0)) {
+    const std::int64_t t_ns = raw.rows.t_ns(i);
+    const auto eye = static_cast<std::size_t>(raw.rows.eye(i));
+    const bool goes_on = i > 0 && t_ns == before_ns;
+    if ((i > 0 && t_ns < before_ns) || (goes_on && ((seen >> eye) & 1U) != 0)) {
       return std::nullopt;
     }
+    before_ns = t_ns;
     seen = (goes_on ? seen : 0U) | (1U << eye);
     ++rows.of_eye[eye];
   }
@@ -197,57 +44,19 @@ std::optional<RowsOfEyes> rows_in_groups(const RawGaze& raw) {
 void interpret_in_groups(const RawGaze& raw, const Conventions& c, const RowsOfEyes& rows_of_eyes, GazeLog& log) {
   std::size_t times = 0;
   for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    times += i == 0 || raw.rows[i].t_ns != raw.rows[i - 1].t_ns ? 1 : 0;
+    times += i == 0 || raw.rows.t_ns(i) != raw.rows.t_ns(i - 1) ? 1 : 0;
   }
   check_eye_choice(log, rows_of_eyes);
   log.samples.reserve(times);
   log.eyes.reserve(times);
-  const PositionRows rows(raw, c);
+  const RowSamples rows(raw, c);
   RowGrouper grouper(log);
   for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    grouper.add(rows.sample(i));
+    grouper.add(rows(i));
   }
   grouper.finish();
   log.order.rows = raw.rows.size();
   choose_grouped_eyes(log, rows_of_eyes);
-}
-
-// Degrees from straight ahead, azimuth and elevation taken as independent, as on a flat display: (tan az, tan el, -1).
-void interpret_degrees(const RawGaze& raw, const Conventions& c, GazeLog& log) {
-  log.kind = GazeKind::direction;
-  const double up = c.origin.value == PositionOrigin::top_left && !raw.directions_grow_up ? -1.0 : 1.0;
-  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
-    GazeSample sample = sample_of(raw.rows[i]);
-    bool is_missing = false;
-    const Vec2d at = position_of(raw.rows[i], corner_of(raw, c, i), c, is_missing);
-    const bool known = std::abs(at.x) < 90 && std::abs(at.y) < 90;
-    sample.direction = known ? normalize(Vec3d{std::tan(at.x * kRadPerDeg), up * std::tan(at.y * kRadPerDeg), -1})
-                             : Vec3d{kNan, kNan, kNan};
-    if (!known) {
-      lose(sample.validity);
-    }
-    sample.direction.x *= c.flip_x ? -1 : 1;
-    sample.direction.y *= c.flip_y ? -1 : 1;
-    log.samples.push_back(sample);
-  }
-}
-
-// The direction that a row holds, in the axes of the file; need not be of unit length.
-Vec3d vector_of(const RawSample& row, const Conventions& c) {
-  if (is_mark(row.at, c)) {
-    return {kNan, kNan, kNan};
-  }
-  switch (c.form) {
-    case PlaceForm::azimuth_elevation: {
-      const double az = row.at.x * kRadPerDeg;
-      const double el = row.at.y * kRadPerDeg;
-      return {std::sin(az) * std::cos(el), std::sin(el), -std::cos(az) * std::cos(el)};
-    }
-    case PlaceForm::lens_pixel:
-      return is_usable(row.validity) && c.lens ? ray_of(*c.lens, {row.at.x, row.at.y}) : Vec3d{kNan, kNan, kNan};
-    default:
-      return row.at;
-  }
 }
 
 Vec3f turned(const Vec3f& v, GazeAxes axes, bool mirror_x) {
@@ -256,41 +65,21 @@ Vec3f turned(const Vec3f& v, GazeAxes axes, bool mirror_x) {
   return out;
 }
 
-void interpret_vectors(const RawGaze& raw, const Conventions& c, GazeLog& log) {
-  log.kind = GazeKind::direction;
-  const GazeAxes axes = c.axes.value;
+// Turns what belongs to directions together with them, and says what is odd about them.
+void finish_directions(const RawGaze& raw, const Conventions& c, GazeLog& log) {
   const bool mirror_x = c.x_is_turned && c.x_is_turned->value;
-  const double x_sign = c.flip_x != mirror_x ? -1 : 1;
-  const double y_sign = c.flip_y ? -1 : 1;
+  for (EyeOrigins& origins : log.origins) {
+    origins.left_mm = turned(origins.left_mm, c.axes.value, mirror_x);
+    origins.right_mm = turned(origins.right_mm, c.axes.value, mirror_x);
+  }
   std::size_t not_unit = 0;
   std::size_t backwards = 0;
   std::size_t usable = 0;
-  for (const RawSample& row : raw.rows) {
-    GazeSample sample = sample_of(row);
-    Vec3d d = from_axes(vector_of(row, c), axes);
-    if (c.swap_xy) {
-      std::swap(d.x, d.y);
-    }
-    const double norm = length(d);
-    if (!(norm > 0) || !std::isfinite(norm)) {
-      sample.direction = {kNan, kNan, kNan};
-      lose(sample.validity);
-      log.samples.push_back(sample);
-      continue;
-    }
-    // A unit vector that was written with all its digits stays as it is, bit by bit.
-    if (std::abs(norm - 1.0) > 1e-14) {
-      not_unit += std::abs(norm - 1.0) > 0.01 ? 1 : 0;
-      d = d / norm;
-    }
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const GazeSample& sample = log.samples[i];
+    not_unit += !std::isnan(sample.direction.z) && std::abs(length(vector_of(raw.rows[i], c)) - 1.0) > 0.01 ? 1 : 0;
     usable += is_usable(sample.validity) ? 1 : 0;
-    backwards += is_usable(sample.validity) && d.z > 0 ? 1 : 0;
-    sample.direction = {d.x * x_sign, d.y * y_sign, d.z};
-    log.samples.push_back(sample);
-  }
-  for (EyeOrigins& origins : log.origins) {
-    origins.left_mm = turned(origins.left_mm, axes, mirror_x);
-    origins.right_mm = turned(origins.right_mm, axes, mirror_x);
+    backwards += is_usable(sample.validity) && sample.direction.z > 0 ? 1 : 0;
   }
   if (not_unit > 0) {
     log.warnings.push_back(fmt::format("{}: {} of {} directions were not of unit length; normalized", log.source,
@@ -385,38 +174,6 @@ void check_span(const GazeLog& log) {
 
 }  // namespace
 
-bool is_missing_marker(double coordinate) {
-  return coordinate == kInt16Min || std::abs(coordinate) >= kLarge;
-}
-
-Vec2d corner_of(const RawGaze& raw, const Conventions& conventions, std::size_t row) {
-  const auto behind = std::upper_bound(raw.corners.begin(), raw.corners.end(), row,
-                                       [](std::size_t r, const CornerFromRow& c) { return r < c.first_row; });
-  return behind == raw.corners.begin() ? conventions.corner : (behind - 1)->corner;
-}
-
-std::vector<RawSample> measurable_rows(const RawGaze& raw, const Conventions& conventions) {
-  // Of a long log some of the rows tell as much, and a copy of all of them would be as large as the log.
-  constexpr std::size_t kAllUpTo = 2'000'000;
-  std::size_t stride = raw.rows.size() / kAllUpTo + 1;
-  while (stride > 1 && (stride % 2 == 0 || stride % 3 == 0)) {
-    ++stride;  // or it would meet the same eye of two or three each time
-  }
-  std::vector<RawSample> rows;
-  rows.reserve(raw.rows.size() / stride + 1);
-  for (std::size_t i = 0; i < raw.rows.size(); i += stride) {
-    RawSample row = raw.rows[i];
-    bool is_missing = false;
-    const Vec2d at = position_of(row, corner_of(raw, conventions, i), conventions, is_missing);
-    row.at = {at.x, at.y, 0};
-    if (is_missing) {
-      lose(row.validity);
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
-
 namespace {
 
 GazeLog log_without_samples(const RawGaze& raw, const Conventions& conventions) {
@@ -457,12 +214,13 @@ GazeLog log_without_samples(const RawGaze& raw, const Conventions& conventions) 
 GazeLog interpret_rows(const RawGaze& raw, const Conventions& conventions) {
   GazeLog log = log_without_samples(raw, conventions);
   log.samples.reserve(raw.rows.size());
+  const RowSamples rows(raw, conventions);
+  log.kind = rows.kind();
+  for (std::size_t i = 0; i < raw.rows.size(); ++i) {
+    log.samples.push_back(rows(i));
+  }
   if (conventions.form != PlaceForm::position) {
-    interpret_vectors(raw, conventions, log);
-  } else if (conventions.degrees_are_directions && conventions.unit.value == PositionUnit::deg) {
-    interpret_degrees(raw, conventions, log);
-  } else {
-    interpret_positions(raw, conventions, log);
+    finish_directions(raw, conventions, log);
   }
   recount_times(log, raw.declared.time_exponent.value, conventions.time_exponent.value);
   finish_head(log);
@@ -496,21 +254,6 @@ GazeLog interpret(const RawGaze& raw, const Conventions& conventions) {
   }
   log.facts = facts_in_words(raw, log.conventions);
   return log;
-}
-
-Vec3d from_axes(const Vec3d& v, GazeAxes axes) {
-  switch (axes) {
-    case GazeAxes::automatic:
-    case GazeAxes::gl:
-      break;
-    case GazeAxes::unity:
-      return {v.x, v.y, -v.z};
-    case GazeAxes::sranipal:
-      return {-v.x, v.y, -v.z};
-    case GazeAxes::cv:
-      return {v.x, -v.y, -v.z};
-  }
-  return v;
 }
 
 void finish_head(GazeLog& log) {

@@ -314,8 +314,6 @@ RawGaze read_mapped_table(const GazeFile& file, const DelimitedTable& table, con
     throw Error(ErrorKind::input, file.path, "holds no sample", "a gaze log needs at least one row below its header");
   }
   const TimeScale time = time_scale(file, table, plan, columns, evidence, raw);
-  raw.rows.reserve((static_cast<std::size_t>(std::count(table.body.begin(), table.body.end(), '\n')) + 1) *
-                   plan.sources.size());
   RowReader rows(file, table, plan, columns, style, time);
   rows.read_all(raw);
   declare_positions(raw, plan, file, table, columns, style, evidence);

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "gazelog/interpret.hpp"
+#include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {

@@ -55,7 +55,7 @@ void count_rows(RawGaze& raw) {
     recording.rows = 0;
   }
   RecordingOfLine recording_of(raw);
-  for (const RawSample& row : raw.rows) {
+  for (const RawSample row : raw.rows) {
     GazeRecording& recording = raw.recordings[recording_of(row.row)];
     recording.first_ns = recording.rows == 0 ? row.t_ns : std::min(recording.first_ns, row.t_ns);
     recording.last_ns = recording.rows == 0 ? row.t_ns : std::max(recording.last_ns, row.t_ns);
@@ -103,17 +103,18 @@ void keep_elements(std::vector<Element>& elements, const std::vector<RecordingFr
 void leave_only(RawGaze& raw, std::size_t chosen) {
   RecordingOfLine recording_of(raw);
   std::vector<CornerFromRow> corners;
-  std::size_t kept = 0;
+  RawRows kept;
   auto corner = raw.corners.begin();
   for (std::size_t i = 0; i < raw.rows.size(); ++i) {
     for (; corner != raw.corners.end() && corner->first_row <= i; ++corner) {
-      corners.push_back({kept, corner->corner});
+      corners.push_back({kept.size(), corner->corner});
     }
-    if (recording_of(raw.rows[i].row) == chosen) {
-      raw.rows[kept++] = raw.rows[i];
+    const RawSample row = raw.rows[i];
+    if (recording_of(row.row) == chosen) {
+      kept.push_back(row);
     }
   }
-  raw.rows.resize(kept);
+  raw.rows = std::move(kept);
   raw.corners = std::move(corners);
   // What is measured before a block holds for it as well, since all blocks are of one session.
   const bool is_block = raw.recordings[chosen].is_block;

@@ -158,12 +158,12 @@ std::optional<int> guess_time_exponent(const std::vector<double>& raw_times) {
   return step > 4e5 ? std::optional(0) : std::nullopt;
 }
 
-PositionStatistics measure_positions(const std::vector<RawSample>& samples) {
+PositionStatistics measure_positions(const RawRows& samples) {
   PositionStatistics s;
   std::size_t normalized = 0;
   std::size_t small = 0;
   std::size_t negative = 0;
-  for (const RawSample& sample : samples) {
+  for (const RawSample sample : samples) {
     if (!is_usable(sample.validity)) {
       continue;
     }
@@ -183,7 +183,7 @@ PositionStatistics measure_positions(const std::vector<RawSample>& samples) {
   return s;
 }
 
-PositionUnit guess_position_unit(const std::vector<RawSample>& samples, std::string& evidence) {
+PositionUnit guess_position_unit(const RawRows& samples, std::string& evidence) {
   const PositionStatistics s = measure_positions(samples);
   evidence = s.count == 0 ? "no usable value"
                           : fmt::format("x {:.4g} to {:.4g}, y {:.4g} to {:.4g}", s.x.low, s.x.high, s.y.low, s.y.high);

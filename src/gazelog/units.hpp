@@ -33,9 +33,9 @@ struct PositionStatistics {
   double share_negative = 0;    // either coordinate below 0
   std::size_t count = 0;
 };
-PositionStatistics measure_positions(const std::vector<RawSample>& samples);
+PositionStatistics measure_positions(const RawRows& samples);
 
 // Guessed from the values of usable rows; `evidence` receives what was seen.
-PositionUnit guess_position_unit(const std::vector<RawSample>& samples, std::string& evidence);
+PositionUnit guess_position_unit(const RawRows& samples, std::string& evidence);
 
 }  // namespace gazetrace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/data_root.hpp"
+#include "gazetrace/error.hpp"
 #include "gazetrace/job_schema.hpp"
 #include "job/toml_values.hpp"
 
@@ -26,19 +27,27 @@ bool names_file(const Option& option, const std::string& value) {
 
 }  // namespace
 
+void check_confined(const Option& option, const std::vector<std::string>& values, const std::string& path,
+                    const std::string& place) {
+  const std::string at = place + ": " + option.name;
+  if (option.name == "allow-outside" && values != std::vector<std::string>{"false"}) {
+    throw Error(ErrorKind::input, at, "settings that are not trusted cannot lift what holds scenes to their folder",
+                "give `allow-outside` yourself, or leave `confine` out where you trust the settings");
+  }
+  for (const std::string& value : values) {
+    if (names_file(option, value)) {
+      check_within(data_roots(path), value, value, at,
+                   "put the file there, or leave `confine` out where you trust the settings");
+    }
+  }
+}
+
 void check_confined(const std::string& text, const std::string& path) {
-  const std::vector<fs::path> roots = data_roots(path);
   const OptionList options = job_schema().list();
   for (const auto& [key, node] : parse_toml(text, path).members) {
-    const Option* option = find_option(options, key);
-    if (option == nullptr) {
-      continue;  // the reader of settings says it better
-    }
-    for (const std::string& value : toml_values(node, *option, path)) {
-      if (names_file(*option, value)) {
-        check_within(roots, value, value, toml_place(path, node) + ": " + key,
-                     "put the file there, or leave `confine` out where you trust the settings");
-      }
+    // The reader of settings says it better where there is no such option.
+    if (const Option* option = find_option(options, key)) {
+      check_confined(*option, toml_values(node, *option, path), path, toml_place(path, node));
     }
   }
 }

@@ -36,9 +36,9 @@ TomlNode tree_of(const toml::node& node) {
     }
     std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [position, key] : order) {
-      tree.members.emplace_back(key, tree_of(*table->get(key)));
+      tree.members.push_back({key, tree_of(*table->get(key))});
       // The line of a value may be that of a bracket further down, but people look for the key.
-      tree.members.back().second.line = static_cast<int>(position.line);
+      tree.members.back().node.line = static_cast<int>(position.line);
     }
   } else {
     tree.kind = TomlNode::Kind::other;
@@ -50,8 +50,8 @@ TomlNode tree_of(const toml::node& node) {
 
 const TomlNode* TomlNode::find(std::string_view key) const {
   const auto found =
-      std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.first == key; });
-  return found == members.end() ? nullptr : &found->second;
+      std::find_if(members.begin(), members.end(), [&](const auto& member) { return member.key == key; });
+  return found == members.end() ? nullptr : &found->node;
 }
 
 TomlNode parse_toml(std::string_view text, const std::string& path) {

@@ -4,20 +4,26 @@
 
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace gazetrace {
 
+struct TomlMember;
+
 struct TomlNode {
   enum class Kind { scalar, other, array, table };  // other: dates and times
   Kind kind = Kind::other;
-  int line = 0;                                           // 1-based
-  std::string text;                                       // of a scalar, as it would be written on the command line
-  std::vector<TomlNode> items;                            // of an array
-  std::vector<std::pair<std::string, TomlNode>> members;  // of a table, in the order of the file
+  int line = 0;                     // 1-based
+  std::string text;                 // of a scalar, as it would be written on the command line
+  std::vector<TomlNode> items;      // of an array
+  std::vector<TomlMember> members;  // of a table, in the order of the file
 
   [[nodiscard]] const TomlNode* find(std::string_view key) const;
+};
+
+struct TomlMember {
+  std::string key;
+  TomlNode node;
 };
 
 // Throws Error(input) with path:line for a text that is not TOML.

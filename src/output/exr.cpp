@@ -22,11 +22,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <deque>
 #include <filesystem>
 #include <limits>
 #include <mutex>
+#include <new>
+#include <system_error>
 
 #include "core/parallel.hpp"
 #include "gazetrace/output.hpp"
@@ -315,6 +318,41 @@ void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, co
   }
 }
 
+constexpr int kMostSidePx = 65536;
+
+// OpenEXR makes room for whole blocks of lines before a file's header can be asked; it has these limits for the
+// process.
+void limit_sizes() {
+  static const bool done = [] {
+    Imf::Header::setMaxImageSize(kMostSidePx, kMostSidePx);
+    Imf::Header::setMaxTileSize(kMostSidePx / 8, kMostSidePx / 8);
+    return true;
+  }();
+  static_cast<void>(done);
+}
+
+// The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
+// compression is lossless, and up to 2700 where it is dwaa or dwab.
+void check_size(const Imf::InputFile& file, const std::string& path) {
+  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30U;
+  constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;
+  const Imath::Box2i window = file.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const bool is_dwa =
+      file.header().compression() == Imf::DWAA_COMPRESSION || file.header().compression() == Imf::DWAB_COMPRESSION;
+  std::error_code ignored;
+  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
+  const bool has_a_size = width >= 1 && height >= 1 && width <= kMostSidePx && height <= kMostSidePx;
+  const std::uint64_t pixels =
+      has_a_size ? static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) : kMostPixels + 1;
+  if (pixels > kMostPixels || ignored || pixels > kPixelsOfAnyFile + (is_dwa ? 8192 : 1024) * bytes) {
+    throw Error(ErrorKind::input, path,
+                fmt::format("an EXR of {} x {} pixels and {} bytes cannot be used", width, height, bytes),
+                pixels > kMostPixels ? "make it smaller" : "it is damaged: export it again");
+  }
+}
+
 // Opens an EXR and gives what `read` makes of it; what OpenEXR throws becomes Error(input).
 template <class Read>
 auto read_exr(const std::string& path, const Read& read) {
@@ -322,10 +360,14 @@ auto read_exr(const std::string& path, const Read& read) {
     throw Error(ErrorKind::input, path, "there is no such file");
   }
   try {
+    limit_sizes();
     Imf::InputFile file(path.c_str(), 0);
+    check_size(file, path);
     return read(file);
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::runtime, path, "there is no memory for the EXR", "make it smaller");
   } catch (const std::exception& e) {
     throw Error(ErrorKind::input, path, std::string("cannot read the EXR: ") + e.what());
   }
@@ -432,6 +474,7 @@ ImageGray read_exr_gray(const std::string& path) {
 
 std::string read_exr_text(const std::string& path, const std::string& attribute) {
   try {
+    limit_sizes();
     Imf::InputFile file(path.c_str(), 0);
     const auto* text = file.header().findTypedAttribute<Imf::StringAttribute>(attribute);
     if (text == nullptr || !file.isComplete()) {
@@ -449,6 +492,7 @@ std::string read_exr_text(const std::string& path, const std::string& attribute)
 
 std::optional<double> read_exr_number(const std::string& path, const std::string& attribute) {
   try {
+    limit_sizes();
     Imf::InputFile file(path.c_str(), 0);
     if (const auto* number = file.header().findTypedAttribute<Imf::DoubleAttribute>(attribute)) {
       return number->value();
@@ -464,6 +508,7 @@ std::optional<double> read_exr_number(const std::string& path, const std::string
 
 std::optional<std::int32_t> read_exr_integer(const std::string& path, const std::string& attribute) {
   try {
+    limit_sizes();
     Imf::InputFile file(path.c_str(), 0);
     if (const auto* number = file.header().findTypedAttribute<Imf::IntAttribute>(attribute)) {
       return number->value();

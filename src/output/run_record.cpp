@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/hash.hpp"
+#include "core/json_whole.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -121,11 +122,14 @@ RunRecord read_run_record(const std::string& path) {
     json.at("warnings").get_to(record.warnings);
     json.at("config_toml").get_to(record.config_toml);
     for (const Json& bad : json.at("bad_samples")) {
-      record.bad_samples.push_back({bad.at("frame"), bad.at("x_px"), bad.at("y_px"), bad.at("sample"), bad.at("what")});
+      record.bad_samples.push_back({json_whole<std::int32_t>(bad.at("frame"), path),
+                                    json_whole<int>(bad.at("x_px"), path), json_whole<int>(bad.at("y_px"), path),
+                                    json_whole<std::uint32_t>(bad.at("sample"), path), bad.at("what")});
     }
     if (const auto files = json.find("files"); files != json.end()) {
       for (const auto& [name, written] : files->items()) {
-        record.files[name] = {written.at("frame"), written.at("bytes"), written.at("digest")};
+        record.files[name] = {json_whole<std::int32_t>(written.at("frame"), path),
+                              json_whole<std::uint64_t>(written.at("bytes"), path), written.at("digest")};
       }
     }
     return record;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The history in a sealed file.
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include "gazetrace/pipeline.hpp"
@@ -39,6 +41,21 @@ void each_field(History& history, bool& has_camera, bool& has_ev, auto& camera, 
   visit(history.smoothed_ev_t_ns);
 }
 
+// A seal tells damage; a file that another program wrote must not lead out of the arrays either.
+bool fits_together(const TemporalHistory& history, const Camera& camera) {
+  const auto as_sums = [&](const auto& image) {
+    return image.width_px == history.radiance_sum.width_px && image.height_px == history.radiance_sum.height_px;
+  };
+  const HistorySurfaces& surfaces = history.surfaces;
+  const bool any_surfaces = !surfaces.object.empty();
+  const auto with_surfaces = [&](const auto& image) { return any_surfaces ? as_sums(image) : image.empty(); };
+  return as_sums(history.count_sum) && as_sums(history.variance_weight_sum) && with_surfaces(surfaces.object) &&
+         with_surfaces(surfaces.depth_m) && with_surfaces(surfaces.normal) && with_surfaces(surfaces.footprint_px) &&
+         with_surfaces(surfaces.residual) && history.frames >= 0 &&
+         history.frames < std::numeric_limits<std::int32_t>::max() &&
+         camera.projection.kind <= ProjectionKind::orthographic;
+}
+
 }  // namespace
 
 void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& settings_digest) {
@@ -60,6 +77,9 @@ TemporalHistory load_checkpoint(const std::string& path, const std::string& sett
   double ev = 0;
   each_field(history, has_camera, has_ev, camera, ev, [&](auto& field) { reader(field); });
   reader.finish();
+  if (!fits_together(history, camera)) {
+    reader.fail();
+  }
   if (has_camera) {
     history.camera = camera;
   }

@@ -70,6 +70,14 @@ class SealedReader {
     static_assert(std::is_trivially_copyable_v<T>);
     take(&value, sizeof(T));
   }
+  void operator()(bool& value) {  // of which only two values may be in memory
+    std::uint8_t byte = 0;
+    (*this)(byte);
+    if (byte > 1) {
+      fail();
+    }
+    value = byte == 1;
+  }
   template <class T>
   void operator()(std::vector<T>& values) {
     std::uint64_t count = 0;

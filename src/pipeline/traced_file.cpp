@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "gazetrace/pipeline.hpp"
 #include "pipeline/sealed_file.hpp"
@@ -113,6 +114,22 @@ void read(SealedReader& reader, std::optional<double>& value) {
   value = has_value ? std::optional(number) : std::nullopt;
 }
 
+constexpr int kMostBlockPx = 65536;
+
+// Whether sites have the pixels that the map says of them, and each pixel has a site.
+bool covers_frame(const SamplingMap& map) {
+  std::uint64_t pixels = 0;
+  std::vector<PixelIndex> own;
+  for (const Site& site : map.sites) {
+    pixels_of_site(map, site, own);
+    pixels += own.size();
+    if (own.empty() || own.size() != site.pixels || pixels > map.region.pixels.size()) {
+      return false;
+    }
+  }
+  return pixels == map.region.pixels.size();
+}
+
 // A seal tells damage; a file that another program wrote must not lead out of the arrays either.
 bool fits_together(const TracedFrame& traced) {
   const SamplingMap& map = traced.map;
@@ -121,13 +138,15 @@ bool fits_together(const TracedFrame& traced) {
   const auto one_each = [&](const auto& list) { return list.empty() || list.size() == sites; };
   std::uint64_t in_tiles = 0;
   for (const MapTile& tile : map.tiles) {
-    in_tiles += tile.site_count;
-    if (std::uint64_t{tile.first_site} + tile.site_count > sites) {
+    if (tile.first_site != in_tiles || tile.x_px < 0 || tile.y_px < 0 || tile.x_px >= map.width_px ||
+        tile.y_px >= map.height_px || tile.width_px < 1 || tile.height_px < 1) {
       return false;
     }
+    in_tiles += tile.site_count;
   }
   for (const Site& site : map.sites) {
     if (site.region >= map.regions.size() || map.regions[site.region].block_px < 1 ||
+        map.regions[site.region].block_px > kMostBlockPx ||
         std::int64_t{site.block_x} * map.regions[site.region].block_px >= map.width_px ||
         std::int64_t{site.block_y} * map.regions[site.region].block_px >= map.height_px) {
       return false;
@@ -147,12 +166,13 @@ bool fits_together(const TracedFrame& traced) {
                             ? sparse.surfaces.empty()
                             : sparse.first_surface.size() == sites + 1 && sparse.first_surface.front() == 0 &&
                                   sparse.first_surface.back() == sparse.surfaces.size();
-  return in_tiles == sites && surfaces && map.region.width_px == map.width_px &&
-         map.region.height_px == map.height_px && sparse.width_px == map.width_px &&
-         sparse.height_px == map.height_px && sparse.sum.size() == sites &&
-         sparse.sum_square_luminance.size() == sites && sparse.count.size() == sites && one_each(sparse.guides) &&
-         one_each(sparse.half_difference) && one_each(sparse.first_hits) && one_each(map.expected_samples) &&
-         sparse.stats.regions.size() == map.regions.size();
+  const bool sizes = in_tiles == sites && surfaces && map.region.width_px == map.width_px &&
+                     map.region.height_px == map.height_px && sparse.width_px == map.width_px &&
+                     sparse.height_px == map.height_px && sparse.sum.size() == sites &&
+                     sparse.sum_square_luminance.size() == sites && sparse.count.size() == sites &&
+                     one_each(sparse.guides) && one_each(sparse.half_difference) && one_each(sparse.first_hits) &&
+                     one_each(map.expected_samples) && sparse.stats.regions.size() == map.regions.size();
+  return sizes && covers_frame(map);
 }
 
 }  // namespace

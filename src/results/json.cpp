@@ -84,6 +84,11 @@ class Writer {
     }
   }
   void text_or_null(const char* key, const std::string& text) { json_[key] = text.empty() ? Json() : Json(text); }
+  void text_if_there(const char* key, const std::string& text) {
+    if (!text.empty()) {
+      json_[key] = text;
+    }
+  }
   void choice(const char* key, bool is_first, const char* first, const char* second) {
     json_[key] = is_first ? first : second;
   }
@@ -131,6 +136,7 @@ class Reader {
     field(key, value);
   }
   void text_or_null(const char* key, std::string& text) { field(key, text); }
+  void text_if_there(const char* key, std::string& text) { field(key, text); }
   void choice(const char* key, bool& is_first, const char* first, const char* second) {
     std::string text = first;
     field(key, text);
@@ -280,6 +286,7 @@ void describe(Io& io, T& row) {
   io.field("settings", row.settings);
   io.field("resolution_scale", row.resolution_scale);
   io.field("reference", row.reference);
+  io.text_if_there("task", row.task);
   io.object("time_s", [&](auto& inner) {
     inner.bounds(row.time_s);
     inner.field("values", row.times_s);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -35,8 +36,12 @@ class JsonNode {
   template <std::integral T>
   [[nodiscard]] T whole_number() const {
     const double value = number();
-    if (std::floor(value) != value || value < static_cast<double>(std::numeric_limits<T>::min()) ||
-        value > static_cast<double>(std::numeric_limits<T>::max())) {
+    const bool holds = json_.is_number_unsigned()  ? std::in_range<T>(json_.get<std::uint64_t>())
+                       : json_.is_number_integer() ? std::in_range<T>(json_.get<std::int64_t>())
+                                                   : std::floor(value) == value &&
+                                                         value >= static_cast<double>(std::numeric_limits<T>::min()) &&
+                                                         value < std::ldexp(1.0, std::numeric_limits<T>::digits);
+    if (!holds) {
       fail("is no such whole number");
     }
     return json_.get<T>();

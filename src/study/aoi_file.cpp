@@ -19,7 +19,7 @@ TomlNode tree_of_json(const nlohmann::ordered_json& json) {
   if (json.is_object()) {
     node.kind = TomlNode::Kind::table;
     for (const auto& [key, value] : json.items()) {
-      node.members.emplace_back(key, tree_of_json(value));
+      node.members.push_back({key, tree_of_json(value)});
     }
   } else if (json.is_array()) {
     node.kind = TomlNode::Kind::array;

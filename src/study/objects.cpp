@@ -87,7 +87,7 @@ class FrameSearch {
     }
     // The rays come from the middle of the cone outwards, so that an object's first one is the nearest.
     std::map<std::size_t, ObjectShare> shares;
-    const std::vector<RayHit> hits = hits_at(places);
+    std::vector<RayHit> hits = hits_at(places);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const std::size_t object = names_.of(hits[i]);
       const auto [share, is_first] =
@@ -100,6 +100,9 @@ class FrameSearch {
     }
     std::stable_sort(found.shares.begin(), found.shares.end(),
                      [](const ObjectShare& a, const ObjectShare& b) { return a.share > b.share; });
+    if (settings.keep_hits) {
+      found.hits = std::move(hits);
+    }
   }
 
   void find_nearest(const std::vector<Vec2d>& grid, int count, FrameObjects& found) {

@@ -25,7 +25,7 @@ bool knows_uncertainty(const JobSettings& settings, const GazeLog& log) {
 
 }  // namespace
 
-GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
+GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings, const std::optional<SceneHeatSettings>& heat) {
   if (job.settings.scene.empty()) {
     throw Error(ErrorKind::usage, "", "no scene was given", "name a .gltf or .glb file");
   }
@@ -34,16 +34,30 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings) {
   }
   Job asked = job;
   asked.settings.gaze_uncertainty = true;  // has the plan take accuracy and precision from the log
+  asked.settings.gaze_latency = {};        // what steers a rendering late was not seen late
   const Scene scene = load_job_scene(asked.settings);
   ResolveOptions options;
   options.scope = ResolveScope::plan;
   options.loaded = &scene;
   options.tell_idle = false;
-  GazeOnScene seen{resolve(asked, options), {}};
+  GazeOnScene seen{resolve(asked, options), {}, {}};
   seen.resolved.warnings.insert(seen.resolved.warnings.begin(), scene.warnings.begin(), scene.warnings.end());
+  if (seen.resolved.steering) {
+    // The processing that was asked for is of the gaze itself here, as nothing is steered.
+    for (FrameRequest& request : seen.resolved.plan.frames) {
+      request.gaze_true = request.gaze_render;
+      request.gaze_direction_true = request.gaze_direction_render;
+    }
+  }
   settings.uncertainty = *seen.resolved.plan_settings.uncertainty;
   PathTracer tracer(scene, tracer_options(asked.settings));
+  settings.keep_hits = settings.keep_hits || heat.has_value();
   seen.objects = gaze_objects(tracer, scene, seen.resolved.plan, settings);
+  if (heat) {
+    const FrameRate& fps = seen.resolved.plan_settings.fps;
+    const double frame_s = static_cast<double>(fps.denominator) / static_cast<double>(fps.numerator);
+    seen.heat_svg = scene_heat_svg(tracer, seen.resolved.plan, frame_s, seen.objects, *heat);
+  }
   return seen;
 }
 

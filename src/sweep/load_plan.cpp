@@ -10,6 +10,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
+#include "job/confine.hpp"
 #include "sweep/plan_measure.hpp"
 #include "sweep/row_checks.hpp"
 #include "sweep/row_jobs.hpp"
@@ -248,11 +249,33 @@ class PlanMaker {
   std::map<std::string, std::map<std::string, std::string>> digests_;
 };
 
+void check_confined_plan(const SweepFile& file, const JobSchema& schema) {
+  const auto check = [&](const std::vector<Assignment>& options) {
+    for (const Assignment& given : options) {
+      check_confined(*schema.find(given.option), given.values, file.path, given.place);
+    }
+  };
+  check(file.common);
+  for (const SweepFileScene& scene : file.scenes) {
+    check(scene.options);
+  }
+  for (const SweepFileGaze& gaze : file.gazes) {
+    check(gaze.options);
+  }
+  for (const SweepFileSetting& setting : file.settings) {
+    check(setting.options);
+  }
+  check(file.reference.options);
+}
+
 }  // namespace
 
 LoadedSweepPlan load_sweep_plan(const std::string& path, const std::optional<FrameList>& frames,
-                                const std::optional<int>& threads, const JobSchema& schema) {
+                                const std::optional<int>& threads, const JobSchema& schema, bool confine) {
   const SweepFile file = read_sweep_file(path, schema);
+  if (confine) {
+    check_confined_plan(file, schema);
+  }
   return PlanMaker({file, frames, threads, schema}).make();
 }
 

@@ -13,6 +13,7 @@
 #include <iterator>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/sweep_plan.hpp"
 #include "job/toml_tree.hpp"
 #include "job/toml_values.hpp"
 
@@ -204,6 +205,8 @@ std::string label_of(const SweepFileSetting& setting) {
   return text;
 }
 
+constexpr std::size_t kMostSettings = 100'000;  // a few lists of a few values would fill any memory
+
 std::vector<SweepFileSetting> read_settings(const TomlNode& root, const RenderOptions& options,
                                             const std::string& path) {
   std::vector<SweepFileSetting> settings;
@@ -234,6 +237,10 @@ std::vector<SweepFileSetting> read_settings(const TomlNode& root, const RenderOp
     checked_kind(values, TomlNode::Kind::array, path, wish);
     if (values.items.empty()) {
       refuse(toml_place(path, values), wish + ", and it is empty");
+    }
+    if (settings.size() * values.items.size() > kMostSettings) {
+      refuse(toml_place(path, values), fmt::format("[grid] has more than {} combinations", kMostSettings),
+             "give fewer values, or several plans");
     }
     std::vector<SweepFileSetting> combined;
     for (const SweepFileSetting& setting : settings) {
@@ -285,7 +292,7 @@ void read_reference(const TomlNode& root, const RenderOptions& options, SweepFil
   for (const auto& [key, value] : table->members) {
     if (own.find(key) != nullptr) {
       TomlNode alone;
-      alone.members.emplace_back(key, value);
+      alone.members.push_back({key, value});
       read_table(own, alone, file.reference, file);
     } else {
       file.reference.options.push_back(options.assignment(key, value, file.path, names_of(own.list())));
@@ -423,6 +430,17 @@ SweepFile read_sweep_file(const std::string& path, const JobSchema& schema) {
   read_reference(root, options, file);
   read_measure(root, file);
   return file;
+}
+
+bool is_sweep_plan(const std::string& path) {
+  try {
+    const TomlNode root = parse_toml(text_of(path), path);
+    return std::any_of(root.members.begin(), root.members.end(), [](const auto& member) {
+      return is_among(kTables, member.first) && member.second.kind != TomlNode::Kind::scalar;
+    });
+  } catch (const Error&) {
+    return false;  // the reader of jobs says what is wrong
+  }
 }
 
 std::string place_of(const SweepFile& file, const std::string& key) {

@@ -79,6 +79,16 @@ def nested_nodes(count, cycle=False):
     return change
 
 
+def moving_chain(count):
+    """Each node below the one before, all with the body, the first one moved: each keeps the transforms of all above."""
+    def change(scene):
+        first = len(scene["nodes"])
+        scene["nodes"] += [{"mesh": 0, "children": [first + i + 1]} for i in range(count)] + [{"mesh": 0}]
+        scene["scenes"][0]["nodes"].append(first)
+        scene["animations"][0]["channels"].append({"sampler": 0, "target": {"node": first, "path": "translation"}})
+    return change
+
+
 def many_nodes(count):
     def change(scene):
         first = len(scene["nodes"])
@@ -171,6 +181,7 @@ def scenes():
     yield "animation: keys that go back", changed(put("accessors.2.min", [5]), 1.0)
     yield "animation: an output that is not there", changed(put("animations.0.samplers.0.output", 77), 1.0)
     yield "animation: a camera as the output", changed(put("animations.0.channels.0.target.node", 99), 1.0)
+    yield "animation: 20,000 bodies in a chain that moves", changed(moving_chain(20_000), 1.0)
     yield "skins: 100,000 joints that are one", changed(lambda scene: scene.update(skins=[{"joints": [0] * 100_000}]))
     yield "morph targets: 10,000", changed(put("meshes.0.primitives.0.targets", [{"POSITION": 0}] * 10_000))
     yield "primitives: 100,000 of one mesh", changed(put("meshes.0.primitives", [{"attributes": {"POSITION": 0}, "indices": 1}] * 100_000))
@@ -197,6 +208,8 @@ def pictures():
     yield "png: a chunk of 2^31 bytes", png_head(4, 4)[0] + struct.pack(">I", 2**31 - 1) + b"IDAT" + b"\0" * 100
     yield "jpeg: only its head", b"\xff\xd8\xff\xc0\x00\x11\x08\xff\xff\xff\xff\x03\x01\x22\x00\x02\x11\x01\x03\x11\x01" + b"\0" * 50
     yield "picture: nothing", b""
+    yield "picture: a pixmap by another name", b"P6\n2 2\n255\n" + b"\7" * 12
+    yield "picture: a film by another name", b"\0\0\0\x18ftypisom" + b"\0" * 300
 
 
 def others():
@@ -219,6 +232,13 @@ def others():
     yield "job: frames 1-2000000000", {**box, "job.toml": 'frames = "1-2000000000"'}, \
         ["render", "box.gltf", "--size", "8x8", "--config", "job.toml", "-o", "out/f.####.exr"]
     yield "job: 65535 x 65535 pixels", box, ["render", "box.gltf", "--size", "65535x65535", "-o", "out/f.exr"]
+    yield "map: 60,000 x 100 by its head", {**box, "map.exr": exr_head(60_000, 100) + b"\1" * 3000}, \
+        [*render, "--falloff", "map", "--density-map", "map.exr"]
+    yield "map: 100,000,000 x 4 by its head", {**box, "map.exr": exr_head(100_000_000, 4) + b"\1" * 3000}, \
+        [*render, "--falloff", "map", "--density-map", "map.exr"]
+    grid = "\n".join(f"{key} = {list(range(1, 101))}" for key in ("spp", "bounces", "block-samples", "exposure-key"))
+    yield "plan: a grid of 10^8 rows", {**box, "plan.toml": '[[scene]]\nname = "a"\npath = "box.gltf"\n[[gaze]]\nname = "m"\n'
+                                        'at = [0.5, 0.5]\n[grid]\n' + grid}, ["sweep", "plan.toml", "-o", "s"]
     yield "map: a picture of nothing", {**box, "map.exr": b"v/1\1" + b"\0" * 200}, [*render, "--falloff", "map", "--density-map", "map.exr"]
     history = ["--accumulate", "running", "--frames", "2", "--part", "--resume-from", "history"]
     yield "checkpoint: zeros", {**box, "history": b"\0" * 10_000_000}, ["render", "box.gltf", "--size", "32x18", "-o", "out/f.####.exr", *history]

@@ -72,6 +72,18 @@ class BidsFolder(harness.CliTest):
             whole = (self.folder / "c.csv").read_bytes()
             self.assertIn(whole, [self.converted(source) for source in ("both.csv", "gaze.csv")])
 
+    def test_conversions_into_one_recording_at_once_leave_that_of_one_of_them(self):
+        """The files of a recording belong together: none may be left of the other conversion."""
+        for name, eyes in (("both", ["left", "right"]), ("gaze", ["cyclopean"])):
+            rows = (f"{i * 2_000_000},0.{400 + i % 97},0.5,ok,{eye}" for i in range(6_000) for eye in eyes)
+            self.write(f"long_{name}.csv", "# gazetrace-gaze 1\n# display_px 1000 500\nt[ns],u[1],v[1],valid,eye\n" + "\n".join(rows) + "\n")
+        whole = [self.fresh(f"long_{name}.csv") for name in ("both", "gaze")]
+        for _ in range(4):
+            running = [subprocess.Popen([harness.PROGRAM, "gaze", "convert", source, "-o", f"b/{NAME}", "--overwrite"], cwd=self.folder,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for source in ("long_both.csv", "long_gaze.csv") * 2]
+            self.assertEqual([process.wait() for process in running], [0] * len(running))
+            self.assertIn(self.contents(), whole)
+
     def converted(self, source):
         self.run_ok("gaze", "convert", source, "-o", "alone.csv", "--overwrite")
         return (self.folder / "alone.csv").read_bytes()

@@ -157,6 +157,10 @@ class GazeTools(harness.CliTest):
         noisy = self.run_ok("gaze", "events", "log.csv", "-o", "events.tsv")
         for words in ("by ivt: noise of 0.", "deg RMS", "saccades begin at 30 deg/s", "saccades for", "not to be relied on", "--gaze-process "):
             self.assertIn(words, noisy.stderr)
+        self.run_ok("gaze", "events", "log.csv", "-o", "events.json")
+        doubts = json.loads((self.folder / "events.json").read_text())["doubts"]
+        self.assertIn("noise", [doubt["code"] for doubt in doubts])
+        self.assertTrue(all(doubt["what"] in noisy.stderr for doubt in doubts))
         # What is offered leaves no doubt, and the method has not changed by itself.
         self.assertIn("by ivt, ", noisy.stdout)
         offered = noisy.stderr.split("--gaze-process ")[1].split(" ")[0]
@@ -169,6 +173,28 @@ class GazeTools(harness.CliTest):
         for rate in ("50", "60", "120", "300", "1000"):
             self.run_ok("gaze", "synth", "-o", "log.csv", "--truth", "truth.tsv", "--duration", "20s", "--noise", "0.02", "--rate", rate, "--overwrite")
             self.assertEqual(self.run_ok("gaze", "events", "log.csv").stderr, "")
+        self.run_ok("gaze", "events", "log.csv", "-o", "events.json", "--overwrite")
+        self.assertEqual(json.loads((self.folder / "events.json").read_text())["doubts"], [])
+
+    def test_microsaccades_of_both_eyes(self):
+        """The left eye makes two of half a degree, the right eye one of them."""
+        rows, random = [], 1
+        for i in range(1000):
+            for eye in ("left", "right"):
+                random = (random * 1664525 + 1013904223) % 2**32
+                ramps = [max(0, min((i - at) / 8, 1)) for at in ((200, 600) if eye == "left" else (200,))]
+                u = 0.4 + 0.01 * sum(ramps) + (random / 2**32 - 0.5) * 1e-4
+                random = (random * 1664525 + 1013904223) % 2**32
+                rows.append(f"{i * 2_000_000},{u:.6f},{0.5 + (random / 2**32 - 0.5) * 1e-4:.6f},ok,{eye}")
+        self.write("eyes.csv", harness.gaze_csv(rows))
+        def count(*arguments):
+            found = self.events("eyes.csv", "--method", "microsaccades", "--screen", "paper", *arguments)
+            return [row["movement"] for row in found].count("microsaccade")
+        self.assertEqual(count("--gaze-eye", "left"), 2)
+        self.assertEqual(count("--binocular"), 1)
+        self.synth()
+        self.assert_refused(["gaze", "events", "log.csv", "--binocular"], ["both eyes"])
+        self.assert_refused(["gaze", "events", "log.csv", "--method", "log", "--binocular"], ["--binocular"])
 
     def test_what_bids_has_no_place_for_is_said(self):
         self.head_log(repeats=True)  # not as many samples as poses

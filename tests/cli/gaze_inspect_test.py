@@ -5,6 +5,7 @@ as the whole one does. Whole recordings are accused of nothing."""
 import csv
 import gzip
 import json
+import math
 import shutil
 import unittest
 
@@ -37,6 +38,30 @@ WHOLE = {
     "vive-pro-eye/TESTNA01_2D_Fist3.csv": ("vive-sranipal", "100 ns", "unit-vector", "sranipal", "header"),
     "vive-pro-eye/TESTNA01_360VR_Fist3.csv": ("vive-sranipal", "100 ns", "unit-vector", "sranipal", "header"),
 }
+
+
+class Words(harness.CliTest):
+    def test_each_line_says_what_it_means_and_what_to_do(self):
+        rows = "".join(f"{5000 + 4 * i}\t{960 + 7 * math.sin(i):.1f}\t540.0\t900.0\t...\n" for i in range(2000))
+        self.write("log.asc", "** CONVERTED FROM x.edf\nMSG\t1 DISPLAY_COORDS 0 0 1919 1079\nSTART\t5000 \tLEFT\tSAMPLES\tEVENTS\n"
+                              "SAMPLES\tGAZE\tLEFT\tRATE\t250.00\tTRACKING\tCR\n" + rows + "END\t13000 \tSAMPLES\tEVENTS\tRES\t35.00\t35.00\n")
+        text = self.run_ok("gaze", "inspect", "log.asc").stdout
+        lines = {line.split("  ")[0]: line for line in text.splitlines() if line[:1] not in ("", " ")}
+        # Seconds beside nanoseconds, and durations in units that people use.
+        self.assertIn("8.00 s, from 5.000 s to 12.996 s of the clock", lines["time"])
+        self.assertIn("(5000000000 ns to 12996000000 ns)", lines["time"])
+        # What a share is of, and what to do where it is not believed.
+        self.assertRegex(lines["format"], r"\(known by the content of the file, with \d+ % certainty; --gaze-format names another\)")
+        self.assertNotIn("sure", text)
+        self.assertIn("(RMS-S2S)", lines["precision"])
+        self.assertIn("standard deviation", lines["precision"])
+        # What is undecided says what would decide it.
+        for axis in ("axis x", "axis y"):
+            self.assertIn("undecided: ", lines[axis])
+            self.assertIn("To decide it, ", lines[axis])
+        self.assertIn("see there how to decide it", lines["verdict"])
+        for jargon in ("jitter 0", "middle half", "like blinks", "runs of one position"):
+            self.assertNotIn(jargon, text)
 
 
 @unittest.skipUnless(SAMPLES.exists(), f"{SAMPLES} is not here")

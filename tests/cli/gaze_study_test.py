@@ -81,6 +81,12 @@ class Study(harness.CliTest):
         down = 0.2 * math.tan(0.4)
         self.assertAlmostEqual(float(rows[0]["distance_m"]), 3.5 * math.hypot(1, down), places=2)
         self.assertAlmostEqual(float(rows[0]["y_m"]), 0.5 - 3.5 * down, places=2)
+        # One sample beside the box, in the middle of the first frame: processing takes it out.
+        self.write("jumps.csv", harness.gaze_csv(f"{i * 10_000_000},0.5,{0.05 if i == 5 else 0.6},ok,cyclopean" for i in range(50)))
+        jumps = [*common[:2], "jumps.csv", *common[3:]]
+        of_frame_1 = lambda *more: table(self.run_ok("gaze", "objects", *jumps, *more).stdout)[0]
+        self.assertNotEqual(of_frame_1()["node"], "#0")
+        self.assertEqual(of_frame_1("--gaze-process", "median:samples=5")["node"], "#0")
         self.run_ok("gaze", "objects", *common, "--recorded-here", "--table", "objects.json")
         report = json.loads((self.folder / "objects.json").read_text())
         self.assertEqual(report["stimulus"], "recorded")
@@ -91,6 +97,36 @@ class Study(harness.CliTest):
         self.assertEqual([a["aoi"] for a in areas], ["box", "corner", "(none)"])
         self.assertEqual([a["fixations"] for a in areas], ["1", "0", "0"])
         self.assertEqual(table((self.folder / "tables/fixations.tsv").read_text())[0]["aoi"], "box")
+
+    def test_a_heat_map_on_the_scene(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        self.write("log.csv", harness.gaze_csv(f"{i * 10_000_000},0.5,0.6,ok,cyclopean" for i in range(50)))
+        common = ["gaze", "objects", "box.gltf", "--gaze", "log.csv", "--size", "64x36", "--fps", "10", "--frames", "1-4", "--gaze-accuracy", "0.01",
+                  "--gaze-precision", "0.01", "--table", "t.tsv", "--overwrite"]
+        self.run_ok(*common, "--heat-map", "heat.svg", "--heat-sigma", "1")
+        svg = (self.folder / "heat.svg").read_text()
+        self.assertIn("0.4 s of gaze in 4 frames, as frame 3 sees it", svg)
+        # All of it on one place of the box's front, which is seen from 3.5 m in front and below.
+        sd = 3.5 * math.hypot(1, 0.2 * math.tan(0.4)) * math.tan(math.radians(1))
+        highest = float(re.search(r"to ([0-9.e+]+) s of gaze per square metre", svg).group(1))
+        self.assertAlmostEqual(highest / (0.4 / (2 * math.pi * sd * sd)), 1, delta=0.05)
+        # The spot lies in the middle, a tenth of the height below it: 360 columns over 880 units, from 10 on.
+        darkest = re.findall(r'<path d="([^"]*)" fill="#f6d746"', svg)[-1]
+        x, y = (float(number) for number in re.match(r"M([0-9.]+) ([0-9.]+)", darkest).groups())
+        self.assertAlmostEqual(x, 10 + 440, delta=25)
+        self.assertAlmostEqual(y, 10 + 0.6 * 495, delta=25)
+        # What is hidden from a frame is not on it: the box's front, once the camera has gone behind the box. Gaze is straight
+        # ahead, and in the sky when it gets there.
+        self.write("path.csv", "t[s],x[m],y[m],z[m],qx,qy,qz,qw\n0,0,0.5,4,0,0,0,1\n0.27,0,0.5,4,0,0,0,1\n0.3,0,0.5,-4,0,1,0,0\n1,0,0.5,-4,0,1,0,0\n")
+        self.write("up.csv", harness.gaze_csv(f"{i * 10_000_000},0.5,{0.5 if i < 30 else 0.02},ok,cyclopean" for i in range(50)))
+        around = ["up.csv" if word == "log.csv" else word for word in common]
+        for frame, sees in (("1", True), ("4", False)):
+            self.run_ok(*around, "--camera-path", "path.csv", "--heat-map", "around.svg", "--heat-frame", frame)
+            text = (self.folder / "around.svg").read_text()
+            self.assertEqual("s of gaze per square metre" in text, sees, frame)
+            self.assertEqual("sees it: none of it" in text, not sees, frame)
+        self.assert_refused([*common, "--heat-map", "x.svg", "--heat-frame", "9"], ["--heat-frame", "9"])
+        self.assert_refused([*common, "--heat-map", "x.svg", "--heat-sigma", "0"], ["--heat-sigma"])
 
     def test_a_report_is_one_file_that_loads_nothing(self):
         self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "5s", "--noise", "0.05")

@@ -158,6 +158,10 @@ TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
       [](TracedFrame& frame) { frame.map.region.pixels.front() = 200; },
       [](TracedFrame& frame) { frame.sparse.first_surface.back() += 5; },
       [](TracedFrame& frame) { frame.map.width_px += 1; },
+      [](TracedFrame& frame) { frame.map.tiles.front().x_px = -1; },
+      [](TracedFrame& frame) { frame.map.sites.front().pixels = 0; },
+      [](TracedFrame& frame) { frame.map.regions.front().block_px = 2'000'000'000; },
+      [](TracedFrame& frame) { frame.map.region.pixels.front() ^= 1U; },
       [](TracedFrame& frame) { frame.sparse.stats.regions.clear(); },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -165,6 +169,33 @@ TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
     changes[i](wrong);
     save_traced(b, 3, wrong, "d");
     EXPECT_THROW((void)load_traced(b, 3, "d"), Error) << i;
+  }
+}
+
+TEST(History, CheckpointsThatDoNotFitTogetherAreRefused) {
+  const Scene scene = room();
+  const TemporaryFolder folder;
+  const std::string path = folder / "history.bin";
+  PathTracer tracer(scene, threads(2));
+  TemporalHistory history;
+  (void)FrameRenderer(tracer, settings_of()).render(plan_of(1, 1).frames.front(), history);
+  save_checkpoint(path, history, "d");
+  EXPECT_NO_THROW((void)load_checkpoint(path, "d"));
+  const std::vector<void (*)(TemporalHistory&)> changes{
+      [](TemporalHistory& wrong) { wrong.count_sum = Image<double>(1, 1); },
+      [](TemporalHistory& wrong) { wrong.variance_weight_sum = {}; },
+      [](TemporalHistory& wrong) { wrong.radiance_sum = Image<Vec3d>(48, 31); },
+      [](TemporalHistory& wrong) { wrong.surfaces.depth_m = {}; },
+      [](TemporalHistory& wrong) { wrong.surfaces.object = {}; },
+      [](TemporalHistory& wrong) { wrong.surfaces.residual = ImageGray(32, 48); },
+      [](TemporalHistory& wrong) { wrong.frames = -1; },
+      [](TemporalHistory& wrong) { wrong.camera->projection.kind = static_cast<ProjectionKind>(9); },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    TemporalHistory wrong = history;
+    changes[i](wrong);
+    save_checkpoint(path, wrong, "d");
+    EXPECT_THROW((void)load_checkpoint(path, "d"), Error) << i;
   }
 }
 

@@ -7,13 +7,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "gazetrace/error.hpp"
@@ -202,6 +205,24 @@ TEST(DensityPicture, WhatIsWrongWithAFileIsNamed) {
   write_exr(path, ImageGray(5, 4, 0), "Y");
   EXPECT_NE(said(path).find("no pixel has a value above 0"), std::string::npos) << said(path);
   EXPECT_NE(said(folder.path() + "/other.exr").find("no such file"), std::string::npos);
+}
+
+TEST(DensityPicture, SizesThatFilesOnlyClaimAreRefusedBeforeThereIsMemoryForThem) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "map.exr";
+  write_exr(path, ImageGray(8, 40, 1), "Y");
+  std::string bytes = file_bytes(path);
+  const std::string before("dataWindow\0box2i\0\20\0\0\0", 21);
+  const std::size_t at = bytes.find(before);
+  ASSERT_NE(at, std::string::npos);
+  for (const auto& [width, height, words] :
+       {std::tuple{60000, 100, "60000 x 100 pixels and "}, std::tuple{65000, 64, "65000 x 64 pixels and "},
+        std::tuple{1'000'000, 4, "exceeds the maximum"}}) {
+    const std::array<std::int32_t, 4> window{0, 0, width - 1, height - 1};
+    std::memcpy(bytes.data() + at + before.size(), window.data(), sizeof window);
+    std::ofstream(path, std::ios::binary) << bytes;
+    EXPECT_NE(said(path).find(words), std::string::npos) << said(path);
+  }
 }
 
 TEST(DensityPicture, APatternHasOneFileForEachFrame) {

@@ -51,6 +51,15 @@ TEST(Environment, BadFilesAreRefused) {
   EXPECT_THAT(error_of(folder.write("cut.hdr", radiance_file(64, {1, 2, 3, 4}))), HasSubstr("damaged"));
 }
 
+// Whatever the name says: OpenImageIO would try films, raw photographs and medical volumes.
+TEST(Environment, OnlyPicturesOfKnownKindsAreTried) {
+  const test::TempFolder folder;
+  const std::string pixmap = "P6\n2 1\n255\nabcdef";
+  for (const char* name : {"sky.hdr", "sky.exr", "sky.ppm"}) {
+    EXPECT_THAT(error_of(folder.write(name, pixmap)), HasSubstr("no picture of a known kind")) << name;
+  }
+}
+
 TEST(Environment, ExposureThatOverflowsIsRefused) {
   const test::TempFolder folder;
   const std::string path = folder.write("one.hdr", radiance_file(1, {128, 128, 128, 138}));

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <thread>
@@ -196,6 +198,86 @@ TEST_F(GazeInterpret, TimesOfDayAreTakenOff) {
   EXPECT_EQ(copy.conventions.warnings[0], "guessed on (date)");
   log.samples.front().t_ns = 5;
   EXPECT_FALSE(without_times_of_day(log).taken_off_ns);
+}
+
+// More rows than make a block of packed rows, with all that files hold: decimals, doubles with all their digits, marks,
+// minus zero, stamps from end to end of int64, lines that jump.
+std::vector<RawSample> rows_of_every_kind(std::size_t count) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<RawSample> rows;
+  std::uint64_t random = 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    random = random * 6364136223846793005U + 1442695040888963407U;
+    RawSample row;
+    row.t_ns = i == 9000   ? std::numeric_limits<std::int64_t>::min()
+               : i == 9001 ? std::numeric_limits<std::int64_t>::max()
+                           : static_cast<std::int64_t>(i) * 333'333;
+    row.at = {static_cast<double>(random >> 44U) / 1e6, i < 8192 ? 540.25 : std::sqrt(static_cast<double>(i)), 0};
+    row.at.x = i % 50 == 7 ? kNan : i == 5000 ? -0.0 : i == 13000 ? 1e300 : row.at.x;
+    row.at.z = i < 16000 ? 0 : -1 / (1 + static_cast<double>(i));
+    row.validity = i > 4096 && i % 7 == 0 ? GazeValidity::lost : GazeValidity::ok;
+    row.eye = static_cast<Eye>(i % 3);
+    row.confidence = i < 6000 ? std::numeric_limits<float>::quiet_NaN() : 0.25F * static_cast<float>(i % 5);
+    row.pupil = static_cast<float>(i) * 0.3F;
+    row.row = static_cast<std::int64_t>(i) * (i > 12000 ? 70'000 : 1);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+bool same_bits(const RawSample& a, const RawSample& b) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  const auto bits_of_float = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+  return a.t_ns == b.t_ns && bits(a.at.x) == bits(b.at.x) && bits(a.at.y) == bits(b.at.y) &&
+         bits(a.at.z) == bits(b.at.z) && a.validity == b.validity && a.eye == b.eye &&
+         bits_of_float(a.confidence) == bits_of_float(b.confidence) &&
+         bits_of_float(a.pupil) == bits_of_float(b.pupil) && a.row == b.row;
+}
+
+TEST(RawRows, GiveBackWhatWasPutIn) {
+  std::vector<RawSample> rows = rows_of_every_kind(20'000);
+  RawRows packed;
+  for (const RawSample& row : rows) {
+    packed.push_back(row);
+  }
+  for (const std::size_t i : {std::size_t{3}, std::size_t{4100}, std::size_t{19'999}}) {
+    rows[i].validity = GazeValidity::blink;
+    packed.set_validity(i, GazeValidity::blink);
+  }
+  ASSERT_EQ(packed.size(), rows.size());
+  std::size_t i = 0;
+  for (const RawSample row : packed) {
+    ASSERT_TRUE(same_bits(row, rows[i])) << i;
+    ASSERT_EQ(packed.t_ns(i), rows[i].t_ns);
+    ASSERT_EQ(packed.eye(i), rows[i].eye);
+    ++i;
+  }
+  RawRows twice = packed;
+  twice.append(packed);
+  twice.sort_by_time();
+  ASSERT_EQ(twice.size(), 2 * rows.size());
+  EXPECT_EQ(twice.t_ns(1), std::numeric_limits<std::int64_t>::min());
+  EXPECT_TRUE(same_bits(twice[2], rows[0]));
+  twice.keep_if([](const RawSample& row) { return row.eye == Eye::right; });
+  EXPECT_EQ(twice.size(), 2 * (rows.size() / 3 + 1));
+}
+
+// What an hour of three rows a time needs: 10.8 million rows of this kind in less than 256 MiB.
+TEST(RawRows, TakeLittleMemory) {
+  RawRows packed;
+  constexpr std::size_t kRows = 100'000;
+  for (std::size_t i = 0; i < kRows; ++i) {
+    RawSample row;
+    row.t_ns = 5'000'000'000'000 + static_cast<std::int64_t>(i / 3) * 1'000'000;
+    row.at = {static_cast<double>(i * 7919 % 1'000'000) / 1e6, static_cast<double>(i * 104'729 % 1'000'000) / 1e6, 0};
+    row.eye = static_cast<Eye>(i % 3);
+    row.confidence = std::numeric_limits<float>::quiet_NaN();
+    row.pupil = 1094 + static_cast<float>(i % 40);
+    row.row = static_cast<std::int64_t>(i) + 6;
+    packed.push_back(row);
+  }
+  constexpr double kHour = 10.8e6;
+  EXPECT_LT(static_cast<double>(packed.packed_bytes()) / kRows * kHour, 256.0 * 1024 * 1024);
 }
 
 }  // namespace

@@ -76,6 +76,53 @@ TEST(Nodes, InstancesWithoutAnInverseAreLeftOutWithOneWarning) {
   EXPECT_THAT(scene.warnings[0], HasSubstr("'flat'"));
 }
 
+json animation_of(GltfBuilder& builder, int node, const std::vector<float>& times_s) {
+  const int input = builder.add(times_s, 1);
+  const int output = builder.add(std::vector<float>(3 * times_s.size(), 0.5F), 3);
+  return {{{"samplers", {{{"input", input}, {"output", output}}}},
+           {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}}}}}};
+}
+
+TEST(Nodes, KeysThatLieFurtherApartThanTimeReachesAreRefused) {
+  const test::TempFolder folder;
+  for (const auto& [first_s, refused] : {std::pair{-9e9F, true}, std::pair{-4e9F, false}}) {
+    GltfBuilder builder;
+    builder.add_triangle();
+    builder.json["animations"] = animation_of(builder, 0, {first_s, -first_s});
+    const std::string path = folder.write("long.gltf", builder.text());
+    if (refused) {
+      EXPECT_THAT(test::error_of(path), HasSubstr("s is out of range"));
+    } else {
+      const Scene scene = load_scene(path);
+      EXPECT_EQ(scene.motions.at(0).to_world_at(0).t, (Vec3d{0.5, 0.5, 0.5}));
+    }
+  }
+}
+
+// Every node keeps the transforms of its parents where one of them moves: of a chain, half the square of its length.
+TEST(Nodes, MovingChainsAreReckonedBeforeTheyAreMade) {
+  GltfBuilder builder;
+  builder.add_triangle();
+  const int count = 4000;
+  for (int i = 1; i <= count; ++i) {
+    json node = {{"mesh", 0}};
+    if (i < count) {
+      node["children"] = {i + 1};
+    }
+    builder.add_node(node, i == 1);
+  }
+  builder.json["animations"] = animation_of(builder, 1, {0, 1});
+  const test::TempFolder folder;
+  SceneReadOptions options;
+  options.limits.memory_bytes = std::uint64_t{512} << 20U;
+  try {
+    static_cast<void>(load_scene(folder.write("chain.gltf", builder.text()), options));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("raise `max-memory`"));
+  }
+}
+
 TEST(Nodes, OnlyTheDefaultSceneIsShown) {
   GltfBuilder builder;
   const int mesh = builder.add_triangle();

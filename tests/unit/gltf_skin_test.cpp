@@ -123,6 +123,17 @@ TEST(GltfSkin, ParentsOfJointsMoveThemAndTheMeshsNodeDoesNot) {
   EXPECT_EQ(summary.bounds_max, (Vec3d{0.5, 4, 3}));
 }
 
+TEST(GltfSkin, NumbersThatAreNoJointsAreRefused) {
+  for (const float joint : {1e30F, -1.0F, 4294967296.0F}) {
+    Bar bar;
+    bar.attributes()["JOINTS_0"] = bar.builder.add<float>({joint, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0}, 4);
+    bar.attributes()["WEIGHTS_0"] = bar.builder.add(bar.weights, 4);
+    const TempFolder folder;
+    EXPECT_THAT(error_of(folder.write("bar.gltf", bar.text())), ::testing::HasSubstr("vertex 0 follows joint"))
+        << joint;
+  }
+}
+
 TEST(GltfSkin, WithoutInverseBindMatricesTheyAreTheIdentity) {
   Bar bar;
   bar.builder.json["skins"][0].erase("inverseBindMatrices");

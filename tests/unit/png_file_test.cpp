@@ -145,6 +145,19 @@ TEST(DamagedPng, AnyChangedByteIsRefusedInSilence) {
   }
 }
 
+// The library that reads them has words of its own for a signature that a transfer as text has changed.
+TEST(DamagedPng, AChangedSignatureIsNoPictureAndRefusedInSilence) {
+  const Bytes good = good_png();
+  for (std::size_t at = 0; at < 8; ++at) {
+    Bytes bad = good;
+    bad[at] ^= 1U;
+    for (const Outcome& outcome : {read_bytes(bad), read_file(bad)}) {
+      EXPECT_THAT(outcome.error, HasSubstr("no picture of a known kind")) << at;
+      EXPECT_EQ(outcome.printed, "") << at;
+    }
+  }
+}
+
 struct WrongPng {
   const char* name;
   std::function<Bytes()> bytes;

@@ -61,6 +61,30 @@ TEST(RunRecord, BrokenRecords) {
   }
 }
 
+TEST(RunRecord, NumbersThatCannotStandThereAreRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "run.json";
+  RunRecord record;
+  record.frames = "1";
+  record.bad_samples = {{1, 2, 3, 4, "rejected ray"}};
+  record.files = {{"f.exr", {1, 10, "00"}}};
+  const auto whole = nlohmann::json::parse(run_record_json(record));
+  for (const nlohmann::json& number :
+       {nlohmann::json(1e300), nlohmann::json(1.5), nlohmann::json(-1e300), nlohmann::json(5'000'000'000)}) {
+    for (const char* key : {"/files/f.exr/frame", "/bad_samples/0/frame", "/bad_samples/0/sample"}) {
+      auto changed = whole;
+      changed[nlohmann::json::json_pointer(key)] = number;
+      write_text_atomically(path, changed.dump());
+      try {
+        read_run_record(path);
+        ADD_FAILURE() << key << " " << number;
+      } catch (const Error& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("is not a whole number that can stand there")) << key << " " << number;
+      }
+    }
+  }
+}
+
 TEST(RunRecord, PartsCarryTheirFramesInTheName) {
   EXPECT_EQ(timing_file_name("out", "1-100", true), "out/timing.1-100.csv");
   EXPECT_EQ(timing_file_name("out", "1-100", false), "out/timing.csv");

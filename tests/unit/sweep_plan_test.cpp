@@ -138,5 +138,23 @@ TEST_F(SweepPlanFile, WhatOptionsTouchDecides) {
   EXPECT_EQ(other.at("colour")[2], other.at("plain")[2]);
 }
 
+TEST_F(SweepPlanFile, AGridOfMoreCombinationsThanAnybodyRendersIsRefused) {
+  std::string values = "[1";
+  for (int value = 2; value <= 20; ++value) {
+    values += ", " + std::to_string(value);
+  }
+  std::string text = file_bytes(path_) + "\n[grid]\n";
+  for (const char* option : {"spp", "seed", "bounces", "block-samples", "exposure-key"}) {
+    text += std::string(option) + " = " + values + "]\n";
+  }
+  write_text_atomically(path_, text);
+  try {
+    (void)load_sweep_plan(path_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("[grid] has more than 100000 combinations"));
+  }
+}
+
 }  // namespace
 }  // namespace gazetrace

@@ -114,8 +114,9 @@ int run_retry(const FarmArguments& arguments) {
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
   }
-  for (const TaskStatus& task : status.tasks) {
-    if (task.state == TaskState::running) {
+  for (std::size_t i = 0; i < status.tasks.size(); ++i) {
+    const TaskStatus& task = status.tasks[i];
+    if (task.state == TaskState::running && (i >= plan.chunks.size() || !can_retry_beside_running(plan))) {
       throw Error(ErrorKind::usage, arguments.folder,
                   "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
     }
@@ -143,18 +144,26 @@ void add_hand_over_options(CLI::App& app, FarmArguments& arguments) {
 Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<FarmArguments>();
   FarmSettings& settings = arguments->settings;
-  app.add_option("job", settings.job_file, "A settings file as 'render' takes it, with frames and output")
+  app.add_option("job", settings.job_file,
+                 "A settings file as 'render' takes it, with frames and output, or the plan of a sweep")
       ->type_name("JOB.toml");
   app.add_option("--engine", settings.engine, "Which queue runs the tasks; " + engines_text())
       ->default_str("local")
       ->type_name("NAME");
   settings.engine = "local";
-  app.add_option("--chunks", settings.chunks, "Divides the frames into N tasks of about equal cost")
+  app.add_option("--chunks", settings.chunks,
+                 "Divides the frames, or the rows of a sweep, into N tasks of about equal cost")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   app.add_option("--chunk-frames", settings.chunk_frames, "Divides them into tasks of N frames each")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  app.add_option("--sample-ranges", settings.sample_ranges,
+                 "Divides the samples of all frames into N tasks, whose sums 'merge' makes pictures of")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_option("-o,--output", settings.output, "Of a sweep: its folder; default: the plan's name with .sweep")
+      ->type_name("FOLDER");
   app.add_option("--threads", settings.threads, "Of each task; 0: as many as its machine has")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");

@@ -87,6 +87,7 @@ class Check {
 
   std::vector<EventDoubt> run() {
     noise();
+    noise_beside_microsaccades();
     fixations();
     saccades();
     return std::move(doubts_);
@@ -112,13 +113,26 @@ class Check {
                         noise.rms_s2s_deg, static_cast<double>(s.min_fixation_ns) * 1e-6, noise.median_extent_deg,
                         s.dispersion_deg));
     }
-    // The adaptive method finds no saccade that is slower than the threshold to which the noise raised it.
-    constexpr double kSmallSaccadeDeg = 2;
+    // The adaptive method finds no saccade that is slower than the threshold to which the noise raised it. Its filter
+    // lowers the peaks of small saccades besides, so that those of 2 deg are lost before a threshold of 89 deg/s.
+    constexpr double kSmallSaccadeDeg = 1.5;
     if (s.method == "adaptive" && events_.peak_threshold_deg_s > published_peak_deg_s(kSmallSaccadeDeg)) {
       doubt("noise", fmt::format("noise of {:.2g} deg RMS from sample to sample raised the threshold to {:.0f} deg/s, "
                                  "at which saccades below {:.1f} deg are not found",
                                  noise.rms_s2s_deg, events_.peak_threshold_deg_s,
                                  published_amplitude_deg(events_.peak_threshold_deg_s)));
+    }
+  }
+
+  // So does the method for microsaccades, whose threshold is a multiple of the noise.
+  void noise_beside_microsaccades() {
+    const EventSettings& s = events_.settings;
+    if (s.method == "ek" && events_.peak_threshold_deg_s > published_peak_deg_s(s.max_microsaccade_deg)) {
+      doubt("noise",
+            fmt::format("noise of {:.2g} deg RMS from sample to sample raised the threshold to {:.0f} deg/s, "
+                        "at which saccades below {:.1f} deg are not found, and microsaccades are below {:g} deg",
+                        measure_event_noise(log_, s).rms_s2s_deg, events_.peak_threshold_deg_s,
+                        published_amplitude_deg(events_.peak_threshold_deg_s), s.max_microsaccade_deg));
     }
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gaze/angles.hpp"
+#include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
@@ -125,7 +126,9 @@ std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
   return text;
 }
 
-std::string events_as_json(const EyeEvents& events, const GazeLog& log) {
+namespace {
+
+Json events_json(const EyeEvents& events, const GazeLog& log) {
   const EventSettings& s = events.settings;
   const bool are_stated = events.preset == kStatedByLog;
   const std::vector<Column> columns = measures(events);
@@ -149,31 +152,49 @@ std::string events_as_json(const EyeEvents& events, const GazeLog& log) {
     item["direction"] = Json::array({number(event.direction.x), number(event.direction.y), number(event.direction.z)});
     list.push_back(std::move(item));
   }
-  const Json json{{"source", log.source},
-                  {"preset", events.preset},
-                  {"settings",
-                   {{"algorithm", s.method},
-                    {"space", to_string(s.space)},
-                    {"velocity_deg_s", s.velocity_deg_s},
-                    {"velocity_window_ns", s.velocity_window_ns},
-                    {"max_gap_ns", s.max_gap_ns},
-                    {"merge_gap_ns", s.merge_gap_ns},
-                    {"merge_angle_deg", s.merge_angle_deg},
-                    {"min_fixation_ns", s.min_fixation_ns},
-                    {"dispersion_deg", s.dispersion_deg},
-                    {"start_velocity_deg_s", s.start_velocity_deg_s},
-                    {"max_velocity_deg_s", s.max_velocity_deg_s},
-                    {"max_acceleration_deg_s2", s.max_acceleration_deg_s2},
-                    {"min_saccade_ns", s.min_saccade_ns},
-                    {"dispersion_window_ns", s.dispersion_window_ns},
-                    {"noise_factor", s.noise_factor},
-                    {"max_microsaccade_deg", s.max_microsaccade_deg},
-                    {"min_blink_ns", s.min_blink_ns},
-                    {"max_blink_ns", s.max_blink_ns}}},
-                  {"peak_threshold_deg_s", number(events.peak_threshold_deg_s)},
-                  {"onset_threshold_deg_s", number(events.onset_threshold_deg_s)},
-                  {"events", std::move(list)}};
+  return {{"source", log.source},
+          {"preset", events.preset},
+          {"settings",
+           {{"algorithm", s.method},
+            {"space", to_string(s.space)},
+            {"velocity_deg_s", s.velocity_deg_s},
+            {"velocity_window_ns", s.velocity_window_ns},
+            {"max_gap_ns", s.max_gap_ns},
+            {"merge_gap_ns", s.merge_gap_ns},
+            {"merge_angle_deg", s.merge_angle_deg},
+            {"min_fixation_ns", s.min_fixation_ns},
+            {"dispersion_deg", s.dispersion_deg},
+            {"start_velocity_deg_s", s.start_velocity_deg_s},
+            {"max_velocity_deg_s", s.max_velocity_deg_s},
+            {"max_acceleration_deg_s2", s.max_acceleration_deg_s2},
+            {"min_saccade_ns", s.min_saccade_ns},
+            {"dispersion_window_ns", s.dispersion_window_ns},
+            {"noise_factor", s.noise_factor},
+            {"max_microsaccade_deg", s.max_microsaccade_deg},
+            {"min_blink_ns", s.min_blink_ns},
+            {"max_blink_ns", s.max_blink_ns}}},
+          {"peak_threshold_deg_s", number(events.peak_threshold_deg_s)},
+          {"onset_threshold_deg_s", number(events.onset_threshold_deg_s)},
+          {"events", std::move(list)}};
+}
+
+std::string text_of(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string events_as_json(const EyeEvents& events, const GazeLog& log) {
+  return text_of(events_json(events, log));
+}
+
+std::string events_as_json(const EyeEvents& events, const GazeLog& log, const std::vector<EventDoubt>& doubts) {
+  Json json = events_json(events, log);
+  json["doubts"] = Json::array();
+  for (const EventDoubt& doubt : doubts) {
+    json["doubts"].push_back({{"code", doubt.code}, {"what", doubt.what}});
+  }
+  return text_of(json);
 }
 
 }  // namespace gazetrace

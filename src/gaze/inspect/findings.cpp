@@ -10,8 +10,8 @@
 
 #include "gaze/inspect/inspect.hpp"
 #include "gaze/inspect/recurring_place.hpp"
-#include "gazelog/interpret.hpp"
 #include "gazelog/row_order.hpp"
+#include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -231,7 +231,7 @@ class Doctor {
     if (whole_ == nullptr || whole_->conventions.form != PlaceForm::position || whole_->conventions.zero_is_missing) {
       return;
     }
-    const std::vector<RawSample>& rows = whole_->raw.rows;
+    const RawRows& rows = whole_->raw.rows;
     std::size_t zeros = 0;  // counted from the corner of the display
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Vec2d corner = corner_of(whole_->raw, whole_->conventions, i);
@@ -280,10 +280,10 @@ class Doctor {
       return;
     }
     std::map<double, std::size_t> counts;
-    const std::vector<RawSample>& rows = whole_->raw.rows;
+    const RawRows& rows = whole_->raw.rows;
     const std::size_t stride = rows.size() / kMostLookedAt + 1;
     for (std::size_t i = 0; i < rows.size(); i += stride) {
-      const RawSample& row = rows[i];
+      const RawSample row = rows[i];
       for (const double value : {row.at.x, row.at.y}) {
         if (is_usable(row.validity) && value < 0 && value == std::floor(value) && !is_missing_marker(value)) {
           ++counts[value];

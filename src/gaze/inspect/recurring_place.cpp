@@ -12,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "gazelog/interpret.hpp"
+#include "gazelog/row_samples.hpp"
 
 namespace gazetrace {
 namespace {
@@ -71,12 +71,12 @@ bool Visits::look_like_a_mark(std::size_t rows_in_log) const {
 
 // A place at which many rows of a log lie, and one of them.
 struct FrequentPlace {
-  Vec3d raw;               // as in the file
-  std::size_t sample = 0;  // index
+  Vec3d raw;            // as in the file
+  std::size_t row = 0;  // index
 };
 
 // At most a few thousand places, whatever the log's length.
-std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, bool has_three) {
+std::vector<FrequentPlace> frequent_places(const RawRows& rows, bool has_three) {
   // A log has nearly as many places as rows. Counting them by a hash first leaves only a few that must be compared
   // exactly.
   constexpr int kHashBits = 18;
@@ -87,7 +87,7 @@ std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, b
     return ((x ^ std::rotl(y, 32) ^ std::rotl(z, 16)) * 0x9E37'79B9'7F4A'7C15U) >> (64 - kHashBits);
   };
   std::vector<std::uint32_t> counts(std::size_t{1} << kHashBits, 0);
-  for (const RawSample& row : rows) {
+  for (const RawSample row : rows) {
     ++counts[hash(place_of(row, has_three))];
   }
   struct Found {
@@ -110,15 +110,17 @@ std::vector<FrequentPlace> frequent_places(const std::vector<RawSample>& rows, b
 }
 
 // A place that gaze reaches again and again, and by jumps from elsewhere. Beside the display a few such rows are
-// enough; elsewhere the place must hold a hundredth of the rows, and no other place may be like it. `log` has a sample
-// for each row, in the order of the rows.
-std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<FrequentPlace>& frequent) {
+// enough; elsewhere the place must hold a hundredth of the rows, and no other place may be like it.
+std::optional<RecurringPlace> find_mark(const RawGaze& raw, const Conventions& conventions,
+                                        const std::vector<FrequentPlace>& frequent) {
+  const RowSamples sample_of(raw, conventions);
+  const GazeKind kind = sample_of.kind();
   std::map<Place, Visits> places;
   for (const FrequentPlace& place : frequent) {
-    const Vec3d at = place_of(log.samples[place.sample], log.kind);
+    const Vec3d at = place_of(sample_of(place.row), kind);
     const bool is_zero = place.raw.x == 0 && place.raw.y == 0 && place.raw.z == 0;  // zeros are counted separately
     if (is_known(at) && !is_zero) {
-      const bool is_beside = log.kind != GazeKind::direction && !(at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1);
+      const bool is_beside = kind != GazeKind::direction && !(at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1);
       places.try_emplace(key_of(at), Visits{.raw = place.raw, .is_beside = is_beside});
     }
   }
@@ -131,10 +133,11 @@ std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<Fr
   };
   std::array<Last, 3> last_of_eye;
   std::array<const Visits*, 3> was_at{};  // the same, with losses left out
-  for (const GazeSample& sample : log.samples) {
+  for (std::size_t row = 0; row < raw.rows.size(); ++row) {
+    const GazeSample sample = sample_of(row);
     const auto eye = static_cast<std::size_t>(sample.eye);
     Last& last = last_of_eye[eye];
-    const Vec3d at = place_of(sample, log.kind);
+    const Vec3d at = place_of(sample, kind);
     if (!is_usable(sample.validity) || !is_known(at)) {
       last = {};
       continue;
@@ -162,7 +165,7 @@ std::optional<RecurringPlace> find_mark(const GazeLog& log, const std::vector<Fr
   const Visits* within = nullptr;
   std::size_t next_within_rows = 0;
   for (const auto& [at, visits] : places) {
-    if (!visits.look_like_a_mark(log.samples.size())) {
+    if (!visits.look_like_a_mark(raw.rows.size())) {
       continue;
     }
     const Visits*& most = visits.is_beside ? beside : within;
@@ -188,9 +191,9 @@ std::optional<RecurringPlace> find_recurring_place(const RawGaze& raw, const Con
   const bool has_three = conventions.form == PlaceForm::vector;
   const std::vector<FrequentPlace> frequent = frequent_places(raw.rows, has_three);
   if (frequent.empty()) {
-    return std::nullopt;  // no second log is made of the rows
+    return std::nullopt;
   }
-  const std::optional<RecurringPlace> mark = find_mark(interpret_rows(raw, conventions), frequent);
+  const std::optional<RecurringPlace> mark = find_mark(raw, conventions, frequent);
   // Of directions, only those that loggers write as marks count: three times the same number, and straight ahead.
   const bool is_plain =
       mark && ((mark->raw.x == mark->raw.y && mark->raw.y == mark->raw.z) || (mark->raw.x == 0 && mark->raw.y == 0));

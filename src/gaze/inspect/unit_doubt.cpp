@@ -11,7 +11,7 @@
 
 #include "core/statistics.hpp"
 #include "gaze/inspect/inspect.hpp"
-#include "gazelog/interpret.hpp"
+#include "gazelog/row_samples.hpp"
 #include "gazelog/units.hpp"
 
 namespace gazetrace {
@@ -22,10 +22,10 @@ struct Extent {
   double low = 0, median = 0, high = 0;
 };
 // Empty where there are only a few rows.
-std::optional<Extent> extent_of(const std::vector<RawSample>& rows, double Vec3d::*coordinate) {
+std::optional<Extent> extent_of(const RawRows& rows, double Vec3d::*coordinate) {
   std::vector<double> values;
   values.reserve(rows.size());
-  for (const RawSample& row : rows) {
+  for (const RawSample row : rows) {
     if (is_usable(row.validity) && std::isfinite(row.at.*coordinate)) {
       values.push_back(row.at.*coordinate);
     }
@@ -169,7 +169,7 @@ std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, 
   if (c.form != PlaceForm::position || c.unit.evidence == Evidence::statistics) {
     return std::nullopt;
   }
-  const std::vector<RawSample> rows = measurable_rows(raw, c);
+  const RawRows rows = measurable_rows(raw, c);
   const std::optional<Extent> x = extent_of(rows, &Vec3d::x);
   const std::optional<Extent> y = extent_of(rows, &Vec3d::y);
   if (!x || !y) {

@@ -90,9 +90,8 @@ void join_other_eyes(const BidsName& name, const Sidecars& sidecars, const BidsC
     raw.pupil_unit = raw.pupil_unit.empty() ? second.pupil_unit : raw.pupil_unit;
     read_bids_events(other, path, raw);
     raw.origins.insert(raw.origins.end(), second.origins.begin(), second.origins.end());
-    raw.rows.insert(raw.rows.end(), second.rows.begin(), second.rows.end());
-    std::stable_sort(raw.rows.begin(), raw.rows.end(),
-                     [](const RawSample& a, const RawSample& b) { return a.t_ns < b.t_ns; });
+    raw.rows.append(second.rows);
+    raw.rows.sort_by_time();
     add_note(raw, "other eye", file_name(path), Evidence::sidecar, "RecordedEye");
   }
 }

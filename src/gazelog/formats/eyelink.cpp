@@ -9,9 +9,9 @@
 #include <cmath>
 
 #include "core/text.hpp"
-#include "gazelog/interpret.hpp"
 #include "gazelog/read_support.hpp"
 #include "gazelog/recordings.hpp"
+#include "gazelog/row_samples.hpp"
 
 namespace gazetrace {
 namespace {
@@ -32,16 +32,6 @@ struct Block {
   }
 };
 
-std::size_t rows_that_begin_with_a_digit(std::string_view text) {
-  std::size_t rows = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    rows += text[at] >= '0' && text[at] <= '9' ? 1 : 0;
-    const std::size_t end = text.find('\n', at);
-    at = end == std::string_view::npos ? text.size() : end + 1;
-  }
-  return rows;
-}
-
 struct Span {
   std::int64_t begin_ns, end_ns;
 };
@@ -61,8 +51,6 @@ class AscReader {
   }
 
   RawGaze read() {
-    // Two eyes a row at most. What is not used costs no memory; growing would hold the samples twice.
-    raw_.rows.reserve(2 * rows_that_begin_with_a_digit(file_.text));
     // Messages of a calibration go on in lines that begin with digits; only what stands between START and END is a
     // sample. Files of samples alone have neither.
     const bool has_blocks = file_.text.starts_with("START") || file_.text.find("\nSTART") != std::string::npos;
@@ -284,7 +272,7 @@ class AscReader {
     const auto behind =
         std::partition_point(first, raw_.rows.end(), [&](const RawSample& sample) { return sample.t_ns <= end_ns; });
     for (auto sample = behind; sample != first && (sample - 1)->t_ns >= begin_ns; --sample) {
-      const RawSample& s = *(sample - 1);
+      const RawSample s = *(sample - 1);
       if (s.eye == eye && s.validity != GazeValidity::lost) {
         const Vec2d corner = corner_of(raw_, raw_.declared, static_cast<std::size_t>(sample - 1 - raw_.rows.begin()));
         x += s.at.x - corner.x;
@@ -376,7 +364,8 @@ class AscReader {
       }
       std::sort(spans.begin(), spans.end(), [](const Span& x, const Span& y) { return x.begin_ns < y.begin_ns; });
       std::size_t s = 0;
-      for (RawSample& sample : raw_.rows) {
+      for (std::size_t row = 0; row < raw_.rows.size() && !spans.empty(); ++row) {
+        const RawSample sample = raw_.rows[row];
         if (sample.eye != (side == 0 ? Eye::left : Eye::right)) {
           continue;
         }
@@ -386,7 +375,7 @@ class AscReader {
         // Spans may hold each other: a saccade and the blink within.
         for (std::size_t i = s; i < spans.size() && spans[i].begin_ns <= sample.t_ns; ++i) {
           if (sample.t_ns <= spans[i].end_ns) {
-            sample.validity = GazeValidity::blink;
+            raw_.rows.set_validity(row, GazeValidity::blink);
             break;
           }
         }

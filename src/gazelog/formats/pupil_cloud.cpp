@@ -96,7 +96,7 @@ RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& optio
   }
   // The picture is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; the file does not say.
   double widest = 0;
-  for (const RawSample& sample : raw.rows) {
+  for (const RawSample sample : raw.rows) {
     widest = sample.at.x > widest && sample.at.x < 1600 ? sample.at.x : widest;
   }
   raw.picture_px = widest > 1100 ? Vec2d{1600, 1200} : Vec2d{1088, 1080};

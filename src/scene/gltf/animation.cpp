@@ -12,7 +12,8 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kMaxTimeS = 9e9;  // int64 nanoseconds reach 9.2e9 s
+// From the first key to the last there must be less than the 9.2e9 s that int64 nanoseconds reach.
+constexpr double kMaxTimeS = 4.6e9;
 
 std::string animation_place(const GltfDocument& document, std::size_t animation, int sampler) {
   return document.path + ": animations[" + std::to_string(animation) + "].samplers[" + std::to_string(sampler) + "]";

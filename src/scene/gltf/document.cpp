@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <limits>
 #include <new>
 #include <utility>
 
@@ -17,6 +18,12 @@ using Value = tinygltf::Value;
 const Value* extension(const tinygltf::ExtensionMap& extensions, const char* name) {
   const auto it = extensions.find(name);
   return it != extensions.end() && it->second.IsObject() ? &it->second : nullptr;
+}
+
+// An index or another whole number that may be -1; -1 also for what is none. Extensions that nobody reads are not
+// checked.
+int whole_or_none(double value) {
+  return value >= 0 && value <= std::numeric_limits<int>::max() ? static_cast<int>(value) : -1;
 }
 
 double number(const Value& object, const char* key, double fallback) {
@@ -55,15 +62,15 @@ GltfTextureInfo texture_info(const Info& from) {
     info.offset = pair_or(*transform, "offset", {0, 0});
     info.scale = pair_or(*transform, "scale", {1, 1});
     info.rotation_rad = number(*transform, "rotation", 0);
-    info.tex_coord = static_cast<int>(number(*transform, "texCoord", from.texCoord));
+    info.tex_coord = whole_or_none(number(*transform, "texCoord", from.texCoord));
   }
   return info;
 }
 
 GltfTextureInfo texture_info_of(const Value& from) {
   tinygltf::TextureInfo info;
-  info.index = static_cast<int>(number(from, "index", -1));
-  info.texCoord = static_cast<int>(number(from, "texCoord", 0));
+  info.index = whole_or_none(number(from, "index", -1));
+  info.texCoord = whole_or_none(number(from, "texCoord", 0));
   if (from.Has("extensions") && from.Get("extensions").IsObject()) {
     info.extensions = from.Get("extensions").Get<Value::Object>();
   }

@@ -81,6 +81,87 @@ std::uint64_t instances_of(const GltfDocument& document, const GltfNode& node) {
   return count;
 }
 
+// Whatever moves keeps the transforms of its parents up to the root, each with its keys: a few bytes of JSON can be the
+// children of a long chain. Called once the nodes are known to form trees.
+class MotionSizes {
+ public:
+  explicit MotionSizes(const GltfDocument& document)
+      : document_(document),
+        parent_(document.nodes.size(), -1),
+        path_bytes_(document.nodes.size(), kAnimatedNodeBytes),
+        moves_(document.nodes.size(), 0) {
+    add_keys();
+    std::vector<int> order;
+    for (std::size_t i = 0; i < document.nodes.size(); ++i) {
+      for (const int child : document.nodes[i].children) {
+        parent_[at(child)] = static_cast<int>(i);
+      }
+    }
+    for (std::size_t i = 0; i < parent_.size(); ++i) {
+      if (parent_[i] < 0) {
+        order.push_back(static_cast<int>(i));
+      }
+    }
+    for (std::size_t k = 0; k < order.size(); ++k) {  // parents before children
+      const auto parent = at(order[k]);
+      for (const int child : document.nodes[parent].children) {
+        add_to(path_bytes_[at(child)], path_bytes_[parent]);
+        moves_[at(child)] = static_cast<char>(moves_[at(child)] | moves_[parent]);
+        order.push_back(child);
+      }
+    }
+  }
+
+  // Of all bodies, cameras and skins.
+  [[nodiscard]] std::uint64_t bytes() const {
+    constexpr std::uint64_t kEnough = std::uint64_t{1} << 38U;  // above what any machine is asked for
+    std::uint64_t sum = 0;
+    std::vector<std::size_t> seen_by(document_.nodes.size(), 0);
+    for (std::size_t i = 0; i < document_.nodes.size() && sum < kEnough; ++i) {
+      const GltfNode& node = document_.nodes[i];
+      if ((node.mesh >= 0 || node.camera >= 0) && moves_[i] != 0) {
+        add_to(sum, path_bytes_[i]);
+      }
+      if (node.mesh >= 0 && node.skin >= 0) {
+        for (const int joint : document_.skins[at(node.skin)].joints) {
+          for (int up = joint; up >= 0 && seen_by[at(up)] != i + 1 && sum < kEnough; up = parent_[at(up)]) {
+            seen_by[at(up)] = i + 1;
+            add_to(sum, own_bytes(up));
+          }
+          add_to(sum, kJointBytes);
+        }
+      }
+    }
+    return sum;
+  }
+
+ private:
+  static constexpr std::uint64_t kAnimatedNodeBytes = 600, kJointBytes = 300;
+  static std::size_t at(int index) { return static_cast<std::size_t>(index); }
+  [[nodiscard]] std::uint64_t own_bytes(int node) const {
+    const int parent = parent_[at(node)];
+    return path_bytes_[at(node)] - (parent < 0 ? 0 : std::min(path_bytes_[at(parent)], path_bytes_[at(node)]));
+  }
+  void add_keys() {
+    for (const GltfAnimation& animation : document_.animations) {
+      for (const GltfAnimation::Channel& channel : animation.channels) {
+        if (channel.node >= 0) {
+          const GltfAnimation::Sampler& sampler = animation.samplers[at(channel.sampler)];
+          // A time and a value of four doubles for each.
+          add_to(path_bytes_[at(channel.node)], times(document_.accessors[at(sampler.input)].count, 8) +
+                                                    times(document_.accessors[at(sampler.output)].count, 32));
+          moves_[at(channel.node)] = 1;
+        }
+      }
+    }
+  }
+
+  const GltfDocument& document_;
+  std::vector<int> parent_;
+  std::vector<std::uint64_t> path_bytes_;  // of a node and all its parents
+  std::vector<char> moves_;
+};
+
 std::string mib(std::uint64_t bytes) {
   return std::to_string(bytes >> 20U) + " MiB";
 }
@@ -146,6 +227,7 @@ SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked
   }
   estimate.nodes = document.nodes.size();
   estimate.node_bytes = times(estimate.nodes, kNodeBytes) + times(instances, kInstanceBytes);
+  add_to(estimate.node_bytes, MotionSizes(document).bytes());
   estimate.tree_bytes = times(tree_triangles, kTreeBytes) + kProgramBytes;
   return estimate;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -43,6 +44,12 @@ std::vector<Triangle> assemble(int mode, const std::vector<std::uint32_t>& v) {
     }
   }
   return triangles;
+}
+
+// What is no number of a joint becomes one that no skin has, which is refused where vertices and skin meet.
+std::uint32_t joint_of(float number) {
+  constexpr float kMost = 16777216;  // 2^24, up to which every whole number is a float
+  return number >= 0 && number < kMost ? static_cast<std::uint32_t>(number) : std::numeric_limits<std::uint32_t>::max();
 }
 
 class PrimitiveReader {
@@ -175,7 +182,7 @@ class PrimitiveReader {
         sum += static_cast<double>(weight);
         influences.weights.push_back(weight);
         // The joint of a weight of 0 may be any number.
-        influences.joints.push_back(weight > 0 ? static_cast<std::uint32_t>(joints[k / 4][4 * vertex + k % 4]) : 0);
+        influences.joints.push_back(weight > 0 ? joint_of(joints[k / 4][4 * vertex + k % 4]) : 0);
       }
       if (!(sum > 0)) {
         throw Error(ErrorKind::input, place_ + ".attributes.WEIGHTS_0",

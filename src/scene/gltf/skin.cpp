@@ -2,6 +2,7 @@
 #include "scene/gltf/skin.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -55,19 +56,17 @@ Skeleton make_skeleton(const GltfDocument& document, int skin_index, const std::
                        const std::string& label, Warnings& warnings) {
   const GltfSkin& skin = document.skins[static_cast<std::size_t>(skin_index)];
   std::vector<int> order;
-  std::vector<std::ptrdiff_t> place_of(document.nodes.size(), -1);
+  std::map<int, std::ptrdiff_t> place_of;  // not an entry for every node: there may be as many skins
   Skeleton skeleton;
   for (const int joint : skin.joints) {
     for (const int node : chain_to(joint, parents)) {
-      auto& place = place_of[static_cast<std::size_t>(node)];
-      if (place < 0) {
-        place = static_cast<std::ptrdiff_t>(order.size());
+      if (place_of.try_emplace(node, static_cast<std::ptrdiff_t>(order.size())).second) {
         const int parent = parents[static_cast<std::size_t>(node)];
-        skeleton.parent.push_back(parent < 0 ? -1 : place_of[static_cast<std::size_t>(parent)]);
+        skeleton.parent.push_back(parent < 0 ? -1 : place_of.at(parent));
         order.push_back(node);
       }
     }
-    skeleton.joint.push_back(static_cast<std::size_t>(place_of[static_cast<std::size_t>(joint)]));
+    skeleton.joint.push_back(static_cast<std::size_t>(place_of.at(joint)));
   }
   skeleton.nodes = animated_chain(document, order, "the skin of " + label, warnings);
   skeleton.inverse_bind =

@@ -11,13 +11,13 @@
 #include "gaze/inspect/inspect.hpp"
 #include "gazelog/screen_angles.hpp"
 #include "study/report/drawing.hpp"
+#include "study/report/heat.hpp"
 
 namespace gazetrace {
 namespace {
 
 constexpr double kMargin = 10, kBelow = 46;
 constexpr std::size_t kMostNumbers = 60;
-constexpr int kHeatLevels = 8;
 
 // What the plane of the plot is: the display in fractions, or angles around straight ahead.
 struct Plane {
@@ -96,19 +96,6 @@ std::string beside_note(const std::vector<const EyeEvent*>& fixations, const Pla
   return beside > 0 ? fmt::format("; {} beside the display are not shown", beside) : "";
 }
 
-// From a level of 0..1 to a color that gets lighter all the way: a coarse "inferno" (van der Walt & Smith 2015).
-const char* heat_color(double level) {
-  static constexpr std::array<const char*, 8> kColors{"#420a68", "#6b176e", "#932667", "#bb3754",
-                                                      "#dd513a", "#f37819", "#fca50a", "#f6d746"};
-  return kColors[std::min<std::size_t>(static_cast<std::size_t>(level * 8), 7)];
-}
-
-struct HeatGrid {
-  std::size_t columns = 240, rows = 135;
-  std::vector<double> values;  // seconds of fixation per square degree
-  double highest = 0;
-};
-
 HeatGrid heat_of(const std::vector<const EyeEvent*>& fixations, const ScreenAngles& screen, double aspect,
                  double sigma_deg) {
   HeatGrid grid;
@@ -134,43 +121,6 @@ HeatGrid heat_of(const std::vector<const EyeEvent*>& fixations, const ScreenAngl
     }
   }
   return grid;
-}
-
-void draw_heat(Drawing& svg, const HeatGrid& grid, const Plane& plane) {
-  const double cell_x = (plane.x.end - plane.x.begin) / static_cast<double>(grid.columns);
-  const double cell_y = (plane.y.end - plane.y.begin) / static_cast<double>(grid.rows);
-  std::array<std::string, kHeatLevels + 1> paths;
-  const auto level_at = [&](std::size_t row, std::size_t column) {
-    return std::min(static_cast<int>(grid.values[row * grid.columns + column] / grid.highest * (kHeatLevels + 1)),
-                    kHeatLevels);
-  };
-  for (std::size_t row = 0; row < grid.rows; ++row) {
-    for (std::size_t column = 0; column < grid.columns;) {
-      const int level = level_at(row, column);
-      std::size_t end = column + 1;
-      while (end < grid.columns && level_at(row, end) == level) {
-        ++end;
-      }
-      fmt::format_to(std::back_inserter(paths[static_cast<std::size_t>(level)]), "M{:.1f} {:.1f}h{:.1f}v{:.2f}h{:.1f}z",
-                     plane.x.begin + cell_x * static_cast<double>(column),
-                     plane.y.begin + cell_y * static_cast<double>(row), cell_x * static_cast<double>(end - column),
-                     cell_y + 0.05, -cell_x * static_cast<double>(end - column));
-      column = end;
-    }
-  }
-  for (int level = 1; level <= kHeatLevels; ++level) {
-    const double share = (level - 0.5) / kHeatLevels;
-    svg.add(fmt::format(R"(<path d="{}" fill="{}" fill-opacity="{:.2f}"/>)", paths[static_cast<std::size_t>(level)],
-                        heat_color(share), 0.45 + 0.35 * share));
-  }
-  const double y = plane.y.end + 14;
-  for (int level = 1; level <= kHeatLevels; ++level) {
-    svg.add(fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="26" height="12" fill="{}"/>)",
-                        plane.x.begin + 26 * (level - 1), y, heat_color((level - 0.5) / kHeatLevels)));
-  }
-  svg.text(
-      plane.x.begin + 26 * kHeatLevels + 10, y + 11,
-      fmt::format("{:.2g} to {:.2g} s of fixation per square degree", grid.highest / (kHeatLevels + 1), grid.highest));
 }
 
 }  // namespace
@@ -230,13 +180,13 @@ std::optional<GazePlot> heat_map_plot(const GazeLog& log, const std::vector<EyeE
   draw_ground(svg, plane, picture, 0.35);
   const HeatGrid grid = heat_of(fixations, screen, aspect_of(log), sigma_deg);
   if (grid.highest > 0) {
-    draw_heat(svg, grid, plane);
+    draw_heat(svg, grid, plane.x, plane.y, "s of fixation per square degree");
   }
   const std::string note = fmt::format("each fixation a spot of {:.2g} deg (standard deviation)", sigma_deg);
   svg.text(plane.x.end, plane.y.end + 25, note, "end");
   return GazePlot{"heat_map", "Heat map of fixation time", svg.str(), true,
-                  fmt::format("Colors from {:.2g} to {:.2g} s of fixation per square degree; {}",
-                              grid.highest / (kHeatLevels + 1), grid.highest, note)};
+                  fmt::format("Colors from {:.2g} to {:.2g} s of fixation per square degree; {}", lowest_drawn(grid),
+                              grid.highest, note)};
 }
 
 }  // namespace gazetrace

@@ -23,6 +23,7 @@ struct EventsArguments {
   std::string method = "auto";
   std::vector<std::string> steps;
   std::optional<GazeDevice> device;
+  bool binocular = false;
   std::string output;
   bool overwrite = false;
   bool keep_ids = false;
@@ -30,11 +31,16 @@ struct EventsArguments {
 
 EyeEvents find_events(const EventsArguments& arguments, const GazeLog& log) {
   if (arguments.method == "log") {
+    if (arguments.binocular) {
+      throw Error(ErrorKind::usage, "`binocular`", "is a condition for events that are detected here",
+                  "leave it out with `method` log, or name a method");
+    }
     return events_of_log(log);
   }
   const EventPreset& preset =
       arguments.method == "auto" ? default_event_preset(log, arguments.device) : event_preset(arguments.method);
-  return detect_events(log, preset, arguments.device);
+  return arguments.binocular ? binocular_events(log, preset, arguments.device)
+                             : detect_events(log, preset, arguments.device);
 }
 
 // How many of what, for people who write the events to a file.
@@ -57,9 +63,8 @@ std::string summary(const EyeEvents& events, const GazeLog& log) {
 
 // What speaks against the events, and what would suit the log. The method itself never changes, since the participants
 // of a study must stay comparable.
-std::vector<std::string> doubts(const EyeEvents& events, const GazeLog& log) {
+std::vector<std::string> in_words(const std::vector<EventDoubt>& found, const EyeEvents& events, const GazeLog& log) {
   std::vector<std::string> lines;
-  const std::vector<EventDoubt> found = doubt_events(log, events);
   for (const EventDoubt& doubt : found) {
     lines.push_back(fmt::format("{}: events by {}: {}", log.source, events.preset, doubt.what));
   }
@@ -96,16 +101,20 @@ int run_events(const EventsArguments& arguments) {
     log = std::move(processed.log);
   }
   const EyeEvents events = find_events(arguments, log);
-  if (arguments.method != "log") {
-    print_warnings(doubts(events, log));
-  }
+  const bool are_stated = arguments.method == "log";
+  // Of both eyes, events are those of the left one.
+  const GazeLog judged = arguments.binocular ? one_eye(log, Eye::left) : std::move(log);
+  const std::vector<EventDoubt> doubts = are_stated ? std::vector<EventDoubt>() : doubt_events(judged, events);
+  print_warnings(in_words(doubts, events, judged));
   const bool json = arguments.output.ends_with(".json");
-  const std::string text = json ? events_as_json(events, log) : events_as_tsv(events, log);
+  const std::string text = !json        ? events_as_tsv(events, judged)
+                           : are_stated ? events_as_json(events, judged)
+                                        : events_as_json(events, judged, doubts);
   if (arguments.output.empty()) {
     print_result(text);
   } else {
     write_text_atomically(arguments.output, text);
-    print_result(summary(events, log));
+    print_result(summary(events, judged));
   }
   return exit_done;
 }
@@ -123,6 +132,9 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
   schema.value(
       "--device", &EventsArguments::device, "desktop|head-mounted",
       "What it was recorded on, where places or directions do not tell: gaze in degrees from a desktop tracker");
+  schema.flag("--binocular", &EventsArguments::binocular,
+              "Of a log of both eyes: the events of the left eye, of whose saccades and microsaccades only those stay "
+              "that overlap one of the right eye (Engbert & Kliegl 2003)");
   schema.include(gaze_file_schema(), &EventsArguments::gaze);
   schema.include(screen_schema(), &EventsArguments::screen);
   schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),

@@ -35,7 +35,7 @@ void write_picture(const InspectArguments& arguments, const GazeLog& log, const 
 void cut_rows(RawGaze& raw, const GazeTrial& trial) {
   const bool corner_moves = !raw.corners.empty();  // counts rows, which must then stay
   if (!corner_moves) {
-    std::erase_if(raw.rows, [&](const RawSample& row) { return row.t_ns < trial.begin_ns || row.t_ns > trial.end_ns; });
+    raw.rows.keep_if([&](const RawSample& row) { return row.t_ns >= trial.begin_ns && row.t_ns <= trial.end_ns; });
   }
 }
 

@@ -18,7 +18,8 @@ struct ObjectsArguments {
   Job job;
   GazeObjectsSettings objects;
   bool recorded_here = false;
-  std::string table;
+  std::string table, heat_map;
+  SceneHeatSettings heat;
 };
 
 std::string summary(const ObjectsArguments& arguments, const GazeObjects& objects) {
@@ -32,12 +33,19 @@ std::string summary(const ObjectsArguments& arguments, const GazeObjects& object
 }
 
 int run_objects(ObjectsArguments& arguments) {
-  if (!arguments.table.empty()) {
-    check_output_file(arguments.table, arguments.job.settings.overwrite);
+  for (const std::string& output : {arguments.table, arguments.heat_map}) {
+    if (!output.empty()) {
+      check_output_file(output, arguments.job.settings.overwrite);
+    }
   }
   arguments.objects.stimulus = arguments.recorded_here ? Stimulus::recorded : Stimulus::replayed;
-  const GazeOnScene seen = look_at_scene(arguments.job, arguments.objects);
+  const bool asks_for_heat = !arguments.heat_map.empty();
+  const GazeOnScene seen =
+      look_at_scene(arguments.job, arguments.objects, asks_for_heat ? std::optional(arguments.heat) : std::nullopt);
   print_warnings(seen.resolved.warnings);
+  if (asks_for_heat) {
+    write_text_atomically(arguments.heat_map, seen.heat_svg);
+  }
   const bool json = arguments.table.ends_with(".json");
   const std::string text = json ? objects_as_json(seen.objects) : objects_as_tsv(seen.objects);
   if (arguments.table.empty()) {
@@ -67,6 +75,17 @@ Command add_gaze_objects_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_option("--grid-rays", arguments->objects.grid_rays,
                  "Rays over the frame that look for these; they are found to half a step of the grid")
       ->type_name("N")
+      ->capture_default_str();
+  app.add_option("--heat-map", arguments->heat_map,
+                 "Draws on the surfaces of the scene where the gaze of all frames fell, as one of the frames sees them")
+      ->type_name("OUT.svg");
+  app.add_option("--heat-frame", arguments->heat.frame, "Which frame; default: the middle one")->type_name("N");
+  app.add_option("--heat-picture", arguments->heat.picture,
+                 "A .png or .jpg of that frame to draw upon; default: its surfaces in grey")
+      ->type_name("FILE");
+  app.add_option("--heat-sigma", arguments->heat.sigma_deg,
+                 "How far each direction of the cone spreads on its surface, a standard deviation seen from the eye")
+      ->type_name("DEG")
       ->capture_default_str();
   return {[arguments] { return run_objects(*arguments); },
           [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};

@@ -1,0 +1,356 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What does a stated quality cost: by raw uniform samples, by gazetrace without gaze, and by gazetrace with it?
+
+  fixed_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--display desktop|hmd|WxH@PPD] [--frames 24]
+                   [--gazes "0.5,0.5 0.25,0.6 0.75,0.35"] [--targets 8.5,9,9.5] [--budgets 0.5,1,2,4,8,16]
+                   [--accumulate "two-sided --accumulate-window 8"]
+                   [--wrong-budget 4] [--reference-spp 4096] [--inner 96] [--margin 32] [--stride 480] [--whole] [--paper]
+
+OPTIONS are those of `gazetrace render`. `desktop` is 61 degrees wide at 28 pixels a degree, `hmd` 87 x 93 degrees at 13.
+Clips are views at rest at 24 frames a second; one reference stands for all frames.
+
+Rates as high as a reference needs are dear on whole frames, so references and raw samples are traced in windows only: a grid
+of squares of `--inner` pixels, `--stride` apart, each of which stands for the area around it, and one at each gaze, which
+stands for itself. A margin around each belongs to what FovVideoVDP sees and has no weight of its own
+(`compare --pooling-weights`). Outside of the windows test and reference show the same picture. `--whole` traces and scores
+whole frames instead, to see what the windows change.
+
+Raw samples are rendered once, at 16 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
+clip whose differences from the reference are divided by the root of N / 16; the line `scaling` shows how well that holds, by a
+clip that was rendered at 64.
+
+Costs are processor seconds a frame, without loading: the difference between a run of all frames and one of its first, over the
+frames between. Those of raw frames follow from whole frames at 2 and 10 samples a pixel. The tool renders whole frames:
+`--falloff visible --filter guided --accumulate ...` at each budget, with the gaze, without any, and (`--wrong-budget`) with the
+gaze where it was not. Costs at a target are interpolated in their logarithm between the two budgets around it, and never beyond
+the smallest and the largest one. `--paper`: what the preset `paper` costs and scores, and what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are used again. Needs numpy and OpenEXR.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import re
+import resource
+import shlex
+import shutil
+import subprocess
+import sys
+
+import numpy
+import OpenEXR
+
+DISPLAYS = {"desktop": (1708, 961, 28), "hmd": (1131, 1209, 13)}
+FRAMES_PER_SECOND = 24
+RAW_SPP = 16
+RAW_RATES = [4.0**k for k in range(0, 9)]  # samples a pixel
+OUTSIDE_SPP = 1 / 256
+METRICS = ("fovvideovdp", "flicker")
+
+
+def read_exr(path):
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return numpy.stack([file.channels()[c].pixels for c in "RGB"], -1).astype(numpy.float32)
+
+
+def write_exr(path, channels):
+    planes = {name: numpy.ascontiguousarray(plane, dtype=numpy.float32) for name, plane in channels.items()}
+    with OpenEXR.File({"type": OpenEXR.scanlineimage}, planes) as file:
+        file.write(str(path))
+
+
+def write_picture(path, rgb):
+    write_exr(path, {c: rgb[..., i] for i, c in enumerate("RGB")})
+
+
+def run(*arguments):
+    """Runs a program; processor seconds that it took."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([str(a) for a in arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, arguments))}\n{done.stderr}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+class Windows:
+    """Which pixels are traced at high rates, and how much each counts at each gaze."""
+
+    def __init__(self, asked, width, height, gazes):
+        self.shape = (height, width)
+        self.is_traced = numpy.zeros(self.shape, dtype=bool)
+        self.inner = numpy.zeros(self.shape, dtype=bool)
+        self.gaze_px = {gaze: [float(v) * n for v, n in zip(gaze.split(","), (width, height))] for gaze in gazes}
+        self.asked = asked
+        if asked.whole:
+            self.is_traced[:] = True
+            return
+        columns = max(round(width / asked.stride), 1)
+        rows = max(round(height / asked.stride), 1)
+        for row in range(rows):
+            for column in range(columns):
+                at = ((column + 0.5) * width / columns, (row + 0.5) * height / rows)
+                self.inner[self.square(at, asked.inner / 2)] = True
+                self.is_traced[self.square(at, asked.inner / 2 + asked.margin)] = True
+        for at in self.gaze_px.values():
+            self.is_traced[self.square(at, asked.inner / 2 + asked.margin)] = True
+
+    def square(self, at, half):
+        height, width = self.shape
+        x, y = at
+        return (slice(max(round(y - half), 0), min(round(y + half), height)),
+                slice(max(round(x - half), 0), min(round(x + half), width)))
+
+    def weights(self, gaze):
+        """Of each pixel: the fovea's window counts as it is, the others for all that is not in it."""
+        if self.asked.whole:
+            return numpy.ones(self.shape)
+        fovea = numpy.zeros(self.shape, dtype=bool)
+        fovea[self.square(self.gaze_px[gaze], self.asked.inner / 2)] = True
+        others = self.inner & ~fovea
+        weights = fovea.astype(float)
+        weights[others] = (fovea.size - fovea.sum()) / others.sum()
+        return weights
+
+
+class Scene:
+    def __init__(self, bench, name, options):
+        self.bench = bench
+        self.asked = bench.asked
+        self.options = options
+        self.exposure = options[options.index("--exposure") + 1] if "--exposure" in options else "0"
+        self.folder = bench.out / name
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.costs_path = self.folder / "costs.json"
+        self.costs = json.loads(self.costs_path.read_text()) if self.costs_path.exists() else {}
+
+    def render(self, name, frames, *options):
+        """The folder of the frames."""
+        folder = self.folder / name
+        if not (folder / "done").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            seconds = run(self.asked.program, "render", *self.options, "--size", self.bench.size, *self.bench.screen, "--frames",
+                          frames, "--fps", FRAMES_PER_SECOND, "--exr-pixels", "half", "--quiet", "-o",
+                          folder / "f.####.exr", *options)
+            self.costs[name] = seconds
+            self.costs_path.write_text(json.dumps(self.costs, indent=1))
+            (folder / "done").touch()
+        return folder
+
+    def in_windows(self, name, frames, spp, seed):
+        """Raw samples, `spp` of them a pixel within the windows."""
+        if self.asked.whole:
+            return self.render(name, frames, "--falloff", "uniform", "--filter", "none", "--spp", spp, "--seed", seed)
+        rates = self.folder / f"rates-{spp}.exr"
+        write_exr(rates, {"Y": numpy.where(self.bench.windows.is_traced, spp, OUTSIDE_SPP)})
+        return self.render(name, frames, "--falloff", "map", "--density-map", rates, "--filter", "none", "--seed", seed)
+
+    def reference(self):
+        """Mean of two halves, in memory, each of four frames, and what one half scores against the other at the first gaze."""
+        halves = []
+        for k in range(2):
+            folder = self.in_windows(f"reference-{k}", "1-4", self.asked.reference_spp // 8, 700001 + k)
+            halves.append(sum(read_exr(folder / f"f.{f:04d}.exr") for f in range(1, 5)) / 4)
+        return 0.5 * (halves[0] + halves[1]), halves
+
+    def prepare(self):
+        fill = self.render("fill", "1", "--falloff", "uniform", "--filter", "guided", "--spp", "4")
+        self.fill = read_exr(fill / "f.0001.exr")
+        self.truth, halves = self.reference()
+        # A half differs from the other by twice what their mean is off in one of them: by sqrt(2) times a half's error, and
+        # the mean's error is a half's over sqrt(2).
+        floor = self.score("floor", self.bench.gazes[0], lambda frame: self.truth + 0.5 * (halves[0] - halves[1]))
+        print(f"{self.folder.name}: the reference's own error scores {floor['fovvideovdp']:.2f} JOD at {self.bench.gazes[0]}", flush=True)
+
+    def score(self, name, gaze, picture_of_frame):
+        """Scores of a clip at a gaze; `picture_of_frame(frame)` is asked only where the clip was not scored yet."""
+        record = self.folder / "scores" / f"{name}@{gaze.replace(',', '_')}.json"
+        if not record.exists():
+            work = self.folder / "work"
+            shutil.rmtree(work, ignore_errors=True)
+            work.mkdir(parents=True)
+            record.parent.mkdir(exist_ok=True)
+            traced = self.bench.windows.is_traced[..., None]
+            write_picture(work / "weights.exr", numpy.repeat(self.bench.windows.weights(gaze)[..., None], 3, axis=2))
+            write_picture(work / "r.0001.exr", numpy.where(traced, self.truth, self.fill))
+            for frame in range(1, self.asked.frames + 1):
+                if frame > 1:
+                    (work / f"r.{frame:04d}.exr").symlink_to("r.0001.exr")
+                picture = numpy.where(traced, numpy.maximum(picture_of_frame(frame), 0), self.fill)
+                write_picture(work / f"t.{frame:04d}.exr", picture)
+            metrics = METRICS if self.asked.frames >= FRAMES_PER_SECOND else METRICS[:1]
+            run(self.asked.program, "compare", work / "r.####.exr", work / "t.####.exr", "--metrics", ",".join(metrics), "--fps",
+                FRAMES_PER_SECOND, "--frames", f"1-{self.asked.frames}", "--anyway", *self.bench.screen, "--gaze-at", gaze,
+                "--exposure", self.exposure, "--pooling-weights", work / "weights.exr", "--json", record)
+            shutil.rmtree(work)
+        return {s["metric"]: s["value"] for s in json.loads(record.read_text())["sequence"][0]["scores"]}
+
+    def frame_cost(self, name, *options):
+        """Processor seconds of one of the clip's frames, and the folder."""
+        folder = self.render(name, f"1-{self.asked.frames}", *options)
+        first = f"{name}-first"
+        if first not in self.costs:
+            shutil.rmtree(self.render(first, "1", *options))
+        return (self.costs[name] - self.costs[first]) / (self.asked.frames - 1), folder
+
+    def raw_curve(self, gaze):
+        """(cost, scores, rate) by rate."""
+        for spp in (2, 10):
+            for frames in ("1", "1-3"):
+                name = f"cost-{spp}-{frames}"
+                if name not in self.costs:
+                    shutil.rmtree(self.render(name, frames, "--falloff", "uniform", "--filter", "none", "--spp", str(spp)))
+        of_frame = {spp: (self.costs[f"cost-{spp}-1-3"] - self.costs[f"cost-{spp}-1"]) / 2 for spp in (2, 10)}
+        of_sample = (of_frame[10] - of_frame[2]) / 8
+        fixed = max(of_frame[2] - 2 * of_sample, 0)
+        clip = self.in_windows("raw", f"1-{self.asked.frames}", RAW_SPP, 11)
+        curve = []
+        for rate in RAW_RATES:
+            scale = math.sqrt(RAW_SPP / rate)
+            scores = self.score(f"raw-{rate:g}", gaze,
+                                lambda frame, s=scale: self.truth + s * (read_exr(clip / f"f.{frame:04d}.exr") - self.truth))
+            curve.append((fixed + rate * of_sample, scores, rate))
+            if scores["fovvideovdp"] > self.asked.targets[-1] + 0.1:
+                break
+        return curve
+
+    def check_scaling(self, gaze):
+        clip = self.in_windows("raw-rendered-64", f"1-{self.asked.frames}", 64, 12)
+        rendered = self.score("raw-rendered-64", gaze, lambda frame: read_exr(clip / f"f.{frame:04d}.exr"))["fovvideovdp"]
+        scaled = self.score("raw-64", gaze, None)["fovvideovdp"]
+        print(f"scaling: raw 64 samples a pixel score {rendered:.3f} JOD as rendered, {scaled:.3f} as scaled from {RAW_SPP}", flush=True)
+
+    def tool_curve(self, gaze, looks_at):
+        """(cost, scores, rate) by budget. `looks_at`: the gaze that the tool is told; None: none."""
+        curve = []
+        for budget in self.asked.budgets:
+            curve.append(self.tool(gaze, looks_at, budget))
+            if curve[-1][1]["fovvideovdp"] > self.asked.targets[-1] + 0.1:
+                break
+        return curve
+
+    def tool(self, gaze, looks_at, budget):
+        told = "nowhere" if looks_at is None else looks_at.replace(",", "_")
+        name = f"tool-{self.asked.accumulate.replace(' ', '')}-{told}-{budget:g}"
+        options = ["--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided"]
+        options += ["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []
+        options += ["--gaze-at", looks_at] if looks_at is not None else []
+        cost, folder = self.frame_cost(name, *options)
+        return cost, self.score(name, gaze, lambda frame: read_exr(folder / f"f.{frame:04d}.exr")), budget
+
+
+def at_target(curve, target):
+    """Cost and rate at which the curve first reaches a JOD; None: it does not, or it begins above."""
+    for (cost0, scores0, rate0), (cost1, scores1, rate1) in zip(curve, curve[1:]):
+        low, high = scores0["fovvideovdp"], scores1["fovvideovdp"]
+        if low <= target <= high:
+            share = (target - low) / (high - low) if high > low else 0
+            return cost0 * (cost1 / cost0)**share, rate0 * (rate1 / rate0)**share
+    return None
+
+
+def at_cost(curve, cost):
+    for (cost0, scores0, _), (cost1, scores1, _) in zip(curve, curve[1:]):
+        if cost0 <= cost <= cost1:
+            share = math.log(cost / cost0) / math.log(cost1 / cost0)
+            return f"{scores0['fovvideovdp'] + share * (scores1['fovvideovdp'] - scores0['fovvideovdp']):.2f} JOD"
+    return f"between no two of its budgets ({curve[0][0]:.2f} to {curve[-1][0]:.2f} s)"
+
+
+def beyond(curve, target):
+    return "below" if curve[0][1]["fovvideovdp"] > target else "not reached"
+
+
+class Bench:
+    def __init__(self, asked):
+        self.asked = asked
+        self.gazes = asked.gazes.split()
+        width, height, ppd = DISPLAYS.get(asked.display) or (int(n) for n in re.fullmatch(r"(\d+)x(\d+)@(\d+)", asked.display).groups())
+        self.size = f"{width}x{height}"
+        self.screen = ["--screen-px", f"{width},{height}", "--screen-ppd", str(ppd)]
+        self.out = pathlib.Path(asked.out) / (asked.display + ("-whole" if asked.whole else ""))
+        self.windows = Windows(asked, width, height, self.gazes)
+        print(f"{self.size} at {ppd} pixels a degree; windows: {100 * self.windows.is_traced.mean():.0f} % of the frame traced, "
+              f"{100 * (self.windows.weights(self.gazes[0]) > 0).mean():.0f} % scored", flush=True)
+
+    def measure(self, name, options):
+        scene = Scene(self, name, options)
+        scene.prepare()
+        for k, gaze in enumerate(self.gazes):
+            raw = scene.raw_curve(gaze)
+            if k == 0:
+                scene.check_scaling(gaze)
+            curves = {"raw": raw, "no gaze": scene.tool_curve(gaze, None), "gaze": scene.tool_curve(gaze, gaze)}
+            for which, curve in curves.items():
+                for cost, scores, rate in curve:
+                    flicker = f", flicker {scores['flicker']:.3g}" if "flicker" in scores else ""
+                    print(f"  {name} {gaze} {which:<8} {rate:8g} spp {cost:9.2f} s a frame {scores['fovvideovdp']:6.2f} JOD{flicker}",
+                          flush=True)
+            if self.asked.wrong_budget:
+                self.wrong_gaze(scene, gaze)
+            if self.asked.paper:
+                self.paper(scene, gaze, curves["gaze"])
+            for target in self.asked.targets:
+                self.row(name, gaze, target, curves)
+
+    def wrong_gaze(self, scene, gaze):
+        budget = self.asked.wrong_budget
+        right = scene.tool(gaze, gaze, budget)
+        for other in self.gazes:
+            if other != gaze:
+                wrong = scene.tool(gaze, other, budget)
+                print(f"  wrong gaze: {other} for {gaze}, {budget:g} spp: {wrong[1]['fovvideovdp'] - right[1]['fovvideovdp']:+.3f} JOD",
+                      flush=True)
+
+    @staticmethod
+    def paper(scene, gaze, tool):
+        cost, folder = scene.frame_cost(f"paper-{gaze.replace(',', '_')}", "--preset", "paper", "--gaze-at", gaze)
+        name = folder.name
+        jod = scene.score(name, gaze, lambda frame: read_exr(folder / f"f.{frame:04d}.exr"))["fovvideovdp"]
+        print(f"  paper's setting: {cost:.2f} s a frame, {jod:.2f} JOD; the tool at that cost: {at_cost(tool, cost)}", flush=True)
+
+    @staticmethod
+    def row(name, gaze, target, curves):
+        found = {which: at_target(curve, target) for which, curve in curves.items()}
+        cells = [f"{found[which][0]:.2f} s ({found[which][1]:.3g} spp)" if found[which] else beyond(curves[which], target)
+                 for which in curves]
+
+        def ratio(a, b):
+            return f"{found[a][0] / found[b][0]:.2f}" if found[a] and found[b] else "-"
+
+        cells += [ratio("raw", "gaze"), ratio("no gaze", "gaze")]
+        print(f"| {name} | {gaze} | {target:g} | " + " | ".join(cells) + " |", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("out")
+    parser.add_argument("--scene", action="append", required=True)
+    parser.add_argument("--display", default="desktop")
+    parser.add_argument("--frames", type=int, default=24)
+    parser.add_argument("--gazes", default="0.5,0.5 0.25,0.6 0.75,0.35")
+    parser.add_argument("--targets", default="8.5,9,9.5")
+    parser.add_argument("--budgets", default="0.5,1,2,4,8,16")
+    parser.add_argument("--accumulate", default="two-sided --accumulate-window 8")
+    parser.add_argument("--wrong-budget", type=float, default=0)
+    parser.add_argument("--reference-spp", type=int, default=4096)
+    parser.add_argument("--inner", type=int, default=96)
+    parser.add_argument("--margin", type=int, default=32)
+    parser.add_argument("--stride", type=int, default=480)
+    parser.add_argument("--whole", action="store_true")
+    parser.add_argument("--paper", action="store_true")
+    asked = parser.parse_args()
+    asked.targets = sorted(float(t) for t in asked.targets.split(","))
+    asked.budgets = sorted(float(b) for b in asked.budgets.split(","))
+    bench = Bench(asked)
+    print("| scene | gaze | JOD | raw uniform | tool without gaze | tool with gaze | raw over tool | without over with gaze |\n|"
+          + " --- |" * 8, flush=True)
+    for text in asked.scene:
+        name, *options = shlex.split(text)
+        bench.measure(name, options)
+
+
+if __name__ == "__main__":
+    main()
