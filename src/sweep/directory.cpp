@@ -2,9 +2,9 @@
 // One sweep at a time in a directory, or any number of tasks of one.
 #include <fmt/format.h>
 
+#include "core/file_lock.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/sweep.hpp"
-#include "core/file_lock.hpp"
 
 namespace gazetrace {
 

@@ -7,8 +7,8 @@
 #include <array>
 #include <filesystem>
 
-#include "core/parallel.hpp"
 #include "core/file_lock.hpp"
+#include "core/parallel.hpp"
 #include "sweep/scorer.hpp"
 #include "sweep/state.hpp"
 

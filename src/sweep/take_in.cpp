@@ -6,8 +6,8 @@
 #include <system_error>
 #include <vector>
 
-#include "gazetrace/error.hpp"
 #include "core/file_lock.hpp"
+#include "gazetrace/error.hpp"
 #include "sweep/state.hpp"
 
 namespace gazetrace {

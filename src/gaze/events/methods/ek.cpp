@@ -3,8 +3,7 @@
 // the orientation of covert attention", Vision Research 43, 2003.
 //
 //   velocity     of azimuth and elevation, from five samples: (x[+2] + x[+1] - x[-1] - x[-2]) / 6 dt (their eq. 1);
-//   near
-//                the ends of a stretch from three
+//                near the ends of a stretch from three
 //   spread       of each component, by medians: sigma^2 = <v^2> - <v>^2 (their eq. 2)
 //   saccade      samples in a row outside the ellipse with the radii lambda sigma_x and lambda sigma_y (their eq. 3)
 //   microsaccade a saccade whose extent, hypot(max x - min x, max y - min y), is below 1 degree
