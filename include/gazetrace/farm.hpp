@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job as tasks for many machines: an array that renders chunks of the frames, what makes one sequence of them, and
-// what follows. Every engine runs the same tasks, by one script that lies in the farm's folder.
+// A job as tasks for many machines: an array that renders chunks of the frames, or of the samples, or measures chunks
+// of the rows of a sweep; what makes one of them; and what follows. Every engine runs the same tasks, by one script
+// that lies in the farm's folder.
 #pragma once
 
 #include <cstddef>
@@ -21,22 +22,28 @@ struct FarmEngineInfo {
 std::vector<FarmEngineInfo> farm_engines();
 
 struct FarmSettings {
-  std::string job_file;            // TOML, as `render` takes it; its outputs say where the farm is
-  std::string engine;              // a name of farm_engines()
-  std::string program;             // gazetrace itself, as the tasks call it
-  std::uint32_t chunks = 0;        // so many, of about equal cost; 0: `chunk_frames` counts
-  std::int32_t chunk_frames = 0;   // so many frames each
-  int threads = 0;                 // of a task; 0: what its machine has
-  int retries = 3;                 // of a task that failed by chance or was interrupted
-  ByteCount memory;                // of a task; 0: by estimate_scene() and the size of the pictures
-  std::optional<DurationNs> time;  // limit of a task; empty: by `rate_from`, else none is stated
-  std::string rate_from;           // the timing.csv of an earlier run of the job; empty: no time is predicted
-  std::string container;           // words before the program: "apptainer exec gazetrace.sif"
-  std::vector<std::string> then;   // commands of the shell after the sequence is whole: a video, a report
+  std::string job_file;           // TOML, as `render` takes it, whose outputs say where the farm is; or a sweep's plan
+  std::string output;             // of a sweep: its folder; empty: the plan's name with .sweep
+  std::string engine;             // a name of farm_engines()
+  std::string program;            // gazetrace itself, as the tasks call it
+  std::uint32_t chunks = 0;       // so many, of about equal cost; 0: `chunk_frames` counts
+  std::int32_t chunk_frames = 0;  // so many frames each
+  std::uint32_t sample_ranges = 0;  // so many parts of the samples of all frames, in place of chunks of frames
+  int threads = 0;                  // of a task; 0: what its machine has
+  int retries = 3;                  // of a task that failed by chance or was interrupted
+  ByteCount memory;                 // of a task; 0: by estimate_scene() and the size of the pictures
+  std::optional<DurationNs> time;   // limit of a task; empty: by `rate_from`, else none is stated
+  std::string rate_from;            // the timing.csv of an earlier run of the job; empty: no time is predicted
+  std::string container;            // words before the program: "apptainer exec gazetrace.sif"
+  std::vector<std::string> then;    // commands of the shell after the sequence is whole: a video, a report
 };
+
+// What the chunks of a farm are of.
+enum class FarmKind : std::uint8_t { frames, samples, sweep };
 
 // What is to be done, for status, retry and every engine; farm.json in the farm's folder.
 struct FarmPlan {
+  FarmKind kind = FarmKind::frames;
   std::string name, engine, program, container, job_file;
   std::string folder;       // of the farm: `farm` in that of the run, absolute like the other paths
   std::string run_folder;   // where the outputs lie
@@ -47,7 +54,8 @@ struct FarmPlan {
   // Where the run that finishes keeps its history, so that one which is interrupted does not begin again.
   std::string checkpoint;
   std::string division;              // what follows `--chunk K`: "/8", or " --chunk-frames 20"
-  std::vector<std::string> chunks;   // the frames of each
+  std::vector<std::string> chunks;   // the frames of each; of a sweep, its rows
+  std::vector<std::string> ranges;   // of samples: the range of each, "0:1024"
   std::vector<double> samples;       // that the plan expects of each; 0: not known
   std::int32_t files_per_frame = 1;  // of what the whole sequence has
   int threads = 0, retries = 0;
@@ -97,14 +105,17 @@ std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status);
 std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status);
 // The chunks that are neither done nor running, counted from 0.
 std::vector<std::size_t> chunks_to_retry(const FarmStatus& status);
+// Whether chunks can be handed over once more while others run, and what follows waits for these, too.
+bool can_retry_beside_running(const FarmPlan& plan);
 
 struct LocalSettings {
   int processes = 1;           // at the same time
   std::function<bool()> stop;  // asked often; true: running tasks are asked to end, and no other begins
   std::function<void(const std::string& task, const std::string& what)> tell;  // "1", "begins"; "1", "exit code 0"
 };
-// Runs these chunks on this machine, and what follows once all chunks of the plan are done. The last exit code that was
-// not 0, or 0. A task that ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
+// Runs these chunks on this machine, and what follows once all chunks of the plan are done. Chunks that another such
+// process on this machine is at are left to it, and waited for. The last exit code that was not 0, or 0. A task that
+// ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
 int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings);
 
 }  // namespace gazetrace

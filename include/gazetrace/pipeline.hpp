@@ -53,6 +53,9 @@ struct PipelineObserver {
   // The dense linear frame after accumulation and its exposure in stops, before anything is written.
   std::function<void(const FrameRequest&, const Frame&, double exposure_ev)> frame_ready;
   std::function<void(const TimingRow&, bool skipped)> frame_done;
+  // After frame_done, for each frame with a row of its own: everything that was found out about it, to be moved out
+  // where it is to outlive the call. Not called where frames are only traced or are parts of the samples.
+  std::function<void(const FrameRequest&, RenderedFrame&&, const TimingRow&)> take_frame;
   // Asked before a frame, with the mean time of those before it, ms (0: there was none): true ends the sequence there.
   // TraceSettings::stop gives up a frame in the middle.
   std::function<bool(double frame_ms)> stop_before_frame;

@@ -78,6 +78,7 @@ struct ResultRow {
   NamedValues settings;                          // every option that some row varies, with the values of this row
   double resolution_scale = 1;                   // rendered at this fraction of the size, and scaled up
   std::string reference;                         // key of the reference that it was measured against
+  std::string task;                              // in which its times were taken, such as "2/5"; empty: one process
   std::optional<Interval> time_s;                // geometric mean over the repeats
   std::vector<double> times_s;                   // by repeat; NaN where the file has null
   // Exposure, view and writing of a frame's picture, in the first repeat; unknown where no pictures were written.

@@ -109,11 +109,18 @@ struct SweepObserver {
   std::function<void(const std::string& line)> tell;  // a line on what is being done, for a person; may be empty
 };
 
+// One of several processes, on any machines, that measure a sweep together, each some of its rows.
+struct SweepTask {
+  std::uint32_t number = 1, count = 1;      // the first is 1
+  [[nodiscard]] std::string label() const;  // "2/5"
+};
+
 // The directory of a sweep, locked as long as this object and its process live: two sweeps at once would spoil each
-// other's times. Error(input) where another process has locked it.
+// other's times. Tasks of one sweep may share a directory, each number once. Error(input) where another process has
+// locked it.
 class SweepDirectory {
  public:
-  explicit SweepDirectory(const std::string& path);
+  SweepDirectory(const std::string& path, const std::optional<SweepTask>& task);
   ~SweepDirectory();
   SweepDirectory(SweepDirectory&& other) noexcept;
   SweepDirectory& operator=(SweepDirectory&&) = delete;
@@ -121,19 +128,38 @@ class SweepDirectory {
   SweepDirectory& operator=(const SweepDirectory&) = delete;
 
  private:
-  int lock_ = -1;
+  struct Locks;
+  std::unique_ptr<Locks> locks_;
 };
 
-// Makes and locks the directory; to be called before run_sweep(). Error(usage) for a plan without tests, Error(input)
-// where the directory cannot be made, or holds work of another build or machine: times and pictures of two builds are
-// never mixed.
-[[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan);
+// Makes and locks the directory; to be called before run_sweep(), or run_sweep_task(). Error(usage) for a plan without
+// tests, Error(input) where the directory cannot be made, or holds work of another build or machine: times and pictures
+// of two builds are never mixed.
+[[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task = std::nullopt);
 // Error(usage) where a metric cannot score this test, or no frame of it would be scored. It needs only sizes and rates,
 // so that it can be called before anything is rendered.
 void check_scoring(const SweepMeasure& measure, const SweepTest& test);
 // Renders what is not yet finished in the directory, in rounds over all rows of a scene, and returns what follows from
 // it.
 Results run_sweep(const SweepPlan& plan, const SweepObserver& observer);
+
+// The rows of one task: their ids, and the samples that they and what follows from them will take, with an allowance
+// for each pixel.
+struct SweepShare {
+  std::vector<std::string> rows;
+  double samples = 0;
+};
+// By predicted cost alone, so that every task finds the same. Rows that show the same pixels are of one task, and so
+// are a test and the rows of its samples and its time.
+std::vector<SweepShare> divide_sweep(const SweepPlan& plan, std::uint32_t count);
+// The same for the rows of one task, which stay in the directory for merge_sweep(). Tasks that share a directory share
+// the work on its references, too: each renders pictures that no other is at. Error(nothing_to_do) for a task without
+// rows.
+void run_sweep_task(const SweepPlan& plan, const SweepTask& task, const SweepObserver& observer);
+// The results of all tasks, as run_sweep() would have them but for the times. Nothing is rendered. What lies in
+// `folders` is taken into the plan's directory before, which is made and locked. Error(input) for folders of another
+// build, and where rows or references are not finished.
+Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders);
 
 // The rows that the plan will measure and the camera samples that they take, without rendering. The search for the rate
 // of equal time and the warm-up are not counted. A scene that is seen from one place in several frames is loaded,

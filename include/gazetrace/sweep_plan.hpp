@@ -16,10 +16,15 @@ struct LoadedSweepPlan {
   Warnings warnings;
 };
 
+// Whether a TOML file is the plan of a sweep, and not a job; by its tables alone. False for a file that cannot be read.
+bool is_sweep_plan(const std::string& path);
+
 // `frames` and `threads`, where given, replace those of the plan. What rows share with their reference and with the
 // uniform frames compared to them follows from what `schema` says that their options touch. Throws Error(usage, input)
-// whose message is one line and names the line of the plan that is at fault, where there is one.
+// whose message is one line and names the line of the plan that is at fault, where there is one. `confine`: the plan is
+// not trusted, and one that names a file outside of its own folder or data set is refused before anything is opened.
 LoadedSweepPlan load_sweep_plan(const std::string& path, const std::optional<FrameList>& frames = {},
-                                const std::optional<int>& threads = {}, const JobSchema& schema = job_schema());
+                                const std::optional<int>& threads = {}, const JobSchema& schema = job_schema(),
+                                bool confine = false);
 
 }  // namespace gazetrace

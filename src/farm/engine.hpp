@@ -21,6 +21,8 @@ struct FarmEngine {
   std::string (*again)(const FarmPlan& plan);
   // Options of `render` that the engine understands the output of.
   const char* progress;
+  // Whether chunks can be handed over while others run, and what follows waits for both.
+  bool joins_running;
 };
 
 #define GAZETRACE_FARM_ENGINE(name, description) extern const FarmEngine kFarmEngine_##name;

@@ -76,6 +76,10 @@ std::string submit_command(const FarmPlan& plan) {
   return farm_engine(plan.engine).submit(plan);
 }
 
+bool can_retry_beside_running(const FarmPlan& plan) {
+  return farm_engine(plan.engine).joins_running;
+}
+
 std::string task_script_path(const FarmPlan& plan) {
   return (std::filesystem::path(plan.folder) / "task.sh").string();
 }

@@ -14,9 +14,11 @@
 #include <deque>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <thread>
 #include <utility>
 
+#include "core/file_lock.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
 
@@ -83,6 +85,11 @@ bool may_be_tried_again(int code) {
   return code == 3 || code == kInterrupted || code > 128;
 }
 
+std::string lock_path(const FarmPlan& plan, const std::string& task) {
+  return (fs::path(plan.folder) / "tasks" / (task + ".lock")).string();
+}
+
+// Runs tasks, each under a lock of its own, so that two farms of this machine in one folder do not do the same.
 class Runner {
  public:
   Runner(const FarmPlan& plan, const LocalSettings& settings) : plan_(plan), settings_(settings) {}
@@ -107,9 +114,16 @@ class Runner {
       }
       while (!stopped && !waiting.empty() &&
              running_.size() < static_cast<std::size_t>(std::max(settings_.processes, 1))) {
-        tell(waiting.front(), "begins");
-        running_.emplace(start(plan_, waiting.front()), waiting.front());
+        const std::string task = waiting.front();
         waiting.pop_front();
+        FileLock lock(lock_path(plan_, task), FileLock::Kind::alone, false);
+        if (!lock.is_held()) {
+          tell(task, "is left to another farm that is at it");
+          continue;
+        }
+        tell(task, "begins");
+        running_.emplace(start(plan_, task), task);
+        locks_.insert_or_assign(task, std::make_unique<FileLock>(std::move(lock)));
       }
       if (const int code = collect(stopped, waiting); code != 0) {
         worst = code;
@@ -130,6 +144,7 @@ class Runner {
       }
       const std::string task = at->second;
       at = running_.erase(at);
+      locks_.erase(task);
       const bool again = *code != 0 && !stopped && may_be_tried_again(*code) && tries_[task] < plan_.retries;
       tell(task, fmt::format("exit code {}{}", *code, again ? ", tried again" : ""));
       if (again) {
@@ -151,8 +166,26 @@ class Runner {
   const FarmPlan& plan_;
   const LocalSettings& settings_;
   std::map<pid_t, std::string> running_;
+  std::map<std::string, std::unique_ptr<FileLock>> locks_;
   std::map<std::string, int> tries_;
 };
+
+}  // namespace
+
+namespace {
+
+// Until no other farm is at a chunk. False where that was to be stopped.
+bool wait_for_others(const FarmPlan& plan, const LocalSettings& settings) {
+  for (std::size_t chunk = 1; chunk <= plan.chunks.size(); ++chunk) {
+    while (!FileLock(lock_path(plan, std::to_string(chunk)), FileLock::Kind::alone, false).is_held()) {
+      if (settings.stop && settings.stop()) {
+        return false;
+      }
+      std::this_thread::sleep_for(kLook);
+    }
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -164,6 +197,18 @@ int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, cons
   }
   if (const int code = runner.run(std::move(tasks)); code != 0) {
     return code;
+  }
+  if (!wait_for_others(plan, settings)) {
+    return kInterrupted;
+  }
+  // One of the farms does the rest; the other has nothing to add.
+  const FileLock rest((fs::path(plan.folder) / "tasks" / "rest.lock").string(), FileLock::Kind::alone, true);
+  const FarmStatus status = farm_status(plan);
+  if (!chunks_to_retry(status).empty()) {
+    return 0;  // another farm's chunk has failed, and that farm tells of it
+  }
+  if (status.is_done()) {
+    return 0;
   }
   for (const std::string& task : tasks_after_chunks(plan)) {
     if (const int code = runner.run({task}); code != 0) {

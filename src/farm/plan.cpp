@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "farm/engine.hpp"
+#include "farm/plan.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
+#include "gazetrace/sweep_plan.hpp"
 #include "job/chunks.hpp"
 
 namespace gazetrace {
@@ -24,10 +26,6 @@ constexpr std::uint64_t kProgramMib = 256;
 constexpr std::uint64_t kBytesOfAPixel = 600;
 // What a traced frame takes in its file for a site: sums, up to three surfaces and first hits.
 constexpr std::uint64_t kBytesOfASite = 12 + 12 + 4 + 4 + 3 * sizeof(SurfaceSums) + 4 + sizeof(FirstHitSums);
-
-std::string absolute(const std::string& path) {
-  return fs::absolute(path.empty() ? "." : path).lexically_normal().string();
-}
 
 // Engines read the name within lines of their own.
 std::string plain_name(std::string name) {
@@ -91,20 +89,24 @@ void predict_times(const FarmSettings& settings, const std::vector<FrameChunk>& 
   }
 }
 
-void check_settings(const FarmSettings& settings, const JobSettings& job) {
-  farm_engine(settings.engine);
-  if ((settings.chunks > 0) == (settings.chunk_frames > 0)) {
-    throw Error(ErrorKind::usage, "`chunks`", "into how many tasks are the frames divided?",
-                "give `chunks` or `chunk-frames`");
+void check_division(const FarmSettings& settings) {
+  const int given = static_cast<int>(settings.chunks > 0) + static_cast<int>(settings.chunk_frames > 0) +
+                    static_cast<int>(settings.sample_ranges > 0);
+  if (given != 1) {
+    throw Error(ErrorKind::usage, "`chunks`", "into how many tasks is the job divided?",
+                "give `chunks`, `chunk-frames` or `sample-ranges`");
   }
+}
+
+void check_render_job(const FarmSettings& settings, const JobSettings& job) {
   if (job.outputs.empty()) {
     throw Error(ErrorKind::input, settings.job_file, "the job has no output, which says where the farm is",
                 "add output = [\"out/frame.####.exr\"]");
   }
-  if (job.chunk || job.part || job.frames == std::nullopt) {
+  if (job.chunk || job.part || job.trace.samples || job.frames == std::nullopt) {
     throw Error(ErrorKind::input, settings.job_file,
                 job.frames ? "the job is a part of a sequence already" : "the job does not say which frames it has",
-                job.frames ? "leave `chunk` and `part` out" : "add frames = \"1-100\"");
+                job.frames ? "leave `chunk`, `part` and `sample-range` out" : "add frames = \"1-100\"");
   }
 }
 
@@ -118,27 +120,50 @@ void forget_tries(const FarmPlan& plan) {
 
 }  // namespace
 
+FarmPlan farm_plan_of(const FarmSettings& settings, const std::string& run_folder) {
+  FarmPlan plan;
+  plan.engine = settings.engine;
+  plan.program = settings.program.find('/') == std::string::npos ? settings.program : absolute_path(settings.program);
+  plan.container = settings.container;
+  plan.job_file = absolute_path(settings.job_file);
+  plan.work_folder = absolute_path("");
+  plan.run_folder = absolute_path(run_folder);
+  plan.folder = (fs::path(plan.run_folder) / "farm").string();
+  plan.name = plain_name(fs::path(settings.job_file).stem().string());
+  plan.threads = settings.threads;
+  plan.retries = settings.retries;
+  plan.memory_mib = (settings.memory.bytes + 1048575) / 1048576;
+  plan.then = settings.then;
+  return plan;
+}
+
+std::string absolute_path(const std::string& path) {
+  return fs::absolute(path.empty() ? "." : path).lexically_normal().string();
+}
+
 FarmPlan plan_farm(const FarmSettings& settings) {
+  farm_engine(settings.engine);
+  check_division(settings);
+  if (is_sweep_plan(settings.job_file)) {
+    return plan_sweep_farm(settings);
+  }
+  if (!settings.output.empty()) {
+    throw Error(ErrorKind::usage, "`output`", "is where a sweep is measured; a job names its outputs itself",
+                "leave it out");
+  }
   Job job = load_job(settings.job_file);
-  check_settings(settings, job.settings);
+  check_render_job(settings, job.settings);
+  if (settings.sample_ranges > 0) {
+    job.settings.trace.samples = SampleRange{0, 1};
+    check_job(job);  // says what the samples of a frame cannot be divided for
+    job.settings.trace.samples.reset();
+  }
   ResolveOptions options;
   options.scope = ResolveScope::plan;
   options.tell_idle = false;
   const ResolvedJob resolved = resolve(job, options);
-  JobSettings divided = resolved.job.settings;
-  divided.chunk = Chunk{1, settings.chunks};
-  divided.chunk_frames = settings.chunk_frames;
-  const std::vector<FrameChunk> chunks = divide_frames(divided, resolved.plan).chunks;
 
-  FarmPlan plan;
-  plan.engine = settings.engine;
-  plan.program = settings.program.find('/') == std::string::npos ? settings.program : absolute(settings.program);
-  plan.container = settings.container;
-  plan.job_file = absolute(settings.job_file);
-  plan.work_folder = absolute("");
-  plan.run_folder = absolute(resolved.pipeline.output.run_directory);
-  plan.folder = (fs::path(plan.run_folder) / "farm").string();
-  plan.name = plain_name(fs::path(settings.job_file).stem().string());
+  FarmPlan plan = farm_plan_of(settings, resolved.pipeline.output.run_directory);
   plan.traces_first = uses_history(resolved.pipeline) && resolved.job.settings.preroll == 0;
   if (plan.traces_first) {
     job.settings.stage = SequenceStage::trace;
@@ -146,23 +171,30 @@ FarmPlan plan_farm(const FarmSettings& settings) {
     plan.checkpoint =
         job.settings.checkpoint.empty() ? (fs::path(plan.folder) / "history").string() : job.settings.checkpoint;
   }
-  plan.division = settings.chunk_frames > 0 ? fmt::format(" --chunk-frames {}", settings.chunk_frames)
-                                            : fmt::format("/{}", settings.chunks);
+  std::vector<FrameChunk> chunks;
+  if (settings.sample_ranges > 0) {
+    plan.kind = FarmKind::samples;
+    chunks = divide_samples(resolved, settings.sample_ranges, plan);
+  } else {
+    JobSettings divided = resolved.job.settings;
+    divided.chunk = Chunk{1, settings.chunks};
+    divided.chunk_frames = settings.chunk_frames;
+    plan.division = settings.chunk_frames > 0 ? fmt::format(" --chunk-frames {}", settings.chunk_frames)
+                                              : fmt::format("/{}", settings.chunks);
+    chunks = divide_frames(divided, resolved.plan).chunks;
+    std::erase_if(chunks, [](const FrameChunk& chunk) { return chunk.frames.empty(); });
+  }
   for (const FrameChunk& chunk : chunks) {
-    if (!chunk.frames.empty()) {
-      plan.chunks.push_back(format_frame_list(chunk.frames));
-      plan.samples.push_back(chunk.samples);
-    }
+    plan.chunks.push_back(format_frame_list(chunk.frames));
+    plan.samples.push_back(chunk.samples);
   }
   const OutputSettings& output = resolved.pipeline.output;
   plan.files_per_frame = static_cast<std::int32_t>(!output.exr.pattern.empty()) +
                          static_cast<std::int32_t>(!output.display.pattern.empty()) +
                          static_cast<std::int32_t>(!output.map_pattern.empty());
-  plan.threads = settings.threads;
-  plan.retries = settings.retries;
-  plan.memory_mib = settings.memory.bytes > 0 ? (settings.memory.bytes + 1048575) / 1048576
-                                              : memory_mib(resolved.job.settings, resolved.plan);
-  plan.then = settings.then;
+  if (plan.memory_mib == 0) {
+    plan.memory_mib = memory_mib(resolved.job.settings, resolved.plan);
+  }
   predict_times(settings, chunks, plan);
   if (plan.traces_first && !resolved.plan.frames.empty()) {
     const FrameRequest& first = resolved.plan.frames.front();
@@ -186,26 +218,6 @@ void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
     write_text_atomically((fs::path(plan.folder) / name).string(), text);
   }
   write_text_atomically((fs::path(plan.folder) / "farm.json").string(), farm_plan_json(plan));
-}
-
-std::string farm_plan_text(const FarmPlan& plan) {
-  std::string text = fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", "chunk", "frames", "samples", "minutes", "which");
-  for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
-    text += fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", i + 1, parse_frame_list(plan.chunks[i]).size(),
-                        plan.samples[i] > 0 ? fmt::format("{:.0f}", plan.samples[i]) : "not known",
-                        i < plan.predicted_s.size() ? fmt::format("{:.2f}", plan.predicted_s[i] / 60) : "-",
-                        plan.chunks[i]);
-  }
-  text += fmt::format("each task: {}{} MiB{}\n", plan.threads > 0 ? fmt::format("{} threads, ", plan.threads) : "",
-                      plan.memory_mib, plan.time_s > 0 ? fmt::format(", at most {} min", (plan.time_s + 59) / 60) : "");
-  if (plan.traces_first) {
-    text += fmt::format(
-        "frames depend on those before them: the tasks trace, and one run finishes all frames in order; a traced frame "
-        "takes up to {:.1f} MiB until then\n",
-        static_cast<double>(plan.traced_bytes) / 1048576.0);
-  }
-  return text + fmt::format("then: {}", plan.traces_first ? "finish" : "merge") +
-         (plan.then.empty() ? "" : fmt::format("; {}", fmt::join(plan.then, "; "))) + "\n";
 }
 
 }  // namespace gazetrace

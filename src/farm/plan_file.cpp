@@ -9,6 +9,10 @@
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
+
+NLOHMANN_JSON_SERIALIZE_ENUM(FarmKind,
+                             {{FarmKind::frames, "frames"}, {FarmKind::samples, "samples"}, {FarmKind::sweep, "sweep"}})
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -17,6 +21,7 @@ namespace fs = std::filesystem;
 // Writer and reader visit the same members.
 template <class Plan, class Visit>
 void each_member(Plan& plan, const Visit& visit) {
+  visit("kind", plan.kind);
   visit("name", plan.name);
   visit("engine", plan.engine);
   visit("program", plan.program);
@@ -29,6 +34,7 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("checkpoint", plan.checkpoint);
   visit("division", plan.division);
   visit("chunks", plan.chunks);
+  visit("ranges", plan.ranges);
   visit("samples", plan.samples);
   visit("files_per_frame", plan.files_per_frame);
   visit("threads", plan.threads);
@@ -38,6 +44,17 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("predicted_s", plan.predicted_s);
   visit("traced_bytes", plan.traced_bytes);
   visit("then", plan.then);
+}
+
+template <class Refuse>
+void check_chunks(const FarmPlan& plan, const Refuse& refuse) {
+  for (const std::string& chunk : plan.kind == FarmKind::sweep ? std::vector<std::string>() : plan.chunks) {
+    try {
+      parse_frame_list(chunk);
+    } catch (const Error&) {
+      throw refuse("is damaged: '" + bounded(chunk, 40) + "' is no list of frames");
+    }
+  }
 }
 
 }  // namespace
@@ -58,15 +75,35 @@ FarmPlan read_farm(const std::string& folder) {
     throw Error(ErrorKind::input, folder, "there is no farm in it (farm/farm.json)",
                 "give the folder of the outputs of a job that `farm` was called for");
   }
-  try {
-    const Json json = Json::parse(file);
-    FarmPlan plan;
-    each_member(plan, [&](const char* name, auto& value) { read_json(json.at(name), path, value); });
-    return plan;
-  } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, path, "is not the plan of a farm: " + bounded(e.what(), 200),
-                "call `farm` again, which keeps finished frames");
+  const auto refuse = [&](const std::string& what) {
+    return Error(ErrorKind::input, path, what, "call `farm` again, which keeps finished work");
+  };
+  const Json json = Json::parse(file, nullptr, false);
+  if (!json.is_object()) {
+    throw refuse("is damaged: it is no JSON object");
   }
+  FarmPlan plan;
+  each_member(plan, [&](const char* name, auto& value) {
+    const auto found = json.find(name);
+    if (found == json.end()) {
+      throw refuse(std::string("is not the plan of a farm of this version: it does not tell '") + name + "'");
+    }
+    try {
+      read_json(*found, path, value);
+    } catch (const Json::exception&) {
+      throw refuse(std::string("is damaged: '") + name + "' has a value of another kind");
+    }
+  });
+  if (Json(plan.kind) != json.at("kind")) {
+    throw refuse("is damaged: chunks are of frames, samples or sweep");
+  }
+  if (plan.samples.size() != plan.chunks.size() ||
+      (plan.kind == FarmKind::samples && plan.ranges.size() != plan.chunks.size())) {
+    throw refuse("is damaged: it does not tell the same of every chunk");
+  }
+  check_chunks(plan, refuse);
+  farm_engine(plan.engine);
+  return plan;
 }
 
 }  // namespace gazetrace

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/file_lock.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
 #include "pipeline/file_journal.hpp"
@@ -75,19 +76,20 @@ void add_times(const std::string& timing_path, Observed& run) {
   }
 }
 
-Observed observe_run(const FarmPlan& plan, const std::string& task, const std::string& frames, bool is_part,
-                     std::int32_t files_per_frame) {
+// `name`: of the run in the names of its files, which begins with its frames.
+Observed observe_run(const FarmPlan& plan, const std::string& task, const std::string& frames, const std::string& name,
+                     bool is_part, std::int32_t files_per_frame) {
   Observed run;
   run.task.name = task;
   run.task.frames = frames;
   const std::vector<std::int32_t> wanted = parse_frame_list(frames);
   run.task.all = wanted.size();
   run.task.exit_code = exit_code_of(plan, task);
-  const std::string record_path = run_record_file_name(plan.run_folder, frames, is_part);
+  const std::string record_path = run_record_file_name(plan.run_folder, name, is_part);
   const std::set<std::int32_t> finished = finished_frames(plan.run_folder, record_path, files_per_frame);
   run.task.done = static_cast<std::size_t>(
       std::count_if(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return finished.contains(frame); }));
-  add_times(timing_file_name(plan.run_folder, frames, is_part), run);
+  add_times(timing_file_name(plan.run_folder, name, is_part), run);
   std::error_code missing;
   const bool has_record = fs::exists(record_path, missing);
   if (is_locked(record_path)) {
@@ -112,6 +114,36 @@ TaskStatus observe_exit(const FarmPlan& plan, const std::string& name) {
     task.state = *task.exit_code == 0 ? TaskState::done : TaskState::failed;
   }
   return task;
+}
+
+// A task that measures rows of a sweep holds a lock in the sweep's folder while it runs, see SweepDirectory.
+Observed observe_rows(const FarmPlan& plan, std::size_t chunk) {
+  Observed run;
+  run.task = observe_exit(plan, std::to_string(chunk + 1));
+  run.task.frames = plan.chunks[chunk];
+  const std::string lock = fmt::format("{}/lock.{}-of-{}", plan.run_folder, chunk + 1, plan.chunks.size());
+  std::error_code missing;
+  if (fs::exists(lock, missing) && !FileLock(lock, FileLock::Kind::shared, false).is_held()) {
+    run.task.state = TaskState::running;
+  }
+  return run;
+}
+
+Observed observe_chunk(const FarmPlan& plan, std::size_t chunk) {
+  const std::string task = std::to_string(chunk + 1);
+  const std::string& frames = plan.chunks[chunk];
+  switch (plan.kind) {
+    case FarmKind::sweep:
+      return observe_rows(plan, chunk);
+    case FarmKind::samples: {
+      SampleRange range;
+      parse_value(plan.ranges[chunk], plan.folder, range);
+      return observe_run(plan, task, frames, part_of_samples_name(frames, range), true, 1);
+    }
+    case FarmKind::frames:
+      break;
+  }
+  return observe_run(plan, task, frames, frames, true, plan.traces_first ? 1 : plan.files_per_frame);
 }
 
 std::string all_frames(const FarmPlan& plan) {
@@ -179,8 +211,7 @@ FarmStatus farm_status(const FarmPlan& plan) {
   std::size_t timed = 0;
   std::size_t running = 0;
   for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
-    const Observed run =
-        observe_run(plan, std::to_string(i + 1), plan.chunks[i], true, plan.traces_first ? 1 : plan.files_per_frame);
+    const Observed run = observe_chunk(plan, i);
     status.frames += run.task.all;
     status.frames_done += run.task.done;
     running += run.task.state == TaskState::running ? 1 : 0;
@@ -194,7 +225,8 @@ FarmStatus farm_status(const FarmPlan& plan) {
         left * made_ms / 1000 / static_cast<double>(timed) / static_cast<double>(std::max<std::size_t>(running, 1));
   }
   if (plan.traces_first) {
-    status.tasks.push_back(observe_run(plan, "finish", all_frames(plan), false, plan.files_per_frame).task);
+    const std::string all = all_frames(plan);
+    status.tasks.push_back(observe_run(plan, "finish", all, all, false, plan.files_per_frame).task);
     if (status.tasks.back().state == TaskState::done) {
       count_as_traced(status);
     }
@@ -227,7 +259,11 @@ std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status) {
                         task.all > 0 ? std::to_string(task.all) : "-", task.all > 0 ? std::to_string(task.done) : "-",
                         task.exit_code ? std::to_string(*task.exit_code) : "-", bounded(task.frames, 60));
   }
-  text += fmt::format("{} of {} frames are {}", status.frames_done, status.frames,
+  if (plan.kind == FarmKind::sweep) {
+    return text;
+  }
+  text += fmt::format("{} of {} {} are {}", status.frames_done, status.frames,
+                      plan.kind == FarmKind::samples ? "parts of frames" : "frames",
                       plan.traces_first ? "traced" : "rendered");
   if (status.seconds_left && status.frames_done < status.frames) {
     text += fmt::format(", about {} left", duration_words(*status.seconds_left));

@@ -72,12 +72,35 @@ std::string limits(const FarmPlan& plan) {
 }
 
 std::string finish_words(const FarmPlan& plan) {
+  if (plan.kind == FarmKind::sweep) {
+    return fmt::format("{} sweep merge {} -o {}", program_words(plan), shell_word(plan.job_file),
+                       shell_word(plan.run_folder));
+  }
   if (!plan.traces_first) {
     return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(plan.run_folder));
   }
   return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
                      program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,
                      limits(plan));
+}
+
+// What runs chunk $1.
+std::string chunk_words(const FarmPlan& plan) {
+  if (plan.kind == FarmKind::sweep) {
+    return fmt::format("  run \"$1\" {} sweep {} -o {} --chunk \"$1\"{}{}\n", program_words(plan),
+                       shell_word(plan.job_file), shell_word(plan.run_folder), plan.division,
+                       plan.threads > 0 ? fmt::format(" --threads {}", plan.threads) : "");
+  }
+  const std::string render = fmt::format("{} render --config {}", program_words(plan), shell_word(plan.job_file));
+  if (plan.kind == FarmKind::frames) {
+    return fmt::format("  run \"$1\" {} --chunk \"$1\"{} --resume{}{}\n", render, plan.division,
+                       plan.traces_first ? " --stage trace" : "", limits(plan));
+  }
+  std::string text = "  case $1 in\n";
+  for (std::size_t i = 0; i < plan.ranges.size(); ++i) {
+    text += fmt::format("    {}) samples={} ;;\n", i + 1, plan.ranges[i]);
+  }
+  return text + fmt::format("  esac\n  run \"$1\" {} --sample-range \"$samples\" --resume{}\n", render, limits(plan));
 }
 
 }  // namespace
@@ -89,8 +112,7 @@ std::string task_script(const FarmPlan& plan) {
   text += kRunning;
   text += fmt::format(R"(
 chunk() {{
-  run "$1" {} render --config {} --chunk "$1"{} --resume{}{}
-}}
+{}}}
 
 code=0
 case $1 in
@@ -99,8 +121,7 @@ case $1 in
     code=$?
     ;;
 )",
-                      program_words(plan), shell_word(plan.job_file), plan.division,
-                      plan.traces_first ? " --stage trace" : "", limits(plan), finish_words(plan));
+                      chunk_words(plan), finish_words(plan));
   for (std::size_t i = 0; i < plan.then.size(); ++i) {
     text += fmt::format("  after-{0})\n    run after-{0} sh -c {1}\n    code=$?\n    ;;\n", i + 1,
                         shell_word(plan.then[i]));

@@ -2,43 +2,37 @@
 #include "job/confine.hpp"
 
 #include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include "core/data_root.hpp"
+#include "gazetrace/error.hpp"
 #include "gazetrace/job_schema.hpp"
+#include "job/settings_paths.hpp"
 #include "job/toml_values.hpp"
 
 namespace gazetrace {
-namespace {
 
-namespace fs = std::filesystem;
-
-// Some options take a name of ours or a file.
-bool names_file(const Option& option, const std::string& value) {
-  if (option.unit == "FILE" || option.unit == "PATTERN") {
-    return true;
+void check_confined(const Option& option, const std::vector<std::string>& values, const std::string& path,
+                    const std::string& place) {
+  const std::string at = place + ": " + option.name;
+  if (option.name == "allow-outside" && values != std::vector<std::string>{"false"}) {
+    throw Error(ErrorKind::input, at, "settings that are not trusted cannot lift what holds scenes to their folder",
+                "give `allow-outside` yourself, or leave `confine` out where you trust the settings");
   }
-  std::error_code ignored;
-  return option.unit.find("FILE") != std::string::npos &&
-         (value.find('/') != std::string::npos || fs::exists(value, ignored));
+  for (const std::string& value : values) {
+    if (names_file(option, value)) {
+      check_within(data_roots(path), located_file(option, value, path).value, value, at,
+                   "put the file there, or leave `confine` out where you trust the settings");
+    }
+  }
 }
 
-}  // namespace
-
 void check_confined(const std::string& text, const std::string& path) {
-  const std::vector<fs::path> roots = data_roots(path);
   const OptionList options = job_schema().list();
   for (const auto& [key, node] : parse_toml(text, path).members) {
-    const Option* option = find_option(options, key);
-    if (option == nullptr) {
-      continue;  // the reader of settings says it better
-    }
-    for (const std::string& value : toml_values(node, *option, path)) {
-      if (names_file(*option, value)) {
-        check_within(roots, value, value, toml_place(path, node) + ": " + key,
-                     "put the file there, or leave `confine` out where you trust the settings");
-      }
+    // The reader of settings says it better where there is no such option.
+    if (const Option* option = find_option(options, key)) {
+      check_confined(*option, toml_values(node, *option, path), path, toml_place(path, node));
     }
   }
 }

@@ -319,6 +319,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   // given up only while it is traced.
   const auto make_frame = [&](const FrameRequest& request, FrameWork work, TimingRow& row) {
     const Stopwatch total;
+    RenderedFrame rendered;
     result.files.clear();
     if (settings.trace.samples) {
       render_samples(renderer, request, settings, row, result);
@@ -326,9 +327,8 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       trace_to_file(renderer, request, settings, row, result);
     } else {
       const std::string behind = uses_history(settings) ? history_text(history.passed) : std::string();
-      const RenderedFrame rendered = settings.stage == SequenceStage::finish
-                                         ? finish_from_file(renderer, request, settings, history, row)
-                                         : render_one(request);
+      rendered = settings.stage == SequenceStage::finish ? finish_from_file(renderer, request, settings, history, row)
+                                                         : render_one(request);
       add_samples(rendered.samples, rendered.first_look, rendered.map, row);
       add_others(rendered.others, row);
       keep_bad_samples(rendered.samples, result);
@@ -358,6 +358,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       timing.add(row);
       result.rows.push_back(row);
     }
+    return rendered;
   };
 
   bool checkpoint_is_old = false;  // frames have passed since it was written
@@ -367,6 +368,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     const FrameRequest& request = plan.frames[i];
     const FrameWork work = resume.work[i];
     TimingRow row = timing_row(request);
+    RenderedFrame rendered;
     if (work != FrameWork::skip) {
       if (observer.stop_before_frame && observer.stop_before_frame(made == 0 ? 0 : made_ms / made)) {
         result.interrupted = true;
@@ -377,7 +379,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
       }
       const Stopwatch own_time;  // without the choice of the rate, which the first row counts
       try {
-        make_frame(request, work, row);
+        rendered = make_frame(request, work, row);
       } catch (const Error& error) {
         if (error.kind() != ErrorKind::interrupted) {
           throw;
@@ -399,6 +401,9 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     }
     if (observer.frame_done) {
       observer.frame_done(row, skipped);
+    }
+    if (observer.take_frame && !skipped && !rendered.frame.radiance.empty()) {
+      observer.take_frame(request, std::move(rendered), row);
     }
   }
   if (result.interrupted) {

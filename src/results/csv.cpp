@@ -49,7 +49,8 @@ std::string results_csv(const Results& results) {
     text += "," + csv_cell(option);
   }
   text +=
-      ",resolution_scale,repeats,samples,spp_mean,rays,peak_mib,time_s,time_low_s,time_high_s,speed_up,speed_up_low,"
+      ",resolution_scale,repeats,samples,spp_mean,rays,peak_mib,task,time_s,time_low_s,time_high_s,speed_up,speed_up_"
+      "low,"
       "speed_up_high,end_to_end,efficiency,metric,part,score,score_low,score_high,resolved,floor\n";
   for (const ResultRow& row : results.rows) {
     std::string head = fmt::format("{},{},{},{},{},{}", csv_cell(row.id), csv_cell(row.scene), csv_cell(row.gaze),
@@ -57,9 +58,9 @@ std::string results_csv(const Results& results) {
     for (const std::string& option : results.varied) {
       head += "," + csv_cell(value_of(row.settings, option));
     }
-    head += fmt::format(",{:.9g},{},{},{},{},{},{},{},{},{}", row.resolution_scale, row.times_s.size(),
+    head += fmt::format(",{:.9g},{},{},{},{},{},{},{},{},{},{}", row.resolution_scale, row.times_s.size(),
                         csv_count(row.samples), csv_number(row.spp_mean), csv_count(row.rays), csv_number(row.peak_mib),
-                        csv_interval(row.time_s), csv_interval(row.speed_up), csv_number(row.end_to_end),
+                        row.task, csv_interval(row.time_s), csv_interval(row.speed_up), csv_number(row.end_to_end),
                         csv_number(row.efficiency));
     if (row.scores.empty()) {
       text += head + ",,,,,,,\n";

@@ -10,6 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/json_problem.hpp"
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/results.hpp"
@@ -84,6 +85,11 @@ class Writer {
     }
   }
   void text_or_null(const char* key, const std::string& text) { json_[key] = text.empty() ? Json() : Json(text); }
+  void text_if_there(const char* key, const std::string& text) {
+    if (!text.empty()) {
+      json_[key] = text;
+    }
+  }
   void choice(const char* key, bool is_first, const char* first, const char* second) {
     json_[key] = is_first ? first : second;
   }
@@ -131,6 +137,7 @@ class Reader {
     field(key, value);
   }
   void text_or_null(const char* key, std::string& text) { field(key, text); }
+  void text_if_there(const char* key, std::string& text) { field(key, text); }
   void choice(const char* key, bool& is_first, const char* first, const char* second) {
     std::string text = first;
     field(key, text);
@@ -280,6 +287,7 @@ void describe(Io& io, T& row) {
   io.field("settings", row.settings);
   io.field("resolution_scale", row.resolution_scale);
   io.field("reference", row.reference);
+  io.text_if_there("task", row.task);
   io.object("time_s", [&](auto& inner) {
     inner.bounds(row.time_s);
     inner.field("values", row.times_s);
@@ -459,7 +467,7 @@ Results read_results(const std::string& path) {
   try {
     json = Json::parse(read_file_bytes(file));
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, file, std::string("is no JSON: ") + e.what(), "write it again with gazetrace sweep");
+    throw Error(ErrorKind::input, file, "is no JSON: " + json_problem(e.what()), "write it again with gazetrace sweep");
   }
   const JsonNode root(json, file, "");
   check_format(root);

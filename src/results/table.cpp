@@ -78,7 +78,7 @@ std::vector<std::string> line_of(const Results& results, const ResultRow& row) {
   std::vector<std::string> line{row.id,
                                 role,
                                 row.label,
-                                with_spread(row.time_s),
+                                with_spread(row.time_s) + (row.task.empty() ? "" : ", task " + row.task),
                                 number_text(row.spp_mean),
                                 ratio_text(row.speed_up),
                                 number_text(row.end_to_end),

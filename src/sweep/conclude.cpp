@@ -162,6 +162,12 @@ std::vector<std::string> notes_of(const SweepPlan& plan, const Measurements& mea
   if (lost > 0) {
     add(fmt::format("{:.0f} samples were rejected or not finite; they count as black", lost));
   }
+  if (measured.machines.size() > 1) {
+    add(
+        fmt::format("times were taken in {} tasks, which each row names: ratios of times of different tasks compare "
+                    "their machines, too",
+                    measured.machines.size()));
+  }
   if (plan.measure.repeats == 1) {
     add("one repeat: there are no confidence intervals");
   }
@@ -285,6 +291,14 @@ std::map<std::string, std::map<std::string, ResultScore>> row_scores(const std::
     }
   }
   return scores;
+}
+
+ResultMachine machine_of_tasks(const std::map<std::string, std::string>& machines) {
+  std::set<std::string> different;
+  for (const auto& [task, machine] : machines) {
+    different.insert(machine);
+  }
+  return {fmt::format("{}", fmt::join(different, "; ")), std::nullopt};
 }
 
 Results conclude(Results facts, const SweepPlan& plan, const Measurements& measured) {

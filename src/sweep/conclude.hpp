@@ -24,4 +24,7 @@ Results conclude(Results facts, const SweepPlan& plan, const Measurements& measu
 // Every setting in a paragraph, ready to paste.
 std::string sweep_methods(const SweepPlan& plan, const Results& results);
 
+// Of what the tasks of a sweep ran on: every machine once.
+ResultMachine machine_of_tasks(const std::map<std::string, std::string>& machines);
+
 }  // namespace gazetrace

@@ -1,41 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sweep at a time in a directory. The lock goes with the process, so that a killed sweep leaves none behind.
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
+// One sweep at a time in a directory, or any number of tasks of one.
+#include <fmt/format.h>
 
-#include <cerrno>
-#include <system_error>
-#include <utility>
-
+#include "core/file_lock.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/sweep.hpp"
 
 namespace gazetrace {
 
-SweepDirectory::SweepDirectory(const std::string& path) {
-  const std::string file = path + "/lock";
-  lock_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (lock_ < 0) {
-    throw Error(ErrorKind::input, file, "cannot be written: " + std::system_category().message(errno),
-                "choose another `output` folder");
-  }
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    const int problem = errno;
-    ::close(std::exchange(lock_, -1));
-    throw Error(ErrorKind::input, path,
-                problem == EWOULDBLOCK ? "another sweep is at work there"
-                                       : "cannot be locked: " + std::system_category().message(problem),
-                "wait for it, or give another `output` folder");
+struct SweepDirectory::Locks {
+  FileLock whole;
+  std::optional<FileLock> task;
+};
+
+SweepDirectory::SweepDirectory(const std::string& path, const std::optional<SweepTask>& task) {
+  const auto refuse = [&](bool is_held, const std::string& who) {
+    if (!is_held) {
+      throw Error(ErrorKind::input, path, who + " is at work there", "wait for it, or give another `output` folder");
+    }
+  };
+  FileLock whole(path + "/lock", task ? FileLock::Kind::shared : FileLock::Kind::alone, false);
+  refuse(whole.is_held(), "another sweep");
+  locks_ = std::make_unique<Locks>(Locks{std::move(whole), std::nullopt});
+  if (task) {
+    FileLock own(fmt::format("{}/lock.{}-of-{}", path, task->number, task->count), FileLock::Kind::alone, false);
+    refuse(own.is_held(), "this chunk");
+    locks_->task.emplace(std::move(own));
   }
 }
 
-SweepDirectory::~SweepDirectory() {
-  if (lock_ >= 0) {
-    ::close(lock_);
-  }
-}
-
-SweepDirectory::SweepDirectory(SweepDirectory&& other) noexcept : lock_(std::exchange(other.lock_, -1)) {}
+SweepDirectory::~SweepDirectory() = default;
+SweepDirectory::SweepDirectory(SweepDirectory&& other) noexcept = default;
 
 }  // namespace gazetrace

@@ -10,6 +10,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
+#include "job/confine.hpp"
 #include "sweep/plan_measure.hpp"
 #include "sweep/row_checks.hpp"
 #include "sweep/row_jobs.hpp"
@@ -114,6 +115,7 @@ class PlanMaker {
                                     [&] { return resolve(job, planned_with(needs_scene ? loaded.get() : &empty_)); });
     jobs_.warnings.insert(jobs_.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
     job.settings.frames = FrameList{inputs.frames};
+    job.settings.size = inputs.job.settings.size;  // which may follow from the screen
 
     SweepTest test;
     test.id = fmt::format("{}-{}-{}", scene.name, name, k + 1);
@@ -248,11 +250,33 @@ class PlanMaker {
   std::map<std::string, std::map<std::string, std::string>> digests_;
 };
 
+void check_confined_plan(const SweepFile& file, const JobSchema& schema) {
+  const auto check = [&](const std::vector<Assignment>& options) {
+    for (const Assignment& given : options) {
+      check_confined(*schema.find(given.option), given.values, file.path, given.place);
+    }
+  };
+  check(file.common);
+  for (const SweepFileScene& scene : file.scenes) {
+    check(scene.options);
+  }
+  for (const SweepFileGaze& gaze : file.gazes) {
+    check(gaze.options);
+  }
+  for (const SweepFileSetting& setting : file.settings) {
+    check(setting.options);
+  }
+  check(file.reference.options);
+}
+
 }  // namespace
 
 LoadedSweepPlan load_sweep_plan(const std::string& path, const std::optional<FrameList>& frames,
-                                const std::optional<int>& threads, const JobSchema& schema) {
+                                const std::optional<int>& threads, const JobSchema& schema, bool confine) {
   const SweepFile file = read_sweep_file(path, schema);
+  if (confine) {
+    check_confined_plan(file, schema);
+  }
   return PlanMaker({file, frames, threads, schema}).make();
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 
+#include "core/file_lock.hpp"
 #include "core/parallel.hpp"
 #include "sweep/scorer.hpp"
 #include "sweep/state.hpp"
@@ -23,17 +24,26 @@ std::string scrambling_folder(const std::string& directory, std::size_t scrambli
   return directory + fmt::format("/scrambling-{}", scrambling + 1);
 }
 
+std::string scrambling_digest(const SweepReference& reference, std::size_t scrambling) {
+  return digest_settings({{"reference", reference.digest}, {"seed", std::to_string(reference.seeds[scrambling])}});
+}
+
+std::string scrambling_pattern(const std::string& directory, std::size_t scrambling) {
+  return scrambling_folder(directory, scrambling) + "/frame.####.exr";
+}
+
+// `is_part`: these are some of the pictures, and other processes render the others.
 void render_scrambling(PathTracer& tracer, const SweepReference& reference, const std::vector<std::int32_t>& pictures,
-                       const ColorPipeline& color, const std::string& directory, std::size_t scrambling) {
+                       const ColorPipeline& color, const std::string& directory, std::size_t scrambling, bool is_part) {
   PipelineSettings settings = reference.pipeline;
+  settings.is_part = is_part;
   settings.trace.seed = reference.seeds[scrambling];
   settings.output = {};
   settings.output.run_directory = scrambling_folder(directory, scrambling);
-  settings.output.exr.pattern = settings.output.run_directory + "/frame.####.exr";
+  settings.output.exr.pattern = scrambling_pattern(directory, scrambling);
   settings.output.exr.pixels = ExrPixels::float32;
   settings.output.resume = true;
-  settings.settings_digest =
-      digest_settings({{"reference", reference.digest}, {"seed", std::to_string(settings.trace.seed)}});
+  settings.settings_digest = scrambling_digest(reference, scrambling);
   fs::create_directories(settings.output.run_directory);
   render_sequence(tracer, only_frames(reference.plan, pictures), color, settings, {});
 }
@@ -55,7 +65,7 @@ void write_mean(const std::string& path, const Frame& frame, const FrameRequest&
 ImageRgb mean_of(const std::string& directory, std::size_t first, std::size_t count, std::int32_t frame, int threads) {
   Image<Vec3d> sum;
   for (std::size_t k = first; k < first + count; ++k) {
-    const ImageRgb one = read_exr_rgb(frame_file_name(scrambling_folder(directory, k) + "/frame.####.exr", frame));
+    const ImageRgb one = read_exr_rgb(frame_file_name(scrambling_pattern(directory, k), frame));
     if (sum.empty()) {
       sum = Image<Vec3d>(one.width_px, one.height_px);
     }
@@ -122,6 +132,102 @@ bool has_pictures(const CertifiedReference& certified, const SweepReference& ref
   });
 }
 
+CertifiedReference described(const SweepReference& reference, const std::string& sweep_directory) {
+  CertifiedReference certified;
+  certified.directory = sweep_directory + "/" + reference_folder(reference);
+  certified.spp =
+      static_cast<double>(reference.pipeline.foveation.uniform_spp) * static_cast<double>(reference.seeds.size());
+  return certified;
+}
+
+std::string record_path(const CertifiedReference& certified) {
+  return certified.directory + "/reference.json";
+}
+
+void tell(const SweepObserver& observer, const std::string& line) {
+  if (observer.tell) {
+    observer.tell(line);
+  }
+}
+
+// Of all scramblings, which are not needed after that.
+void certify(const SweepReference& reference, const std::vector<std::int32_t>& pictures, const ColorPipeline& color,
+             CertifiedReference& certified) {
+  average_frames(reference, pictures, color, certified);
+  save_exposures(record_path(certified), reference.digest, certified.ev);
+  for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
+    fs::remove_all(scrambling_folder(certified.directory, k));
+  }
+}
+
+struct ReferenceTask {
+  PathTracer& tracer;
+  const SweepReference& reference;
+  const std::vector<std::int32_t>& pictures;
+  const ColorPipeline& color;
+  const std::string& sweep_directory;
+  const SweepObserver& observer;
+};
+
+// What one process renders at a time: a picture of a scrambling, or all of them where they depend on each other.
+struct ScramblingPart {
+  std::size_t scrambling = 0;
+  std::vector<std::int32_t> pictures;
+};
+std::vector<ScramblingPart> parts_of(const ReferenceTask& task) {
+  std::vector<ScramblingPart> parts;
+  for (std::size_t k = 0; k < task.reference.seeds.size(); ++k) {
+    if (uses_history(task.reference.pipeline)) {
+      parts.push_back({k, task.pictures});
+      continue;
+    }
+    for (const std::int32_t picture : task.pictures) {
+      parts.push_back({k, {picture}});
+    }
+  }
+  return parts;
+}
+
+bool is_rendered(const ReferenceTask& task, const std::string& directory, const ScramblingPart& part) {
+  const std::string digest = scrambling_digest(task.reference, part.scrambling);
+  return std::all_of(part.pictures.begin(), part.pictures.end(), [&](std::int32_t frame) {
+    const std::string path = frame_file_name(scrambling_pattern(directory, part.scrambling), frame);
+    return fs::is_regular_file(path) && read_frame_stamp(path).settings_digest == digest;
+  });
+}
+
+// First what nobody is at; then, part by part, what others were at, which they have finished or have left. Who finds
+// the reference finished has nothing more to do: its scramblings are removed by then.
+CertifiedReference render_with_others(const ReferenceTask& task) {
+  CertifiedReference certified = described(task.reference, task.sweep_directory);
+  const std::string locks = certified.directory + "/locks";
+  fs::create_directories(locks);
+  for (const bool waits : {false, true}) {
+    for (const ScramblingPart& part : parts_of(task)) {
+      const FileLock lock(fmt::format("{}/{}-{}", locks, part.scrambling + 1, part.pictures.front()),
+                          FileLock::Kind::alone, waits);
+      if (!lock.is_held()) {
+        continue;
+      }
+      if (const auto finished = finished_reference(task.reference, task.sweep_directory)) {
+        return *finished;
+      }
+      if (!is_rendered(task, certified.directory, part)) {
+        tell(task.observer, fmt::format("reference {}: scrambling {} of {}, frame {}", task.reference.key,
+                                        part.scrambling + 1, task.reference.seeds.size(), part.pictures.front()));
+        render_scrambling(task.tracer, task.reference, part.pictures, task.color, certified.directory, part.scrambling,
+                          true);
+      }
+    }
+  }
+  const FileLock lock(locks + "/mean", FileLock::Kind::alone, true);
+  if (const auto finished = finished_reference(task.reference, task.sweep_directory)) {
+    return *finished;
+  }
+  certify(task.reference, task.pictures, task.color, certified);
+  return certified;
+}
+
 }  // namespace
 
 std::string CertifiedReference::half_path(int half, std::int32_t frame) const {
@@ -173,35 +279,37 @@ MetricPicture metric_picture(ImageRgb light, const ColorPipeline& color, double 
   return picture;
 }
 
+std::optional<CertifiedReference> finished_reference(const SweepReference& reference,
+                                                     const std::string& sweep_directory) {
+  CertifiedReference certified = described(reference, sweep_directory);
+  const auto kept = load_exposures(record_path(certified), reference.digest);
+  if (!kept) {
+    return std::nullopt;
+  }
+  certified.ev = *kept;
+  return has_pictures(certified, reference) ? std::optional(certified) : std::nullopt;
+}
+
 CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, const SweepReference& reference,
-                                    const ColorPipeline& color, const std::string& sweep_directory,
+                                    const ColorPipeline& color, const std::string& sweep_directory, bool with_others,
                                     const SweepObserver& observer) {
-  CertifiedReference certified;
-  certified.directory = sweep_directory + "/" + reference_folder(reference);
-  certified.spp =
-      static_cast<double>(reference.pipeline.foveation.uniform_spp) * static_cast<double>(reference.seeds.size());
   const std::vector<std::int32_t> pictures = reference_pictures(reference, scene);
-  certified.pictures = pictures.size();
-  const std::string record = certified.directory + "/reference.json";
-  if (const auto kept = load_exposures(record, reference.digest)) {
-    certified.ev = *kept;
-    if (has_pictures(certified, reference)) {
-      return certified;
+  std::optional<CertifiedReference> certified = finished_reference(reference, sweep_directory);
+  if (!certified) {
+    certified = described(reference, sweep_directory);
+    if (with_others) {
+      const ReferenceTask task{tracer, reference, pictures, color, sweep_directory, observer};
+      certified = render_with_others(task);
+    } else {
+      for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
+        tell(observer, fmt::format("reference {}: scrambling {} of {}", reference.key, k + 1, reference.seeds.size()));
+        render_scrambling(tracer, reference, pictures, color, certified->directory, k, false);
+      }
+      certify(reference, pictures, color, *certified);
     }
-    certified.ev.clear();
   }
-  for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
-    if (observer.tell) {
-      observer.tell(fmt::format("reference {}: scrambling {} of {}", reference.key, k + 1, reference.seeds.size()));
-    }
-    render_scrambling(tracer, reference, pictures, color, certified.directory, k);
-  }
-  average_frames(reference, pictures, color, certified);
-  save_exposures(record, reference.digest, certified.ev);
-  for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
-    fs::remove_all(scrambling_folder(certified.directory, k));
-  }
-  return certified;
+  certified->pictures = pictures.size();
+  return *certified;
 }
 
 ScoreTable ensure_floor(const CertifiedReference& reference, const ColorPipeline& color,

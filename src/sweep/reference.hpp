@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,14 @@ FramePlan only_frames(const FramePlan& plan,
                       const std::vector<std::int32_t>& frames);  // the part of the plan with these frames
 
 // Renders what is missing: each scrambling by itself, frame by frame; then forms the means of the two halves and of
-// all.
+// all. `with_others`: other processes may be at the same reference in the same folder. Each then renders the pictures
+// that no other is at, and waits for the rest.
 CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, const SweepReference& reference,
-                                    const ColorPipeline& color, const std::string& sweep_directory,
+                                    const ColorPipeline& color, const std::string& sweep_directory, bool with_others,
                                     const SweepObserver& observer);
+// What an earlier process has finished; empty where something is missing. Without `pictures`.
+std::optional<CertifiedReference> finished_reference(const SweepReference& reference,
+                                                     const std::string& sweep_directory);
 
 // The score of the two halves against each other, see ResultReference. It is kept, too, under a digest of what it
 // depends on.

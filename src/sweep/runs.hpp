@@ -45,6 +45,7 @@ struct Measurements {
   std::vector<MeasuredRow> rows;
   std::vector<ResultReference> references;
   std::vector<std::string> notes;
+  std::map<std::string, std::string> machines;  // by the label of the task; empty: measured by one process
 };
 
 }  // namespace gazetrace

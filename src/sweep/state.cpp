@@ -124,28 +124,31 @@ void save(const std::string& path, const Json& json) {
 
 }  // namespace
 
-void claim_directory(const std::string& directory) {
+void claim_directory(const std::string& directory, const std::string& machine) {
   const std::string path = directory + kStateFile;
   const std::vector<std::pair<const char*, std::string>> mine{
-      {"format", kFormat}, {"build", build_digest()}, {"machine", machine_description()}};
-  const auto found = load(
-      path,
-      [&](const Json& json) {
-        std::vector<std::string> values;
-        values.reserve(mine.size());
-        for (const auto& [what, value] : mine) {
-          values.push_back(json.value(what, std::string()));
-        }
-        return values;
-      },
-      kOtherFolder);
+      {"format", kFormat}, {"build", build_digest()}, {"machine", machine}};
+  const auto read = [&] {
+    return load(
+        path,
+        [&](const Json& json) {
+          std::vector<std::string> values;
+          values.reserve(mine.size());
+          for (const auto& [what, value] : mine) {
+            values.push_back(json.value(what, std::string()));
+          }
+          return values;
+        },
+        kOtherFolder);
+  };
+  auto found = read();
   if (!found) {
     Json json;
     for (const auto& [what, value] : mine) {
       json[what] = value;
     }
     save(path, json);
-    return;
+    found = read();  // another task may have claimed it at the same moment
   }
   for (std::size_t i = 0; i < mine.size(); ++i) {
     const auto& [what, value] = mine[i];
@@ -172,6 +175,8 @@ void clear_directory(const std::string& directory) {
 std::optional<StoredRun> load_run(const std::string& path) {
   return load(path, [](const Json& json) {
     StoredRun run;
+    run.task = json.value("task", std::string());
+    run.machine = json.value("machine", std::string());
     run.png = json.at("png");
     run.region_cpu_ms = values_of(json.at("region_cpu_ms"));
     run.trace_ms = json.at("trace_ms");
@@ -188,7 +193,9 @@ void save_run(const std::string& path, const StoredRun& run) {
   for (const auto& [gaze, one] : run.by_gaze) {
     by_gaze[gaze] = json_of(one);
   }
-  save(path, {{"png", run.png},
+  save(path, {{"task", run.task},
+              {"machine", run.machine},
+              {"png", run.png},
               {"region_cpu_ms", json_of(run.region_cpu_ms)},
               {"trace_ms", run.trace_ms},
               {"trace_cpu_ms", run.trace_cpu_ms},

@@ -18,15 +18,18 @@ namespace gazetrace {
 std::string build_digest();
 std::string machine_description();  // processor and number of threads
 
-// Marks an empty folder as this build's. Error(input) where the folder holds work of another build or machine.
-void claim_directory(const std::string& directory);
+// Marks an empty folder as this build's and that machine's; `machine` is kManyMachines where tasks share the folder.
+// Error(input) where the folder holds work of another build or machine.
+inline constexpr const char* kManyMachines = "tasks on any machine";
+void claim_directory(const std::string& directory, const std::string& machine);
 // Removes what a sweep has left in the folder, and nothing else.
 void clear_directory(const std::string& directory);
 
 // One rendering, with a set of scores for each gaze that it was scored with. Loading gives nothing where it has not
 // been finished.
 struct StoredRun {
-  std::string png;  // pattern relative to the sweep's folder
+  std::string task, machine;  // where it was measured: "2/5" and machine_description(); empty: in one process
+  std::string png;            // pattern relative to the sweep's folder
   std::map<std::string, double> region_cpu_ms;
   double trace_ms = 0, trace_cpu_ms = 0;
   std::map<std::string, SweepRun> by_gaze;

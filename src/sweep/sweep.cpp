@@ -4,12 +4,11 @@
 //                 -> the rates of equal time, found by measuring -> those rows
 //   other rounds  every row once, forwards and backwards in turn, so that a machine that grows slower or faster does so
 //                 for all of them
-// Whatever has been finished is in a file, and is not done again.
+// Whatever has been finished is in a file, and is not done again. A task of several goes the same way over its own rows
+// alone, and a merge over all of them, finding everything finished.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <deque>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -20,9 +19,11 @@
 #include "sweep/conclude.hpp"
 #include "sweep/measure.hpp"
 #include "sweep/reference.hpp"
-#include "sweep/rows.hpp"
+#include "sweep/scene_rows.hpp"
 #include "sweep/scorer.hpp"
+#include "sweep/shares.hpp"
 #include "sweep/state.hpp"
+#include "sweep/take_in.hpp"
 
 namespace gazetrace {
 namespace {
@@ -34,28 +35,56 @@ std::string digest_of_reference(const SweepReference& reference) {
       {{"reference", reference.digest}, {"seeds", fmt::format("{}", fmt::join(reference.seeds, " "))}});
 }
 
+// Which rows are measured here: all of them, those of one task, or none, where tasks have measured them before.
+struct Scope {
+  enum class Kind : std::uint8_t { whole, task, merge };
+  Kind kind = Kind::whole;
+  std::set<std::string> rows;        // of a task: deciding rows, see shares.hpp
+  std::string label;                 // of a task
+  std::vector<std::string> missing;  // of a merge: what it did not find
+};
+
 class SceneSweep {
  public:
-  SceneSweep(const SweepPlan& plan, std::size_t scene, Measurements& measured, const SweepObserver& observer)
-      : plan_(plan), scene_(scene), measured_(measured), observer_(observer) {}
+  SceneSweep(const SweepPlan& plan, std::size_t scene, Scope& scope, Measurements& measured,
+             const SweepObserver& observer)
+      : plan_(plan),
+        scene_(scene),
+        scope_(scope),
+        measured_(measured),
+        observer_(observer),
+        rows_(plan, scene, measured.notes) {
+    for (const PlannedRow& row : rows_) {
+      if (scope.kind == Scope::Kind::task && !scope.rows.contains(deciding_row(rows_, row).row.id)) {
+        of_others_.insert(&row);
+      }
+    }
+  }
 
   void run() {
-    plan_rows();
-    if (rows_.empty()) {
+    if (of_others_.size() == rows_.size()) {
+      return;
+    }
+    if (scope_.kind == Scope::Kind::merge) {
+      find_references();
+      if (!scope_.missing.empty()) {
+        return;
+      }
+      measure_all();
+      if (scope_.missing.empty()) {
+        hand_over();
+      }
       return;
     }
     const std::shared_ptr<const Scene> scene = plan_.scenes[scene_].load();
     PathTracer tracer(*scene, plan_.scenes[scene_].tracer);
     tracer_ = &tracer;
     prepare_references(*scene);
-    first_round();
-    for (int repeat = 1; repeat < plan_.measure.repeats; ++repeat) {
-      for (std::size_t i = 0; i < rows_.size(); ++i) {
-        measure(repeat % 2 == 1 ? rows_.size() - 1 - i : i, repeat);
-      }
-    }
+    measure_all();
     tracer_ = nullptr;
-    hand_over();
+    if (scope_.kind == Scope::Kind::whole) {
+      hand_over();
+    }
   }
 
  private:
@@ -65,59 +94,61 @@ class SceneSweep {
     }
   }
 
-  // Adds a row unless there is one with the same pixels, gaze and reference, and returns the id of the row that is
-  // there. Every test has its own row of equal time, whose time is compared with that of the test.
-  std::string add(PlannedRow row) {
-    for (const PlannedRow& other : rows_) {
-      if (row.row.role != RowRole::equal_time && other.digest == row.digest && other.row.gaze == row.row.gaze &&
-          other.row.reference == row.row.reference) {
-        return other.row.id;
-      }
-    }
-    rows_.push_back(std::move(row));
-    return rows_.back().row.id;
-  }
-  void add_baselines(std::size_t test, std::vector<PlannedRow> rows) {
-    for (PlannedRow& row : rows) {
-      const RowRole role = row.row.role;
-      const std::string id = add(std::move(row));
-      if (role != RowRole::wrong_gaze && role != RowRole::uniform_rate) {
-        rows_[test].row.baselines[to_string(role)] = id;
-      }
-    }
-  }
+  [[nodiscard]] bool is_mine(const PlannedRow& row) const { return !of_others_.contains(&row); }
 
-  void plan_rows() {
-    for (std::size_t t = 0; t < plan_.tests.size(); ++t) {
-      if (plan_.tests[t].scene == scene_) {
-        rows_.push_back(test_row(plan_, t));
-      }
-    }
-    tests_ = rows_.size();
-    for (std::size_t t = 0; t < tests_; ++t) {
-      add_baselines(t, baselines_known_before(plan_, rows_[t], measured_.notes));
-    }
+  [[nodiscard]] bool is_reference_of_mine(const SweepReference& reference) const {
+    return reference.scene == scene_ && std::any_of(rows_.begin(), rows_.end(), [&](const PlannedRow& row) {
+             return is_mine(row) && row.row.reference == reference.key;
+           });
   }
 
   void prepare_references(const Scene& scene) {
     for (const SweepReference& reference : plan_.references) {
-      if (reference.scene == scene_) {
+      if (is_reference_of_mine(reference)) {
         references_.emplace(reference.key, &reference);
         colors_.emplace(reference.key, ColorPipeline(reference.color));
-        certified_.emplace(reference.key, ensure_reference(*tracer_, scene, reference, colors_.at(reference.key),
-                                                           plan_.directory, observer_));
+        certified_.emplace(reference.key,
+                           ensure_reference(*tracer_, scene, reference, colors_.at(reference.key), plan_.directory,
+                                            scope_.kind == Scope::Kind::task, observer_));
       }
     }
   }
 
-  // All rows that show the same pixels as this one, itself among them, in the order of the rows.
-  [[nodiscard]] std::vector<const PlannedRow*> sharing(const PlannedRow& row) const {
-    std::vector<const PlannedRow*> rows;
-    for (const PlannedRow& other : rows_) {
-      if (other.digest == row.digest && other.row.reference == row.row.reference) {
-        rows.push_back(&other);
+  void find_references() {
+    std::shared_ptr<const Scene> scene;
+    for (const SweepReference& reference : plan_.references) {
+      if (!is_reference_of_mine(reference)) {
+        continue;
+      }
+      std::optional<CertifiedReference> certified = finished_reference(reference, plan_.directory);
+      if (!certified) {
+        scope_.missing.push_back("reference " + reference.key);
+        continue;
+      }
+      certified->pictures = reference.plan.frames.size();
+      if (scene_decides_pictures(reference)) {
+        scene = scene ? scene : plan_.scenes[scene_].load();
+        certified->pictures = reference_pictures(reference, *scene).size();
+      }
+      references_.emplace(reference.key, &reference);
+      colors_.emplace(reference.key, ColorPipeline(reference.color));
+      certified_.emplace(reference.key, std::move(*certified));
+    }
+  }
+
+  void measure_all() {
+    first_round();
+    for (int repeat = 1; repeat < plan_.measure.repeats; ++repeat) {
+      for (std::size_t i = 0; i < rows_.size(); ++i) {
+        measure(repeat % 2 == 1 ? rows_.size() - 1 - i : i, repeat);
       }
     }
+  }
+
+  // The rows that show the same pixels as this one, and are rendered with it.
+  [[nodiscard]] std::vector<const PlannedRow*> rendered_with(const PlannedRow& row) const {
+    std::vector<const PlannedRow*> rows = rows_.sharing(row);
+    std::erase_if(rows, [&](const PlannedRow* other) { return !is_mine(*other); });
     return rows;
   }
 
@@ -127,7 +158,7 @@ class SceneSweep {
     NamedValues parts{{"pixels", rows.front()->digest},
                       {"reference", digest_of_reference(*references_.at(rows.front()->row.reference))},
                       {"seed", std::to_string(rows.front()->pipeline.trace.seed)},
-                      {"threads", std::to_string(resolve_threads(rows.front()->pipeline.threads))},
+                      {"threads", threads_in_key(*rows.front())},
                       {"bvh", std::to_string(static_cast<int>(plan_.scenes[scene_].tracer.bvh_quality))},
                       {"warm-up", std::to_string(plan_.measure.warm_up)}};
     for (const PlannedRow* row : rows) {
@@ -135,8 +166,16 @@ class SceneSweep {
     }
     return digest_settings(parts).substr(0, 16);
   }
+  // What tasks have measured on machines of different sizes is found by whoever joins it.
+  [[nodiscard]] std::string threads_in_key(const PlannedRow& row) const {
+    return scope_.kind == Scope::Kind::whole ? std::to_string(resolve_threads(row.pipeline.threads)) : "of a task";
+  }
   [[nodiscard]] std::string path_of(const std::string& kind, const std::string& key) const {
     return fmt::format("{}/runs/{}-{}.json", plan_.directory, kind, key);
+  }
+  // A row that a task has measured is found by itself, since nobody knows which others were rendered with it.
+  [[nodiscard]] std::string path_of_row(const PlannedRow& row, int repeat) const {
+    return path_of("row", fmt::format("{}-{}", key_of({&row}), repeat + 1));
   }
 
   void warm_up(const PlannedRow& row) {
@@ -145,45 +184,81 @@ class SceneSweep {
     }
   }
 
+  // Renders the row with those that show the same pixels, and keeps what was measured.
+  StoredRun render(const PlannedRow& row, const std::vector<const PlannedRow*>& rows, const std::string& key,
+                   int repeat) {
+    warm_up(row);
+    const std::string& reference = row.row.reference;
+    StoredRun stored = measure_rows({*tracer_, colors_.at(reference), certified_.at(reference)}, rows, repeat,
+                                    plan_.measure, plan_.directory, "frames/" + key);
+    if (scope_.kind == Scope::Kind::task) {
+      stored.task = scope_.label;
+      stored.machine = machine_description();
+      for (const PlannedRow* one : rows) {
+        save_run(path_of_row(*one, repeat), stored);
+      }
+    } else {
+      save_run(path_of("run", fmt::format("{}-{}", key, repeat + 1)), stored);
+    }
+    tell(fmt::format("round {} of {}: {} {}/{} {}: {:.4g} s a frame", repeat + 1, plan_.measure.repeats, row.row.id,
+                     row.row.scene, row.row.gaze, row.row.label, stored.by_gaze.at(row.row.gaze).time_s));
+    return stored;
+  }
+
   void measure(std::size_t index, int repeat) {
     PlannedRow& row = rows_[index];
-    const std::vector<const PlannedRow*> rows = sharing(row);
+    if (!is_mine(row)) {
+      return;
+    }
+    const std::vector<const PlannedRow*> rows = rendered_with(row);
     const std::string key = key_of(rows);
-    const std::string path = path_of("run", fmt::format("{}-{}", key, repeat + 1));
-    std::optional<StoredRun> stored = load_run(path);
+    std::optional<StoredRun> stored =
+        load_run(scope_.kind == Scope::Kind::whole ? path_of("run", fmt::format("{}-{}", key, repeat + 1))
+                                                   : path_of_row(row, repeat));
+    if (!stored && scope_.kind == Scope::Kind::merge) {
+      if (repeat == 0 || !row.row.runs.empty()) {  // else it is named already
+        scope_.missing.push_back(fmt::format("{} (round {})", row.row.id, repeat + 1));
+      }
+      return;
+    }
     if (!stored) {
-      warm_up(row);
-      const std::string& reference = row.row.reference;
-      stored = measure_rows({*tracer_, colors_.at(reference), certified_.at(reference)}, rows, repeat, plan_.measure,
-                            plan_.directory, "frames/" + key);
-      save_run(path, *stored);
-      tell(fmt::format("round {} of {}: {} {}/{} {}: {:.4g} s a frame", repeat + 1, plan_.measure.repeats, row.row.id,
-                       row.row.scene, row.row.gaze, row.row.label, stored->by_gaze.at(row.row.gaze).time_s));
+      stored = render(row, rows, key, repeat);
     }
     row.row.runs.push_back(stored->by_gaze.at(row.row.gaze));
     if (!stored->png.empty()) {
       row.row.png = stored->png;
     }
+    if (!stored->task.empty()) {
+      row.row.task = stored->task;
+      measured_.machines[stored->task] = stored->machine;
+    }
   }
 
+  // A merge that misses a test's measurements does not know what follows from them.
+  [[nodiscard]] bool is_measured(std::size_t test) const { return !rows_[test].row.runs.empty(); }
+
   void first_round() {
-    for (std::size_t t = 0; t < tests_; ++t) {
+    for (std::size_t t = 0; t < rows_.tests(); ++t) {
       measure(t, 0);
-      measure_costs(t);
+      if (is_measured(t)) {
+        measure_costs(t);
+      }
     }
-    for (std::size_t t = 0; t < tests_; ++t) {
+    for (std::size_t t = 0; t < rows_.tests(); ++t) {
       const PlannedRow& test = rows_[t];
-      const double pixels = static_cast<double>(test.size.width_px) * test.size.height_px;
-      const double spp = test.row.runs.front().samples / (pixels * static_cast<double>(test.plan.frames.size()));
-      add_baselines(t, baselines_of_samples(plan_, test, spp));
+      if (is_measured(t)) {
+        const double pixels = static_cast<double>(test.size.width_px) * test.size.height_px;
+        const double spp = test.row.runs.front().samples / (pixels * static_cast<double>(test.plan.frames.size()));
+        rows_.add_baselines(t, baselines_of_samples(plan_, test, spp));
+      }
     }
-    for (std::size_t i = tests_; i < rows_.size(); ++i) {
+    for (std::size_t i = rows_.tests(); i < rows_.size(); ++i) {
       measure(i, 0);
     }
     const std::size_t before = rows_.size();
-    for (std::size_t t = 0; t < tests_; ++t) {
-      if (plan_.measure.baselines.equal_time && is_foveated(plan_.tests[rows_[t].test])) {
-        add_baselines(t, {equal_time_row(t)});
+    for (std::size_t t = 0; t < rows_.tests(); ++t) {
+      if (is_measured(t) && plan_.measure.baselines.equal_time && is_foveated(plan_.tests[rows_[t].test])) {
+        add_equal_time_row(t);
       }
     }
     for (std::size_t i = before; i < rows_.size(); ++i) {
@@ -198,6 +273,10 @@ class SceneSweep {
     }
     const std::string path = path_of("cost", key_of({&*row}));
     std::optional<StoredRun> stored = load_run(path);
+    if (!stored && scope_.kind == Scope::Kind::merge) {
+      scope_.missing.push_back(rows_[test].row.id + " (costs by region)");
+      return;
+    }
     if (!stored) {
       stored = time_row(*tracer_, colors_.at(row->row.reference), *row, 0);
       save_run(path, *stored);
@@ -205,33 +284,41 @@ class SceneSweep {
     costs_[test] = *stored;
   }
 
-  PlannedRow equal_time_row(std::size_t test) {
+  void add_equal_time_row(std::size_t test) {
     const PlannedRow& of = rows_[test];
     const std::string path = path_of("equal-time", key_of({&of}));
     std::optional<RateSearch> search = load_rate(path);
+    if (!search && scope_.kind == Scope::Kind::merge) {
+      scope_.missing.push_back(of.row.id + " (equal time)");
+      return;
+    }
     if (!search) {
-      std::vector<std::pair<double, double>> known;
-      for (const PlannedRow& row : rows_) {
-        const bool same = row.uniform == of.uniform && row.row.reference == of.row.reference &&
-                          row.row.gaze == of.row.gaze && !row.row.runs.empty();
-        const bool is_uniform = row.row.role == RowRole::equal_samples || row.row.role == RowRole::uniform_rate ||
-                                row.row.role == RowRole::uniform_reference_rate;
-        if (same && is_uniform) {
-          const SweepRun& run = row.row.runs.front();
-          known.emplace_back(run.samples / run.pixels, run.time_s);
-        }
-      }
-      search = find_rate(of.row.runs.front().time_s, known, kLeastSpp, 4.0 * plan_.measure.baselines.reference_spp,
-                         [&](double spp) {
-                           const PlannedRow row = uniform_row(plan_, of, RowRole::equal_time, spp);
-                           const StoredRun run = time_row(*tracer_, colors_.at(row.row.reference), row, 0);
-                           return run.by_gaze.begin()->second.time_s;
-                         });
+      search = search_equal_time(of);
       save_rate(path, *search);
       tell(fmt::format("{}: equal time at {:.4g} samples a pixel, {} rates tried", of.row.id, search->spp,
                        search->tried.size()));
     }
-    return uniform_row(plan_, of, RowRole::equal_time, search->spp);
+    rows_.add_baselines(test, {uniform_row(plan_, of, RowRole::equal_time, search->spp)});
+  }
+
+  RateSearch search_equal_time(const PlannedRow& of) {
+    std::vector<std::pair<double, double>> known;
+    for (const PlannedRow& row : rows_) {
+      const bool same = row.uniform == of.uniform && row.row.reference == of.row.reference &&
+                        row.row.gaze == of.row.gaze && !row.row.runs.empty();
+      const bool is_uniform = row.row.role == RowRole::equal_samples || row.row.role == RowRole::uniform_rate ||
+                              row.row.role == RowRole::uniform_reference_rate;
+      if (same && is_uniform) {
+        const SweepRun& run = row.row.runs.front();
+        known.emplace_back(run.samples / run.pixels, run.time_s);
+      }
+    }
+    return find_rate(of.row.runs.front().time_s, known, kLeastSpp, 4.0 * plan_.measure.baselines.reference_spp,
+                     [&](double spp) {
+                       const PlannedRow row = uniform_row(plan_, of, RowRole::equal_time, spp);
+                       const StoredRun run = time_row(*tracer_, colors_.at(row.row.reference), row, 0);
+                       return run.by_gaze.begin()->second.time_s;
+                     });
   }
 
   // Expected over measured time. The expected time is that of the samples of each region at what a sample costs there
@@ -286,7 +373,7 @@ class SceneSweep {
       measured_.references.push_back(std::move(result));
     }
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (i < tests_) {
+      if (i < rows_.tests()) {
         rows_[i].row.efficiency = efficiency_of(i);
       }
       measured_.rows.push_back(std::move(rows_[i].row));
@@ -319,10 +406,11 @@ class SceneSweep {
 
   const SweepPlan& plan_;
   std::size_t scene_;
+  Scope& scope_;
   Measurements& measured_;
   const SweepObserver& observer_;
-  std::deque<PlannedRow> rows_;  // tests first; a row keeps its address when others are added
-  std::size_t tests_ = 0;
+  SceneRows rows_;
+  std::set<const PlannedRow*> of_others_;  // of a task: rows that it does not measure
   PathTracer* tracer_ = nullptr;
   std::map<std::string, const SweepReference*> references_;
   std::map<std::string, ColorPipeline> colors_;
@@ -331,9 +419,19 @@ class SceneSweep {
   std::set<std::string> warm_;
 };
 
-}  // namespace
+void measure_scenes(const SweepPlan& plan, Scope& scope, Measurements& measured, const SweepObserver& observer) {
+  for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
+    SceneSweep(plan, scene, scope, measured, observer).run();
+  }
+}
 
-SweepDirectory prepare_sweep(const SweepPlan& plan) {
+Results concluded(const SweepPlan& plan, const Measurements& measured) {
+  Results results = conclude(facts_of_plan(plan), plan, measured);
+  results.methods = sweep_methods(plan, results);
+  return results;
+}
+
+SweepDirectory open_directory(const SweepPlan& plan, const std::optional<SweepTask>& task, const std::string& machine) {
   if (plan.tests.empty()) {
     throw Error(ErrorKind::usage, plan.plan_file, "there is nothing to measure", "give a [[setting]] or a [grid]");
   }
@@ -343,21 +441,74 @@ SweepDirectory prepare_sweep(const SweepPlan& plan) {
     throw Error(ErrorKind::input, plan.directory, "the folder cannot be made: " + problem.message(),
                 "choose another `output` folder");
   }
-  SweepDirectory directory(plan.directory);
+  SweepDirectory directory(plan.directory, task);
   if (plan.restart) {
     clear_directory(plan.directory);
   }
-  claim_directory(plan.directory);
+  claim_directory(plan.directory, machine);
   return directory;
 }
 
-Results run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
-  Measurements measured;
-  for (std::size_t scene = 0; scene < plan.scenes.size(); ++scene) {
-    SceneSweep(plan, scene, measured, observer).run();
+}  // namespace
+
+std::string SweepTask::label() const {
+  return fmt::format("{}/{}", number, count);
+}
+
+SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task) {
+  if (task && plan.restart) {
+    throw Error(ErrorKind::usage, "`restart`", "would throw away what other chunks have measured",
+                "remove the folder, or leave it out");
   }
-  Results results = conclude(facts_of_plan(plan), plan, measured);
-  results.methods = sweep_methods(plan, results);
+  return open_directory(plan, task, task ? kManyMachines : machine_description());
+}
+
+Results run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
+  Scope scope;
+  Measurements measured;
+  measure_scenes(plan, scope, measured, observer);
+  return concluded(plan, measured);
+}
+
+void run_sweep_task(const SweepPlan& plan, const SweepTask& task, const SweepObserver& observer) {
+  Scope scope;
+  scope.kind = Scope::Kind::task;
+  scope.rows = rows_of_task(plan, task);
+  scope.label = task.label();
+  if (scope.rows.empty()) {
+    throw Error(ErrorKind::nothing_to_do, "`chunk`", fmt::format("chunk {} has none of the rows", task.label()));
+  }
+  Measurements measured;
+  measure_scenes(plan, scope, measured, observer);
+}
+
+Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders) {
+  if (folders.empty()) {
+    check_chunks_in(plan.directory);
+  }
+  for (const std::string& folder : folders) {
+    check_chunks_in(folder);
+  }
+  const SweepDirectory directory = open_directory(plan, std::nullopt, kManyMachines);
+  for (const std::string& folder : folders) {
+    take_in(folder, plan.directory);
+  }
+  Scope scope;
+  scope.kind = Scope::Kind::merge;
+  Measurements measured;
+  measure_scenes(plan, scope, measured, {});
+  if (!scope.missing.empty()) {
+    constexpr std::size_t kNamed = 8;
+    const std::size_t named = std::min(scope.missing.size(), kNamed);
+    throw Error(
+        ErrorKind::input, plan.directory,
+        fmt::format("{} of the sweep's parts are missing: {}{}", scope.missing.size(),
+                    fmt::join(scope.missing.begin(), scope.missing.begin() + static_cast<std::ptrdiff_t>(named), ", "),
+                    named < scope.missing.size() ? ", ..." : ""),
+        "run the chunks that have not finished again; they keep what they have");
+  }
+  Results results = concluded(plan, measured);
+  results.machine = machine_of_tasks(measured.machines);
   return results;
 }
 

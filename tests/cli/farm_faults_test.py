@@ -312,6 +312,8 @@ class Confined(Farm):
             with self.subTest(more):
                 self.write("jobs/job.toml", common + more)
                 self.assert_refused(["plan", "--config", "jobs/job.toml", "--frames", "1", "--confine"], [named, "leads outside"])
+        self.write("jobs/job.toml", common + "allow-outside = true\n")
+        self.assert_refused(["plan", "--config", "jobs/job.toml", "--frames", "1", "--confine"], ["allow-outside"])
         self.write("jobs/job.toml", common + 'env = "sky"\noutput = ["jobs/out/f.####.exr"]\n')
         self.run_ok("plan", "--config", "jobs/job.toml", "--frames", "1", "--confine")
         # What the user says himself is not the settings' word.

@@ -10,6 +10,7 @@ import time
 
 import harness
 from farm_faults_test import JOB_TOML, Farm
+from farm_harm import Harm
 
 HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
 FRAMES = ["--frames", "1-6"]
@@ -168,6 +169,30 @@ exposure = 0.5
 frames = "1-6"
 output = ["out/f.####.exr", "out/f.####.png"]
 """
+SWEEP_TOML = """
+[common]
+size = "48x27"
+screen-px = [64, 36]
+screen-cm = [64, 36]
+screen-distance-cm = 60
+fps = 12
+frames = "1-2"
+[[scene]]
+name = "box"
+path = "glide.gltf"
+[[gaze]]
+name = "left"
+at = [0.2, 0.5]
+[grid]
+region-samples = [[8, 4, 2], [4, 2, 1]]
+[reference]
+spp = 4
+[measure]
+repeats = 1
+reference-rate = 8
+metrics = ["mse"]
+controls = false
+"""
 HISTORY_TOML = 'accumulate = "reproject"\nfilter = "guided"\n'
 
 
@@ -262,7 +287,7 @@ class Engines(Farm):
         for words in ("#SBATCH --cpus-per-task=2", "#SBATCH --mem=", "#SBATCH --time=", "--requeue", "--signal=B:USR1@90"):
             self.assertIn(words, batch)
         submit = (self.folder / "out/farm/submit.sh").read_text()
-        for words in ("--array=1-3", "--dependency=afterok:$job --output=logs/finish.log", "task.sbatch after-1"):
+        for words in ("chunks='1 2 3'", "--dependency=afterok$after", "submit finish\nsubmit after-1"):
             self.assertIn(words, submit)
         # The script that every engine runs does the tasks.
         for task in ("3", "1-2", "finish", "after-1"):
@@ -273,7 +298,7 @@ class Engines(Farm):
         states = {task["task"]: task["state"] for task in self.status()["tasks"]}
         self.assertEqual((states["2"], states["finish"], states["after-1"]), ("done", "missing", "missing"))
         self.run_ok("farm", "retry", "out")
-        self.assertIn("--array=1 ", (self.folder / "out/farm/submit.sh").read_text())
+        self.assertIn("chunks='1'", (self.folder / "out/farm/submit.sh").read_text())
 
     def test_files_for_openjd(self):
         self.farm("--engine", "openjd", "--chunks", "3", job="history.toml")
@@ -316,8 +341,110 @@ class Engines(Farm):
         self.assertEqual(tasks["2"]["commands"], [{"name": "exec", "parameters": {
             "exe": "sh", "args": [str((self.folder / "out/farm/task.sh").resolve()), "2"]}}])
 
+    def test_parts_of_the_samples(self):
+        self.write("still.toml", FARM_TOML.replace("region-samples = [4, 2, 1]", 'falloff = "uniform"\nspp = 32\nfilter = "none"')
+                   .replace('"1-6"', '"1-2"'))
+        told = self.farm("--sample-ranges", "4", "--processes", "2", "--threads", "1", job="still.toml")
+        self.assertIn("samples 8:16", told.stderr)
+        self.assertIn("8 of 8 parts of frames are rendered", told.stdout)
+        self.assertEqual(len(list((self.folder / "out").glob("samples.*.sums"))), 8)
+        self.assertEqual(self.pictures("out"), self.whole("still.toml"))
+        self.assertTrue(self.status()["is_done"])
+        # A part that is lost is missing, and made again alone.
+        (self.folder / "out/samples.0001.8-16.sums").unlink()
+        self.assertEqual([task["state"] for task in self.status()["tasks"]], ["done", "failed", "done", "done", "missing"])
+        again = self.run_ok("farm", "retry", "out").stderr
+        self.assertIn("task 2: begins", again)
+        self.assertNotIn("task 1: begins", again)
+        self.assertTrue(self.status()["is_done"])
+        # Foveated samples: every part takes about as many.
+        self.write("foveated.toml", FARM_TOML.replace("[4, 2, 1]", "[64, 16, 4]") + 'filter = "linear"\n')
+        self.farm("--engine", "slurm", "--sample-ranges", "3", job="foveated.toml")
+        plan = json.loads((self.folder / "out/farm/farm.json").read_text())
+        self.assertLess(max(plan["samples"]) / min(plan["samples"]), 1.6)
+        self.assertEqual(plan["ranges"][0].split(":")[0], "0")
+        for one, two in zip(plan["ranges"], plan["ranges"][1:]):
+            self.assertEqual(one.split(":")[1], two.split(":")[0])
+        for arguments, job, words in ((["--sample-ranges", "2"], "history.toml", "frames depend on those before them"),
+                                      (["--sample-ranges", "99"], "still.toml", "no pixel has more than 32 samples"),
+                                      (["--sample-ranges", "2", "--chunks", "2"], "still.toml", "into how many tasks")):
+            refused = self.farm(*arguments, job=job, program=self.run_program)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(words, refused.stderr)
+
+    def test_rows_of_a_sweep(self):
+        self.write("plan.toml", SWEEP_TOML)
+        told = self.run_ok("farm", "plan.toml", "-o", "out", "--chunks", "2", "--processes", "2", "--threads", "1", "--then",
+                           "gazetrace_report=made; echo $gazetrace_report > report.txt")
+        self.assertIn("box-left-1", told.stderr)
+        self.assertTrue(self.status()["is_done"])
+        results = json.loads((self.folder / "out/results.json").read_text())
+        self.assertEqual({row["task"] for row in results["rows"]}, {"1/2", "2/2"})
+        self.assertEqual((self.folder / "report.txt").read_text(), "made\n")
+        self.run_ok("farm", "plan.toml", "-o", "out", "--chunks", "2", "--engine", "slurm")
+        self.assertIn("sweep merge ", (self.folder / "out/farm/task.sh").read_text())
+        for arguments, words in ((["--chunk-frames", "2"], "divided by their cost"), (["--chunks", "2", "--rate-from", "t.csv"], "timed")):
+            refused = self.farm(*arguments, job="plan.toml", program=self.run_program)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(words, refused.stderr)
+
+    def test_a_chunk_is_tried_again_while_another_runs(self):
+        self.write("slow.toml", FARM_TOML.replace("[4, 2, 1]", "[1024, 512, 256]"))
+        (self.folder / "out").mkdir()
+        broken = self.folder / "out/f.0001.exr"
+        broken.mkdir()  # the first chunk fails, and the second one is held up
+        harm = Harm(self.folder, harness.PROGRAM, None, 2)
+        first = subprocess.Popen([harness.PROGRAM, "farm", "slow.toml", "--chunks", "2", "--processes", "2", "--threads", "1",
+                                  "--retries", "0"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(first.kill)
+        while not (self.folder / "out/run.4-6.json.lock").exists() and first.poll() is None:
+            time.sleep(0.002)
+        held = harm.renderers()[2]
+        os.kill(held, signal.SIGSTOP)
+        self.addCleanup(lambda: os.path.exists(f"/proc/{held}") and os.kill(held, signal.SIGKILL))
+        while self.states().get("1") != "failed" and first.poll() is None:
+            time.sleep(0.02)
+        broken.rmdir()
+        self.assertEqual(self.states()["2"], "running")
+        second = subprocess.Popen([harness.PROGRAM, "farm", "retry", "out"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        while self.states()["1"] != "done" and second.poll() is None:
+            time.sleep(0.02)
+        # What follows waits for the chunk that the first farm is at.
+        self.assertEqual((self.states()["2"], second.poll()), ("running", None))
+        os.kill(held, signal.SIGCONT)
+        told = second.communicate()[1]
+        self.assertEqual(second.returncode, 0, told)
+        self.assertNotIn("task 2: begins", told)
+        self.assertIn("task finish: begins", told)
+        self.assertNotEqual(first.wait(), 0)
+        first.stderr.close()
+        self.assertTrue(self.status()["is_done"])
+        self.assertEqual(self.pictures("out"), self.whole("slow.toml"))
+
+    def states(self):
+        told = self.run_program("farm", "status", "out", "--json")
+        return {task["task"]: task["state"] for task in json.loads(told.stdout)["tasks"]} if told.returncode == 0 else {}
+
+    def test_a_damaged_plan_of_a_farm(self):
+        self.farm("--engine", "slurm", "--chunks", "2")
+        path = self.folder / "out/farm/farm.json"
+        plan = json.loads(path.read_text())
+        for text, words in ((path.read_text()[:60], "is damaged: it is no JSON object"), ("[1, 2]", "it is no JSON object"),
+                            (json.dumps({**plan, "threads": "many"}), "'threads' has a value of another kind"),
+                            (json.dumps({**plan, "chunks": ["1-3", "x"]}), "'x' is no list of frames"),
+                            (json.dumps({**plan, "samples": []}), "does not tell the same of every chunk"),
+                            (json.dumps({key: value for key, value in plan.items() if key != "then"}), "does not tell 'then'"),
+                            (json.dumps({**plan, "kind": "stars"}), "chunks are of frames, samples or sweep"),
+                            (json.dumps({**plan, "engine": "condor"}), "condor")):
+            path.write_text(text)
+            for command in ("status", "retry"):
+                told = self.run_program("farm", command, "out")
+                self.assertEqual((told.returncode, told.stderr.count("\n")), (2, 1), told.stderr)
+                self.assertIn(words, told.stderr)
+                self.assertNotIn("json.exception", told.stderr)
+
     def test_what_is_no_farm(self):
-        for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks or --chunk-frames"),
+        for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks, --chunk-frames or --sample-ranges"),
                                  (["--chunks", "2", "--rate-from", "none.csv"], "none.csv")):
             refused = self.farm(*arguments, program=self.run_program)
             self.assertEqual(refused.returncode, 2)

@@ -15,6 +15,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/interruption.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/farm.hpp"
 
@@ -27,7 +28,7 @@ struct FarmArguments {
   std::string folder;  // of status and retry
   int processes = 1;
   bool submit = false;
-  bool json = false;
+  JsonOutput json;
 };
 
 std::string own_program() {
@@ -104,7 +105,7 @@ int run_farm(FarmArguments& arguments) {
 int run_status(const FarmArguments& arguments) {
   const FarmPlan plan = read_farm(arguments.folder);
   const FarmStatus status = farm_status(plan);
-  print_result(arguments.json ? farm_status_json(plan, status) : farm_status_text(plan, status));
+  arguments.json.print(farm_status_text(plan, status), [&] { return farm_status_json(plan, status); });
   return exit_done;
 }
 
@@ -114,8 +115,9 @@ int run_retry(const FarmArguments& arguments) {
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
   }
-  for (const TaskStatus& task : status.tasks) {
-    if (task.state == TaskState::running) {
+  for (std::size_t i = 0; i < status.tasks.size(); ++i) {
+    const TaskStatus& task = status.tasks[i];
+    if (task.state == TaskState::running && (i >= plan.chunks.size() || !can_retry_beside_running(plan))) {
       throw Error(ErrorKind::usage, arguments.folder,
                   "task " + task.name + " is running, and what follows waits for it", "wait until it ends, or end it");
     }
@@ -143,18 +145,26 @@ void add_hand_over_options(CLI::App& app, FarmArguments& arguments) {
 Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<FarmArguments>();
   FarmSettings& settings = arguments->settings;
-  app.add_option("job", settings.job_file, "A settings file as 'render' takes it, with frames and output")
+  app.add_option("job", settings.job_file,
+                 "A settings file as 'render' takes it, with frames and output, or the plan of a sweep")
       ->type_name("JOB.toml");
   app.add_option("--engine", settings.engine, "Which queue runs the tasks; " + engines_text())
       ->default_str("local")
       ->type_name("NAME");
   settings.engine = "local";
-  app.add_option("--chunks", settings.chunks, "Divides the frames into N tasks of about equal cost")
+  app.add_option("--chunks", settings.chunks,
+                 "Divides the frames, or the rows of a sweep, into N tasks of about equal cost")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
   app.add_option("--chunk-frames", settings.chunk_frames, "Divides them into tasks of N frames each")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
+  app.add_option("--sample-ranges", settings.sample_ranges,
+                 "Divides the samples of all frames into N tasks, whose sums 'merge' makes pictures of")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N");
+  app.add_option("-o,--output", settings.output, "Of a sweep: its folder; default: the plan's name with .sweep")
+      ->type_name("FOLDER");
   app.add_option("--threads", settings.threads, "Of each task; 0: as many as its machine has")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
@@ -181,7 +191,7 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");
   status->footer(kExitCodesHelp);
   status->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
-  status->add_flag("--json", arguments->json, "As JSON");
+  add_json_option(*status, arguments->json);
   CLI::App* const retry = app.add_subcommand("retry", "Do again what is neither done nor running, and what follows");
   retry->footer(kExitCodesHelp);
   retry->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");

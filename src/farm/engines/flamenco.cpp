@@ -72,6 +72,6 @@ std::string again(const FarmPlan& /*plan*/) {
 
 }  // namespace
 
-const FarmEngine kFarmEngine_flamenco{files, submit, again, " --progress never"};
+const FarmEngine kFarmEngine_flamenco{files, submit, again, " --progress never", false};
 
 }  // namespace gazetrace

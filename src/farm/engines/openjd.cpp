@@ -77,6 +77,6 @@ std::string again(const FarmPlan& /*plan*/) {
 
 }  // namespace
 
-const FarmEngine kFarmEngine_openjd{files, submit, again, " --progress openjd"};
+const FarmEngine kFarmEngine_openjd{files, submit, again, " --progress openjd", false};
 
 }  // namespace gazetrace

@@ -31,22 +31,55 @@ std::string batch_script(const FarmPlan& plan) {
   return text + fmt::format("exec sh {} \"${{1:-$SLURM_ARRAY_TASK_ID}}\"\n", shell_word(task_script_path(plan)));
 }
 
+// Chunks of an earlier handing over that are in the queue or run are left to it, and what follows waits for them, too.
+// `jobs` remembers which jobs there were, "chunks 17"; what followed the earlier chunks is canceled.
+constexpr const char* kBesideEarlier = R"(
+queued=
+known() { sed -n "s/^$1 //p" jobs 2>/dev/null; }
+for job in $(known chunks); do
+  for task in $(squeue -h -r -j "$job" -o %K 2>/dev/null); do
+    queued="$queued ${job}_$task"
+  done
+done
+for job in $(known after); do
+  scancel "$job" 2>/dev/null || :
+done
+wanted=
+after=
+for chunk in $chunks; do
+  case "$queued " in
+    *_"$chunk "*) ;;
+    *) wanted="$wanted${wanted:+,}$chunk" ;;
+  esac
+done
+for task in $queued; do
+  after="$after:$task"
+done
+if [ -n "$wanted" ]; then
+  job=$(sbatch --parsable --array="$wanted" --output=logs/%a.log task.sbatch)
+  echo "chunks $job" >> jobs
+  echo "chunks: $job"
+  after=":$job$after"
+fi
+submit() {
+  job=$(sbatch --parsable ${after:+--dependency=afterok$after} --output="logs/$1.log" task.sbatch "$1")
+  echo "after $job" >> jobs
+  echo "$1: $job"
+  after=":$job"
+}
+)";
+
 std::string submit_script(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
-  const std::string folder = shell_word(plan.folder);
+  std::string numbers;
+  for (const std::size_t chunk : chunks) {
+    numbers += fmt::format("{}{}", numbers.empty() ? "" : " ", chunk + 1);
+  }
   std::string text = fmt::format(
       "#!/bin/sh\n# Hands this farm over to Slurm, and prints the numbers of its jobs.\nset -e\n"
-      "cd {}\nmkdir -p logs\n",
-      folder);
-  std::string depends;
-  if (!chunks.empty()) {
-    text += fmt::format("job=$(sbatch --parsable --array={} --output=logs/%a.log task.sbatch)\necho \"chunks: $job\"\n",
-                        chunk_list(chunks));
-    depends = "--dependency=afterok:$job ";
-  }
+      "cd {}\nmkdir -p logs\nchunks='{}'{}",
+      shell_word(plan.folder), numbers, kBesideEarlier);
   for (const std::string& task : tasks_after_chunks(plan)) {
-    text += fmt::format("job=$(sbatch --parsable {0}--output=logs/{1}.log task.sbatch {1})\necho \"{1}: $job\"\n",
-                        depends, task);
-    depends = "--dependency=afterok:$job ";
+    text += "submit " + task + "\n";
   }
   return text;
 }
@@ -80,6 +113,6 @@ std::string again(const FarmPlan& plan) {
 
 }  // namespace
 
-const FarmEngine kFarmEngine_slurm{files, submit, again, " --progress never"};
+const FarmEngine kFarmEngine_slurm{files, submit, again, " --progress never", true};
 
 }  // namespace gazetrace

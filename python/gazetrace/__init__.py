@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Offline foveated path tracing driven by recorded gaze.
+
+A `Job` is what one run is asked to do. `Job.plan()` says what would be rendered, `Job.render()` renders it frame by
+frame; `compare()` and the functions of `gazetrace.metrics` measure pictures; `read_gaze()` reads gaze logs.
+"""
+
+from . import _build
+
+try:
+    from . import _core
+except ImportError as problem:
+    raise ImportError(
+        f"{problem}; this gazetrace was built on {_build.distribution} and needs the libraries of that distribution: "
+        "docs/python.md lists them"
+    ) from problem
+
+from . import metrics
+from ._errors import Error, GazetraceWarning
+from .comparison import ComparisonResult, compare
+from .gaze import GazeLog, read_gaze
+from .job import Job, Scene, options, write_density
+from .plan import Plan
+from .rendering import Frame, Gaze, Rendering, SamplingMap
+
+__version__ = _core.version
+__all__ = [
+    "ComparisonResult",
+    "Error",
+    "Frame",
+    "Gaze",
+    "GazeLog",
+    "GazetraceWarning",
+    "Job",
+    "Plan",
+    "Rendering",
+    "SamplingMap",
+    "Scene",
+    "compare",
+    "metrics",
+    "options",
+    "read_gaze",
+    "write_density",
+]

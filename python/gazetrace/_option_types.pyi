@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: Apache-2.0
+# Written by python/tools/write_stubs.py from the schemas of the library.
+import os
+from collections.abc import Iterable, Sequence
+from typing import TypeAlias, TypedDict
+
+Value: TypeAlias = str | float | os.PathLike[str]
+
+class JobOptions(TypedDict, total=False):
+    preset: Value | None
+    scene: Value | None
+    animation: Value | None
+    env: Value | None
+    env_rotation: Value | None
+    env_ev: Value | None
+    allow_outside: bool | None
+    confine: bool | None
+    max_memory: Value | None
+    max_texture: Value | None
+    max_expansion: Value | None
+    max_nodes: Value | None
+    max_nesting: Value | None
+    camera: Value | None
+    camera_path: Value | None
+    camera_from_gaze: bool | None
+    camera_format: Value | None
+    camera_axes: Value | None
+    camera_rotation_order: Value | None
+    camera_fps: Value | None
+    camera_up: Value | None
+    camera_turn: Value | None
+    camera_scale: Value | None
+    camera_start: Value | Sequence[Value] | None
+    camera_interpolation: Value | None
+    camera_extrapolation: Value | None
+    camera_keep_time: bool | None
+    eye: Value | Sequence[Value] | None
+    target: Value | Sequence[Value] | None
+    up: Value | Sequence[Value] | None
+    yfov: Value | None
+    aperture: Value | None
+    focus_distance: Value | None
+    sensor_height: Value | None
+    shutter: Value | None
+    gaze: Value | None
+    gaze_format: Value | None
+    gaze_recording: Value | None
+    gaze_events: Value | None
+    gaze_time_column: Value | None
+    gaze_x_column: Value | None
+    gaze_y_column: Value | None
+    gaze_z_column: Value | None
+    gaze_validity_column: Value | None
+    gaze_valid_values: Value | Sequence[Value] | None
+    gaze_confidence_column: Value | None
+    gaze_pupil_column: Value | None
+    gaze_eye_column: Value | None
+    gaze_recording_column: Value | None
+    gaze_time_unit: Value | None
+    gaze_unit: Value | None
+    gaze_origin: Value | None
+    gaze_sort: bool | None
+    gaze_columns: Value | None
+    gaze_axes: Value | None
+    gaze_frame: Value | None
+    gaze_eye: Value | None
+    gaze_dominant: Value | None
+    gaze_min_confidence: Value | None
+    gaze_zero_missing: bool | None
+    gaze_missing_value: Value | None
+    gaze_swap_xy: bool | None
+    gaze_flip_x: bool | None
+    gaze_flip_y: bool | None
+    gaze_decimal_comma: bool | None
+    trial: Value | None
+    trial_by: Value | None
+    trial_start: Value | None
+    trial_end: Value | None
+    trial_nth: Value | None
+    trial_per_block: bool | None
+    trial_table: Value | None
+    gaze_at: Value | Sequence[Value] | None
+    gaze_mode: Value | None
+    gaze_missing: Value | None
+    gaze_max_missing_frames: Value | None
+    gaze_max_age: Value | None
+    gaze_max_gap: Value | None
+    gaze_offset: Value | None
+    gaze_scale: Value | None
+    gaze_start: Value | None
+    gaze_latency: Value | None
+    keep_ids: bool | None
+    gaze_anchor: str | Sequence[Value] | None
+    gaze_process: str | Sequence[Value] | None
+    gaze_uncertainty: bool | None
+    gaze_accuracy: Value | None
+    gaze_precision: Value | None
+    screen: Value | None
+    screen_px: Value | Sequence[Value] | None
+    screen_cm: Value | Sequence[Value] | None
+    screen_distance_cm: Value | None
+    screen_eye_cm: Value | Sequence[Value] | None
+    screen_ppd: Value | None
+    recording_screen: Value | None
+    gaze_transfer: Value | None
+    size: str | Sequence[int] | None
+    fps: Value | None
+    frames: Value | Iterable[int] | None
+    start: Value | None
+    part: bool | None
+    chunk: Value | None
+    chunk_frames: Value | None
+    stage: Value | None
+    sample_range: Value | None
+    frame_rect: Value | Sequence[Value] | None
+    falloff: Value | None
+    spp: Value | None
+    region_samples: Value | Sequence[Value] | None
+    region_blocks: Value | Sequence[Value] | None
+    region_angles: Value | Sequence[Value] | None
+    angle_reading: Value | None
+    sample_unit: Value | None
+    region_shape: Value | None
+    border_blend_deg: Value | None
+    budget_spp: Value | None
+    budget_samples: Value | None
+    block_samples: Value | None
+    max_block: Value | None
+    density_floor: Value | None
+    target_jod: Value | None
+    target_flip: Value | None
+    time_budget: Value | None
+    falloff_normalisation: Value | None
+    falloff_ramp: Value | Sequence[Value] | None
+    falloff_mar_slope: Value | None
+    falloff_mar_foveal: Value | None
+    falloff_contrast: Value | None
+    falloff_luminance: Value | None
+    falloff_eye: Value | None
+    falloff_log_polar_sigma: Value | None
+    falloff_log_polar_alpha: Value | None
+    falloff_table: Value | None
+    density_map: Value | None
+    min_spp: Value | None
+    max_spp: Value | None
+    target_relmse: Value | None
+    contrast_strength: Value | None
+    retinal_velocity: bool | None
+    saccade_density: Value | None
+    filter: Value | None
+    pass_through: Value | None
+    enhance_contrast: Value | None
+    accumulate: Value | None
+    accumulate_window: Value | None
+    accumulate_order: Value | None
+    accumulate_frames: Value | None
+    accumulate_blend: Value | None
+    accumulate_clip: Value | None
+    accumulate_reset_saccades: bool | None
+    accumulate_reset_blinks: bool | None
+    checkpoint: Value | None
+    checkpoint_every: Value | None
+    resume_from: Value | None
+    preroll: Value | None
+    bounces: Value | None
+    russian_roulette: bool | None
+    diffuse: Value | None
+    light_sampling: Value | None
+    compensate_environment: bool | None
+    clamp_indirect: Value | None
+    pixel_filter: Value | None
+    pixel_cone: Value | None
+    bounce_cone: Value | None
+    sample_pattern: Value | None
+    seed: Value | None
+    bvh: Value | None
+    threads: Value | None
+    only_pixel: Value | Sequence[Value] | None
+    exposure: Value | None
+    exposure_key: Value | None
+    exposure_smoothing: Value | None
+    ocio: Value | None
+    ocio_input: Value | None
+    display: Value | None
+    view: Value | None
+    look: Value | None
+    view_precision: Value | None
+    output: str | Sequence[Value] | None
+    exr_pixels: Value | None
+    exr_compression: Value | None
+    exr_zip_level: Value | None
+    aov: Value | Sequence[Value] | None
+    map: Value | None
+    bits: Value | None
+    jpeg_quality: Value | None
+    overwrite: bool | None
+    resume: bool | None
+    trust_files: bool | None
+    grace: Value | None
+    max_time: Value | None
+    progress: Value | None
+    quiet: bool | None
+
+class GazeOptions(TypedDict, total=False):
+    gaze_format: Value | None
+    gaze_recording: Value | None
+    gaze_events: Value | None
+    gaze_time_column: Value | None
+    gaze_x_column: Value | None
+    gaze_y_column: Value | None
+    gaze_z_column: Value | None
+    gaze_validity_column: Value | None
+    gaze_valid_values: Value | Sequence[Value] | None
+    gaze_confidence_column: Value | None
+    gaze_pupil_column: Value | None
+    gaze_eye_column: Value | None
+    gaze_recording_column: Value | None
+    gaze_time_unit: Value | None
+    gaze_unit: Value | None
+    gaze_origin: Value | None
+    gaze_sort: bool | None
+    gaze_columns: Value | None
+    gaze_axes: Value | None
+    gaze_frame: Value | None
+    gaze_eye: Value | None
+    gaze_dominant: Value | None
+    gaze_min_confidence: Value | None
+    gaze_zero_missing: bool | None
+    gaze_missing_value: Value | None
+    gaze_swap_xy: bool | None
+    gaze_flip_x: bool | None
+    gaze_flip_y: bool | None
+    gaze_decimal_comma: bool | None
+    trial: Value | None
+    trial_by: Value | None
+    trial_start: Value | None
+    trial_end: Value | None
+    trial_nth: Value | None
+    trial_per_block: bool | None
+    trial_table: Value | None
+    screen: Value | None
+    screen_px: Value | Sequence[Value] | None
+    screen_cm: Value | Sequence[Value] | None
+    screen_distance_cm: Value | None
+    screen_eye_cm: Value | Sequence[Value] | None
+    screen_ppd: Value | None
+
+class MeasureOptions(TypedDict, total=False):
+    response: Value | None
+    relmse_epsilon: Value | None
+    flip_tone_mapper: Value | None
+    flip_start: Value | None
+    flip_stop: Value | None
+    flip_count: Value | None
+    peak_cd_m2: Value | None
+    contrast: Value | None
+    ambient_lux: Value | None
+    reflectivity: Value | None
+    correct_border: bool | None
+    screen: Value | None
+    screen_px: Value | Sequence[Value] | None
+    screen_cm: Value | Sequence[Value] | None
+    screen_distance_cm: Value | None
+    screen_eye_cm: Value | Sequence[Value] | None
+    screen_ppd: Value | None
+    ocio: Value | None
+    ocio_input: Value | None

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Jobs: what one run is asked to do."""
+
+import os
+import tempfile
+import warnings
+import weakref
+from pathlib import Path
+
+import numpy as np
+
+from . import _core
+from ._errors import GazetraceWarning
+from ._exr import write_gray_exr
+from ._options import by_name, texts_of
+from .plan import Plan
+from .rendering import Rendering
+
+_OPTIONS = by_name(_core.job_options())
+
+Scene = _core.Scene
+
+
+def options():
+    """Every option of a job: name, group, unit, help, shape and defaults, from the library's schema."""
+    return _core.job_options()
+
+
+class Job:
+    """A job from a settings file, from options, or from both; options win.
+
+    `Job("job.toml", size=(640, 360), gaze_start="2s")`: the names are those of the program's options with underscores,
+    and the values are checked by the same definitions. A value of several parts may be a sequence, None stands for an
+    option that is not given.
+
+    `density` says where the samples of a frame go, in samples a pixel, or as relative rates where there is a budget: an
+    array of the shape (height, width), of any size, or a dictionary of such arrays by the numbers of frames. It is
+    written to a temporary file, and is the fall-off "map" with that file as `density_map`.
+    """
+
+    def __init__(self, path=None, /, *, density=None, **options):
+        self._core = _core.Job()
+        self._density_folder = None
+        if path is not None:
+            self._core.add_file(os.fspath(path))
+        self._set(options)
+        if density is not None:
+            self._set_density(density)
+
+    @classmethod
+    def from_toml(cls, text, path="settings"):
+        """A job from the text of a settings file; `path` is what messages call it."""
+        job = cls()
+        job._core.add_toml(text, path)
+        return job
+
+    def replace(self, *, density=None, **options):
+        """Another job, with these options on top."""
+        other = Job()
+        other._core = _core.Job(self._core)
+        other._density_folder = self._density_folder
+        other._set(options)
+        if density is not None:
+            other._set_density(density)
+        return other
+
+    def _set(self, options):
+        for name, value in options.items():
+            if value is not None:
+                self._core.set(name, texts_of(_OPTIONS.get(name), value))
+
+    def _set_density(self, density):
+        folder = _TemporaryFolder()
+        if isinstance(density, dict):
+            for frame, array in density.items():
+                write_gray_exr(folder.path / f"density.{int(frame):04d}.exr", array)
+            name = "density.####.exr"
+        else:
+            write_gray_exr(folder.path / "density.exr", density)
+            name = "density.exr"
+        self._density_folder = folder
+        self._set({"falloff": "map", "density_map": folder.path / name})
+
+    def __getitem__(self, name):
+        """The value of an option as text; of one that may be given several times, a list; None where it is not set."""
+        values = self._core.values(name)
+        if _OPTIONS[name]["shape"] == "repeated":
+            return values
+        return values[0] if values else None
+
+    def to_toml(self):
+        """Every option with its value, as a settings file; reading it gives the same job."""
+        return self._core.as_toml()
+
+    def __repr__(self):
+        given = {
+            name: self[name] for name in _OPTIONS if self._core.values(name) != list(_OPTIONS[name]["defaults"])
+        }
+        return f"Job({', '.join(f'{name}={value!r}' for name, value in given.items())})"
+
+    def plan(self):
+        """What would be rendered, decided before the first ray: a `Plan`. Needs the scene only where the camera is in it."""
+        planned = _core.Planned(self._core)
+        _warn(planned.warnings())
+        return Plan(planned)
+
+    def load_scene(self):
+        """The job's scene with its environment, for `render(scene=...)` of several jobs that share it."""
+        return _core.load_scene(self._core)
+
+    def render(self, *, scene=None):
+        """Renders the job: a `Rendering`, which yields a `Frame` for each frame when it is asked for.
+
+        Whatever is wrong with the job is raised here, before the first ray. With `output`, `map` and the like the files
+        of the program are written as well, with its checks, its timing.csv and its run.json; without, nothing is
+        written.
+        """
+        rendering = Rendering(_core.Rendering(self._core, scene), keep=self._density_folder)
+        _warn(rendering.warnings)
+        return rendering
+
+    def run(self, on_frame=None, *, scene=None):
+        """Renders all frames, and calls `on_frame(frame)` with each; returns the `Rendering`, which has ended."""
+        with self.render(scene=scene) as rendering:
+            for frame in rendering:
+                if on_frame is not None:
+                    on_frame(frame)
+        return rendering
+
+
+class _TemporaryFolder:
+    """A folder that lasts as long as the jobs and renderings that read from it."""
+
+    def __init__(self):
+        folder = tempfile.TemporaryDirectory(prefix="gazetrace.")
+        self.path = Path(folder.name)
+        self._finalizer = weakref.finalize(self, folder.cleanup)
+
+
+def _warn(texts):
+    for text in texts:
+        warnings.warn(text, GazetraceWarning, stacklevel=3)
+
+
+def write_density(path, array):
+    """Writes a density as an EXR that the option `density_map` reads, for runs that are to be repeatable."""
+    write_gray_exr(Path(path), np.asarray(array))

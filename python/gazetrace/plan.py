@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plans as arrays."""
+
+import json
+
+import numpy as np
+
+from ._columns import columns_of, flattened, frame_of
+from .rendering import SamplingMap
+
+
+class Plan:
+    """What would be rendered, one row a frame.
+
+    `plan.frame`, `plan.t_s`, `plan.u`, `plan.v` and `plan.valid` are arrays; `plan.columns` has everything that
+    `gazetrace plan --json` prints, by the names that are there, such as "gaze_render_age_ns" or "camera_position_m".
+    u and v are those of the gaze that steers, in fractions of the screen, and NaN where a frame has none; `valid` says
+    where the log had gaze at that time.
+    """
+
+    def __init__(self, planned):
+        self._core = planned
+        wanted = set(planned.frames())
+        self._rows = []  # of the wanted frames among those of the library's plan, which begins with the preroll
+        items = []
+        for row, item in enumerate(json.loads(planned.json())["frames"]):
+            if item["frame"] in wanted:
+                self._rows.append(row)
+                items.append(flattened(item))
+        self.columns = columns_of(items)
+        self._samples = None
+
+    def __len__(self):
+        return len(self._rows)
+
+    def __getitem__(self, name):
+        return self.columns[name]
+
+    @property
+    def frame(self):
+        return self.columns["frame"]
+
+    @property
+    def t_ns(self):
+        """The middle of each frame in video time, in nanoseconds."""
+        return self.columns["t_video_ns"]
+
+    @property
+    def t_s(self):
+        return self.t_ns * 1e-9
+
+    @property
+    def u(self):
+        return self._number("gaze_render_u")
+
+    @property
+    def v(self):
+        return self._number("gaze_render_v")
+
+    @property
+    def valid(self):
+        state = self.columns["gaze_render_state"]
+        return np.isin(state, ["measured", "held"]) & ~self.columns["gaze_render_no_gaze"]
+
+    @property
+    def samples(self):
+        """How many samples each frame takes; made from its sampling map. Raises where a pilot decides them."""
+        if self._samples is None:
+            self._samples = np.array([self._core.samples()[row] for row in self._rows], dtype=np.uint64)
+        return self._samples
+
+    def sampling_map(self, index):
+        """The sampling map of the frame in this row."""
+        return SamplingMap(self._core.sampling_map(self._rows[index]))
+
+    @property
+    def decisions(self):
+        """What was decided where the job left a choice, as pairs."""
+        return self._core.decisions()
+
+    @property
+    def warnings(self):
+        return self._core.warnings()
+
+    def to_pandas(self):
+        return frame_of(self.columns)
+
+    def _number(self, name):
+        return self.columns.get(name, np.full(len(self), np.nan))

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.hpp"
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "bind.hpp"
+#include "gazetrace/job.hpp"
+#include "gazetrace/job_schema.hpp"
+#include "gazetrace/metric_options.hpp"
+
+namespace gazetrace::python {
+namespace {
+
+namespace py = pybind11;
+
+const char* shape_name(OptionShape shape) {
+  switch (shape) {
+    case OptionShape::flag:
+      return "flag";
+    case OptionShape::value:
+      return "value";
+    case OptionShape::list:
+      return "list";
+    case OptionShape::repeated:
+      break;
+  }
+  return "repeated";
+}
+
+py::list described(const OptionList& options) {
+  py::list list;
+  for (const Option* const option : options) {
+    py::dict one;
+    one["name"] = keyword_of(option->name);
+    one["group"] = option->group;
+    one["unit"] = option->unit;
+    one["help"] = option->help;
+    one["shape"] = shape_name(option->shape);
+    one["defaults"] = option->defaults;
+    list.append(one);
+  }
+  return list;
+}
+
+// An empty list takes away what was given to an option that may be given several times.
+void set_by_keyword(Job& job, const std::string& keyword, const std::vector<std::string>& values) {
+  const std::string name = option_of(keyword, job_schema().list());
+  const OptionOf<JobSettings>& option = *job_schema().find(name);
+  if (values.empty() && option.shape == OptionShape::repeated) {
+    option.assign(job.settings, values, name);
+    job.sources[name] = {};
+  } else {
+    set_option(job, name, values);
+  }
+}
+
+}  // namespace
+
+std::string keyword_of(const std::string& option) {
+  std::string keyword = option;
+  std::replace(keyword.begin(), keyword.end(), '-', '_');
+  return keyword;
+}
+
+std::string option_of(const std::string& keyword, const OptionList& options) {
+  std::vector<std::string> known;
+  for (const Option* const option : options) {
+    known.push_back(keyword_of(option->name));
+    if (known.back() == keyword) {
+      return option->name;
+    }
+  }
+  refuse_option(keyword, known);
+}
+
+void refuse_option(const std::string& keyword, const std::vector<std::string>& known) {
+  throw Error(ErrorKind::usage, "`" + keyword + "`", unknown_among_many("option", keyword, known));
+}
+
+void bind_options(py::module_& module) {
+  module.def("refuse_option", &refuse_option);
+  module.def("job_options", [] { return described(job_schema().list()); });
+  module.def("gaze_file_options", [] { return described(gaze_file_schema().list()); });
+  module.def("screen_options", [] { return described(screen_schema().list()); });
+  module.def("color_options", [] { return described(color_config_schema().list()); });
+  module.def("metric_options", [] { return described(metric_schema().list()); });
+
+  py::class_<Job>(module, "Job")
+      .def(py::init<>())
+      .def(py::init<const Job&>())
+      .def("set", &set_by_keyword)
+      .def("add_toml",
+           [](Job& job, const std::string& text, const std::string& path) {
+             add_toml(job, text, path, "gazetrace.options() lists every option");
+           })
+      .def("add_file",
+           [](Job& job, const std::string& path) {
+             add_toml(job, read_settings_file(path), path, "gazetrace.options() lists every option");
+           })
+      .def("values",
+           [](const Job& job, const std::string& keyword) {
+             return option_values(job, option_of(keyword, job_schema().list()));
+           })
+      .def("as_toml", [](const Job& job) { return job_as_toml(job, "gazetrace render"); });
+}
+
+}  // namespace gazetrace::python

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "rendering.hpp"
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <utility>
+
+#include "bind.hpp"
+#include "errors.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace::python {
+namespace {
+
+Warnings in_keywords(Warnings texts) {
+  for (std::string& text : texts) {
+    text = with_keywords(text);
+  }
+  return texts;
+}
+
+RunRecord record_in_keywords(RunRecord record) {
+  record.warnings = in_keywords(std::move(record.warnings));
+  for (auto& [name, text] : record.facts) {
+    text = with_keywords(text);
+  }
+  return record;
+}
+
+// AOVs that no EXR is to hold are no mistake here, since frames are looked at in memory. Returns whether these show
+// what samples hit first, and takes them out of the job.
+bool take_aovs_of_memory(JobSettings& settings) {
+  OutputSettings output = pipeline_settings(settings).output;
+  if (!output.exr.pattern.empty()) {
+    return false;
+  }
+  output.exr.pattern = "frame.####.exr";
+  check_output_settings(output, false);
+  const bool traces_first_hits = pipeline_settings(settings).trace.guides;
+  settings.exr.aovs.clear();
+  return traces_first_hits;
+}
+
+}  // namespace
+
+Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+  const JobSettings& settings = job.settings;
+  if (settings.scene.empty() && !scene_) {
+    throw Error(ErrorKind::usage, "", "no scene was given", "give `scene`");
+  }
+  if (settings.max_time) {
+    latest_ = Clock::now() + std::chrono::nanoseconds(settings.max_time->ns);
+  }
+  color_ = std::make_shared<ColorPipeline>(settings.color);
+  const bool traces_first_hits = take_aovs_of_memory(job.settings);
+  ResolveOptions options;
+  options.loaded = scene_.get();
+  resolved_ = resolve(job, options);
+  resolved_.pipeline.trace.guides = resolved_.pipeline.trace.guides || traces_first_hits;
+  prepare_outputs(resolved_);
+  files_ = output_files(resolved_.pipeline, resolved_.frames);
+  if (!files_.empty()) {
+    RunRecord claim;
+    claim.frames = format_frame_list(resolved_.frames);
+    if (resolved_.pipeline.trace.samples) {
+      claim.samples = format_value(*resolved_.pipeline.trace.samples);
+    }
+    lock_ = std::make_unique<RunLock>(claim, files_.front());
+    warnings_ = lock_->taken_over();
+    prepare_outputs(resolved_);  // another run may have made frames meanwhile
+  }
+  tracer_.emplace(scene_ ? *scene_ : *resolved_.scene, tracer_options(settings));
+  record_ = start_run_record(resolved_, *tracer_, *color_);
+  if (!files_.empty()) {
+    write_text_atomically(files_.front(), run_record_json(record_in_keywords(record_)));
+  }
+  warnings_.insert(warnings_.end(), resolved_.warnings.begin(), resolved_.warnings.end());
+  warnings_ = in_keywords(std::move(warnings_));
+  thread_ = std::thread([this] { run(); });
+}
+
+Rendering::~Rendering() {
+  close();
+}
+
+void Rendering::run() {
+  try {
+    render();
+  } catch (...) {
+    const std::lock_guard guard(mutex_);
+    failure_ = std::current_exception();
+  }
+  tracer_.reset();
+  lock_.reset();
+  const std::lock_guard guard(mutex_);
+  ended_ = true;
+  changed_.notify_all();
+}
+
+std::unique_ptr<GivenFrame> Rendering::packed(const FrameRequest& request, RenderedFrame&& rendered,
+                                              const TimingRow& row) const {
+  auto frame = std::make_unique<GivenFrame>();
+  frame->request = request;
+  frame->rendered = std::move(rendered);
+  frame->row = row;
+  frame->color = color_;
+  frame->threads = resolved_.pipeline.threads;
+  const std::optional<DisplayGeometry>& screen = resolved_.plan_settings.display;
+  frame->is_on_screen = screen.has_value();
+  const FrameRate& fps = resolved_.pipeline.fps;
+  frame->frames_per_second = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
+  GazeAtTime gaze = request.gaze_true;
+  if (!gaze.movement && resolved_.job.settings.gaze_at) {
+    gaze.movement = EyeMovement::fixation;  // an eye that rests there
+  }
+  frame->gaze_class = gaze_class_of(gaze);
+  if (frame->gaze_class != GazeClass::no_gaze && gaze.kind == GazeKind::screen) {
+    frame->gaze_px =
+        gaze_in_frame(gaze, screen, resolved_.plan_settings.frame_rect, request.width_px, request.height_px);
+  }
+  return frame;
+}
+
+void Rendering::render() {
+  PipelineObserver observer;
+  observer.stop_before_frame = [this](double frame_ms) { return !wait_until_wanted(frame_ms); };
+  observer.take_frame = [this](const FrameRequest& request, RenderedFrame&& rendered, const TimingRow& row) {
+    auto frame = packed(request, std::move(rendered), row);
+    const std::lock_guard guard(mutex_);
+    given_ = std::move(frame);
+    wanted_ = false;
+    changed_.notify_all();
+  };
+  resolved_.pipeline.trace.stop = [this] {
+    if (latest_ && Clock::now() >= *latest_) {
+      out_of_time_ = true;
+    }
+    return stop_.load(std::memory_order_relaxed) || out_of_time_.load(std::memory_order_relaxed);
+  };
+  const Clock::time_point begin = Clock::now();
+  SequenceResult result =
+      render_sequence(*tracer_, resolved_.plan, *color_, resolved_.pipeline, observer, std::move(resolved_.history));
+  if (!files_.empty()) {
+    finish_run_record(record_, result, resolved_.plan, std::chrono::duration<double>(Clock::now() - begin).count());
+    write_text_atomically(files_.front(), run_record_json(record_in_keywords(record_)));
+    finish_files(files_.front());
+  }
+  const Warnings late = in_keywords(result_warnings(result, resolved_.plan));
+  const std::lock_guard guard(mutex_);
+  warnings_.insert(warnings_.end(), late.begin(), late.end());
+  result_ = std::move(result);
+}
+
+bool Rendering::wait_until_wanted(double frame_ms) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return wanted_ || stop_; });
+  if (latest_ && Clock::now() + std::chrono::duration<double, std::milli>(frame_ms) > *latest_) {
+    out_of_time_ = true;
+  }
+  return !stop_ && !out_of_time_;
+}
+
+std::unique_ptr<GivenFrame> Rendering::next(const std::function<bool()>& interrupted) {
+  constexpr std::chrono::milliseconds kBetweenQuestions{50};
+  std::unique_lock lock(mutex_);
+  wanted_ = true;
+  changed_.notify_all();
+  while (!given_ && !ended_) {
+    changed_.wait_for(lock, kBetweenQuestions);
+    if (given_ || ended_ || stop_) {
+      continue;
+    }
+    lock.unlock();
+    const bool ask_to_stop = interrupted();
+    lock.lock();
+    if (ask_to_stop) {
+      stop_ = true;
+      changed_.notify_all();
+    }
+  }
+  if (stop_) {
+    given_.reset();
+    return nullptr;
+  }
+  if (given_) {
+    return std::move(given_);
+  }
+  if (failure_) {
+    std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+  if (out_of_time_ && result_.interrupted) {
+    out_of_time_ = false;  // told once
+    throw Error(ErrorKind::interrupted, "",
+                "interrupted by `max-time`: " + std::to_string(result_.left.size()) + " of " +
+                    std::to_string(resolved_.frames.size()) + " frames are left, " + format_frame_list(result_.left),
+                "go on with `resume`");
+  }
+  return nullptr;
+}
+
+void Rendering::close() {
+  {
+    const std::lock_guard guard(mutex_);
+    stop_ = true;
+    changed_.notify_all();
+  }
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+  given_.reset();
+}
+
+bool Rendering::has_ended() const {
+  const std::lock_guard guard(mutex_);
+  return ended_;
+}
+
+namespace {
+
+namespace py = pybind11;
+
+// The signal's handler runs in here, with the lock of the interpreter; what it raised is raised again by next_frame().
+bool signal_has_come() {
+  const py::gil_scoped_acquire acquire;
+  return PyErr_CheckSignals() != 0;
+}
+
+py::object next_frame(Rendering& rendering) {
+  // An exception in the interpreter belongs to the thread that waits, and stays with it while others run.
+  bool raised = false;
+  std::unique_ptr<GivenFrame> frame;
+  {
+    const py::gil_scoped_release release;
+    frame = rendering.next([&raised] {
+      raised = signal_has_come();
+      return raised;
+    });
+    if (raised) {
+      rendering.close();
+    }
+  }
+  if (raised) {
+    throw py::error_already_set();
+  }
+  return frame ? py::cast(std::shared_ptr<GivenFrame>(std::move(frame))) : py::none();
+}
+
+}  // namespace
+
+void bind_rendering(py::module_& module) {
+  py::class_<Rendering>(module, "Rendering")
+      .def(py::init([](const Job& job, const std::shared_ptr<Scene>& scene) {
+             return std::make_unique<Rendering>(job, scene);
+           }),
+           py::arg("job"), py::arg("scene") = py::none(), py::call_guard<py::gil_scoped_release>())
+      .def("next", &next_frame)
+      .def("close", &Rendering::close, py::call_guard<py::gil_scoped_release>())
+      .def("has_ended", &Rendering::has_ended)
+      .def("warnings", &Rendering::warnings)
+      .def("files", &Rendering::files)
+      .def("view", &Rendering::view)
+      .def("frames", [](const Rendering& rendering) { return rendering.resolved().frames; })
+      .def("decisions", [](const Rendering& rendering) { return rendering.resolved().decisions; })
+      .def("digest", [](const Rendering& rendering) { return rendering.resolved().pipeline.settings_digest; })
+      .def("skipped", [](const Rendering& rendering) { return rendering.result().skipped; })
+      .def("left", [](const Rendering& rendering) { return rendering.result().left; })
+      .def("facts", [](const Rendering& rendering) { return rendering.result().facts; })
+      .def("timing", [](const Rendering& rendering) {
+        std::vector<std::string> rows;
+        for (const TimingRow& row : rendering.result().rows) {
+          rows.push_back(timing_row_text(row));
+        }
+        return rows;
+      });
+}
+
+}  // namespace gazetrace::python
