@@ -56,6 +56,7 @@ class RawRows {
 
   [[nodiscard]] RawSample operator[](std::size_t i) const;
   [[nodiscard]] std::int64_t t_ns(std::size_t i) const;
+  [[nodiscard]] Vec3d at(std::size_t i) const;
   [[nodiscard]] Eye eye(std::size_t i) const;
   [[nodiscard]] RawSample back() const { return (*this)[size() - 1]; }
   [[nodiscard]] std::size_t size() const { return blocks_.size() * kRowsOfBlock + open_.size(); }

@@ -42,25 +42,36 @@ class LineLengths {
  public:
   explicit LineLengths(const std::string& path) : path_(path) {}
 
+  // Lines end at either mark. Both are sought one by one: looking for any of the two takes ten times as long.
   void add(std::string_view piece) {
     for (;;) {
-      const std::size_t end = piece.find_first_of("\r\n");
-      length_ += std::min(end, piece.size());
-      if (length_ > kLongestLine) {
-        throw Error(ErrorKind::input, fmt::format("{}:{}", path_, line_),
-                    fmt::format("the line is longer than {} MiB", kLongestLine >> 20U),
-                    "this is no line of a gaze log: is the file damaged, or of another kind?");
+      const std::size_t feed = piece.find('\n');
+      std::string_view line = piece.substr(0, feed);
+      for (std::size_t end = line.find('\r'); end != std::string_view::npos; end = line.find('\r')) {
+        count(end);
+        length_ = 0;
+        line.remove_prefix(end + 1);
       }
-      if (end == std::string_view::npos) {
+      count(line.size());
+      if (feed == std::string_view::npos) {
         return;
       }
-      line_ += piece[end] == '\n' ? 1 : 0;
+      ++line_;
       length_ = 0;
-      piece.remove_prefix(end + 1);
+      piece.remove_prefix(feed + 1);
     }
   }
 
  private:
+  void count(std::size_t characters) {
+    length_ += characters;
+    if (length_ > kLongestLine) {
+      throw Error(ErrorKind::input, fmt::format("{}:{}", path_, line_),
+                  fmt::format("the line is longer than {} MiB", kLongestLine >> 20U),
+                  "this is no line of a gaze log: is the file damaged, or of another kind?");
+    }
+  }
+
   const std::string& path_;
   std::size_t length_ = 0;
   std::size_t line_ = 1;

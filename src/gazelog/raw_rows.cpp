@@ -202,6 +202,12 @@ std::int64_t RawRows::t_ns(std::size_t i) const {
   return b == blocks_.size() ? open_[i % kRowsOfBlock].t_ns : blocks_[b].t_ns[i % kRowsOfBlock];
 }
 
+Vec3d RawRows::at(std::size_t i) const {
+  const std::size_t b = i / kRowsOfBlock;
+  const std::size_t k = i % kRowsOfBlock;
+  return b == blocks_.size() ? open_[k].at : Vec3d{blocks_[b].at[0][k], blocks_[b].at[1][k], blocks_[b].at[2][k]};
+}
+
 Eye RawRows::eye(std::size_t i) const {
   const std::size_t b = i / kRowsOfBlock;
   return b == blocks_.size() ? open_[i % kRowsOfBlock].eye : static_cast<Eye>(blocks_[b].eye[i % kRowsOfBlock]);

@@ -235,7 +235,8 @@ class Doctor {
     std::size_t zeros = 0;  // counted from the corner of the display
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Vec2d corner = corner_of(whole_->raw, whole_->conventions, i);
-      zeros += rows[i].at.x == corner.x && rows[i].at.y == corner.y && is_usable(rows[i].validity) ? 1 : 0;
+      const Vec3d at = rows.at(i);
+      zeros += at.x == corner.x && at.y == corner.y && is_usable(rows[i].validity) ? 1 : 0;
     }
     if (whole_->conventions.missing_value == 0 || zeros < 3 || zeros * 2000 < log_.order.rows) {
       return;

@@ -41,8 +41,9 @@ struct Visits {
 
 using Place = std::tuple<double, double, double>;
 
-Vec3d place_of(const RawSample& row, bool has_three) {
-  return has_three ? row.at : Vec3d{row.at.x, row.at.y, 0};
+Vec3d place_of(const RawRows& rows, std::size_t i, bool has_three) {
+  const Vec3d at = rows.at(i);
+  return has_three ? at : Vec3d{at.x, at.y, 0};
 }
 Vec3d place_of(const GazeSample& sample, GazeKind kind) {
   return kind == GazeKind::direction ? sample.direction : Vec3d{sample.u, sample.v, 0};
@@ -87,15 +88,15 @@ std::vector<FrequentPlace> frequent_places(const RawRows& rows, bool has_three) 
     return ((x ^ std::rotl(y, 32) ^ std::rotl(z, 16)) * 0x9E37'79B9'7F4A'7C15U) >> (64 - kHashBits);
   };
   std::vector<std::uint32_t> counts(std::size_t{1} << kHashBits, 0);
-  for (const RawSample row : rows) {
-    ++counts[hash(place_of(row, has_three))];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ++counts[hash(place_of(rows, i, has_three))];
   }
   struct Found {
     std::size_t rows = 0, first = 0;
   };
   std::map<Place, Found> found;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Vec3d at = place_of(rows[i], has_three);
+    const Vec3d at = place_of(rows, i, has_three);
     if (is_known(at) && is_often(counts[hash(at)], rows.size())) {
       ++found.try_emplace(key_of(at), Found{0, i}).first->second.rows;
     }
