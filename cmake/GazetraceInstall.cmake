@@ -1,12 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs program, library, headers and a package that find_package(gazetrace) reads.
+# Installs program, library, headers and a package that find_package(gazetrace) reads; with the program its manual pages,
+# its completion in shells and the example that `gazetrace demo` shows. `cpack` makes a Debian package of all this.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/gazetrace)
 
 install(TARGETS gazetrace EXPORT gazetraceTargets)
 if(TARGET gazetrace_cli)
   install(TARGETS gazetrace_cli)
+  set(shell_dir ${PROJECT_BINARY_DIR}/shell)
+  add_custom_command(OUTPUT ${shell_dir}/made
+    COMMAND gazetrace_cli man --folder ${shell_dir}/man1
+    COMMAND gazetrace_cli completion bash > ${shell_dir}/gazetrace
+    COMMAND gazetrace_cli completion zsh > ${shell_dir}/_gazetrace
+    COMMAND gazetrace_cli completion fish > ${shell_dir}/gazetrace.fish
+    COMMAND ${CMAKE_COMMAND} -E touch ${shell_dir}/made
+    DEPENDS gazetrace_cli VERBATIM COMMENT "Writing manual pages and completion")
+  add_custom_target(gazetrace_shell ALL DEPENDS ${shell_dir}/made)
+  install(DIRECTORY ${shell_dir}/man1/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${shell_dir}/gazetrace DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${shell_dir}/_gazetrace DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  install(FILES ${shell_dir}/gazetrace.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  set(data_dir ${CMAKE_INSTALL_DATADIR}/gazetrace)
+  install(FILES examples/example.toml examples/demo.toml DESTINATION ${data_dir}/examples)
+  install(DIRECTORY scenes/courtyard DESTINATION ${data_dir}/scenes)
+  install(FILES scenes/README.md DESTINATION ${data_dir}/scenes)
+  install(DIRECTORY gazelogs DESTINATION ${data_dir} FILES_MATCHING PATTERN "*.csv" PATTERN "*.md" PATTERN "LICENSE*")
 endif()
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY include/gazetrace DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(FILES ${PROJECT_BINARY_DIR}/include/gazetrace/version.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gazetrace)
 install(EXPORT gazetraceTargets NAMESPACE gazetrace:: DESTINATION ${package_dir})
@@ -16,3 +36,21 @@ configure_package_config_file(cmake/gazetraceConfig.cmake.in ${PROJECT_BINARY_DI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/gazetraceConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/gazetraceConfig.cmake ${PROJECT_BINARY_DIR}/gazetraceConfigVersion.cmake
   cmake/FindOpenColorIO.cmake cmake/GazetraceFindDependencies.cmake DESTINATION ${package_dir})
+
+if(PROJECT_IS_TOP_LEVEL)
+  # What the program needs is found in its libraries; whoever builds against the library needs theirs as well.
+  file(STRINGS cmake/debian-packages.txt packages REGEX "-dev$")
+  list(FILTER packages EXCLUDE REGEX "gtest|gmock|benchmark|cli11")
+  list(JOIN packages ", " packages)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_CONTACT "gazetrace <gazetrace@localhost>")
+  set(CPACK_PACKAGE_VENDOR gazetrace)
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_STRIP_FILES ON)
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ffmpeg)
+  set(CPACK_DEBIAN_PACKAGE_SUGGESTS "${packages}")
+  include(CPack)
+endif()

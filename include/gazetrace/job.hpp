@@ -44,6 +44,7 @@ struct Job {
   JobSettings settings;                         // may also be set directly, which leaves no trace in `sources`
   std::map<std::string, OptionSource> sources;  // of the options that somebody gave a value
   Decisions decisions;                          // which values were replaced by others
+  Warnings warnings;                            // files that were found in another place than a settings file says
 
   // Whether the option was given itself, on the command line or in a settings file, and not by a preset or by default.
   [[nodiscard]] bool is_given(const std::string& option) const;
@@ -63,7 +64,8 @@ std::string option_text(const Job& job, const std::string& option, const JobSche
 
 // Sets options from the text of a settings file, which is TOML with a key for each option. Throws Error(input) with
 // path:line.
-void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy = {});
+void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy = {},
+              PathsBegin paths = PathsBegin::beside_settings);
 Job job_from_toml(const std::string& text, const std::string& path);
 Job load_job(const std::string& path);  // also throws Error(input) for a file that cannot be read
 std::string read_settings_file(const std::string& path);

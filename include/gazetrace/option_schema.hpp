@@ -400,13 +400,19 @@ std::string unknown_among_many(const std::string& what, const std::string& given
 struct TomlSetting {
   std::string name;
   std::vector<std::string> values;
-  std::string place;  // path:line
+  std::string place;    // path:line
+  std::string warning;  // of a file that was found in another place than the settings say; empty: none
 };
+// Where relative paths in a settings file begin. In the file's folder; where only the working folder has the file, it
+// is taken from there with a warning. The settings in a run's record begin in the working folder, as those of the run
+// did.
+enum class PathsBegin : std::uint8_t { beside_settings, working_folder };
+
 // The settings in a TOML text, with every value checked by its option. Throws Error(input) with path:line for a syntax
 // error, for an unknown key (naming the nearest known one) and for a value that its option does not take. `remedy` says
 // what to do about an unknown key. An empty array sets nothing.
 std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
-                                            const std::string& remedy);
+                                            const std::string& remedy, PathsBegin paths = PathsBegin::beside_settings);
 // Every option with its value, as TOML with the help as comments; options that are not set are commented out.
 // `values_of` returns an option's values in canonical form.
 std::string settings_as_toml(const OptionList& options,

@@ -24,6 +24,7 @@ std::vector<ReportPlot> report_plots(const Results& results);
 
 // Findings in words, made from the numbers. Two values count as different where their intervals do not overlap.
 struct ReportFindings {
+  std::string headline;              // what was found, in one or two sentences
   std::vector<std::string> summary;  // one or two sentences for each test row
   std::string tally;                 // how the comparisons with baselines of the same cost came out
   std::vector<std::string> losses;   // where a baseline is better or faster
@@ -32,8 +33,8 @@ struct ReportFindings {
 ReportFindings report_findings(const Results& results);
 
 struct ReportSettings {
-  double max_mib = 24;  // limit of the page; to stay below it, pictures are reduced and then left out
-  int threads = 0;      // 0: as many as the machine has
+  double max_mib = 5;  // limit of the page; to stay below it, pictures are reduced and then left out
+  int threads = 0;     // 0: as many as the machine has
 };
 
 // The page: one file that needs nothing else. Pictures that cannot be read become warnings.

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <regex>
 
+#include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -60,6 +61,21 @@ void read_job_config(Job& job, const std::string& command, const std::string& pa
   add_toml(job, read_settings_file(path), path, unknown_key_remedy(command));
 }
 
+int exit_code_of(const Error& error) {
+  switch (error.kind()) {
+    case ErrorKind::runtime:
+      return exit_failed;
+    case ErrorKind::interrupted:
+      return exit_interrupted;
+    case ErrorKind::nothing_to_do:
+      return exit_done;
+    case ErrorKind::usage:
+    case ErrorKind::input:
+      break;
+  }
+  return exit_bad_input;
+}
+
 std::string unknown_key_remedy(const std::string& command) {
   return "'gazetrace " + command + " --print-config' lists every key";
 }
@@ -68,9 +84,14 @@ void check_output_file(const std::string& path, bool overwrite) {
   if (!overwrite && std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, path, "this output exists already", "give --overwrite or another name");
   }
-  if (const auto folder = std::filesystem::path(path).parent_path();
-      !folder.empty() && !std::filesystem::is_directory(folder)) {
-    throw Error(ErrorKind::input, path, "there is no folder " + folder.string(), "make it first");
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code problem;
+  if (!folder.empty() && !std::filesystem::is_directory(folder) &&
+      !std::filesystem::create_directories(folder, problem) && !std::filesystem::is_directory(folder)) {
+    throw Error(
+        ErrorKind::input, path,
+        "the folder '" + folder.string() + "' cannot be made" + (problem ? ": " + problem.message() : std::string()),
+        "choose another one");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/error.hpp"
 #include "gazetrace/job.hpp"
 #include "gazetrace/option_schema.hpp"
 
@@ -43,8 +44,13 @@ void bind_options(CLI::App& app, const OptionList& options, const TakeOption& ta
 void bind_job_options(CLI::App& app, Job& job);
 void read_job_config(Job& job, const std::string& command, const std::string& path);
 
+// The program's exit code for a failure.
+int exit_code_of(const Error& error);
+
 // What to do about a key of a settings file that the command does not have.
 std::string unknown_key_remedy(const std::string& command);
+
+void print_warnings(const std::vector<std::string>& warnings);
 
 // The options of a command that has settings of its own.
 template <class S>
@@ -63,6 +69,9 @@ class CommandOptions {
     for (const TomlSetting& setting :
          read_toml_settings(read_settings_file(path), path, schema_.list(), unknown_key_remedy(command))) {
       if (!given_.contains(setting.name)) {
+        if (!setting.warning.empty()) {
+          print_warnings({setting.warning});
+        }
         schema_.find(setting.name)->assign(settings, setting.values, setting.place + ": " + setting.name);
       }
     }
@@ -72,7 +81,8 @@ class CommandOptions {
   OptionSchema<S> schema_;
   std::set<std::string> given_;
 };
-// Error(input) where the file exists and may not be replaced, or its folder does not.
+// Makes the folder of an output where it is missing. Error(input) where the file exists and may not be replaced, and
+// where the folder cannot be made.
 void check_output_file(const std::string& path, bool overwrite);
 
 // Writes a result to stdout. A reader that has gone away (head, a closed pager) is no error.
@@ -81,6 +91,5 @@ void print_result(const std::string& text);
 // --gaze-start.
 std::string with_flags(const std::string& text);
 std::vector<std::string> with_flags(std::vector<std::string> texts);
-void print_warnings(const std::vector<std::string>& warnings);
 
 }  // namespace gazetrace

@@ -23,6 +23,8 @@ std::set<fs::path> files_read(const CompareJob& job, const CompareInputs& inputs
   std::set<fs::path> read;
   for (const std::string& pattern : {job.reference, job.test}) {
     read.insert(place_of((fs::path(pattern).parent_path() / "run.json").string()));
+    read.insert(
+        place_of((fs::path(pattern).parent_path() / (fs::path(pattern).stem().string() + ".run.json")).string()));
     for (const std::int32_t frame : inputs.frames) {
       read.insert(place_of(picture_path(pattern, frame)));
     }
@@ -46,7 +48,7 @@ void check_compare_outputs(const CompareJob& job, const CompareInputs& inputs,
                            const std::vector<std::string>& metrics) {
   std::vector<std::string> outputs;
   for (const std::string& path : {job.csv, job.json}) {
-    if (!path.empty()) {
+    if (!path.empty() && path != "-") {
       outputs.push_back(path);
     }
   }

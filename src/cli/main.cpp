@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The program: parse, run one command, turn the one exception type into one line and an exit code.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -8,9 +9,12 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/option_schema.hpp"
 #include "gazetrace/version.hpp"
@@ -105,7 +109,9 @@ int run(int argc, char** argv) {
       ->type_name("FILE");
 
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = with_json_joined({argv + 1, argv + argc});
+    std::reverse(words.begin(), words.end());  // as CLI11 takes a vector
+    app.parse(std::move(words));
   } catch (const CLI::Success& help_or_version) {
     print_result("");
     return app.exit(help_or_version);
@@ -138,12 +144,12 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "gazetrace: %s: nothing to do\n", bounded(with_flags(error.what())).c_str());
       return exit_done;
     }
-    return report(error.what(), error.kind() == ErrorKind::runtime       ? exit_failed
-                                : error.kind() == ErrorKind::interrupted ? exit_interrupted
-                                                                         : exit_bad_input);
+    return report(error.what(), exit_code_of(error));
   } catch (const std::bad_alloc&) {
     return report("out of memory", exit_failed);
   } catch (const std::exception& error) {
-    return report(error.what(), exit_failed);
+    return report(std::string("something failed that should have been told in better words: ") + error.what() +
+                      "; please report it with the command",
+                  exit_failed);
   }
 }

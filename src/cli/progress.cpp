@@ -24,7 +24,7 @@ ProgressStyle progress_style(const std::string& choice, bool quiet) {
   if (choice == "openjd") {
     return ProgressStyle::openjd;
   }
-  if (quiet || choice == "never") {
+  if (quiet || choice == "never" || choice == "json") {
     return ProgressStyle::none;
   }
   return choice == "always" || isatty(STDERR_FILENO) == 1 ? ProgressStyle::bar : ProgressStyle::lines;

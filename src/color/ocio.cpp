@@ -145,7 +145,17 @@ LoadedConfig load_config(const ColorSettings& settings) {
   if (path.empty()) {
     return {make_builtin_config(), ""};
   }
-  if (!std::filesystem::exists(path)) {
+  const bool is_within_library = path.starts_with("ocio://");
+#if OCIO_VERSION_HEX < 0x02020000
+  if (is_within_library) {
+    throw Error(
+        ErrorKind::input, place,
+        std::string("configs within OpenColorIO came with its version 2.2, and this is ") + OCIO_VERSION_FULL_STR,
+        "download the config as a file from the OpenColorIO-Config-ACES project, or leave it out for the "
+        "built-in one");
+  }
+#endif
+  if (!is_within_library && !std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, place, "no such OpenColorIO config", "give an existing file or leave it out");
   }
   try {

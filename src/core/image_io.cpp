@@ -16,6 +16,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/exr_header.hpp"
 #include "core/png_file.hpp"
 #include "gazetrace/error.hpp"
 
@@ -281,7 +282,10 @@ OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, co
   const char* const format = format_by_content(bytes);
   if (format == nullptr) {
     picture.problem = kNoKnownKind;
-  } else if (is_png(bytes)) {
+    return picture;
+  }
+  check_exr_header(path, place);
+  if (is_png(bytes)) {
     bytes.resize(std::max<std::uint64_t>(picture.file_size, 8));
     if (stream.read(reinterpret_cast<char*>(bytes.data() + 8), static_cast<std::streamsize>(bytes.size() - 8))) {
       open_png(picture, bytes, config, place);
@@ -313,6 +317,7 @@ OpenPicture open_picture(std::span<const std::uint8_t> file_bytes, const std::st
   if (format == nullptr) {
     throw Error(ErrorKind::input, place, "the bytes are no picture of a known kind", "use PNG or JPEG");
   }
+  check_exr_header(file_bytes, place);
   OpenPicture picture;
   picture.file_size = file_bytes.size();
   if (is_png(file_bytes)) {

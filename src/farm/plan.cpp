@@ -118,14 +118,6 @@ void forget_tries(const FarmPlan& plan) {
   }
 }
 
-// Every handing over has its own retries.
-void forget_tries(const FarmPlan& plan) {
-  std::error_code failed;
-  for (const std::string& task : farm_tasks(plan)) {
-    fs::remove(fs::path(plan.folder) / "tasks" / (task + ".tries"), failed);
-  }
-}
-
 }  // namespace
 
 FarmPlan farm_plan_of(const FarmSettings& settings, const std::string& run_folder) {

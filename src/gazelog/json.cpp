@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/json_problem.hpp"
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
 
@@ -38,7 +39,7 @@ class LeafCollector : public nlohmann::json_sax<Json> {
   }
   bool parse_error(std::size_t /*at*/, const std::string& /*token*/,
                    const nlohmann::detail::exception& error) override {
-    problem = error.what();
+    problem = json_problem(error.what());
     return false;
   }
   std::string problem;

@@ -19,15 +19,25 @@ namespace {
 namespace fs = std::filesystem;
 
 template <class Infos>
-void check_registry_name(const char* option, const char* what, const std::string& name, const Infos& infos) {
-  std::vector<std::string> known;
-  known.reserve(infos.size());
+std::vector<std::string> names_of_all(const Infos& infos) {
+  std::vector<std::string> names;
+  names.reserve(infos.size());
   for (const auto& info : infos) {
-    known.push_back(info.name);
+    names.push_back(info.name);
   }
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw Error(ErrorKind::usage, option, unknown_name_message(what, name, known));
+  return names;
+}
+
+// Fall-offs and filters are taken for each other, and one name, `linear`, is of both: `other` are the names of the
+// other kind, and `hint` says which option takes them.
+void check_registry_name(const char* option, const char* what, const std::string& name,
+                         const std::vector<std::string>& known, const std::vector<std::string>& other,
+                         const char* hint) {
+  if (std::find(known.begin(), known.end(), name) != known.end()) {
+    return;
   }
+  const bool is_other = std::find(other.begin(), other.end(), name) != other.end();
+  throw Error(ErrorKind::usage, option, unknown_name_message(what, name, known), is_other ? hint : "");
 }
 
 // This many screens away the eye looks along the screen, and squares of pixel coordinates are still finite.
@@ -212,13 +222,17 @@ void check_chunk(const JobSettings& job) {
 
 void check_job(const Job& whole, const JobSchema& schema) {
   const JobSettings& job = whole.settings;
-  check_registry_name("`falloff`", "falloff", job.foveation.falloff, falloffs());
+  const std::vector<std::string> falloff_names = names_of_all(falloffs());
+  const std::vector<std::string> filter_names = names_of_all(reconstruction_filters());
+  check_registry_name("`falloff`", "falloff", job.foveation.falloff, falloff_names, filter_names,
+                      "a filter has this name: give `filter`");
   check_foveation(job.foveation);
   if (job.foveation.falloff == "map" && job.foveation.density_map.empty()) {
     throw Error(ErrorKind::usage, "`density-map`", "the fall-off 'map' has no picture",
                 "name an EXR of samples a pixel");
   }
-  check_registry_name("`filter`", "filter", filter_of(job).name, reconstruction_filters());
+  check_registry_name("`filter`", "filter", filter_of(job).name, filter_names, falloff_names,
+                      "a fall-off has this name: give `falloff`");
   if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job).name, {}}).filter().blurs_blocks) {
     throw Error(ErrorKind::usage, "`enhance-contrast`",
                 fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
@@ -248,8 +262,11 @@ void check_job(const Job& whole, const JobSchema& schema) {
         ErrorKind::usage, "`only-pixel`",
         fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height));
   }
-  const std::vector<std::string> progress_modes{"auto", "always", "never", "openjd"};
-  if (std::find(progress_modes.begin(), progress_modes.end(), job.progress) == progress_modes.end()) {
+  const std::vector<std::string> progress_modes{"auto", "always", "never", "openjd", "json"};
+  const bool has_descriptor = job.progress.starts_with("json:") && job.progress.size() > 5 &&
+                              job.progress.find_first_not_of("0123456789", 5) == std::string::npos;
+  if (!has_descriptor &&
+      std::find(progress_modes.begin(), progress_modes.end(), job.progress) == progress_modes.end()) {
     throw Error(ErrorKind::usage, "`progress`", unknown_name_message("progress mode", job.progress, progress_modes));
   }
   const OutputSettings output = output_settings(job);

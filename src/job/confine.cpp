@@ -2,30 +2,15 @@
 #include "job/confine.hpp"
 
 #include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/job_schema.hpp"
+#include "job/settings_paths.hpp"
 #include "job/toml_values.hpp"
 
 namespace gazetrace {
-namespace {
-
-namespace fs = std::filesystem;
-
-// Some options take a name of ours or a file.
-bool names_file(const Option& option, const std::string& value) {
-  if (option.unit == "FILE" || option.unit == "PATTERN") {
-    return true;
-  }
-  std::error_code ignored;
-  return option.unit.find("FILE") != std::string::npos &&
-         (value.find('/') != std::string::npos || fs::exists(value, ignored));
-}
-
-}  // namespace
 
 void check_confined(const Option& option, const std::vector<std::string>& values, const std::string& path,
                     const std::string& place) {
@@ -36,7 +21,7 @@ void check_confined(const Option& option, const std::vector<std::string>& values
   }
   for (const std::string& value : values) {
     if (names_file(option, value)) {
-      check_within(data_roots(path), value, value, at,
+      check_within(data_roots(path), located_file(option, value, path).value, value, at,
                    "put the file there, or leave `confine` out where you trust the settings");
     }
   }

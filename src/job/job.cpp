@@ -108,11 +108,14 @@ std::string option_text(const Job& job, const std::string& option, const JobSche
   return fmt::format("{}", fmt::join(option_values(job, option, schema), ";"));
 }
 
-void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy) {
+void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy, PathsBegin paths) {
   if (job.settings.confine) {
     check_confined(text, path);
   }
-  for (const TomlSetting& setting : read_toml_settings(text, path, job_schema().list(), remedy)) {
+  for (const TomlSetting& setting : read_toml_settings(text, path, job_schema().list(), remedy, paths)) {
+    if (!setting.warning.empty()) {
+      job.warnings.push_back(setting.warning);
+    }
     set_option(job, setting.name, setting.values, {Origin::file, setting.place, {}},
                setting.place + ": " + setting.name);
   }
@@ -135,7 +138,8 @@ std::string job_as_toml(const Job& job, const std::string& title, const JobSchem
 
 Job job_of_record(const RunRecord& record, const std::string& path) {
   Job job;
-  add_toml(job, record.config_toml, path, fmt::format("gazetrace {} wrote it: use that version", record.version));
+  add_toml(job, record.config_toml, path, fmt::format("gazetrace {} wrote it: use that version", record.version),
+           PathsBegin::working_folder);
   return job;
 }
 

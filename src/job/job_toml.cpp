@@ -9,6 +9,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/option_schema.hpp"
+#include "job/settings_paths.hpp"
 #include "job/toml_values.hpp"
 
 namespace gazetrace {
@@ -117,7 +118,7 @@ std::vector<std::string> toml_values(const TomlNode& node, const Option& option,
 }
 
 std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
-                                            const std::string& remedy) {
+                                            const std::string& remedy, PathsBegin paths) {
   std::vector<TomlSetting> settings;
   for (const auto& [key, node] : parse_toml(text, path).members) {
     const std::string place = toml_place(path, node);
@@ -125,7 +126,7 @@ std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::
     if (option == nullptr) {
       throw Error(ErrorKind::input, place, unknown_among_many("key", key, names_of(options)), remedy);
     }
-    TomlSetting setting{key, toml_values(node, *option, path), place};
+    TomlSetting setting{key, toml_values(node, *option, path), place, {}};
     if (setting.values.empty()) {
       continue;  // an empty array sets nothing
     }
@@ -133,6 +134,13 @@ std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::
       option->check(setting.values, place + ": " + key);
     } catch (const Error& error) {
       throw Error(ErrorKind::input, "", error.what());
+    }
+    for (std::string& value : setting.values) {
+      if (paths == PathsBegin::beside_settings) {
+        LocatedFile file = located_file(*option, value, path);
+        value = std::move(file.value);
+        setting.warning = file.warning.empty() ? setting.warning : place + ": " + key + ": " + file.warning;
+      }
     }
     settings.push_back(std::move(setting));
   }
@@ -142,7 +150,8 @@ std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::
 std::string settings_as_toml(const OptionList& options,
                              const std::function<std::vector<std::string>(const Option&)>& values_of,
                              const std::string& title) {
-  std::string text = "# Settings of '" + title + "'; paths are relative to the folder it is started in.\n";
+  std::string text =
+      "# Settings of '" + title + "'; relative paths of files to read begin in the folder of this file.\n";
   std::string group;
   for (const Option* option : options) {
     if (option->group != group) {

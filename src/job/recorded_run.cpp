@@ -38,22 +38,49 @@ ResolvedJob resolve_for_viewing(Job job) {
   return resolve(job, options);
 }
 
+// The records in the folder of the pictures: of a sequence run.json, of a still one that is named after it or, where it
+// was written together with a picture of another name, after that one.
+std::vector<std::string> records_beside(const std::string& pattern) {
+  const fs::path folder(folder_of_frames(pattern));
+  std::vector<std::string> records;
+  const auto add = [&](const fs::path& path) {
+    if (fs::is_regular_file(path) && std::find(records.begin(), records.end(), path.string()) == records.end()) {
+      records.push_back(path.string());
+    }
+  };
+  if (has_frame_number(pattern)) {
+    add(folder / "run.json");
+    return records;
+  }
+  add(folder / (fs::path(pattern).stem().string() + ".run.json"));
+  add(folder / "run.json");
+  std::vector<fs::path> others;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().ends_with(".run.json")) {
+      others.push_back(entry.path());
+    }
+  }
+  std::sort(others.begin(), others.end());
+  std::for_each(others.begin(), others.end(), add);
+  return records;
+}
+
 }  // namespace
 
 std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const std::string& settings_digest) {
-  const std::string path = (fs::path(folder_of_frames(pattern)) / "run.json").string();
-  if (!fs::is_regular_file(path)) {
-    return std::nullopt;
+  for (const std::string& path : records_beside(pattern)) {
+    const RunRecord record = read_run_record(path);
+    const auto& parts = record.part_digests;
+    if (record.settings_digest != settings_digest &&
+        std::find(parts.begin(), parts.end(), settings_digest) == parts.end()) {
+      continue;
+    }
+    const auto view = record.facts.find("view");
+    return RecordedRun{resolve_for_viewing(job_of_record(record, path)),
+                       view == record.facts.end() ? std::string() : view->second};
   }
-  const RunRecord record = read_run_record(path);
-  const auto& parts = record.part_digests;
-  if (record.settings_digest != settings_digest &&
-      std::find(parts.begin(), parts.end(), settings_digest) == parts.end()) {
-    return std::nullopt;
-  }
-  const auto view = record.facts.find("view");
-  return RecordedRun{resolve_for_viewing(job_of_record(record, path)),
-                     view == record.facts.end() ? std::string() : view->second};
+  return std::nullopt;
 }
 
 ResolvedJob resolve_whole_of_parts(const std::vector<RunPart>& parts, bool overwrite) {

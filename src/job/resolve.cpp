@@ -16,6 +16,8 @@
 #include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/judged_frames.hpp"
+#include "job/saving.hpp"
+#include "job/scene.hpp"
 #include "job/scene_camera.hpp"
 
 namespace gazetrace {
@@ -92,6 +94,7 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
   reading.progress = options.progress;
   resolved.scene = std::make_unique<Scene>(load_scene(job.scene, reading));
   if (options.scope == ResolveScope::render) {
+    check_scene_shows(*resolved.scene);
     resolved.decisions.emplace_back("environment", set_environment(job, *resolved.scene));
   }
   resolved.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -257,12 +260,35 @@ void check_density_maps(const FoveationSettings& foveation, const FramePlan& pla
   }
 }
 
+// A frame of which nobody said the size has the shape of the screen that it fills.
+void follow_screen_shape(const GazeLog* log, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+  JobSettings& job = resolved.job.settings;
+  const SizePx usual = JobSettings{}.size;
+  const bool is_usual = job.size.width == usual.width && job.size.height == usual.height;
+  if (resolved.job.sources.contains("size") || !is_usual || job.frame_rect) {
+    return;
+  }
+  Decisions unused;
+  const std::optional<DisplayGeometry> screen = plan_settings(job, {1}, log, taken_off_ns, unused).display;
+  if (!screen || screen->width_px < 1 || screen->height_px < 1) {
+    return;
+  }
+  const double height = std::round(static_cast<double>(usual.width) * screen->height_px / screen->width_px);
+  if (height >= 1 && height != usual.height) {
+    job.size.height = static_cast<int>(height);
+    resolved.decisions.emplace_back(
+        "size", fmt::format("{}x{}, which has the shape of the screen (`size` chooses another)", job.size.width,
+                            job.size.height));
+  }
+}
+
 // Inputs that are quick to read come first, so that a wrong name is found before a scene is loaded.
 void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   const JobSettings& job = resolved.job.settings;
   std::int64_t taken_off_ns = 0;
   resolved.gaze = gaze_of_job(job, taken_off_ns);
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  follow_screen_shape(log, taken_off_ns, resolved);
   {
     Decisions unused;
     check_screen(plan_settings(job, {1}, log, taken_off_ns, unused), log);
@@ -306,6 +332,9 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     append(resolved.warnings, log->warnings);
   }
   append(resolved.warnings, resolved.plan.warnings);
+  if (options.scope != ResolveScope::digests) {
+    append(resolved.warnings, saving_warnings(job, resolved.plan));
+  }
 }
 
 }  // namespace
@@ -322,6 +351,7 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   if (options.tell_idle) {
     resolved.warnings = idle_option_warnings(job);
   }
+  append(resolved.warnings, job.warnings);
   if (options.scope == ResolveScope::render) {
     check_frame_memory(job.settings);
   }

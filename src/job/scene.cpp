@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scene of a run and the light around it.
+#include <algorithm>
 #include <cmath>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
+#include "gazetrace/sky.hpp"
+#include "job/scene.hpp"
 
 namespace gazetrace {
 
@@ -18,12 +21,16 @@ std::string set_environment(const JobSettings& job, Scene& scene) {
     if (features.emissive_triangles || features.punctual_lights || scene.environment.present()) {
       return "none (the scene brings its own light; `env` chooses)";
     }
-    scene.environment = builtin_sky(job.environment_rotation_deg, job.environment_ev);
-    return "the built-in sky (the scene has no light of its own; `env` chooses)";
+    scene.environment = clear_sky({}, job.environment_rotation_deg, job.environment_ev);
+    return "the built-in sky with its sun (the scene has no light of its own; `env` chooses)";
   }
   if (wanted == "sky") {
+    scene.environment = clear_sky({}, job.environment_rotation_deg, job.environment_ev);
+    return "the built-in sky with its sun";
+  }
+  if (wanted == "soft-sky") {
     scene.environment = builtin_sky(job.environment_rotation_deg, job.environment_ev);
-    return "the built-in sky";
+    return "the built-in sky without a sun";
   }
   if (wanted.starts_with("constant:")) {
     Vec3d radiance;
@@ -48,10 +55,29 @@ SceneReadOptions scene_read_options(const JobSettings& job) {
   return options;
 }
 
+void check_scene_shows(const Scene& scene) {
+  if (summarize(scene).triangles_instanced > 0) {
+    return;
+  }
+  std::vector<std::string> left_out = scene.ignored;
+  left_out.insert(left_out.end(), scene.warnings.begin(), scene.warnings.end());
+  std::string text;
+  constexpr std::size_t kMost = 4;
+  for (std::size_t i = 0; i < std::min(left_out.size(), kMost); ++i) {
+    text += (i == 0 ? "; left out: " : "; ") + left_out[i];
+  }
+  if (left_out.size() > kMost) {
+    text += "; and " + std::to_string(left_out.size() - kMost) + " more";
+  }
+  throw Error(ErrorKind::input, scene.source, "there is no geometry to render" + text,
+              "'gazetrace scene' tells what the file contains");
+}
+
 Scene load_job_scene(const JobSettings& job, const std::function<void(std::size_t, std::size_t)>& progress) {
   SceneReadOptions options = scene_read_options(job);
   options.progress = progress;
   Scene scene = load_scene(job.scene, options);
+  check_scene_shows(scene);
   set_environment(job, scene);
   return scene;
 }

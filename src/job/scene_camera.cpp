@@ -8,6 +8,7 @@
 
 #include "gazetrace/error.hpp"
 #include "job/scene_camera.hpp"
+#include "job/whole_scene_camera.hpp"
 
 namespace gazetrace {
 namespace {
@@ -25,25 +26,6 @@ Projection perspective(const JobSettings& job) {
   Projection projection;
   projection.yfov_rad = checked_yfov_rad(job.yfov_deg.value_or(kDefaultYfovDeg));
   return projection;
-}
-
-// A view of the whole scene for files without a camera: from the front, a little to the right and above, with the
-// bounding sphere inside the narrower angle of view.
-CameraPath framing_camera(const JobSettings& job, const Scene& scene) {
-  const SceneSummary summary = summarize(scene);
-  Vec3d center{0, 0, 0};
-  double radius_m = 1.0;
-  if (summary.bounds_min.x <= summary.bounds_max.x) {
-    center = (summary.bounds_min + summary.bounds_max) * 0.5;
-    radius_m = std::max(0.5 * length(summary.bounds_max - summary.bounds_min), 1e-30);
-  }
-  const Projection projection = perspective(job);
-  const double aspect = static_cast<double>(job.size.width) / static_cast<double>(job.size.height);
-  const double half_v = projection.yfov_rad / 2;
-  const double half_h = std::atan(std::tan(half_v) * aspect);
-  const Vec3d direction = normalize(Vec3d{0.5, 0.35, 1.0});
-  const Vec3d eye = center + direction * (radius_m / std::sin(std::min(half_v, half_h)));
-  return static_camera(look_at(eye, center, {0, 1, 0}), projection);
 }
 
 const SceneCamera& camera_by_name(const JobSettings& job, const Scene& scene) {
@@ -149,7 +131,8 @@ CameraPath camera_without_lens(const JobSettings& job, const Scene* scene, const
     camera = static_camera(CameraPose{}, perspective(job));
   } else if (job.camera.empty() && scene->cameras.empty()) {
     decision = "a view of the whole scene (the file has no camera; `eye` and `target` choose another)";
-    camera = framing_camera(job, *scene);
+    camera = whole_scene_camera(*scene, perspective(job),
+                                static_cast<double>(job.size.width) / static_cast<double>(job.size.height));
   } else {
     const SceneCamera& chosen = job.camera.empty() ? scene->cameras.front() : camera_by_name(job, *scene);
     decision = fmt::format("'{}' of {}{}", chosen.name, job.scene, chosen.path.is_static ? "" : ", animated");

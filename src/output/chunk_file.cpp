@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/json_problem.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -29,7 +30,8 @@ ChunkFile read_chunk_file(const std::string& path) {
     json.at("samples").get_to(chunks.samples);
     return chunks;
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, path, "says of no chunks which frames they have: " + bounded(e.what(), 200),
+    throw Error(ErrorKind::input, path,
+                "says of no chunks which frames they have: " + bounded(json_problem(e.what()), 200),
                 "remove it: the next task writes it again");
   }
 }

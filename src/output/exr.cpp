@@ -31,6 +31,7 @@
 #include <new>
 #include <system_error>
 
+#include "core/exr_header.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/output.hpp"
 #include "output/gaze_text.hpp"
@@ -318,19 +319,6 @@ void add_aov(ExrPicture& picture, const std::string& aov, const Frame& frame, co
   }
 }
 
-constexpr int kMostSidePx = 65536;
-
-// OpenEXR makes room for whole blocks of lines before a file's header can be asked; it has these limits for the
-// process.
-void limit_sizes() {
-  static const bool done = [] {
-    Imf::Header::setMaxImageSize(kMostSidePx, kMostSidePx);
-    Imf::Header::setMaxTileSize(kMostSidePx / 8, kMostSidePx / 8);
-    return true;
-  }();
-  static_cast<void>(done);
-}
-
 // The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
 // compression is lossless, and up to 2700 where it is dwaa or dwab.
 void check_size(const Imf::InputFile& file, const std::string& path) {
@@ -343,9 +331,7 @@ void check_size(const Imf::InputFile& file, const std::string& path) {
       file.header().compression() == Imf::DWAA_COMPRESSION || file.header().compression() == Imf::DWAB_COMPRESSION;
   std::error_code ignored;
   const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
-  const bool has_a_size = width >= 1 && height >= 1 && width <= kMostSidePx && height <= kMostSidePx;
-  const std::uint64_t pixels =
-      has_a_size ? static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) : kMostPixels + 1;
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   if (pixels > kMostPixels || ignored || pixels > kPixelsOfAnyFile + (is_dwa ? 8192 : 1024) * bytes) {
     throw Error(ErrorKind::input, path,
                 fmt::format("an EXR of {} x {} pixels and {} bytes cannot be used", width, height, bytes),
@@ -360,7 +346,7 @@ auto read_exr(const std::string& path, const Read& read) {
     throw Error(ErrorKind::input, path, "there is no such file");
   }
   try {
-    limit_sizes();
+    check_exr_header(path, path);
     Imf::InputFile file(path.c_str(), 0);
     check_size(file, path);
     return read(file);
@@ -474,7 +460,7 @@ ImageGray read_exr_gray(const std::string& path) {
 
 std::string read_exr_text(const std::string& path, const std::string& attribute) {
   try {
-    limit_sizes();
+    check_exr_header(path, path);
     Imf::InputFile file(path.c_str(), 0);
     const auto* text = file.header().findTypedAttribute<Imf::StringAttribute>(attribute);
     if (text == nullptr || !file.isComplete()) {
@@ -492,7 +478,7 @@ std::string read_exr_text(const std::string& path, const std::string& attribute)
 
 std::optional<double> read_exr_number(const std::string& path, const std::string& attribute) {
   try {
-    limit_sizes();
+    check_exr_header(path, path);
     Imf::InputFile file(path.c_str(), 0);
     if (const auto* number = file.header().findTypedAttribute<Imf::DoubleAttribute>(attribute)) {
       return number->value();
@@ -508,7 +494,7 @@ std::optional<double> read_exr_number(const std::string& path, const std::string
 
 std::optional<std::int32_t> read_exr_integer(const std::string& path, const std::string& attribute) {
   try {
-    limit_sizes();
+    check_exr_header(path, path);
     Imf::InputFile file(path.c_str(), 0);
     if (const auto* number = file.header().findTypedAttribute<Imf::IntAttribute>(attribute)) {
       return number->value();

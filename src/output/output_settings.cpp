@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gazetrace/aovs.hpp"
 #include "gazetrace/output.hpp"
 #include "output/aovs.hpp"
 #include "output/exr.hpp"
@@ -26,8 +27,31 @@ void check_exr_name(const std::string& pattern, bool require_number) {
 
 }  // namespace
 
+const std::vector<AovInfo>& aov_infos() {
+  static const std::vector<AovInfo> kInfos{
+      {"albedo", "albedo.R .G .B: the share of light that the first surface reflects, 0 to 1, linear Rec.709, half"},
+      {"normal", "normal.X .Y .Z: of the first surface, world axes (+y up), unit length where a pixel sees one, half"},
+      {"depth",
+       "depth.Z: of the first surface along the axis of the view, metres, float; infinite where there is none"},
+      {"samples", "samples: effective number of samples behind the pixel, float"},
+      {"variance",
+       "variance: of the pixel's mean luminance, squared scene-linear units, float, as far as the spread of "
+       "its samples tells"},
+      {"eccentricity",
+       "eccentricity: angle between the pixel and the true gaze, as the eye sees it, degrees, float; "
+       "NaN in frames without gaze"},
+  };
+  return kInfos;
+}
+
 const std::vector<std::string>& aov_names() {
-  static const std::vector<std::string> kNames{"albedo", "normal", "depth", "samples", "variance", "eccentricity"};
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const AovInfo& info : aov_infos()) {
+      names.push_back(info.name);
+    }
+    return names;
+  }();
   return kNames;
 }
 

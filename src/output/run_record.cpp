@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/hash.hpp"
+#include "core/json_problem.hpp"
 #include "core/json_whole.hpp"
 #include "gazetrace/output.hpp"
 
@@ -134,7 +135,7 @@ RunRecord read_run_record(const std::string& path) {
     }
     return record;
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, path, "is not a run record, or is cut: " + bounded(e.what(), 200),
+    throw Error(ErrorKind::input, path, "is not a run record, or is cut: " + bounded(json_problem(e.what()), 200),
                 "remove it, or render with `resume`, which makes it anew");
   }
 }

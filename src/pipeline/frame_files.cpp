@@ -2,6 +2,7 @@
 #include "pipeline/frame_files.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -89,6 +90,22 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   }
 }
 
+RunFiles whole_run_files(const OutputSettings& output) {
+  RunFiles files{run_record_file_name(output.run_directory, "", false),
+                 timing_file_name(output.run_directory, "", false)};
+  const std::string& pattern = !output.exr.pattern.empty()       ? output.exr.pattern
+                               : !output.display.pattern.empty() ? output.display.pattern
+                                                                 : output.map_pattern;
+  if (!has_frame_number(pattern)) {
+    const std::string still = std::filesystem::path(pattern).stem().string();
+    for (std::string* file : {&files.record, &files.timing}) {
+      const std::filesystem::path path(*file);
+      *file = (path.parent_path() / (still + "." + path.filename().string())).string();
+    }
+  }
+  return files;
+}
+
 std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames) {
   const OutputSettings& output = settings.output;
   std::vector<std::string> files;
@@ -97,10 +114,15 @@ std::vector<std::string> output_files(const PipelineSettings& settings, const st
   }
   const std::optional<SampleRange>& samples = settings.trace.samples;
   const std::string list = format_frame_list(frames);
-  const std::string part = samples ? part_of_samples_name(list, *samples) : list;
-  const bool is_part = settings.is_part || samples;
-  files.push_back(run_record_file_name(output.run_directory, part, is_part));
-  files.push_back(timing_file_name(output.run_directory, part, is_part));
+  if (settings.is_part || samples) {
+    const std::string part = samples ? part_of_samples_name(list, *samples) : list;
+    files.push_back(run_record_file_name(output.run_directory, part, true));
+    files.push_back(timing_file_name(output.run_directory, part, true));
+  } else {
+    const RunFiles whole = whole_run_files(output);
+    files.push_back(whole.record);
+    files.push_back(whole.timing);
+  }
   for (const std::int32_t frame : frames) {
     if (samples) {
       files.push_back(samples_file_name(output.run_directory, frame, *samples));

@@ -185,8 +185,9 @@ MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& pl
   }
   RunRecord record = join_records(parts, result.frames, result.warnings);
   record.files = std::move(written.files);
-  write_text_atomically(timing_file_name(settings.output.run_directory, "", false), timing_csv_text(rows));
-  write_text_atomically(run_record_file_name(settings.output.run_directory, "", false), run_record_json(record));
+  const RunFiles files = whole_run_files(settings.output);
+  write_text_atomically(files.timing, timing_csv_text(rows));
+  write_text_atomically(files.record, run_record_json(record));
   return result;
 }
 

@@ -116,14 +116,16 @@ void read(SealedReader& reader, std::optional<double>& value) {
 
 constexpr int kMostBlockPx = 65536;
 
-// Whether sites have the pixels that the map says of them, and each pixel has a site.
+// Whether sites have the pixels that the map says of them, in their own region, and each pixel has a site.
 bool covers_frame(const SamplingMap& map) {
   std::uint64_t pixels = 0;
   std::vector<PixelIndex> own;
   for (const Site& site : map.sites) {
     pixels_of_site(map, site, own);
     pixels += own.size();
-    if (own.empty() || own.size() != site.pixels || pixels > map.region.pixels.size()) {
+    if (own.empty() || own.size() != site.pixels || pixels > map.region.pixels.size() ||
+        !std::all_of(own.begin(), own.end(),
+                     [&](const PixelIndex& p) { return map.region(p.x, p.y) == site.region; })) {
       return false;
     }
   }

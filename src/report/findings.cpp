@@ -3,8 +3,10 @@
 // different only where their intervals do not overlap, which is stricter than a test of their difference.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "report/words.hpp"
 
@@ -145,6 +147,93 @@ std::string control_sentence(const Results& data, const ResultControl& control) 
          ", and it supports no claim about foveation.";
 }
 
+// What controls with a wrong gaze say, in a sentence for each metric; each control has its row in the table.
+void add_controls(const Results& data, std::vector<std::string>& caveats) {
+  constexpr std::size_t kNamed = 3;  // so few are named one by one
+  std::vector<const ResultControl*> silent;
+  for (const ResultControl& control : data.controls) {
+    if (!control.is_sensitive) {
+      silent.push_back(&control);
+    }
+  }
+  if (silent.size() <= kNamed) {
+    for (const ResultControl* const control : silent) {
+      caveats.push_back(control_sentence(data, *control));
+    }
+    return;
+  }
+  std::map<std::string, std::array<int, 3>> counts;  // by metric: controls, insensitive, undecided
+  for (const ResultControl& control : data.controls) {
+    std::array<int, 3>& count = counts[control.metric];
+    ++count[0];
+    const ControlVerdict verdict = control_verdict(data, control);
+    count[1] += verdict == ControlVerdict::insensitive ? 1 : 0;
+    count[2] += verdict == ControlVerdict::undecided ? 1 : 0;
+  }
+  for (const auto& [metric, count] : counts) {
+    if (count[1] + count[2] > 0) {
+      caveats.push_back(
+          fmt::format("{}: of {} controls with a wrong gaze it notices {}, is insensitive to {}, and {} are undecided; "
+                      "where it does "
+                      "not notice, it supports no claim about foveation (each is in the table of controls).",
+                      metric, count[0], count[0] - count[1] - count[2], count[1], count[2]));
+    }
+  }
+}
+
+// A fall-off that saves nothing is uniform sampling under another name, and its controls are the same picture.
+void add_nothing_saved(const Results& data, const ResultRow& test, std::vector<std::string>& caveats) {
+  constexpr double kLeastSaving = 1.1;
+  for (const ResultRow* const row : family_of(data, test)) {
+    if (row->role == RowRole::uniform_reference_rate && row->spp_mean && test.spp_mean && *test.spp_mean > 0 &&
+        *row->spp_mean / *test.spp_mean < kLeastSaving) {
+      caveats.push_back(fmt::format(
+          "{}: it traces {:.3g} samples a pixel where uniform has {:.3g}, so that next to nothing is saved at this "
+          "size "
+          "on this screen, and controls with a wrong gaze show the same picture. A larger frame, or another fall-off, "
+          "would change that.",
+          place_of(test), *test.spp_mean, *row->spp_mean));
+      return;
+    }
+  }
+}
+
+std::string headline_of(const Results& data, const std::array<int, 5>& tally) {
+  double least = 0;
+  double most = 0;
+  int runs = 0;
+  bool too_few = false;
+  for (const ResultRow* const test : test_rows(data)) {
+    if (!test->speed_up) {
+      continue;
+    }
+    const double mean = test->speed_up->mean;
+    least = runs == 0 ? mean : std::min(least, mean);
+    most = runs == 0 ? mean : std::max(most, mean);
+    too_few = too_few || !is_telling(*test->speed_up);
+    ++runs;
+  }
+  if (runs == 0) {
+    return "No foveated run has been measured beside uniform sampling.";
+  }
+  const std::string times = runs == 1 || value_text(least) == value_text(most)
+                                ? value_text(least)
+                                : value_text(least) + " to " + value_text(most);
+  std::string text =
+      fmt::format("Foveated frames were rendered {} times as fast as uniform ones at the reference rate{}.", times,
+                  runs == 1 ? "" : fmt::format(", over {} runs", runs));
+  const int compared = tally[0] + tally[1] + tally[2] + tally[3];
+  if (compared > 0) {
+    text += fmt::format(
+        " Beside uniform sampling of the same cost they scored better in {} of {} comparisons, worse in {}, and not "
+        "told "
+        "apart in {}.",
+        tally[0], compared, tally[1], tally[2] + tally[3]);
+  }
+  return text +
+         (too_few ? " Too few repeats were made for intervals of the speed-up: more would say how sure it is." : "");
+}
+
 // How many comparisons of whole frames came out how, in the order of Verdict.
 using Tally = std::array<int, 5>;
 
@@ -183,6 +272,7 @@ ReportFindings report_findings(const Results& data) {
           fmt::format("{}: it is slower than uniform sampling at the reference rate, speed-up {}.", place_of(*test),
                       with_interval(test->speed_up)));
     }
+    add_nothing_saved(data, *test, findings.caveats);
     if (!has_scores(data, *test)) {
       findings.caveats.push_back(place_of(*test) + ": no metric has a score, so nothing is said of its quality." +
                                  scored_frames_sentence(data, test->gaze));
@@ -208,11 +298,8 @@ ReportFindings report_findings(const Results& data) {
                       fixed.result.why.empty() ? "" : ", " + fixed.result.why));
     }
   }
-  for (const ResultControl& control : data.controls) {
-    if (!control.is_sensitive) {
-      findings.caveats.push_back(control_sentence(data, control));
-    }
-  }
+  add_controls(data, findings.caveats);
+  findings.headline = headline_of(data, tally);
   return findings;
 }
 

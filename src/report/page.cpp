@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -46,7 +47,7 @@ struct ViewerSet {
   std::vector<ViewerRun> runs;
 };
 
-ViewerSet viewer_set(const Results& data, const SceneGaze& both) {
+ViewerSet viewer_set(const Results& data, const SceneGaze& both, const std::map<std::string, std::string>& names) {
   ViewerSet set{both, {}, {}};
   const ResultRow* longest = nullptr;
   for (const ResultRow& row : data.rows) {
@@ -55,7 +56,7 @@ ViewerSet viewer_set(const Results& data, const SceneGaze& both) {
     if (!(SceneGaze{row.scene, row.gaze} == both) || !has_pictures) {
       continue;
     }
-    ViewerRun run{row.label, &row, {}, {}};
+    ViewerRun run{names.at(row.id), &row, {}, {}};
     for (const ResultFrame& frame : row.frames) {
       if (!frame.png.empty()) {
         run.pictures[frame.index] = (fs::path(data.directory) / frame.png).string();
@@ -242,8 +243,11 @@ ReportPage report_page(const Results& data, const ReportSettings& settings) {
   for (const ResultMetric& metric : data.metrics) {
     json["metrics"].push_back(metric.name);
   }
+  const std::map<std::string, std::string> names = run_names(data);
+  const ReportFindings findings = report_findings(data);
   for (const ResultRow* const test : test_rows(data)) {
-    json["tests"].push_back({{"id", test->id}, {"label", test->label}, {"set", set_id({test->scene, test->gaze})}});
+    json["tests"].push_back(
+        {{"id", test->id}, {"label", names.at(test->id)}, {"set", set_id({test->scene, test->gaze})}});
   }
   for (const ReportPlot& plot : report_plots(data)) {
     json["plots"].push_back({{"kind", plot.kind},
@@ -254,14 +258,15 @@ ReportPage report_page(const Results& data, const ReportSettings& settings) {
   }
   std::vector<ViewerSet> sets;
   for (const SceneGaze& both : scene_gazes(data)) {
-    sets.push_back(viewer_set(data, both));
+    sets.push_back(viewer_set(data, both, names));
   }
   std::map<std::string, std::string> values{
       {"title", escaped(data.title)},
       {"style", std::string(report_page_style)},
       {"script", std::string(report_page_script)},
       {"facts", facts_line(data)},
-      {"summary", findings_html(report_findings(data))},
+      {"headline", escaped(findings.headline)},
+      {"summary", findings_html(findings)},
       {"tables", tables_html(data)},
       {"methods", escaped(results_methods(data))},
       {"notes", data.notes.empty() ? "<p>None.</p>" : list_html(data.notes)},

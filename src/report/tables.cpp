@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 #include "core/svg.hpp"
 #include "report/words.hpp"
@@ -55,13 +56,13 @@ std::string metric_head(const ResultMetric& metric) {
                      metric.is_lower_better ? "lower" : "higher");
 }
 
-std::string row_head(const ResultRow& row) {
+std::string row_head(const ResultRow& row, const std::string& name) {
   std::string role = report_role(row.role).words;
   if (row.reached) {
     role += fmt::format(": {} of its time", with_interval(row.reached));
   }
   return fmt::format("<tr class=\"role-{}\"><th scope=\"row\">{}<small>{}</small></th>", to_string(row.role),
-                     escaped(row.label), escaped(role));
+                     escaped(name), escaped(role));
 }
 
 // "Frames: fixation 80 %, in-flight 20 %."
@@ -104,22 +105,25 @@ std::vector<const ResultRow*> rows_of(const Results& data, const SceneGaze& both
   return rows;
 }
 
-void add_runs(Html& html, const Results& data, const SceneGaze& both, const std::vector<const ResultRow*>& rows) {
+using RunNames = std::map<std::string, std::string>;
+
+void add_runs(Html& html, const Results& data, const SceneGaze& both, const std::vector<const ResultRow*>& rows,
+              const RunNames& names) {
   if (const std::string shares = shares_text(data, both.gaze); !shares.empty()) {
     html.add("<p class=\"small\">{}: {}</p>\n", escaped(scene_gaze_text(both)), escaped(shares));
   }
   html.begin_table(scene_gaze_text(both));
-  std::vector<std::string> names{"run", "time<small>s a frame</small>", "speed-up",
+  std::vector<std::string> heads{"run", "time<small>s a frame</small>", "speed-up",
                                  "end-to-end<small>with output</small>", "efficiency"};
   for (const ResultMetric& metric : data.metrics) {
-    names.push_back(metric_head(metric));
+    heads.push_back(metric_head(metric));
   }
   for (const char* const cost : {"samples a pixel", "samples", "rays", "peak<small>MiB</small>"}) {
-    names.emplace_back(cost);
+    heads.emplace_back(cost);
   }
-  html.head(names);
+  html.head(heads);
   for (const ResultRow* const row : rows) {
-    html.add("{}", row_head(*row));
+    html.add("{}", row_head(*row, names.at(row->id)));
     html.estimate(row->time_s);
     html.estimate(row->speed_up);
     html.cell(value_text(row->end_to_end));
@@ -147,7 +151,8 @@ void add_runs(Html& html, const Results& data, const SceneGaze& both, const std:
   html.end_table();
 }
 
-void add_bands(Html& html, const Results& data, const SceneGaze& both, const std::vector<const ResultRow*>& rows) {
+void add_bands(Html& html, const Results& data, const SceneGaze& both, const std::vector<const ResultRow*>& rows,
+               const RunNames& names) {
   const std::vector<std::string> parts = scored_parts(data);
   if (parts.empty()) {
     return;
@@ -157,18 +162,18 @@ void add_bands(Html& html, const Results& data, const SceneGaze& both, const std
   const std::vector<std::string> bands = band_names(data.bands_deg);
   for (const ResultMetric& metric : data.metrics) {
     html.begin_table(metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
-    std::vector<std::string> names{"run"};
+    std::vector<std::string> heads{"run"};
     for (const std::string& part : parts) {
       const auto band = std::find(bands.begin(), bands.end(), part);
       const auto b = static_cast<std::size_t>(band - bands.begin());
       const bool known = band != bands.end() && shares != data.band_pixel_share.end() && b < shares->second.size();
-      names.push_back(
+      heads.push_back(
           fmt::format("{}{}{}", escaped(part), band != bands.end() ? " deg" : "",
                       known ? fmt::format("<small>{:.3g} % of pixels</small>", 100 * shares->second[b]) : ""));
     }
-    html.head(names);
+    html.head(heads);
     for (const ResultRow* const row : rows) {
-      html.add("{}", row_head(*row));
+      html.add("{}", row_head(*row, names.at(row->id)));
       for (const std::string& part : parts) {
         html.score(find_score(*row, metric.name, part));
       }
@@ -222,6 +227,7 @@ void add_controls(Html& html, const Results& data) {
   if (data.controls.empty()) {
     return;
   }
+  html.add("<h3 id=\"controls\">Controls</h3>\n");
   html.begin_table("Controls: the same settings rendered with a wrong gaze and scored with the right one");
   html.head({"scene and gaze", "metric", "gaze", "right", "wrong", "does the metric notice", "why"});
   for (const ResultControl& control : data.controls) {
@@ -243,13 +249,14 @@ void add_controls(Html& html, const Results& data) {
 
 std::string tables_html(const Results& data) {
   Html html;
+  const RunNames names = run_names(data);
   if (data.rows.empty()) {
     html.add("<p>Nothing has been measured yet.</p>\n");
   }
   for (const SceneGaze& both : scene_gazes(data)) {
     const std::vector<const ResultRow*> rows = rows_of(data, both);
-    add_runs(html, data, both, rows);
-    add_bands(html, data, both, rows);
+    add_runs(html, data, both, rows, names);
+    add_bands(html, data, both, rows, names);
   }
   add_published(html, data);
   add_fixed_quality(html, data);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "gazetrace/compare.hpp"
 
@@ -43,8 +44,17 @@ std::string mean_text(const std::optional<Interval>& value) {
   return value ? value_text(value->mean) : std::string("–");
 }
 
+bool is_telling(const Interval& value) {
+  constexpr double kWidest = 16;
+  return value.low && value.high && !(*value.low > 0 && *value.high > kWidest * *value.low);
+}
+
 std::string interval_text(const std::optional<Interval>& value) {
-  return value && value->low ? value_text(value->low) + " to " + value_text(value->high) : std::string();
+  if (!value || !value->low) {
+    return {};
+  }
+  return is_telling(*value) ? value_text(value->low) + " to " + value_text(value->high)
+                            : std::string("too few repeats for an interval");
 }
 
 std::string with_interval(const std::optional<Interval>& value) {
@@ -113,6 +123,42 @@ std::vector<const ResultRow*> plotted_family(const Results& data, const ResultRo
                               [](const ResultRow* row) { return row->role == RowRole::wrong_gaze; }),
                family.end());
   return family;
+}
+
+std::map<std::string, std::string> run_names(const Results& data) {
+  const auto place = [](const ResultRow& row) { return row.scene + "\n" + row.gaze + "\n"; };
+  std::map<std::string, std::string> names;
+  for (const ResultRow& row : data.rows) {
+    names[row.id] = row.label;
+  }
+  // Adds `more` to the names that several rows of a scene and gaze have.
+  const auto tell_apart = [&](const auto& more) {
+    std::map<std::string, int> count;
+    for (const ResultRow& row : data.rows) {
+      ++count[place(row) + names[row.id]];
+    }
+    std::map<std::string, std::string> longer = names;
+    for (const ResultRow& row : data.rows) {
+      const std::string text = count[place(row) + names[row.id]] > 1 ? more(row) : std::string();
+      longer[row.id] += text.empty() ? std::string() : ", " + text;
+    }
+    names = std::move(longer);
+  };
+  tell_apart([&](const ResultRow& row) {
+    const ResultRow* const test = row.of.empty() ? nullptr : find_row(data.rows, row.of);
+    return test == nullptr ? std::string() : "beside " + test->label;
+  });
+  tell_apart([](const ResultRow& row) {
+    std::string text;
+    for (const auto& [option, value] : row.settings) {
+      text += (text.empty() ? "" : ", ") + option + " " + value;
+    }
+    return text;
+  });
+  tell_apart([](const ResultRow& row) { return report_role(row.role).words; });
+  std::map<std::string, int> number;
+  tell_apart([&](const ResultRow& row) { return "#" + std::to_string(++number[place(row) + row.label]); });
+  return names;
 }
 
 std::string reference_text(const ResultReference& scene, std::size_t references) {

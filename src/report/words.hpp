@@ -2,6 +2,7 @@
 // What values, runs and metrics are called on the page, in diagrams and in sentences.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +21,10 @@ const ReportRole& report_role(RowRole role);
 // A value with four significant digits; "–" where it is missing.
 std::string value_text(const std::optional<double>& value);
 std::string mean_text(const std::optional<Interval>& value);
-std::string interval_text(const std::optional<Interval>& value);  // "0.11 to 0.13"; empty without an interval
+// "0.11 to 0.13"; empty without an interval. An interval whose ends differ more than sixteenfold, as two repeats
+// give one, says nothing but that there were too few, and that is what its text says.
+std::string interval_text(const std::optional<Interval>& value);
+bool is_telling(const Interval& value);
 std::string with_interval(const std::optional<Interval>& value);  // "0.12 (0.11 to 0.13)"
 std::string count_text(const std::optional<double>& value);       // "1.23 M"
 std::string part_text(const std::string& part);                   // "2.6-5.2 degrees", "the fovea"
@@ -32,6 +36,10 @@ std::string metric_text(const ResultMetric& metric);  // "flip", with its unit
 std::vector<const ResultRow*> family_of(const Results& data, const ResultRow& test);
 // The same without controls with a wrong gaze, for diagrams: nobody could choose those as a setting.
 std::vector<const ResultRow*> plotted_family(const Results& data, const ResultRow& test);
+
+// A name for each row of the results, by its id. Rows of one scene and gaze that have the same label are told apart by
+// the test that they stand beside, by the options that the sweep varied, by their role and at last by a number.
+std::map<std::string, std::string> run_names(const Results& data);
 
 // "reference", with its key where there are others.
 std::string reference_text(const ResultReference& scene, std::size_t references);

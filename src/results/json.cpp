@@ -10,6 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/json_problem.hpp"
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/results.hpp"
@@ -466,7 +467,7 @@ Results read_results(const std::string& path) {
   try {
     json = Json::parse(read_file_bytes(file));
   } catch (const Json::exception& e) {
-    throw Error(ErrorKind::input, file, std::string("is no JSON: ") + e.what(), "write it again with gazetrace sweep");
+    throw Error(ErrorKind::input, file, "is no JSON: " + json_problem(e.what()), "write it again with gazetrace sweep");
   }
   const JsonNode root(json, file, "");
   check_format(root);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Loads a Scene from a file: reads, checks, parses and converts it.
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <functional>
 #include <mutex>
 #include <utility>
 
-#include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/scene.hpp"
 #include "scene/gltf/accessor.hpp"
@@ -16,43 +18,12 @@
 #include "scene/gltf/material.hpp"
 #include "scene/gltf/mesh.hpp"
 #include "scene/gltf/node.hpp"
+#include "scene/open_scene.hpp"
 #include "scene/parallel_errors.hpp"
 #include "scene/smooth_glass.hpp"
 
 namespace gazetrace {
 namespace {
-
-// The bytes of all buffers; `storage` owns those that are not in the .glb itself.
-std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
-                                                        const std::vector<GltfBufferSource>& sources,
-                                                        std::vector<std::vector<std::uint8_t>>& storage) {
-  std::vector<std::span<const std::uint8_t>> buffers;
-  storage.reserve(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const GltfBufferSource& source = sources[i];
-    const std::string place = file.path + ": buffers[" + std::to_string(i) + "]";
-    std::span<const std::uint8_t> bytes;
-    if (!source.uri.empty()) {
-      storage.push_back(is_data_uri(source.uri)
-                            ? decode_data_uri(source.uri, place)
-                            : read_whole_file(resolve_uri(file.path, file.roots, source.uri, place), place));
-      bytes = storage.back();
-    } else if (i == 0 && file.is_binary && !source.fallback) {
-      bytes = file.bin_chunk;
-    } else {
-      buffers.emplace_back();  // no data; it is an error only where something reads from it
-      continue;
-    }
-    if (bytes.size() < source.byte_length) {
-      throw Error(ErrorKind::input, place,
-                  "byteLength says " + std::to_string(source.byte_length) + ", there are " +
-                      std::to_string(bytes.size()) + " bytes",
-                  "the file is incomplete; copy or export it again");
-    }
-    buffers.push_back(bytes.first(source.byte_length));
-  }
-  return buffers;
-}
 
 void list_extensions(const GltfDocument& document, Scene& scene) {
   const auto& known = known_gltf_extensions();
@@ -64,6 +35,20 @@ void list_extensions(const GltfDocument& document, Scene& scene) {
                                     ? ", which cannot be read; the textures' fallback pictures are used"
                                     : ", which is not supported and is left out"));
     }
+  }
+}
+
+// Rays are traced in single precision, whose numbers are 2^-23 of their own size apart.
+void warn_of_offset(const GltfDocument& document, Warnings& warnings) {
+  constexpr double kNoticeable_m = 1e-3;
+  const double apart_m = length(document.offset_m) * std::ldexp(1.0, -23);
+  if (apart_m > kNoticeable_m) {
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "CESIUM_RTC puts the scene %.0f km from the origin, where coordinates are %.2g m apart in single "
+                  "precision; without the extension it stands at the origin",
+                  length(document.offset_m) / 1000, apart_m);
+    warnings.emplace_back(text.data());
   }
 }
 
@@ -113,29 +98,6 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& from) 
   to.insert(to.end(), from.begin(), from.end());
 }
 
-// A document before its buffers are read.
-struct OpenScene {
-  GltfFile file;
-  CheckedGltf checked;
-  GltfDocument document;
-};
-
-OpenScene open_scene(const std::string& path, const SceneReadOptions& options) {
-  OpenScene scene;
-  scene.file = read_gltf_file(path);
-  if (!options.allow_outside) {
-    scene.file.roots = data_roots(path);
-  }
-  scene.checked = check_gltf_json(path, scene.file.json, options.limits);
-  scene.document = parse_gltf(path, scene.checked);
-  scene.document.data_roots = scene.file.roots;
-  if (!options.animation.empty()) {
-    keep_animation(scene.document, options.animation);
-  }
-  check_gltf_ranges(scene.document, scene.checked.buffers);
-  return scene;
-}
-
 }  // namespace
 
 SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& options) {
@@ -171,6 +133,7 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   scene.extensions_used = document.extensions_used;
   list_extensions(document, scene);
   list_unshown(document, scene);
+  warn_of_offset(document, scene.warnings);
 
   TextureTable textures(document, options.limits);
   scene.materials = make_materials(document, textures, scene.warnings);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/json_problem.hpp"
 #include "core/text.hpp"
 #include "gazetrace/gaze_aois.hpp"
 #include "job/toml_tree.hpp"
@@ -49,7 +50,7 @@ TomlNode read_tree(const std::string& path) {
     };
     return tree_of_json(nlohmann::ordered_json::parse(text, limit));
   } catch (const std::exception& error) {
-    throw Error(ErrorKind::input, path, error.what(), "this is not JSON");
+    throw Error(ErrorKind::input, path, "is not valid JSON: " + json_problem(error.what()));
   }
 }
 

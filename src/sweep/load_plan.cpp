@@ -115,6 +115,7 @@ class PlanMaker {
                                     [&] { return resolve(job, planned_with(needs_scene ? loaded.get() : &empty_)); });
     jobs_.warnings.insert(jobs_.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
     job.settings.frames = FrameList{inputs.frames};
+    job.settings.size = inputs.job.settings.size;  // which may follow from the screen
 
     SweepTest test;
     test.id = fmt::format("{}-{}-{}", scene.name, name, k + 1);

@@ -14,6 +14,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/sweep_plan.hpp"
+#include "job/settings_paths.hpp"
 #include "job/toml_tree.hpp"
 #include "job/toml_values.hpp"
 
@@ -69,7 +70,7 @@ class RenderOptions {
                                       const std::vector<std::string>& also = {}) const {
     const std::string place = toml_place(path, node);
     const Option& option = find(key, place, also);
-    Assignment result{key, toml_values(node, option, path), place};
+    Assignment result{key, toml_values(node, option, path), place, {}};
     if (result.values.empty()) {
       refuse(place, fmt::format("'{}' is empty", key), "give a value, or leave it out");
     }
@@ -77,6 +78,11 @@ class RenderOptions {
       option.check(result.values, place + ": " + key);
     } catch (const Error& error) {
       throw Error(ErrorKind::input, "", error.what());
+    }
+    for (std::string& value : result.values) {
+      LocatedFile file = located_file(option, value, path);
+      value = std::move(file.value);
+      result.warning = file.warning.empty() ? result.warning : place + ": " + key + ": " + file.warning;
     }
     return result;
   }
@@ -436,7 +442,7 @@ bool is_sweep_plan(const std::string& path) {
   try {
     const TomlNode root = parse_toml(text_of(path), path);
     return std::any_of(root.members.begin(), root.members.end(), [](const auto& member) {
-      return is_among(kTables, member.first) && member.second.kind != TomlNode::Kind::scalar;
+      return is_among(kTables, member.key) && member.node.kind != TomlNode::Kind::scalar;
     });
   } catch (const Error&) {
     return false;  // the reader of jobs says what is wrong

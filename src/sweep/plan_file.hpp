@@ -25,7 +25,8 @@ bool is_among(const Names& names, std::string_view name) {
 struct Assignment {
   std::string option;
   std::vector<std::string> values;
-  std::string place;  // file:line
+  std::string place;    // file:line
+  std::string warning;  // of a file that was found in another place than the plan says; empty: none
 };
 
 struct SweepFileScene {

@@ -27,6 +27,9 @@ bool is_after_sampling(const Option& option) {
 void assign(Job& job, const std::vector<Assignment>& options, const JobSchema& schema,
             const std::function<bool(const Option&)>& wanted = {}) {
   for (const Assignment& given : options) {
+    if (!given.warning.empty()) {
+      job.warnings.push_back(given.warning);
+    }
     if (!wanted || wanted(*schema.find(given.option))) {
       set_option(job, given.option, given.values, {Origin::file, given.place, {}}, given.place + ": " + given.option,
                  schema);

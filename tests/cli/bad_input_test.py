@@ -40,6 +40,29 @@ class BadScenes(harness.CliTest):
         self.write("text.gltf", "{ this is not JSON")
         self.refuse("text.gltf", ["text.gltf"])
 
+    def test_an_empty_file_is_empty(self):
+        for name in ("empty.glb", "empty.gltf"):
+            self.write(name, "")
+            line = self.assert_refused(["scene", name], [name, "is empty"])
+            self.assertNotIn("JSON", line)
+
+    def test_what_is_wrong_with_json_is_told_in_words_of_our_own(self):
+        for text, words in (("{ this is not JSON", "line 1, column 4: it cannot go on with '{ th';"),
+                            ('{"asset": {"version": "2.0"},', "line 1, column 30: the text ends too early")):
+            self.write("text.gltf", text)
+            line = self.assert_refused(["scene", "text.gltf"], ["is not valid JSON", words])
+            self.assertNotIn("exception", line)
+
+    def test_a_scene_of_which_nothing_is_left(self):
+        gltf = harness.box_gltf()
+        gltf["meshes"][0]["primitives"][0]["mode"] = 1  # lines
+        self.write("lines.gltf", json.dumps(gltf))
+        self.write("nothing.gltf", json.dumps({"asset": {"version": "2.0"}}))
+        line = self.assert_refused(["render", "lines.gltf", *OUT], ["lines.gltf", "no geometry", "left out", "lines"])
+        self.assertIn("gazetrace scene", line)
+        self.assert_refused(["render", "nothing.gltf", *OUT], ["nothing.gltf", "no geometry"])
+        self.run_ok("scene", "nothing.gltf")  # which is for looking into files
+
     def test_accessor_out_of_bounds(self):
         gltf = harness.box_gltf()
         gltf["accessors"][0]["count"] = 1000
@@ -204,9 +227,9 @@ class BadOutputs(harness.CliTest):
         self.assertIn("timing.csv", self.run_ok(*arguments, "--frames", "1-5", "--resume").stderr)  # made anew
         self.assertIn('"done"', (self.folder / "run.json").read_text())
 
-    def test_converting_into_no_folder(self):
+    def test_converting_into_what_cannot_be_a_folder(self):
         self.write("log.csv", harness.moving_gaze())
-        self.assert_refused(["gaze", "convert", "log.csv", "-o", "gone/out.csv"], ["gone"])
+        self.assert_refused(["gaze", "convert", "log.csv", "-o", "log.csv/out.csv"], ["log.csv", "cannot be made"])
 
     def test_unknown_view(self):
         arguments = ["render", "box.gltf", "-o", "f.png", "--size", "64x36"]

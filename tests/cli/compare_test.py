@@ -204,11 +204,11 @@ class Compare(harness.CliTest):
         self.write("old.csv", "mine")
         pair = ["compare", "a.png", "b.png", "--metrics", "flip"]
         for option in ("--csv", "--json"):
-            self.assert_refused([*pair, option, "old.csv"], ["old.csv", "--overwrite"])
+            self.assert_refused([*pair, option + "=old.csv"], ["old.csv", "--overwrite"])
             for more in ([], ["--overwrite"]):
-                self.assert_refused([*pair, option, "s/../b.png", *more], ["b.png", "input"])
-            self.assert_refused([*pair, option, "nowhere/out"], ["nowhere"])
-        self.assert_refused([*pair, "--csv", "x", "--json", "./x"], ["two outputs"])
+                self.assert_refused([*pair, option + "=s/../b.png", *more], ["b.png", "input"])
+            self.assert_refused([*pair, option + "=a.png/out"], ["a.png", "cannot be made"])
+        self.assert_refused([*pair, "--csv", "x.json", "--json", "./x.json"], ["two outputs"])
         sequence = ["compare", "s/flip.####.png", "s/flip.####.png", "--metrics", "flip", "--maps", "s"]
         self.assert_refused([*sequence, "--overwrite"], ["flip.0001.png", "input"])
         self.assertEqual((self.folder / "b.png").read_bytes(), test)

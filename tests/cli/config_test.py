@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settings files: whatever was set on the command line comes back the same from the file it was written to."""
 
+import json
+
 import harness
 
 
@@ -68,7 +70,7 @@ class RoundTrip(harness.CliTest):
                            "-o", "out/f.exr").stderr
         words = "preset paper from the command line replaces bounces = 5 of job.toml:3"
         self.assertIn(words, said)
-        self.assertIn(words, (self.folder / "out" / "run.json").read_text())
+        self.assertIn(words, (self.folder / "out" / "f.run.json").read_text())
 
     def test_only_frame_is_frames(self):
         self.assertIn("\nframes = 7\n", self.print_config("--only-frame", "7"))
@@ -85,6 +87,29 @@ class Refused(harness.CliTest):
     def refuse(self, text, words):
         self.write("job.toml", text)
         self.assert_refused(["render", "box.gltf", "--config", "job.toml", "-o", "f.exr"], words)
+
+    def test_paths_begin_in_the_folder_of_the_settings(self):
+        (self.folder / "jobs" / "scenes").mkdir(parents=True)
+        (self.folder / "box.gltf").rename(self.folder / "jobs" / "scenes" / "room.gltf")
+        self.write("jobs/log.csv", harness.moving_gaze())
+        self.write("jobs/job.toml", 'scene = "scenes/room.gltf"\ngaze = "log.csv"\nsize = "16x9"\nspp = 1\nframes = "1"\n'
+                                    'env = "none"\noutput = "out/f.####.exr"\n')
+        for config in ("jobs/job.toml", self.folder / "jobs" / "job.toml"):
+            said = self.run_ok("render", "--config", config, "--overwrite").stderr
+            self.assertNotIn("warning: jobs/job.toml", said)
+        self.assertIn("out/f.0001.exr", self.files())  # what is written lies where the program was started
+        record = json.loads((self.folder / "out/run.json").read_text())
+        self.assertIn('scene = "jobs/scenes/room.gltf"', record["config_toml"])
+        self.assertNotIn(str(self.folder), record["config_toml"])
+        # A record has the paths of its run, wherever it lies.
+        self.run_ok("compare", "out/f.####.exr", "out/f.####.exr", "--metrics", "mse")
+
+    def test_a_path_that_begins_where_the_program_was_started_is_taken_with_a_warning(self):
+        self.write("jobs/job.toml", 'scene = "box.gltf"\nsize = "16x9"\nspp = 1\noutput = "out/f.exr"\n')
+        said = self.run_ok("render", "--config", "jobs/job.toml").stderr
+        self.assertIn("warning: jobs/job.toml:1: scene: 'jobs/box.gltf' is not there, and 'box.gltf'", said)
+        self.write("jobs/job.toml", 'scene = "gone.gltf"\noutput = "out/g.exr"\n')
+        self.assert_refused(["render", "--config", "jobs/job.toml"], ["jobs/gone.gltf"])
 
     def test_mistakes_have_file_and_line(self):
         self.refuse("\nspp = 3\nregion-sampels = [1, 2, 3]\n", ["job.toml:3", "region-sampels", "region-samples"])

@@ -141,7 +141,12 @@ class Study(harness.CliTest):
         self.assertIn("main_sequence.svg", parts)
         self.assertIn("heat_map.svg", parts)
         self.assertIn("events.tsv", parts)
+        self.assertNotIn("events by ivt", page)
         self.assert_refused(["gaze", "report", "log.csv", "-o", "page.html"], ["exists already"])
+        # Events that are not to be relied on are said to be so on the page.
+        self.run_ok("gaze", "synth", "-o", "noisy.csv", "--duration", "20s", "--noise", "0.5", "--rate", "300")
+        self.run_ok("gaze", "report", "noisy.csv", "-o", "noisy.html")
+        self.assertIn("events by ivt: noise of ", (self.folder / "noisy.html").read_text())
 
 
 if __name__ == "__main__":

@@ -4,12 +4,13 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import unittest
 
 import harness
 
-COMMANDS = ["render", "plan", "scene", "gaze", "merge", "list"]
+COMMANDS = ["render", "plan", "scene", "gaze", "merge", "list", "help", "version", "completion", "man"]
 
 
 class Talk(harness.CliTest):
@@ -22,6 +23,69 @@ class Talk(harness.CliTest):
             result = self.run_ok(command, "--help")
             self.assertIn("Exit codes", result.stdout)
             self.assertEqual(result.stderr, "")
+
+    def test_the_demo_makes_and_names_its_files(self):
+        arguments = ["demo", "show", "--data", harness.SOURCE, "--size", "64x36", "--frames", "1-2", "--no-sweep"]
+        result = self.run_ok(*arguments)
+        for name in ("show/foveated/frame.0002.png", "show/uniform/frame.0002.exr"):
+            self.assertIn(name, self.files())
+        self.assertIn("show/foveated/frame.0001.png", result.stdout)
+        self.assertIn("gazetrace render --config", result.stderr)
+        self.assertEqual("show/side-by-side.mp4" in self.files(), shutil.which("ffmpeg") is not None)
+        self.assert_refused(arguments, ["show", "--overwrite"])
+        self.assert_refused(["demo", "other", "--data", "nowhere"], ["nowhere", "example.toml"])
+
+    def test_help_and_version_are_commands(self):
+        self.assertEqual(self.run_ok("version").stdout, self.run_ok("--version").stdout)
+        self.assertEqual(self.run_ok("help").stdout, self.run_ok("--help").stdout)
+        self.assertEqual(self.run_ok("help", "gaze", "inspect").stdout, self.run_ok("gaze", "inspect", "--help").stdout)
+        self.assertIn("render", self.run_program("help", "rendre").stderr)
+
+    def complete(self, script, *words):
+        """What bash offers for the last of the words."""
+        line = " ".join(words)
+        shell = (f"source {script}\nCOMP_WORDS=({' '.join(word or chr(39) * 2 for word in words)})\nCOMP_CWORD={len(words) - 1}\n"
+                 f"COMP_LINE='{line}'\n_gazetrace\nprintf '%s\\n' \"${{COMPREPLY[@]}}\"")
+        return subprocess.run(["bash", "--norc", "-c", shell], cwd=self.folder, capture_output=True, text=True, check=True).stdout.split()
+
+    def test_completion_in_bash(self):
+        self.write("completion.bash", self.run_ok("completion", "bash").stdout)
+        complete = lambda *words: self.complete("completion.bash", "gazetrace", *words)
+        self.assertEqual(complete("ren"), ["render"])
+        self.assertIn("inspect", complete("gaze", ""))
+        offered = complete("render", "--fallo")
+        self.assertTrue({"--falloff", "--falloff-normalisation", "--falloff-table"} <= set(offered), offered)
+        self.assertTrue(all(word.startswith("--fallo") for word in offered), offered)
+        self.assertEqual(complete("render", "box.gltf", "--falloff", "geis"), ["geisler-perry"])
+        self.assertIn("h264", complete("video", "--codec", ""))
+        self.assertEqual(complete("render", "bo"), ["box.gltf"])
+        self.assertEqual(complete("gaze", "inspect", "--sv"), ["--svg"])
+        self.assertIn("--config", complete("plan", "--conf"))
+
+    def test_completion_names_every_option_in_every_shell(self):
+        options = [option["name"] for option in json.loads(self.run_ok("list", "options", "--json").stdout)]
+        for shell, form in (("bash", "--{} "), ("zsh", "'--{}:"), ("fish", " -l {} ")):
+            script = self.run_ok("completion", shell).stdout
+            for option in options:
+                if option != "scene":  # which has no dashes
+                    self.assertIn(form.format(option), script.replace("'", " '") if shell == "bash" else script)
+        self.assertIn("bash, zsh, fish", self.run_program("completion", "tcsh").stderr)
+
+    def test_manual_pages(self):
+        self.run_ok("man", "--folder", "man")
+        pages = self.files("man")
+        for name in ("gazetrace.1", "gazetrace-render.1", "gazetrace-gaze-inspect.1", "gazetrace-farm-status.1"):
+            self.assertIn(name, pages)
+        page = self.run_ok("man", "render").stdout
+        self.assertEqual(page, (self.folder / "man/gazetrace-render.1").read_text())
+        for option in json.loads(self.run_ok("list", "options", "--json").stdout):
+            self.assertIn(option["name"].replace("-", "\\-"), page)
+        if shutil.which("groff"):
+            for name in pages:
+                shown = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-P-cbou", name], cwd=self.folder / "man",
+                                       capture_output=True, text=True, check=True)
+                self.assertEqual(shown.stderr, "", name)
+                self.assertIn("NAME", shown.stdout)
 
     def test_every_option_has_help(self):
         for command in (["render"], ["plan"], ["gaze", "inspect"], ["gaze", "convert"]):
@@ -68,13 +132,131 @@ class Talk(harness.CliTest):
         self.assertEqual(quiet.stderr, "")
         self.assertEqual(json.loads(quiet.stdout)["rendered"], 3)
 
+    def test_stills_share_a_folder(self):
+        job = ["--size", "16x9", "--spp", "1", "--quiet"]
+        self.run_ok("render", "box.gltf", "-o", "out/first.exr", "-o", "out/first.png", "--seed", "1", *job)
+        self.run_ok("render", "box.gltf", "-o", "out/second.png", "--seed", "2", *job)
+        self.assertEqual(self.files("out"), ["first.exr", "first.png", "first.run.json", "first.timing.csv", "second.png",
+                                             "second.run.json", "second.timing.csv"])
+        for name, seed in (("first", 1), ("second", 2)):
+            self.assertIn(f"\nseed = {seed}\n", json.loads((self.folder / f"out/{name}.run.json").read_text())["config_toml"])
+        refused = self.run_program("render", "box.gltf", "-o", "out/second.png", *job)
+        self.assertIn("out/second.", refused.stderr)
+        self.run_ok("render", "box.gltf", "-o", "out/second.png", "--seed", "2", "--resume", *job)
+
+    def test_commands_make_the_folders_of_their_outputs(self):
+        self.write("log.csv", harness.moving_gaze())
+        self.run_ok("render", "box.gltf", "-o", "a/b/f.exr", "--size", "16x9", "--spp", "1", "--quiet")
+        self.run_ok("compare", "a/b/f.exr", "a/b/f.exr", "--metrics", "mse", "--csv", "c/d/scores.csv", "--json", "e/scores.json",
+                    "--maps", "f/maps")
+        self.run_ok("gaze", "synth", "-o", "g/h/gaze.csv", "--truth", "i/truth.tsv", "--duration", "1s")
+        self.run_ok("gaze", "convert", "log.csv", "-o", "j/k/copy.csv")
+        self.run_ok("gaze", "convert", "log.csv", "-o", "l/m/sub-01_task-view_physio.tsv.gz")
+        self.run_ok("gaze", "events", "log.csv", "-o", "n/events.tsv")
+        self.run_ok("gaze", "inspect", "log.csv", "--svg", "o/picture.svg", "--save-columns", "p/map.json")
+        self.run_ok("gaze", "report", "log.csv", "-o", "q/page.html")
+        self.run_ok("plan", "box.gltf", "--frames", "1-2", "--save-camera", "r/s/path.tum")
+        names = self.files()
+        for name in ("c/d/scores.csv", "e/scores.json", "g/h/gaze.csv", "i/truth.tsv", "j/k/copy.csv", "n/events.tsv",
+                     "o/picture.svg", "p/map.json", "q/page.html", "r/s/path.tum"):
+            self.assertIn(name, names)
+
+    def test_json_has_one_rule(self):
+        """--json alone and with - prints on stdout in place of the text; --json FILE.json writes it beside the text."""
+        self.write("log.csv", harness.moving_gaze())
+        still = ["--size", "16x9", "--spp", "1", "--quiet", "--overwrite"]
+        self.run_ok("render", "box.gltf", "-o", "f.exr", *still)
+        commands = [["scene", "box.gltf"], ["scene", "box.gltf", "--estimate"], ["list", "filters"], ["list", "options"],
+                    ["render", "box.gltf", "-o", "g.exr", *still], ["plan", "box.gltf", "--frames", "1"],
+                    ["plan", "--counts", "--gaze-at", "0.5,0.5", "--size", "64x36", *harness.SCREEN],
+                    ["compare", "f.exr", "f.exr", "--metrics", "mse"], ["gaze", "inspect", "log.csv"],
+                    ["gaze", "events", "log.csv"],
+                    ["gaze", "report", "log.csv", "-o", "r.html", "--overwrite"],
+                    ["gaze", "convert", "log.csv", "-o", "c.csv", "--overwrite"],
+                    ["gaze", "synth", "-o", "s.csv", "--duration", "1s", "--overwrite"]]
+        for command in commands:
+            with self.subTest(command=command):
+                json.loads(self.run_ok(*command, "--json").stdout)
+                beside = self.run_ok(*command, "--json", "new/result.json").stdout
+                self.assertFalse(beside.startswith(("{", "[")), beside)
+                json.loads((self.folder / "new/result.json").read_text())
+                (self.folder / "new/result.json").unlink()
+        command = ["compare", "f.exr", "f.exr", "--metrics", "mse", "--json"]
+        json.loads(self.run_ok(*command, "-").stdout)
+        self.assertNotIn("-", self.files())
+        self.run_ok(*command, "new/result.json")
+        refused = self.run_program(*command, "new/result.json")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("new/result.json", refused.stderr)
+        self.run_ok(*command, "new/result.json", "--overwrite")
+        # What follows is its file only where it looks like one.
+        json.loads(self.run_ok("scene", "--json", "box.gltf").stdout)
+        for command in (["merge"], ["sweep"], ["report"], ["video"], ["farm", "status"], ["gaze", "trials"], ["gaze", "aois"],
+                        ["gaze", "objects"]):
+            self.assertRegex(self.run_ok(*command, "--help").stdout, r"--json \[FILE\]", command)
+
+    def test_progress_as_json(self):
+        job = ["render", "box.gltf", "-o", "f.####.exr", "--frames", "1-3", "--size", "16x9", "--spp", "1", "--overwrite",
+               "--gaze-max-age", "1s"]
+        result = self.run_ok(*job, "--progress", "json")
+        events = [json.loads(line) for line in result.stderr.splitlines()]
+        self.assertEqual([event["event"] for event in events], ["begin", "warning", "frame", "frame", "frame", "end"])
+        self.assertEqual((events[0]["frames"], events[0]["count"]), ("1-3", 3))
+        self.assertEqual([event["frame"] for event in events[2:5]], [1, 2, 3])
+        self.assertIn("--gaze-max-age", events[1]["text"])
+        self.assertEqual((events[-1]["exit_code"], events[-1]["rendered"]), (0, 3))
+        failed = self.run_program("render", "gone.gltf", "-o", "g.exr", "--progress", "json")
+        self.assertEqual(failed.returncode, 2)
+        (end,) = [json.loads(line) for line in failed.stderr.splitlines()]
+        self.assertEqual((end["event"], end["exit_code"]), ("end", 2))
+        self.assertIn("gone.gltf", end["error"])
+        read, write = os.pipe()
+        process = subprocess.run([harness.PROGRAM, *job, "--progress", f"json:{write}"], cwd=self.folder, pass_fds=[write],
+                                 capture_output=True, text=True, check=True)
+        os.close(write)
+        with os.fdopen(read) as stream:
+            self.assertEqual([json.loads(line)["event"] for line in stream][-1], "end")
+        self.assertIn("3 frames", process.stderr)
+        self.assert_refused([*job, "--progress", "json:77"], ["--progress", "77"])
+
+    def test_a_name_of_both_families(self):
+        """linear is a fall-off and a filter; help and errors say which option takes what."""
+        self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--filter", "quadric"], ["filter", "give --falloff"])
+        self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--falloff", "guided"], ["falloff", "give --filter"])
+        text = " ".join(self.run_ok("render", "--help").stdout.split())
+        self.assertIn("how pixels are filled from the samples is --filter, which has a 'linear', too", text)
+        self.assertIn("where the samples are is --falloff, which has a 'linear', too", text)
+
+    def test_each_aov_is_described(self):
+        members = json.loads(self.run_ok("list", "aovs", "--json").stdout)["aovs"]
+        for member in members:
+            self.assertGreater(len(member["description"]), 20, member["name"])
+        words = {member["name"]: member["description"] for member in members}
+        for name, word in (("normal", "world"), ("depth", "metres"), ("variance", "mean"), ("eccentricity", "degrees")):
+            self.assertIn(word, words[name])
+
+    def test_configs_within_opencolorio(self):
+        result = self.run_program("render", "box.gltf", "-o", "f.png", "--size", "16x9", "--spp", "1", "--ocio", "ocio://default")
+        if result.returncode != 0:  # before OpenColorIO 2.2
+            self.assertIn("2.2", result.stderr)
+            self.assertIn("as a file", result.stderr)
+
+    def test_nothing_to_save_is_told(self):
+        gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "1920,1080", "--screen-cm", "60,34", "--screen-distance-cm", "60", "--falloff",
+                "geisler-perry"]
+        small = self.run_ok("plan", "box.gltf", *gaze, "--size", "160x90", "--frames", "1").stderr
+        self.assertIn("--falloff geisler-perry saves only 1.0", small)
+        self.assertIn("--falloff-normalisation", small)
+        self.assertIn("saves only", self.run_ok("render", "box.gltf", *gaze, "--size", "160x90", "-o", "f.exr", "--spp", "1").stderr)
+        self.assertNotIn("saves only", self.run_ok("plan", "box.gltf", *gaze, "--size", "1920x1080", "--frames", "1").stderr)
+
     def test_replaying_a_pixel(self):
         self.run_ok("render", "box.gltf", "-o", "f.exr", "--exr-pixels", "float", "--size", "32x18", "--spp", "8", "--quiet")
         text = self.run_ok("render", "box.gltf", "--size", "32x18", "--spp", "8", "--quiet", "--only-frame", "1",
                            "--only-pixel", "16,9").stdout
         self.assertRegex(text, r"^frame 1 pixel 16,9: radiance \S+ \S+ \S+, samples 8,")
         self.assertNotIn("radiance 0 0 0", text)
-        self.assertEqual(self.files(), ["box.gltf", "f.exr", "run.json", "timing.csv"])
+        self.assertEqual(self.files(), ["box.gltf", "f.exr", "f.run.json", "f.timing.csv"])
 
     def test_scene_summary(self):
         summary = json.loads(self.run_ok("scene", "box.gltf", "--bvh", "--json").stdout)
@@ -121,7 +303,7 @@ class Talk(harness.CliTest):
         self.write("dark.gltf", json.dumps(gltf))
         job = ["-o", "f.exr", "--size", "16x9", "--spp", "1", "--overwrite"]
         self.assertIn("environment: the built-in sky", self.run_ok("render", "dark.gltf", *job).stderr)
-        self.assertIn("sky", json.loads((self.folder / "run.json").read_text())["facts"]["environment"])
+        self.assertIn("sky", json.loads((self.folder / "f.run.json").read_text())["facts"]["environment"])
         self.assertIn("environment: none", self.run_ok("render", "box.gltf", *job).stderr)
 
     def test_run_record_repeats_the_run(self):

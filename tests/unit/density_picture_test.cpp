@@ -217,12 +217,17 @@ TEST(DensityPicture, SizesThatFilesOnlyClaimAreRefusedBeforeThereIsMemoryForThem
   ASSERT_NE(at, std::string::npos);
   for (const auto& [width, height, words] :
        {std::tuple{60000, 100, "60000 x 100 pixels and "}, std::tuple{65000, 64, "65000 x 64 pixels and "},
-        std::tuple{1'000'000, 4, "exceeds the maximum"}}) {
+        std::tuple{1'000'000, 4, "a window of 1000000 x 4 pixels"}}) {
     const std::array<std::int32_t, 4> window{0, 0, width - 1, height - 1};
     std::memcpy(bytes.data() + at + before.size(), window.data(), sizeof window);
     std::ofstream(path, std::ios::binary) << bytes;
     EXPECT_NE(said(path).find(words), std::string::npos) << said(path);
   }
+  const std::string compression("compression\0compression\0", 24);
+  const std::int32_t claimed = 0x72000000;
+  std::memcpy(bytes.data() + bytes.find(compression) + compression.size(), &claimed, sizeof claimed);
+  std::ofstream(path, std::ios::binary) << bytes;
+  EXPECT_NE(said(path).find("its attribute 'compression' states 1912602624 bytes"), std::string::npos) << said(path);
 }
 
 TEST(DensityPicture, APatternHasOneFileForEachFrame) {

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "gazetrace/scene.hpp"
+#include "gazetrace/sky.hpp"
 #include "support/gltf_builder.hpp"
 
 namespace gazetrace {
@@ -157,6 +159,103 @@ TEST(Environment, NegativePixelsBecomeBlackWithAWarning) {
     EXPECT_EQ(least, 0);
     EXPECT_NEAR(most, 11, 1);
   }
+}
+
+// Judd, MacAdam and Wyszecki 1964, from which the CIE's daylight is made: the locus of daylights.
+double daylight_y(double x) {
+  return -3.000 * x * x + 2.870 * x - 0.275;
+}
+
+TEST(ClearSky, ItsColoursLieAlongTheLocusOfDaylight) {
+  for (const double turbidity : {2.0, 3.0, 4.0, 6.0}) {
+    for (const double elevation : {20.0, 40.0, 60.0}) {
+      ClearSky sky;
+      sky.turbidity = turbidity;
+      sky.sun_elevation_deg = elevation;
+      for (const Vec3d& direction : {Vec3d{0, 1, 0}, normalize(Vec3d{1, 1, 0}), normalize(Vec3d{0, 1, -1})}) {
+        const SkyColor color = clear_sky_color(sky, direction);
+        EXPECT_NEAR(color.y, daylight_y(color.x), 0.02) << turbidity << " " << elevation;
+        EXPECT_GT(color.x, 0.22);
+        EXPECT_LT(color.x, 0.36);
+      }
+    }
+  }
+}
+
+// The Illuminating Engineering Society's formulas for a clear day (Lighting Handbook, 9th edition, chapter 8), made
+// from other measurements: 127.5 klx exp(-0.21 m) from the sun, 0.8 + 15.5 sqrt(sin h) klx from the sky on the ground.
+TEST(ClearSky, ItsLightIsThatOfAClearDay) {
+  for (const double elevation : {25.0, 40.0, 60.0}) {
+    ClearSky sky;
+    sky.turbidity = 2.5;
+    sky.sun_elevation_deg = elevation;
+    sky.ground_albedo = 0;
+    const double height = std::sin(elevation * kRadPerDeg);
+    EXPECT_NEAR(sun_illuminance(sky).y / (127500 * std::exp(-0.21 / height)), 1, 0.15) << elevation;
+    double on_ground = 0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {  // in equal shares of the illuminance
+        const double sine = std::sqrt((i + 0.5) / kSteps);
+        const double around = (j + 0.5) / kSteps * 2 * kPi;
+        const Vec3d direction{sine * std::cos(around), std::sqrt(1 - sine * sine), sine * std::sin(around)};
+        on_ground += clear_sky_color(sky, direction).luminance_cd_m2 * kPi / (kSteps * kSteps);
+      }
+    }
+    // The model is known to be brighter than measured skies (Zotti, Wilkie and Purgathofer 2007).
+    EXPECT_GT(on_ground, 1000 * (0.8 + 15.5 * std::sqrt(height))) << elevation;
+    EXPECT_LT(on_ground, 2000 * (0.8 + 15.5 * std::sqrt(height))) << elevation;
+  }
+}
+
+// Where clear skies are bright and dark: about the sun and toward the horizon; a right angle away from the sun.
+TEST(ClearSky, IsBrightestAboutTheSunAndDarkestARightAngleAway) {
+  const ClearSky sky;
+  const auto luminance = [&](double towards_sun_deg) {  // from the zenith, in the plane of the sun
+    const double angle = towards_sun_deg * kRadPerDeg;
+    const double around = sky.sun_azimuth_deg * kRadPerDeg;
+    return clear_sky_color(sky,
+                           {std::sin(angle) * std::sin(around), std::cos(angle), std::sin(angle) * std::cos(around)})
+        .luminance_cd_m2;
+  };
+  const double at_sun = luminance(90 - sky.sun_elevation_deg);
+  EXPECT_GT(at_sun, 3 * luminance(0));
+  const double opposite = luminance(-sky.sun_elevation_deg);
+  EXPECT_LT(opposite, luminance(0));
+  EXPECT_LT(opposite, luminance(-85));
+}
+
+// The picture holds the model: the sun where it is said to be, with its whole light, and half of all directions sky.
+TEST(ClearSky, ThePictureHoldsSunSkyAndGround) {
+  const ClearSky sky;
+  const Environment environment = clear_sky(sky, 0, 1);
+  const ImageRgb& picture = environment.radiance;
+  double brightest = 0;
+  Vec3d at{0, 0, 0};
+  double sun_lx = 0;
+  for (int y = 0; y < picture.height_px; ++y) {
+    for (int x = 0; x < picture.width_px; ++x) {
+      const Vec3f& pixel = picture(x, y);
+      ASSERT_TRUE(std::isfinite(pixel.x) && pixel.x >= 0 && pixel.y >= 0 && pixel.z >= 0);
+      const double theta = (y + 0.5) / picture.height_px * kPi;
+      const double azimuth = ((x + 0.5) / picture.width_px - 0.5) * 2 * kPi;
+      const Vec3d direction{std::sin(theta) * std::sin(azimuth), std::cos(theta), -std::sin(theta) * std::cos(azimuth)};
+      if (pixel.y > brightest) {
+        brightest = pixel.y;
+        at = direction;
+      }
+      if (dot(direction, sun_direction(sky)) > std::cos(1.5 * kRadPerDeg)) {
+        const double solid_angle = 2 * kPi / picture.width_px * kPi / picture.height_px * std::sin(theta);
+        sun_lx += pixel.y * solid_angle * kSkyUnit_cd_m2 / 2;  // one stop brighter, as asked
+      }
+    }
+  }
+  EXPECT_GT(dot(at, sun_direction(sky)), std::cos(0.5 * kRadPerDeg));
+  EXPECT_NEAR(sun_lx / sun_illuminance(sky).y, 1, 0.02);
+  EXPECT_GT(picture(10, picture.height_px - 10).y, 0);
+  ClearSky wrong;
+  wrong.turbidity = 100;
+  EXPECT_THROW((void)clear_sky(wrong), Error);
 }
 
 }  // namespace

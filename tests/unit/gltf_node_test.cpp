@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gazetrace/scene.hpp"
+#include "gazetrace/scene_contents.hpp"
 #include "support/gltf_builder.hpp"
 
 namespace gazetrace {
@@ -211,6 +212,67 @@ TEST(Lights, DefaultsAreThoseOfTheExtension) {
   EXPECT_EQ(scene.lights[0].cos_inner, 1.0F);
   EXPECT_NEAR(scene.lights[0].cos_outer, kHalf, 1e-7);
   EXPECT_EQ(scene.lights[0].direction, (Vec3f{0, 0, -1}));
+}
+
+// CESIUM_RTC: the offset is that of bodies, cameras and lights alike, also of those that animations move.
+TEST(Nodes, TheOffsetOfCesiumRtcMovesEverything) {
+  GltfBuilder builder;
+  const int mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", builder.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}}}});
+  builder.add_node({{"mesh", mesh}, {"translation", {1, 0, 0}}});
+  builder.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  builder.add_node({{"camera", 0}, {"translation", {0, 0, 4}}});
+  builder.json["extensionsUsed"] = {"CESIUM_RTC"};
+  builder.json["extensionsRequired"] = {"CESIUM_RTC"};
+  builder.json["extensions"] = {{"CESIUM_RTC", {{"center", {10, 20, -30}}}}};
+  Scene scene = load(builder);
+  ASSERT_EQ(scene.instances.size(), 1U);
+  expect_near(scene.instances[0].to_world.t, {11, 20, -30});
+  ASSERT_EQ(scene.cameras.size(), 1U);
+  expect_near(scene.cameras[0].path.pose_at(0).position_m, {10, 20, -26});
+  EXPECT_THAT(scene.warnings, ::testing::IsEmpty());
+
+  builder.json["extensions"]["CESIUM_RTC"]["center"] = {4e6, 5e5, 4.8e6};  // on the Earth's surface
+  scene = load(builder);
+  expect_near(scene.instances[0].to_world.t, {4e6 + 1, 5e5, 4.8e6});
+  EXPECT_THAT(scene.warnings, ::testing::ElementsAre(HasSubstr("6268 km from the origin")));
+  builder.json["extensions"]["CESIUM_RTC"]["center"] = {1, 2};
+  const test::TempFolder folder;
+  EXPECT_THAT(test::error_of(folder.write("scene.gltf", builder.text())), HasSubstr("CESIUM_RTC.center"));
+}
+
+TEST(SceneContents, NamesWhatMovesAndDeforms) {
+  GltfBuilder builder;
+  const int positions = builder.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  const int mesh = builder.add_mesh(
+      {{"attributes", {{"POSITION", positions}}}, {"targets", {{{"POSITION", positions}}, {{"POSITION", positions}}}}});
+  builder.json["meshes"][0]["name"] = "face";
+  builder.json["meshes"][0]["extras"] = {{"targetNames", {"smile", "frown"}}};
+  builder.add_node({{"mesh", mesh}});
+  builder.json["skins"] = {{{"name", "arm"}, {"joints", {0}}}};
+  const int times = builder.add<float>({0.5F, 2.5F}, 1);
+  const int places = builder.add<float>({0, 0, 0, 1, 0, 0}, 3);
+  const int weights = builder.add<float>({0, 0, 1, 1}, 1);
+  builder.json["animations"] = {
+      {{"name", "nod"},
+       {"samplers", {{{"input", times}, {"output", places}}, {{"input", times}, {"output", weights}}}},
+       {"channels",
+        {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}},
+         {{"sampler", 1}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+  const test::TempFolder folder;
+  const SceneContents contents = read_scene_contents(folder.write("scene.gltf", builder.text()));
+  ASSERT_EQ(contents.animations.size(), 1U);
+  EXPECT_EQ(contents.animations[0].name, "nod");
+  EXPECT_EQ(contents.animations[0].begin_s, 0.5);
+  EXPECT_EQ(contents.animations[0].end_s, 2.5);
+  EXPECT_EQ(contents.animations[0].nodes, 1U);
+  EXPECT_EQ(contents.animations[0].shapes, 1U);
+  ASSERT_EQ(contents.skins.size(), 1U);
+  EXPECT_EQ(contents.skins[0].name, "arm");
+  EXPECT_EQ(contents.skins[0].joints, 1U);
+  ASSERT_EQ(contents.morphed.size(), 1U);
+  EXPECT_EQ(contents.morphed[0].name, "face");
+  EXPECT_THAT(contents.morphed[0].targets, ::testing::ElementsAre("smile", "frown"));
 }
 
 }  // namespace

@@ -4,7 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <filesystem>
+#include <map>
+
 #include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/recorded_run.hpp"
 #include "gazetrace/resolve.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -177,6 +182,92 @@ TEST_F(Resolve, ResumingWithoutADigestIsAnErrorAndNoMatch) {
     EXPECT_THAT(error.what(), HasSubstr("`resume`: no settings digest"));
   }
   EXPECT_EQ(file_bytes(folder_ / "f.0001.exr"), "something else");
+}
+
+// The triangle's corners in the frame: the outermost one is near the edge and none is beyond it.
+TEST_F(Resolve, AnObjectWithoutACameraFillsTheFrame) {
+  Job job = job_;
+  job.settings.eye.reset();
+  job.settings.target.reset();
+  for (const char* size : {"32x18", "20x40", "90x10"}) {
+    set_option(job, "size", size);
+    const ResolvedJob resolved = resolve(job);
+    const Camera& camera = resolved.plan.frames.front().camera;
+    const double slope = std::tan(camera.projection.yfov_rad / 2);
+    const double aspect = static_cast<double>(resolved.job.settings.size.width) / resolved.job.settings.size.height;
+    const Quatd& turned = camera.pose.orientation;
+    const Quatd back{-turned.x, -turned.y, -turned.z, turned.w};
+    double most = 0;
+    for (const Instance& instance : resolved.scene->instances) {
+      for (const Vec3f& p : resolved.scene->meshes[static_cast<std::size_t>(instance.mesh)].geometries[0].positions) {
+        const Vec3d world = transform_point(instance.to_world, {p.x, p.y, p.z});
+        const Vec3d seen = rotate(back, world - camera.pose.position_m);
+        ASSERT_LT(seen.z, 0);
+        most = std::max({most, std::abs(seen.x / -seen.z) / (slope * aspect), std::abs(seen.y / -seen.z) / slope});
+      }
+    }
+    EXPECT_GT(most, 0.9) << size;
+    EXPECT_LT(most, 0.97) << size;
+  }
+}
+
+TEST_F(Resolve, AFrameWithoutASizeHasTheShapeOfTheScreen) {
+  Job job;
+  for (const char* option : {"scene", "eye", "target", "spp", "frames"}) {
+    set_option(job, option, option_values(job_, option));
+  }
+  set_option(job, "gaze-at", "0.5,0.5");
+  set_option(job, "screen-px", "1600,1200");
+  set_option(job, "screen-cm", "40,30");
+  set_option(job, "screen-distance-cm", "60");
+  ResolveOptions plan;
+  plan.scope = ResolveScope::plan;
+  const ResolvedJob resolved = resolve(job, plan);
+  EXPECT_EQ(resolved.job.settings.size.width, 1280);
+  EXPECT_EQ(resolved.job.settings.size.height, 960);
+  EXPECT_EQ(resolved.plan.frames.front().height_px, 960);
+  const std::map<std::string, std::string> decisions(resolved.decisions.begin(), resolved.decisions.end());
+  EXPECT_THAT(decisions.at("size"), HasSubstr("1280x960"));
+  set_option(job, "size", "1280x720");  // asked for: it does not have the shape of the screen
+  EXPECT_THROW((void)resolve(job, plan), Error);
+}
+
+// The display shows so few pixels a degree that all of what they can show is seen at every eccentricity.
+TEST_F(Resolve, AFallOffThatSavesNothingIsTold) {
+  Job job = job_;
+  job.settings.gaze = {};
+  set_option(job, "gaze-at", "0.5,0.5");
+  set_option(job, "screen-px", "1920,1080");
+  set_option(job, "screen-cm", "60,33.75");
+  set_option(job, "screen-distance-cm", "60");
+  set_option(job, "falloff", "geisler-perry");
+  set_option(job, "size", "160x90");
+  ResolveOptions plan;
+  plan.scope = ResolveScope::plan;
+  EXPECT_THAT(resolve(job, plan).warnings,
+              testing::Contains(testing::AllOf(HasSubstr("geisler-perry saves only 1.0"), HasSubstr("`size`"))));
+  set_option(job, "size", "1920x1080");
+  EXPECT_THAT(resolve(job, plan).warnings, Not(testing::Contains(HasSubstr("saves only"))));
+  set_option(job, "size", "160x90");
+  set_option(job, "falloff-normalisation", "relative");
+  EXPECT_THAT(resolve(job, plan).warnings, Not(testing::Contains(HasSubstr("saves only"))));
+}
+
+TEST_F(Resolve, StillsHaveRecordsOfTheirOwn) {
+  Job job = job_;
+  set_option(job, "frames", "1");
+  set_option(job, "output", std::vector{folder_ / "one.exr", folder_ / "shown.png"});
+  const std::string record = rendered(job);
+  const ResolvedJob resolved = resolve(job);
+  EXPECT_EQ(output_files(resolved.pipeline, resolved.frames).front(), folder_ / "one.run.json");
+  write_text_atomically(folder_ / "one.run.json", record);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "one.timing.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run.json"));
+  const std::string digest = resolved.pipeline.settings_digest;
+  for (const char* name : {"one.exr", "shown.png"}) {
+    EXPECT_TRUE(find_recorded_run(folder_ / name, digest)) << name;
+    EXPECT_FALSE(find_recorded_run(folder_ / name, "another")) << name;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "report/fill.hpp"
@@ -247,6 +248,64 @@ TEST(ReportFindings, ControlsMayBeUndecided) {
   EXPECT_THAT(html, HasSubstr("rendered with a wrong gaze and scored with the right one"));
   json["controls"][0]["sensitive"] = true;
   EXPECT_THAT(report_findings(read(json)).caveats, Not(Contains(HasSubstr("when the gaze is"))));
+}
+
+// Two repeats give intervals such as 5e-6 to 7e7, which say nothing but that there were too few.
+TEST(ReportFindings, TooFewRepeatsAreASentence) {
+  ordered_json fast = row("t", "test", score(0.1, 0.09, 0.11));
+  fast["speed_up"] = estimate(20, 5e-6, 7e7);
+  const ReportFindings findings = report_findings(read(results({fast})));
+  EXPECT_THAT(findings.headline, HasSubstr("20 times as fast"));
+  EXPECT_THAT(findings.headline, HasSubstr("Too few repeats"));
+  EXPECT_THAT(findings.summary, Contains(HasSubstr("too few repeats for an interval")));
+  EXPECT_THAT(findings.summary, Not(Contains(HasSubstr("7e+07"))));
+  EXPECT_THAT(tables_html(read(results({fast}))), Not(HasSubstr("7e+07")));
+}
+
+TEST(ReportFindings, ManyControlsAreCounted) {
+  ordered_json json = results({row("t", "test", score(0.1, 0.09, 0.11))});
+  json["controls"] = ordered_json::array();
+  for (int i = 0; i < 45; ++i) {
+    json["controls"].push_back(control("flip", 0.1, i < 40 ? 0.09 : 0.13));
+  }
+  const std::vector<std::string> caveats = report_findings(read(json)).caveats;
+  EXPECT_THAT(caveats,
+              Contains(HasSubstr("flip: of 45 controls with a wrong gaze it notices 0, is insensitive to 40, and 5 "
+                                 "are undecided")));
+  EXPECT_LT(caveats.size(), 5U);
+}
+
+// Runs that a reader would take for one another have names that tell them apart.
+TEST(ReportPage, RunsHaveNamesThatTellThemApart) {
+  ordered_json first = row("a", "test", score(0.1, 0.09, 0.11));
+  ordered_json second = row("b", "test", score(0.2, 0.19, 0.21));
+  ordered_json other = row("c", "equal-time", score(0.3, 0.29, 0.31));
+  for (ordered_json* one : {&first, &second, &other}) {
+    (*one)["label"] = "32 / 16 / 8";
+  }
+  first["settings"] = {{"filter", "guided"}};
+  second["settings"] = {{"filter", "linear"}};
+  const Results data = read(results({first, second, other}));
+  const std::map<std::string, std::string> names = run_names(data);
+  std::set<std::string> different;
+  for (const auto& [id, name] : names) {
+    different.insert(name);
+  }
+  EXPECT_EQ(different.size(), 3U);
+  EXPECT_THAT(names.at("a"), HasSubstr("filter guided"));
+  EXPECT_THAT(names.at("b"), HasSubstr("filter linear"));
+}
+
+TEST(ReportFindings, ARunThatSavesNothingIsNamed) {
+  ordered_json test = row("t", "test", score(0.1, 0.09, 0.11));
+  ordered_json uniform = row("u", "uniform-reference-rate", score(0.1, 0.09, 0.11));
+  test["spp_mean"] = 31.4;
+  uniform["spp_mean"] = 32.0;
+  uniform["of"] = "t";
+  const auto caveats = [&] { return report_findings(read(results({test, uniform}))).caveats; };
+  EXPECT_THAT(caveats(), Contains(HasSubstr("it traces 31.4 samples a pixel where uniform has 32")));
+  test["spp_mean"] = 3.0;
+  EXPECT_THAT(caveats(), Not(Contains(HasSubstr("samples a pixel where uniform"))));
 }
 
 TEST(ReportFindings, WhichFramesAreScored) {

@@ -11,6 +11,7 @@
 #include "cli/compare_inputs.hpp"
 #include "cli/compare_report.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/flicker.hpp"
 
@@ -336,10 +337,8 @@ int run_compare(const CompareJob& job) {
   }
   const std::vector<SequenceScores> summary = comparison.summary();
   const CompareConditions conditions = conditions_of(job, inputs, reader, settings, width, height);
-  if (!job.json.empty()) {
-    write_text_atomically(job.json, compare_json(conditions, summary, frames));
-  }
-  print_result(compare_text(conditions, summary));
+  const JsonOutput json{job.json, [&] { return job.overwrite; }};
+  json.print(compare_text(conditions, summary), [&] { return compare_json(conditions, summary, frames); });
   return fails(limits, headline(summary)) ? exit_over_threshold : exit_done;
 }
 

@@ -15,6 +15,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/interruption.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/farm.hpp"
 
@@ -27,7 +28,7 @@ struct FarmArguments {
   std::string folder;  // of status and retry
   int processes = 1;
   bool submit = false;
-  bool json = false;
+  JsonOutput json;
 };
 
 std::string own_program() {
@@ -104,7 +105,7 @@ int run_farm(FarmArguments& arguments) {
 int run_status(const FarmArguments& arguments) {
   const FarmPlan plan = read_farm(arguments.folder);
   const FarmStatus status = farm_status(plan);
-  print_result(arguments.json ? farm_status_json(plan, status) : farm_status_text(plan, status));
+  arguments.json.print(farm_status_text(plan, status), [&] { return farm_status_json(plan, status); });
   return exit_done;
 }
 
@@ -190,7 +191,7 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");
   status->footer(kExitCodesHelp);
   status->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
-  status->add_flag("--json", arguments->json, "As JSON");
+  add_json_option(*status, arguments->json);
   CLI::App* const retry = app.add_subcommand("retry", "Do again what is neither done nor running, and what follows");
   retry->footer(kExitCodesHelp);
   retry->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");

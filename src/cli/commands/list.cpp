@@ -9,7 +9,10 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
+#include "cli/option_names.hpp"
 #include "cli/option_reference.hpp"
+#include "gazetrace/aovs.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/job.hpp"
@@ -20,7 +23,7 @@ namespace {
 struct ListArguments {
   std::string family;
   ColorSettings color;
-  bool json = false;
+  JsonOutput json;
   bool markdown = false;
 };
 
@@ -101,14 +104,7 @@ std::vector<Family> families() {
       {"metrics", "--metrics", [](const auto&) { return members_of(comparison_metrics()); }},
       {"screens", "--screen", [](const auto&) { return members_of(named_displays()); }},
       {"views", "--view", view_members},
-      {"aovs", "--aov",
-       [](const auto&) {
-         std::vector<Member> members;
-         for (const std::string& name : aov_names()) {
-           members.push_back({name, ""});
-         }
-         return members;
-       }},
+      {"aovs", "--aov", [](const auto&) { return members_of(aov_infos()); }},
   };
 }
 
@@ -130,9 +126,8 @@ constexpr const char* kOptions = "options";
 
 int run_list(const ListArguments& arguments) {
   if (arguments.family == kOptions) {
-    print_result(arguments.markdown ? options_as_markdown(job_schema())
-                 : arguments.json   ? options_as_json(job_schema())
-                                    : options_as_text(job_schema()));
+    arguments.json.print(arguments.markdown ? options_as_markdown(job_schema()) : options_as_text(job_schema()),
+                         [] { return options_as_json(job_schema()); });
     return exit_done;
   }
   if (arguments.markdown) {
@@ -157,11 +152,23 @@ int run_list(const ListArguments& arguments) {
   if (text.empty()) {
     throw Error(ErrorKind::usage, "list", unknown_name_message("family", arguments.family, known));
   }
-  print_result(arguments.json ? json.dump(2) + "\n" : text);
+  arguments.json.print(text, [&] { return json.dump(2) + "\n"; });
   return exit_done;
 }
 
 }  // namespace
+
+std::vector<std::string> names_of_option(const std::string& flag) {
+  std::vector<std::string> names;
+  for (const Family& family : families()) {
+    if (family.option == flag && flag != "--view") {
+      for (const Member& member : family.members({})) {
+        names.push_back(member.name.substr(0, member.name.find_first_of(": ")));
+      }
+    }
+  }
+  return names;
+}
 
 Command add_list_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<ListArguments>();
@@ -174,8 +181,8 @@ Command add_list_command(CLI::App& app, const Invocation& /*invocation*/) {
   const auto options = std::make_shared<CommandOptions<ColorSettings>>(
       color_config_schema().with_headings([](const Option&) { return "Options"; }));
   options->bind(app, arguments->color);
-  app.add_flag("--json", arguments->json, "As JSON");
   app.add_flag("--markdown", arguments->markdown, "Of options: a page of the manual");
+  add_json_option(app, arguments->json);
   return {[arguments, options] { return run_list(*arguments); }, {}};
 }
 

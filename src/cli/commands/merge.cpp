@@ -4,10 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/recorded_run.hpp"
 
@@ -20,6 +22,7 @@ struct MergeArguments {
   bool overwrite = false;
   bool trust_files = false;
   int threads = 0;
+  JsonOutput json;
 };
 
 // The error names a few bad files; of more, every one has a line of its own before.
@@ -40,6 +43,7 @@ MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArgu
 }
 
 int run_merge(const MergeArguments& arguments) {
+  arguments.json.check();
   const std::vector<RunPart> parts = read_run_parts(arguments.directory);
   const bool of_samples = are_parts_of_samples(parts);
   MergeOptions options{arguments.allow_missing, arguments.overwrite, arguments.trust_files, arguments.threads};
@@ -50,7 +54,11 @@ int run_merge(const MergeArguments& arguments) {
   const MergeResult result =
       of_samples ? run_merge_samples(parts, arguments) : merge_runs(arguments.directory, options);
   print_warnings(result.warnings);
-  print_result(fmt::format("{} parts joined, frames {}\n", result.parts.size(), result.frames));
+  arguments.json.print(fmt::format("{} parts joined, frames {}\n", result.parts.size(), result.frames), [&] {
+    const nlohmann::ordered_json json{
+        {"parts", result.parts}, {"frames", result.frames}, {"warnings", with_flags(result.warnings)}};
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  });
   return exit_done;
 }
 
@@ -67,6 +75,7 @@ Command add_merge_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and, of parts of samples, pictures");
+  add_json_option(app, arguments->json);
   return {[arguments] { return run_merge(*arguments); }, {}};
 }
 

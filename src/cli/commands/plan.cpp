@@ -3,12 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "cli/model_gain_text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
@@ -24,7 +26,7 @@ struct PlanArguments {
   std::string rate_from;
   bool counts = false;
   bool model_gain = false;
-  bool json = false;
+  JsonOutput json;
 };
 
 struct FrameCounts {
@@ -110,7 +112,8 @@ std::optional<double> minutes_a_sample(const std::string& timing_path) {
   return samples > 0 ? std::optional(ms / 60000.0 / samples) : std::nullopt;
 }
 
-std::string chunks_text(const std::vector<FrameChunk>& chunks, const std::optional<double>& minutes, bool as_json) {
+void print_chunks(const std::vector<FrameChunk>& chunks, const std::optional<double>& minutes,
+                  const JsonOutput& output) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   std::string text = fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", "chunk", "frames", "samples", "minutes", "which");
   for (std::size_t i = 0; i < chunks.size(); ++i) {
@@ -128,7 +131,7 @@ std::string chunks_text(const std::vector<FrameChunk>& chunks, const std::option
       json.back()["minutes"] = chunk.samples * *minutes;
     }
   }
-  return as_json ? json.dump(2) + "\n" : text;
+  output.print(text, [&] { return json.dump(2) + "\n"; });
 }
 
 int run_plan(const PlanArguments& arguments) {
@@ -143,11 +146,17 @@ int run_plan(const PlanArguments& arguments) {
   resolving.scope = ResolveScope::plan;
   const ResolvedJob resolved = resolve(arguments.job, resolving);
   print_warnings(resolved.warnings);
+  for (const auto& [name, text] : resolved.decisions) {
+    if (name.starts_with("replaced ")) {
+      std::fprintf(stderr, "%s: %s\n", name.c_str(), with_flags(text).c_str());
+    }
+  }
   if (!arguments.save_camera.empty()) {
     std::vector<FramePose> frames;
     for (const FrameRequest& request : resolved.plan.frames) {
       frames.push_back({request.frame, request.t_video_ns, request.camera});
     }
+    check_output_file(arguments.save_camera, true);  // a path was always replaced
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
   if (arguments.counts && job.foveation.contrast_strength > 0) {
@@ -157,14 +166,14 @@ int run_plan(const PlanArguments& arguments) {
   if (arguments.model_gain) {
     const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
     const GainOfPlan gain = gain_of_plan(resolved.plan, fps, job.threads);
-    print_result(arguments.json ? gain_as_json(gain) : gain_as_text(gain));
+    arguments.json.print(gain_as_text(gain), [&] { return gain_as_json(gain); });
     return exit_done;
   }
   if (arguments.chunks > 0) {
     const std::vector<FrameChunk> chunks = balanced_chunks(job, resolved.plan, arguments.chunks);
     const std::optional<double> minutes =
         arguments.rate_from.empty() ? std::nullopt : minutes_a_sample(arguments.rate_from);
-    print_result(chunks_text(chunks, minutes, arguments.json));
+    print_chunks(chunks, minutes, arguments.json);
     return exit_done;
   }
   if (arguments.counts && job.foveation.falloff == "visible") {
@@ -177,7 +186,8 @@ int run_plan(const PlanArguments& arguments) {
                 "give a budget, or render and read timing.csv");
   }
   if (!arguments.counts) {
-    print_result(with_flags(arguments.json ? plan_as_json(resolved.plan) : plan_as_table(resolved.plan)));
+    arguments.json.print(with_flags(plan_as_table(resolved.plan)),
+                         [&] { return with_flags(plan_as_json(resolved.plan)); });
     return exit_done;
   }
   std::vector<FrameCounts> counts;
@@ -185,7 +195,7 @@ int run_plan(const PlanArguments& arguments) {
     counts.push_back(count_samples(request, job));
   }
   const std::uint32_t spp = job.foveation.uniform_spp;
-  print_result(arguments.json ? counts_as_json(counts, spp) : counts_as_table(counts, spp));
+  arguments.json.print(counts_as_table(counts, spp), [&] { return counts_as_json(counts, spp); });
   return exit_done;
 }
 
@@ -213,7 +223,7 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
          "Writes the camera of every frame: .chan for Nuke (--camera-rotation-order), .tum or .txt for TUM, whose "
          "stamps are the video times of the frames' middles: read it again with --camera-keep-time")
       ->type_name("FILE");
-  app.add_flag("--json", arguments->json, "As JSON");
+  add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   return {[arguments] { return run_plan(*arguments); },
           [arguments](const std::string& path) { read_job_config(arguments->job, "plan", path); }};
 }

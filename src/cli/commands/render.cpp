@@ -13,8 +13,10 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/interruption.hpp"
+#include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
+#include "cli/run_events.hpp"
 #include "cli/summary.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
@@ -25,7 +27,7 @@ namespace {
 struct RenderArguments {
   Job job;
   bool print_config = false;
-  bool json = false;
+  JsonOutput json;
 };
 
 void check_asked_for_something(const JobSettings& job) {
@@ -101,14 +103,17 @@ void say_decisions(const ResolvedJob& resolved, const ColorPipeline& color, cons
                static_cast<double>(tracer.memory().bvh_bytes) / 1048576.0, tracer.memory().build_s);
 }
 
-int run_render(const RenderArguments& arguments, const Invocation& invocation) {
+int run_render(const RenderArguments& arguments, const Invocation& invocation, RunEvents& events) {
   const JobSettings& job = arguments.job.settings;
+  const bool quiet = job.quiet || events.on_stderr();
+  const auto warn = [&](const Warnings& warnings) { events.on_stderr() ? void() : print_warnings(warnings); };
   check_asked_for_something(job);
   check_job(arguments.job);
+  arguments.json.check();
   Interruption interruption(std::chrono::nanoseconds(job.grace.ns),
                             job.max_time ? std::optional(std::chrono::nanoseconds(job.max_time->ns)) : std::nullopt);
   const ColorPipeline color(job.color);
-  auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, job.quiet));
+  auto loading = std::make_unique<LoadProgress>(progress_style(job.progress, quiet));
   ResolveOptions resolving;
   resolving.progress = [&](std::size_t done, std::size_t total) { loading->parts_done(done, total); };
   ResolvedJob resolved = resolve(arguments.job, resolving);
@@ -129,16 +134,20 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
     // Written now and at the end: a killed run has a record, too.
     write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
   }
-  print_warnings(resolved.warnings);
-  if (!job.quiet) {
+  warn(resolved.warnings);
+  events.begin(job.scene, format_frame_list(resolved.frames), resolved.frames.size(),
+               resolved.pipeline.settings_digest);
+  events.warnings(resolved.warnings);
+  if (!quiet) {
     say_decisions(resolved, color, tracer);
   }
 
   const auto begin = std::chrono::steady_clock::now();
-  Progress progress(progress_style(job.progress, job.quiet), resolved.plan.frames.size());
+  Progress progress(progress_style(job.progress, quiet), resolved.plan.frames.size());
   PipelineObserver observer;
   observer.frame_done = [&](const TimingRow& row, bool skipped) {
     progress.frame_done(row.frame, row.total_ms, skipped);
+    events.frame_done(row.frame, row.total_ms, skipped);
   };
   std::string pixels;
   if (job.only_pixel) {
@@ -159,24 +168,24 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation) {
     write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
     finish_files(files.front());
   }
-  print_warnings(result_warnings(result, resolved.plan));
-  if (!job.quiet) {
+  warn(result_warnings(result, resolved.plan));
+  events.warnings(result_warnings(result, resolved.plan));
+  if (!quiet) {
     std::fputs(summary_text(result, wall_s).c_str(), stderr);
   }
-  if (arguments.json) {
-    print_result(summary_json(result, resolved, wall_s));
-  } else {
-    print_result(pixels);
-  }
+  arguments.json.print(pixels, [&] { return summary_json(result, resolved, wall_s); });
+  events.end(result.interrupted ? exit_interrupted : exit_done, result);
   if (result.interrupted) {
     if (job.progress == "openjd") {
       std::printf("openjd_fail: interrupted by %s, %zu frames are left\n", interruption.reason().c_str(),
                   result.left.size());
       std::fflush(stdout);
     }
-    std::fprintf(stderr, "gazetrace: interrupted by %s: %zu of %zu frames are done, %s left; go on with --resume\n",
-                 interruption.reason().c_str(), resolved.frames.size() - result.left.size(), resolved.frames.size(),
-                 bounded(format_frame_list(result.left), 200).c_str());
+    if (!events.on_stderr()) {
+      std::fprintf(stderr, "gazetrace: interrupted by %s: %zu of %zu frames are done, %s left; go on with --resume\n",
+                   interruption.reason().c_str(), resolved.frames.size() - result.left.size(), resolved.frames.size(),
+                   bounded(format_frame_list(result.left), 200).c_str());
+    }
     return exit_interrupted;
   }
   return exit_done;
@@ -188,16 +197,21 @@ Command add_render_command(CLI::App& app, const Invocation& invocation) {
   auto arguments = std::make_shared<RenderArguments>();
   bind_job_options(app, arguments->job);
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
-  app.add_flag("--json", arguments->json, "Prints the closing summary as JSON on stdout");
   app.add_flag("--print-config", arguments->print_config, "Prints every option with its value as TOML, and stops");
+  add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   const auto run = [arguments, &invocation] {
     if (arguments->print_config) {
       print_result(job_as_toml(arguments->job));
       return static_cast<int>(exit_done);
     }
+    RunEvents events(arguments->job.settings.progress);
     try {
-      return run_render(*arguments, invocation);
+      return run_render(*arguments, invocation, events);
     } catch (const Error& error) {
+      events.end(exit_code_of(error), error.what());
+      if (events.on_stderr()) {
+        return exit_code_of(error);
+      }
       if (arguments->job.settings.progress == "openjd" && error.kind() != ErrorKind::nothing_to_do) {
         std::printf("openjd_fail: %s\n", bounded(with_flags(error.what()), 500).c_str());
         std::fflush(stdout);

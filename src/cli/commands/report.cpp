@@ -6,9 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -20,6 +22,7 @@ struct ReportArguments {
   std::string results, output, plots, csv;
   ReportSettings settings;
   bool overwrite = false;
+  JsonOutput json;
 };
 
 void make_folder(const std::string& folder) {
@@ -37,6 +40,10 @@ int run_report(const ReportArguments& arguments) {
   const std::string output =
       arguments.output.empty() ? (fs::path(data.directory) / "report.html").string() : arguments.output;
   check_output_file(output, arguments.overwrite);
+  arguments.json.check();
+  using Json = nlohmann::ordered_json;
+  Json json;
+  std::string said;
   if (!arguments.csv.empty()) {
     check_output_file(arguments.csv, arguments.overwrite);
   }
@@ -48,7 +55,11 @@ int run_report(const ReportArguments& arguments) {
       write_text_atomically(stem + ".svg", plot.svg);
       write_text_atomically(stem + ".csv", plot.csv);
     }
-    print_result(fmt::format("{} diagrams in {}\n", plots.size(), arguments.plots));
+    said += fmt::format("{} diagrams in {}\n", plots.size(), arguments.plots);
+    json["plots"] = Json::array();
+    for (const ReportPlot& plot : plots) {
+      json["plots"].push_back((fs::path(arguments.plots) / (plot.name + ".svg")).string());
+    }
   }
   if (!arguments.csv.empty()) {
     write_text_atomically(arguments.csv, results_csv(data));
@@ -56,8 +67,13 @@ int run_report(const ReportArguments& arguments) {
   const ReportPage page = report_page(data, arguments.settings);
   print_warnings(page.warnings);
   write_text_atomically(output, page.html);
-  print_result(fmt::format("{}: {} runs, {:.2f} MiB\n", output, data.rows.size(),
-                           static_cast<double>(page.html.size()) / (1024.0 * 1024.0)));
+  said += fmt::format("{}: {} runs, {:.2f} MiB\n", output, data.rows.size(),
+                      static_cast<double>(page.html.size()) / (1024.0 * 1024.0));
+  json["page"] = output;
+  json["runs"] = data.rows.size();
+  json["bytes"] = page.html.size();
+  json["warnings"] = page.warnings;
+  arguments.json.print(said, [&] { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; });
   return exit_done;
 }
 
@@ -79,6 +95,7 @@ Command add_report_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->capture_default_str();
   app.add_option("--threads", arguments->settings.threads, "0: as many as the machine has")->type_name("N");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces outputs that are there");
+  add_json_option(app, arguments->json);
   app.footer(kExitCodesHelp);
   return {[arguments] { return run_report(*arguments); }, {}};
 }

@@ -10,9 +10,11 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/scene.hpp"
+#include "gazetrace/scene_contents.hpp"
 #include "gazetrace/trace.hpp"
 
 namespace gazetrace {
@@ -27,13 +29,14 @@ struct SceneArguments {
   Job job;
   bool bvh = false;
   bool estimate = false;
-  bool json = false;
+  JsonOutput json;
   int threads = 0;
 };
 
 struct SceneReport {
   SceneEstimate estimate;
   Scene scene;
+  SceneContents contents;
   SceneSummary summary;
   double load_s = 0;
   std::optional<TracerMemory> tracer;
@@ -111,6 +114,42 @@ nlohmann::ordered_json estimate_json(const SceneEstimate& estimate) {
           {"pictures", estimate.pictures},           {"nodes", estimate.nodes}};
 }
 
+std::string contents_text(const SceneContents& contents) {
+  std::string text;
+  for (std::size_t i = 0; i < contents.animations.size(); ++i) {
+    const SceneContents::Animation& animation = contents.animations[i];
+    text += fmt::format("animation {:<2} '{}': from {:.3f} s to {:.3f} s, moves {} nodes and {} shapes\n", i,
+                        animation.name, animation.begin_s, animation.end_s, animation.nodes, animation.shapes);
+  }
+  for (std::size_t i = 0; i < contents.skins.size(); ++i) {
+    text += fmt::format("skin {:<7} '{}': {} joints\n", i, contents.skins[i].name, contents.skins[i].joints);
+  }
+  for (const SceneContents::MorphedMesh& mesh : contents.morphed) {
+    text += fmt::format("morphs       '{}': {}\n", mesh.name, fmt::join(mesh.targets, ", "));
+  }
+  return text;
+}
+
+void add_contents(const SceneContents& contents, nlohmann::ordered_json& json) {
+  using Json = nlohmann::ordered_json;
+  json["animations"] = Json::array();
+  for (const SceneContents::Animation& animation : contents.animations) {
+    json["animations"].push_back({{"name", animation.name},
+                                  {"begin_s", animation.begin_s},
+                                  {"end_s", animation.end_s},
+                                  {"nodes", animation.nodes},
+                                  {"shapes", animation.shapes}});
+  }
+  json["skins"] = Json::array();
+  for (const SceneContents::Skin& skin : contents.skins) {
+    json["skins"].push_back({{"name", skin.name}, {"joints", skin.joints}});
+  }
+  json["morph_targets"] = Json::array();
+  for (const SceneContents::MorphedMesh& mesh : contents.morphed) {
+    json["morph_targets"].push_back({{"mesh", mesh.name}, {"targets", mesh.targets}});
+  }
+}
+
 std::string report_text(const SceneReport& report) {
   const Scene& scene = report.scene;
   const SceneSummary& s = report.summary;
@@ -128,7 +167,7 @@ std::string report_text(const SceneReport& report) {
                       mib(s.texture_bytes));
   text += fmt::format("features     {}\n", or_none(feature_names(features_of(scene))));
   text += fmt::format("extensions   {}\n", or_none(scene.extensions_used));
-  text += fmt::format("animations   {}\n", or_none(scene.animations));
+  text += contents_text(report.contents);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     text += fmt::format("camera {:<5} '{}': {}\n", i, scene.cameras[i].name, camera_text(scene.cameras[i]));
   }
@@ -169,7 +208,6 @@ std::string report_json(const SceneReport& report) {
             {"texture_bytes", s.texture_bytes},
             {"features", feature_names(features_of(scene))},
             {"extensions_used", scene.extensions_used},
-            {"animations", scene.animations},
             {"ignored", scene.ignored},
             {"warnings", scene.warnings},
             {"load_s", report.load_s}};
@@ -185,6 +223,7 @@ std::string report_json(const SceneReport& report) {
                                {"begin_ns", camera.path.begin_ns},
                                {"end_ns", camera.path.end_ns}});
   }
+  add_contents(report.contents, json);
   json["lights"] = Json::array();
   for (const PunctualLight& light : scene.lights) {
     json["lights"].push_back(light_text(light));
@@ -204,14 +243,15 @@ int run_scene(const SceneArguments& arguments) {
   options.threads = arguments.threads;
   report.estimate = estimate_scene(arguments.path, options);
   if (arguments.estimate) {
-    print_result(arguments.json ? estimate_json(report.estimate).dump(2) + "\n"
-                                : arguments.path + "\n" + estimate_text(report.estimate));
+    arguments.json.print(arguments.path + "\n" + estimate_text(report.estimate),
+                         [&] { return estimate_json(report.estimate).dump(2) + "\n"; });
     return exit_done;
   }
   const auto begin = std::chrono::steady_clock::now();
   report.scene = load_scene(arguments.path, options);
   report.load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.summary = summarize(report.scene);
+  report.contents = read_scene_contents(arguments.path, options);
   if (arguments.bvh) {
     TracerOptions tracer_options;
     tracer_options.threads = arguments.threads;
@@ -220,7 +260,7 @@ int run_scene(const SceneArguments& arguments) {
     report.ray_library = tracer.ray_library();
     report.peak_memory_mib = peak_memory_mib();
   }
-  print_result(arguments.json ? report_json(report) : report_text(report));
+  arguments.json.print(report_text(report), [&] { return report_json(report); });
   return exit_done;
 }
 
@@ -241,7 +281,7 @@ Command add_scene_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--threads", arguments->threads, "0: as many as the machine has")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
-  app.add_flag("--json", arguments->json, "As JSON");
+  add_json_option(app, arguments->json);
   return {[arguments] { return run_scene(*arguments); }, {}};
 }
 

@@ -6,11 +6,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
 #include "gazetrace/error.hpp"
@@ -26,6 +28,7 @@ struct SweepArguments {
   std::optional<Chunk> chunk;
   std::vector<std::string> folders;  // of merge
   bool confine = false, dry_run = false, restart = false, quiet = false;
+  JsonOutput json, merge_json;
 
   [[nodiscard]] std::optional<SweepTask> task() const {
     return chunk ? std::optional(SweepTask{chunk->number, chunk->count}) : std::nullopt;
@@ -35,8 +38,20 @@ struct SweepArguments {
 // A guess to tell minutes from days: a core traces about this many camera samples a second in a scene like Sponza.
 constexpr double kSamplesPerCoreSecond = 2.5e5;
 
-std::string estimate_text(const SweepPlan& plan, int threads) {
-  const SweepEstimate estimate = estimate_sweep(plan);
+std::string estimate_json(const SweepEstimate& estimate) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const SweepEstimate::Row& row : estimate.rows) {
+    rows.push_back({{"id", row.id},
+                    {"role", row.role},
+                    {"samples", row.samples},
+                    {"repeats", row.repeats},
+                    {"setting", row.label}});
+  }
+  const nlohmann::ordered_json json{{"rows", std::move(rows)}, {"samples", estimate.samples}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string estimate_text(const SweepEstimate& estimate, int threads) {
   std::string text = fmt::format("{:<34} {:<24}{:>16}{:>9}  {}\n", "id", "role", "samples", "repeats", "setting");
   for (const SweepEstimate::Row& row : estimate.rows) {
     text += fmt::format("{:<34} {:<24}{:>16.0f}{:>9}  {}\n", row.id, row.role, row.samples, row.repeats, row.label);
@@ -57,6 +72,14 @@ std::string shares_text(const SweepPlan& plan, std::uint32_t count) {
   return text;
 }
 
+std::string shares_json(const SweepPlan& plan, std::uint32_t count) {
+  nlohmann::ordered_json chunks = nlohmann::ordered_json::array();
+  for (const SweepShare& share : divide_sweep(plan, count)) {
+    chunks.push_back({{"samples", share.samples}, {"rows", share.rows}});
+  }
+  return chunks.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
 SweepPlan load_plan(const SweepArguments& arguments) {
   if (arguments.plan.empty()) {
     throw Error(ErrorKind::usage, "", "no plan was given", "gazetrace sweep PLAN.toml -o FOLDER");
@@ -73,23 +96,26 @@ SweepPlan load_plan(const SweepArguments& arguments) {
   return std::move(plan);
 }
 
-void write_results(const SweepPlan& plan, const Results& results) {
+void write_results(const SweepPlan& plan, const Results& results, const JsonOutput& json) {
   write_text_atomically(plan.directory + "/results.csv", results_csv(results));
   write_text_atomically(plan.directory + "/methods.txt", results_methods(results));
   write_text_atomically(plan.directory + "/results.json", results_json(results));
-  print_result(results_table(results));
+  json.print(results_table(results), [&] { return results_json(results); });
 }
 
 int run_sweep_command(const SweepArguments& arguments) {
   const SweepPlan plan = load_plan(arguments);
+  arguments.json.check();
   if (arguments.dry_run && arguments.chunk) {
-    print_result(shares_text(plan, arguments.chunk->count));
+    arguments.json.print(shares_text(plan, arguments.chunk->count),
+                         [&] { return shares_json(plan, arguments.chunk->count); });
     return exit_done;
   }
   if (arguments.dry_run) {
     const int given = plan.tests.front().pipeline.threads;
-    print_result(
-        estimate_text(plan, given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))));
+    const int threads = given > 0 ? given : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const SweepEstimate estimate = estimate_sweep(plan);
+    arguments.json.print(estimate_text(estimate, threads), [&] { return estimate_json(estimate); });
     return exit_done;
   }
   const SweepDirectory directory = prepare_sweep(plan, arguments.task());
@@ -102,13 +128,14 @@ int run_sweep_command(const SweepArguments& arguments) {
     run_sweep_task(plan, *task, observer);
     return exit_done;
   }
-  write_results(plan, run_sweep(plan, observer));
+  write_results(plan, run_sweep(plan, observer), arguments.json);
   return exit_done;
 }
 
 int run_sweep_merge(const SweepArguments& arguments) {
   const SweepPlan plan = load_plan(arguments);
-  write_results(plan, merge_sweep(plan, arguments.folders));
+  arguments.merge_json.check();
+  write_results(plan, merge_sweep(plan, arguments.folders), arguments.merge_json);
   return exit_done;
 }
 
@@ -138,6 +165,7 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
   schema.flag("--quiet", &SweepArguments::quiet, "Tells nothing but the table");
   const auto options = std::make_shared<CommandOptions<SweepArguments>>(std::move(schema));
   options->bind(app, *arguments);
+  add_json_option(app, arguments->json);
   app.footer(kExitCodesHelp);
 
   CLI::App* const merge = app.add_subcommand("merge", "Make the tables of a sweep that was measured in chunks");
@@ -148,6 +176,7 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->add_option("folders", arguments->folders,
                    "Where chunks were written into folders of their own; what they hold is taken into --output")
       ->type_name("DIR");
+  add_json_option(*merge, arguments->merge_json);
   app.require_subcommand(0, 1);
   return {[arguments, options, merge_options, merge] {
             return merge->parsed() ? run_sweep_merge(*arguments) : run_sweep_command(*arguments);

@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "cli/command.hpp"
 #include "cli/compare_inputs.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 
 namespace gazetrace {
 
@@ -34,6 +36,7 @@ struct VideoArguments {
   std::string output, color;
   VideoSettings video;
   bool show_gaze = false, show_rings = false, fixation_mark = false, overwrite = false;
+  JsonOutput json;
 };
 
 DisplayImage display_image_of(const ImageRgb& code) {
@@ -192,6 +195,7 @@ int run_video(VideoArguments& arguments) {
   video.threads = job.shared.threads;
   check_video_settings(arguments.output, video);
   check_output_file(arguments.output, arguments.overwrite);
+  arguments.json.check();
   FrameMaker maker(arguments, inputs);
   DisplayImage image = maker.make(inputs.frames.front());
   video.color = arguments.color.empty() ? video_color_of_view(maker.view()) : video_color_by_name(arguments.color);
@@ -208,9 +212,17 @@ int run_video(VideoArguments& arguments) {
                 "give --gaze or --gaze-at, or name the .exr files of the run");
   }
   writer.finish();
-  print_result(fmt::format("{}: {} frames of {}x{}, {} a second, colors {}\n{}", arguments.output, inputs.frames.size(),
-                           image.width_px, image.height_px, format_value(video.fps), video.color.name,
-                           is_contingent ? std::string(kContingent) + "\n" : ""));
+  arguments.json.print(fmt::format("{}: {} frames of {}x{}, {} a second, colors {}\n{}", arguments.output,
+                                   inputs.frames.size(), image.width_px, image.height_px, format_value(video.fps),
+                                   video.color.name, is_contingent ? std::string(kContingent) + "\n" : ""),
+                       [&] {
+                         const nlohmann::ordered_json json{
+                             {"video", arguments.output},       {"frames", inputs.frames.size()},
+                             {"width_px", image.width_px},      {"height_px", image.height_px},
+                             {"fps", format_value(video.fps)},  {"color", video.color.name},
+                             {"gaze_contingent", is_contingent}};
+                         return json.dump(2) + "\n";
+                       });
   return exit_done;
 }
 
@@ -272,6 +284,7 @@ Command add_video_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->required()
       ->type_name("PATTERN");
   app.add_option("beside", arguments->job.test, "A second sequence, shown to the right of it")->type_name("PATTERN");
+  add_json_option(app, arguments->json, arguments->overwrite);
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   return {[arguments] { return run_video(*arguments); },
           [arguments, options](const std::string& path) { options->read_config(*arguments, "video", path); }};

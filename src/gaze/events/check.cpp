@@ -42,6 +42,16 @@ double published_amplitude_deg(double peak_deg_s) {
   return peak_deg_s < 499 ? -10.2 * std::log(1 - peak_deg_s / 500) : std::numeric_limits<double>::infinity();
 }
 
+// The extent in azimuth plus that in elevation which white noise alone gives so many samples: twice the expected range
+// of n normal values, whose largest is about sqrt(2 ln n) - (ln ln n + ln 4 pi) / (2 sqrt(2 ln n)) (Cramer,
+// Mathematical Methods of Statistics, 1946, 28.6). From sample to sample, white noise of two axes steps twice its
+// standard deviation, as a root mean square.
+double noise_extent_deg(double rms_s2s_deg, double samples) {
+  const double root = std::sqrt(2 * std::log(std::max(samples, 3.0)));
+  const double largest = root - (std::log(std::log(std::max(samples, 3.0))) + std::log(4 * kPi)) / (2 * root);
+  return 4 * largest * (rms_s2s_deg / 2);
+}
+
 // Extents of neighbouring windows of that length in which the eye was seen throughout.
 double median_extent_deg(const GazeDirections& gaze, std::int64_t window_ns) {
   std::vector<double> extents;
@@ -88,6 +98,7 @@ class Check {
   std::vector<EventDoubt> run() {
     noise();
     noise_beside_microsaccades();
+    noise_beside_pursuit();
     fixations();
     saccades();
     return std::move(doubts_);
@@ -133,6 +144,22 @@ class Check {
                         "at which saccades below {:.1f} deg are not found, and microsaccades are below {:g} deg",
                         measure_event_noise(log_, s).rms_s2s_deg, events_.peak_threshold_deg_s,
                         published_amplitude_deg(events_.peak_threshold_deg_s), s.max_microsaccade_deg));
+    }
+  }
+
+  // Noise that leaves the dispersion makes pursuit of fixation. The gaze's own extent would not tell, as pursuit moves.
+  void noise_beside_pursuit() {
+    const EventSettings& s = events_.settings;
+    if (s.method != "ivdt" || step_ns_ <= 0) {
+      return;
+    }
+    const double rms_s2s_deg = measure_event_noise(log_, s).rms_s2s_deg;
+    const double samples = static_cast<double>(s.dispersion_window_ns) / static_cast<double>(step_ns_) + 1;
+    if (const double extent_deg = noise_extent_deg(rms_s2s_deg, samples); extent_deg > kNoisyShare * s.dispersion_deg) {
+      doubt("noise",
+            fmt::format("noise of {:.2g} deg RMS from sample to sample would alone spread {:g} ms of gaze over "
+                        "{:.2g} deg, and what spreads over {:g} deg is pursuit",
+                        rms_s2s_deg, static_cast<double>(s.dispersion_window_ns) * 1e-6, extent_deg, s.dispersion_deg));
     }
   }
 

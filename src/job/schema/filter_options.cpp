@@ -7,7 +7,8 @@ void add_filter_options(JobSchema& schema) {
   schema.group("Between the samples");
   schema
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
-             "Fills pixels between samples and takes noise away ('gazetrace list filters'). auto: guided; linear, "
+             "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
+             "--falloff, which has a 'linear', too). auto: guided; linear, "
              "which passes single pixels through, with --sample-range, --enhance-contrast and "
              "--accumulate-order before, and for uniform frames with --accumulate running or --only-pixel")
       .with(Trait::always_stated);

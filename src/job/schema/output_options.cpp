@@ -79,9 +79,10 @@ void add_output_options(JobSchema& schema) {
   schema.group("Talk");
   schema
       .value(
-          "--progress", &JobSettings::progress, "auto|always|never|openjd", Touch::talk,
+          "--progress", &JobSettings::progress, "auto|always|never|openjd|json|json:FD", Touch::talk,
           "A bar on a terminal, plain lines elsewhere (auto); always: the bar; openjd: lines on stdout for workers of "
-          "Open Job Description")
+          "Open Job Description; json: a JSON object for each event (begin, frame, warning, end) on stderr in place of "
+          "all text, json:FD: on that file descriptor")
       .decides_nothing()
       .with(Trait::one_run);
   schema.flag("--quiet", &JobSettings::quiet, Touch::talk, "No progress and no summary; warnings and errors stay")

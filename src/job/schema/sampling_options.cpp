@@ -249,7 +249,8 @@ void add_sampling_options(JobSchema& schema) {
   without_any_gaze.holds = [](const JobSettings& job) { return !has_gaze(job) && !works_without_gaze(job.foveation); };
   schema
       .value("--falloff", foveation(&FoveationSettings::falloff), "NAME", Touch::sampling,
-             "How the sampling density falls off with eccentricity ('gazetrace list falloffs')")
+             "How the sampling density falls off with eccentricity ('gazetrace list falloffs'); how pixels are filled "
+             "from the samples is --filter, which has a 'linear', too")
       .with(Trait::always_stated)
       .idle_when({without_any_gaze});
   schema

@@ -58,9 +58,10 @@ void add_scene_options(JobSchema& schema) {
                "The animation that plays, by name or number from 0; default: for each body and camera the first that "
                "moves it ('gazetrace scene' lists them)");
   schema
-      .value("--env", &JobSettings::environment, "FILE|sky|constant:R,G,B|none|auto", Touch::light,
-             "Light from all around: a lat-long .hdr or .exr, the built-in sky, a constant radiance, or none; auto is "
-             "the sky for a scene without light of its own, otherwise none")
+      .value("--env", &JobSettings::environment, "FILE|sky|soft-sky|constant:R,G,B|none|auto", Touch::light,
+             "Light from all around: a lat-long .hdr or .exr, the built-in clear sky with its sun, one without a sun "
+             "(soft-sky), a constant radiance, or none; auto is the sky for a scene without light of its own, "
+             "otherwise none")
       .decides_by_file();
   schema.value("--env-rotation", &JobSettings::environment_rotation_deg, "DEG", Touch::light,
                "Turns the environment about +y, degrees");

@@ -94,6 +94,19 @@
     const inside = (middle) => Math.min(Math.max(middle - 0.5 / kZoom, 0), 1 - 1 / kZoom);
     return { x: inside(u), y: inside(v), size: 1 / kZoom };
   };
+  // As many pixels as the screen has there: rings, dot and slider are drawn sharp, whatever the size of the pictures.
+  const fitCanvas = (image) => {
+    const aspect = image.width / image.height;
+    canvas.style.aspectRatio = String(aspect);
+    canvas.style.width = `min(100%, ${(86 * aspect).toFixed(2)}vh)`;
+    const box = canvas.getBoundingClientRect();
+    const ratio = window.devicePixelRatio || 1;
+    const w = Math.max(1, Math.round(box.width * ratio)), h = Math.max(1, Math.round(box.width * ratio / aspect));
+    if (canvas.width !== w || canvas.height !== h) {
+      canvas.width = w;
+      canvas.height = h;
+    }
+  };
   const drawPicture = (image, view, from, to, missing = "no picture of this frame") => {
     const w = canvas.width, h = canvas.height;
     context.save();
@@ -101,7 +114,9 @@
     context.rect(from * w, 0, (to - from) * w, h);
     context.clip();
     if (image) {
-      context.imageSmoothingEnabled = !state.zoom;
+      // Pixels of the picture stay squares where each covers several of the screen.
+      context.imageSmoothingEnabled = view.size * image.width > w / 2;
+      context.imageSmoothingQuality = "high";
       context.drawImage(image, view.x * image.width, view.y * image.height, view.size * image.width, view.size * image.height, 0, 0, w, h);
     } else {
       context.fillStyle = "#333";
@@ -126,7 +141,7 @@
   };
   const drawOverlay = (frame, view) => {
     if (!frame.gaze) return;
-    const w = canvas.width, h = canvas.height, unit = Math.max(1, w / 640);
+    const w = canvas.width, h = canvas.height, unit = Math.max(1, window.devicePixelRatio || 1);
     const x = (frame.gaze[0] - view.x) / view.size * w, y = (frame.gaze[1] - view.y) / view.size * h;
     const ringed = (radius) => {
       for (const [color, width] of [["#000", 3.5], ["#fff", 1.5]]) {
@@ -161,17 +176,15 @@
       state.mode === "flip" ? picture(state.b.maps[at]) : null]);
     if (turn !== drawn) return;
     const first = a || b;
-    if (first && (canvas.width !== first.width || canvas.height !== first.height)) {
-      canvas.width = first.width;
-      canvas.height = first.height;
-    }
+    if (first) fitCanvas(first);
     const view = windowOf(frame);
     const half = Number(split.value) / 100;
     if (state.mode === "slider") {
       drawPicture(a, view, 0, half);
       drawPicture(b, view, half, 1);
       context.fillStyle = "#fff";
-      context.fillRect(half * canvas.width - Math.max(1, canvas.width / 640), 0, Math.max(2, canvas.width / 320), canvas.height);
+      const line = 2 * Math.max(1, window.devicePixelRatio || 1);
+      context.fillRect(half * canvas.width - line / 2, 0, line, canvas.height);
     } else if (state.mode === "difference") {
       drawDifference(a, b, view);
     } else if (state.mode === "flip") {
@@ -272,10 +285,7 @@
   const dragTo = (event) => {
     if (state.mode !== "slider" || event.buttons === 0) return;
     const box = canvas.getBoundingClientRect();
-    // object-fit leaves margins where the picture is narrower than its box.
-    const width = Math.min(box.width, box.height * canvas.width / canvas.height);
-    const left = box.left + (box.width - width) / 2;
-    split.value = String(Math.round(100 * Math.min(1, Math.max(0, (event.clientX - left) / width))));
+    split.value = String(Math.round(100 * Math.min(1, Math.max(0, (event.clientX - box.left) / box.width))));
     draw();
   };
   canvas.addEventListener("pointerdown", (event) => {
@@ -306,6 +316,7 @@
     action();
   });
 
+  window.addEventListener("resize", draw);
   chooseSet();
   setMode("slider");
 })();

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/json_problem.hpp"
 #include "gazetrace/error.hpp"
 #include "scene/gltf/json.hpp"
 #include "scene/gltf/material_extension.hpp"
@@ -409,6 +410,7 @@ const std::vector<std::string>& known_gltf_extensions() {
         "EXT_mesh_gpu_instancing",
         "EXT_meshopt_compression",
         "KHR_draco_mesh_compression",
+        "CESIUM_RTC",
         // pictures
         "KHR_texture_transform",
         "EXT_texture_webp",
@@ -435,7 +437,7 @@ CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text,
   try {
     root = Json::parse(json_text);
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::input, path, "is not valid JSON (" + std::string(error.what()) + ")",
+    throw Error(ErrorKind::input, path, "is not valid JSON: " + json_problem(error.what()),
                 "is it a .gltf or .glb file, complete?");
   }
   if (!root.is_object()) {

@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <utility>
@@ -187,6 +188,11 @@ GltfMesh mesh(const tinygltf::Mesh& from) {
     to.primitives.push_back(
         {primitive.attributes, primitive.indices, primitive.material, primitive.mode, primitive.targets});
   }
+  if (from.extras.Has("targetNames") && from.extras.Get("targetNames").IsArray()) {
+    for (const Value& name : from.extras.Get("targetNames").Get<Value::Array>()) {
+      to.target_names.push_back(name.IsString() ? name.Get<std::string>() : std::string());
+    }
+  }
   return to;
 }
 
@@ -254,6 +260,34 @@ std::vector<int> scene_roots(const tinygltf::Model& model) {
   return roots;
 }
 
+// CESIUM_RTC: an offset of the whole model, in metres. It becomes a node above all others, so that bodies, cameras,
+// lights and what animations and skins do follow it alike.
+void add_offset(const tinygltf::Model& model, GltfDocument& document) {
+  const Value* rtc = extension(model.extensions, "CESIUM_RTC");
+  if (rtc == nullptr) {
+    return;
+  }
+  const Value center = rtc->Has("center") ? rtc->Get("center") : Value();
+  std::array<double, 3> offset{};
+  bool usable = center.IsArray() && center.ArrayLen() == 3;
+  for (std::size_t i = 0; usable && i < 3; ++i) {
+    const Value& number = center.Get(static_cast<int>(i));
+    usable = number.IsNumber() && std::isfinite(number.GetNumberAsDouble());
+    offset[i] = usable ? number.GetNumberAsDouble() : 0;
+  }
+  if (!usable) {
+    throw Error(ErrorKind::input, document.path + ": extensions.CESIUM_RTC.center", "is not three numbers",
+                "export the file again");
+  }
+  GltfNode above;
+  above.name = "CESIUM_RTC";
+  above.translation = {offset[0], offset[1], offset[2]};
+  above.children = document.roots;
+  document.roots = {static_cast<int>(document.nodes.size())};
+  document.nodes.push_back(std::move(above));
+  document.offset_m = document.nodes.back().translation;
+}
+
 bool leave_undecoded(tinygltf::Image* /*image*/, int /*index*/, std::string* /*error*/, std::string* /*warning*/,
                      int /*width*/, int /*height*/, const unsigned char* /*bytes*/, int /*size*/, void* /*user*/) {
   return true;
@@ -306,6 +340,7 @@ GltfDocument parse_gltf(const std::string& path, const CheckedGltf& checked) {
   });
   document.roots = scene_roots(model);
   document.scene_count = model.scenes.size();
+  add_offset(model, document);
   return document;
 }
 

@@ -47,6 +47,7 @@ struct GltfMesh {
   std::string name;
   std::vector<double> weights;  // of morph targets; empty: 0
   std::vector<GltfPrimitive> primitives;
+  std::vector<std::string> target_names;  // extras.targetNames, as most exporters write them; may be empty
 };
 
 struct GltfTextureInfo {
@@ -146,6 +147,7 @@ struct GltfDocument {
   std::vector<GltfSkin> skins;
   std::vector<int> roots;  // of the default scene, or all root nodes where there is no scene
   std::size_t scene_count = 0;
+  Vec3d offset_m{0, 0, 0};  // CESIUM_RTC, which its own node above all others applies
 };
 
 // Runs the parser on checked JSON. The buffers are left empty for the caller to fill.

@@ -162,6 +162,9 @@ GltfFile read_gltf_file(const std::string& path) {
     throw Error(ErrorKind::input, path, "there is no such file", "give the path of a .gltf or .glb");
   }
   file.bytes = read_whole_file(path, path);
+  if (file.bytes.empty()) {
+    throw Error(ErrorKind::input, path, "the file is empty", "copy or export it again");
+  }
   if (file.bytes.size() >= 4 && little_endian_u32(file.bytes.data()) == kGlbMagic) {
     file.is_binary = true;
     split_glb(file);

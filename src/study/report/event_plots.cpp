@@ -151,7 +151,8 @@ GazePlot histogram_plot(const std::string& name, const std::string& title, const
              is_right ? "start" : "end");
   }
   if (beyond > 0) {
-    svg.text(x.end, y.end + 28, fmt::format("{} farther right", beyond), "end", R"(fill="#666666")");
+    svg.text(x.end, y.end + 28, fmt::format("{} farther right", beyond), "end",
+             R"(fill="#555555" stroke="#ffffff" stroke-width="3" paint-order="stroke")");
   }
   svg.frame(x, y);
   return {name, fmt::format("{} ({})", title, count), svg.str(), false, {}};

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "gaze/inspect/inspect.hpp"
+#include "gazetrace/gaze_event_check.hpp"
 #include "study/report/drawing.hpp"
 #include "study/report/page.hpp"
 
@@ -148,6 +149,11 @@ GazeReport gaze_report(const GazeLog& log, const GazeReportSettings& settings) {
   GazeReport report;
   report.warnings = log.warnings;
   report.events = events_by(log, settings);
+  if (settings.method != "log") {
+    for (const EventDoubt& doubt : doubt_events(log, report.events)) {
+      report.warnings.push_back(fmt::format("{}: events by {}: {}", log.source, report.events.preset, doubt.what));
+    }
+  }
   report.main_sequence = fit_main_sequence(report.events.events);
   report.quality.push_back(measure_quality(log));
   if (has_both_eyes(log)) {

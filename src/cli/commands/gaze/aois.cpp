@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_aois.hpp"
 #include "gazetrace/output.hpp"
@@ -17,7 +18,7 @@ namespace {
 struct AoisArguments {
   Job job;
   std::string areas, method = "auto", tables;
-  bool json = false;
+  JsonOutput json;
 };
 
 void write_tables(const AoisArguments& arguments, const AoiAnalysis& analysis) {
@@ -46,7 +47,7 @@ int run_aois(const AoisArguments& arguments) {
   if (!arguments.tables.empty()) {
     write_tables(arguments, found.analysis);
   }
-  print_result(arguments.json ? aois_as_json(found.analysis) : aoi_figures_as_tsv(found.analysis));
+  arguments.json.print(aoi_figures_as_tsv(found.analysis), [&] { return aois_as_json(found.analysis); });
   return exit_done;
 }
 
@@ -67,7 +68,7 @@ Command add_gaze_aois_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--tables", arguments->tables,
                  "Writes aois.tsv, fixations.tsv, transitions.tsv and aois.json into this folder")
       ->type_name("DIR");
-  app.add_flag("--json", arguments->json, "Prints everything as JSON");
+  add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   return {[arguments] { return run_aois(*arguments); },
           [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
 }

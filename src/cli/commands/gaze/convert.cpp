@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_write.hpp"
@@ -23,6 +25,7 @@ struct ConvertArguments {
   std::string output;
   bool overwrite = false;
   bool keep_ids = false;
+  JsonOutput json;
 };
 
 std::string file_names(const std::vector<BidsLeftover>& files) {
@@ -66,6 +69,21 @@ int run_convert(const ConvertArguments& arguments) {
   if (!is_bids) {
     check_output_file(arguments.output, arguments.overwrite);
   }
+  arguments.json.check();
+  std::vector<std::string> reports;  // of the steps of processing
+  const auto tell = [&](const GazeLog& log, const std::vector<std::string>& files) {
+    std::string text;
+    for (const std::string& report : reports) {
+      text += report + "\n";
+    }
+    arguments.json.print(text, [&] {
+      const nlohmann::ordered_json json{{"files", files},
+                                        {"samples", log.samples.size()},
+                                        {"processing", reports},
+                                        {"warnings", with_flags(log.warnings)}};
+      return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    });
+  };
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   print_warnings(log.warnings);
   if (!arguments.keep_ids) {
@@ -74,13 +92,12 @@ int run_convert(const ConvertArguments& arguments) {
   if (!arguments.steps.empty()) {
     complete_recording_geometry(log, arguments.screen);
     ProcessedGaze processed = process_gaze(log, gaze_steps_of(arguments.steps));
-    for (const std::string& report : processed.reports) {
-      print_result(report + "\n");
-    }
+    reports = std::move(processed.reports);
     log = std::move(processed.log);
   }
   if (!is_bids) {
     write_gaze_csv(log, arguments.output);
+    tell(log, {arguments.output});
     return exit_done;
   }
   const std::vector<std::string> written = bids_file_names(log, arguments.output);
@@ -104,6 +121,7 @@ int run_convert(const ConvertArguments& arguments) {
   if (!leftovers.empty()) {
     print_warnings({fmt::format("{}: removed, of an earlier conversion: {}", arguments.output, file_names(leftovers))});
   }
+  tell(log, written);
   return exit_done;
 }
 
@@ -131,6 +149,7 @@ Command add_gaze_convert_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also writes messages of the experiment and dates in the description of the clock, which can identify a "
                "person or a session; stamps are written as they are either way");
+  add_json_option(app, arguments->json, arguments->overwrite);
   return {[arguments, options] { return run_convert(*arguments); }, {}};
 }
 

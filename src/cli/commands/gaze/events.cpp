@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_events.hpp"
@@ -27,6 +28,7 @@ struct EventsArguments {
   std::string output;
   bool overwrite = false;
   bool keep_ids = false;
+  JsonOutput json;
 };
 
 EyeEvents find_events(const EventsArguments& arguments, const GazeLog& log) {
@@ -107,14 +109,15 @@ int run_events(const EventsArguments& arguments) {
   const std::vector<EventDoubt> doubts = are_stated ? std::vector<EventDoubt>() : doubt_events(judged, events);
   print_warnings(in_words(doubts, events, judged));
   const bool json = arguments.output.ends_with(".json");
-  const std::string text = !json        ? events_as_tsv(events, judged)
-                           : are_stated ? events_as_json(events, judged)
-                                        : events_as_json(events, judged, doubts);
+  const auto as_json = [&] {
+    return are_stated ? events_as_json(events, judged) : events_as_json(events, judged, doubts);
+  };
+  const std::string text = json ? as_json() : events_as_tsv(events, judged);
   if (arguments.output.empty()) {
-    print_result(text);
+    arguments.json.print(text, as_json);
   } else {
     write_text_atomically(arguments.output, text);
-    print_result(summary(events, judged));
+    arguments.json.print(summary(events, judged), as_json);
   }
   return exit_done;
 }
@@ -147,6 +150,7 @@ Command add_gaze_events_command(CLI::App& app, const Invocation& /*invocation*/)
   app.add_flag("--overwrite", arguments->overwrite, "Replaces the file when it is there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Times of day of the log stay; otherwise such times count from its first sample");
+  add_json_option(app, arguments->json, arguments->overwrite);
   return {[arguments, options] { return run_events(*arguments); }, {}};
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/resolve.hpp"
@@ -21,7 +22,7 @@ struct InspectArguments {
   std::string frame_image;
   bool overwrite = false;
   bool keep_ids = false;
-  bool json = false;
+  JsonOutput json;
 };
 
 void write_picture(const InspectArguments& arguments, const GazeLog& log, const GazeInspection& inspection) {
@@ -60,7 +61,8 @@ int run_inspect(const InspectArguments& arguments) {
   if (!arguments.svg.empty()) {
     write_picture(arguments, gaze.log, inspection);
   }
-  print_result(with_flags(arguments.json ? inspection_json(inspection) : inspection_text(inspection)));
+  arguments.json.print(with_flags(inspection_text(inspection)),
+                       [&] { return with_flags(inspection_json(inspection)); });
   return exit_done;
 }
 
@@ -83,7 +85,7 @@ Command add_gaze_inspect_command(CLI::App& app, const Invocation& /*invocation*/
   app.add_flag("--overwrite", arguments->overwrite, "Replaces OUT.svg and MAP.json when they are there");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also shows what can identify a person or a session, such as times of day; left out otherwise");
-  app.add_flag("--json", arguments->json, "As JSON");
+  add_json_option(app, arguments->json);
   return {[arguments, options] { return run_inspect(*arguments); }, {}};
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
 
@@ -20,6 +21,7 @@ struct ObjectsArguments {
   bool recorded_here = false;
   std::string table, heat_map;
   SceneHeatSettings heat;
+  JsonOutput json;
 };
 
 std::string summary(const ObjectsArguments& arguments, const GazeObjects& objects) {
@@ -38,6 +40,7 @@ int run_objects(ObjectsArguments& arguments) {
       check_output_file(output, arguments.job.settings.overwrite);
     }
   }
+  arguments.json.check();
   arguments.objects.stimulus = arguments.recorded_here ? Stimulus::recorded : Stimulus::replayed;
   const bool asks_for_heat = !arguments.heat_map.empty();
   const GazeOnScene seen =
@@ -48,11 +51,12 @@ int run_objects(ObjectsArguments& arguments) {
   }
   const bool json = arguments.table.ends_with(".json");
   const std::string text = json ? objects_as_json(seen.objects) : objects_as_tsv(seen.objects);
+  const auto as_json = [&] { return objects_as_json(seen.objects); };
   if (arguments.table.empty()) {
-    print_result(text);
+    arguments.json.print(text, as_json);
   } else {
     write_text_atomically(arguments.table, text);
-    print_result(summary(arguments, seen.objects));
+    arguments.json.print(summary(arguments, seen.objects), as_json);
   }
   return exit_done;
 }
@@ -87,6 +91,7 @@ Command add_gaze_objects_command(CLI::App& app, const Invocation& /*invocation*/
                  "How far each direction of the cone spreads on its surface, a standard deviation seen from the eye")
       ->type_name("DEG")
       ->capture_default_str();
+  add_json_option(app, arguments->json, arguments->job.settings.overwrite);
   return {[arguments] { return run_objects(*arguments); },
           [arguments](const std::string& path) { read_job_config(arguments->job, "render", path); }};
 }

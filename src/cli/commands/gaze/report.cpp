@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_report.hpp"
@@ -21,16 +22,16 @@ struct GazeReportArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   GazeReportSettings report;
-  std::string output = "gaze.html", json, folder;
+  std::string output = "gaze.html", folder;
   bool overwrite = false;
+  JsonOutput json;
 };
 
 int run_gaze_report(const GazeReportArguments& arguments) {
-  for (const std::string& output : {arguments.output, arguments.json}) {
-    if (!output.empty()) {
-      check_output_file(output, arguments.overwrite);
-    }
+  if (!arguments.output.empty()) {
+    check_output_file(arguments.output, arguments.overwrite);
   }
+  arguments.json.check();
   GazeLog log = read_gaze_file(arguments.gaze, arguments.screen);
   complete_recording_geometry(log, arguments.screen);
   if (!arguments.report.keep_ids) {
@@ -59,16 +60,14 @@ int run_gaze_report(const GazeReportArguments& arguments) {
     }
   }
   files.emplace_back(arguments.output, &report.html);
-  if (!arguments.json.empty()) {
-    files.emplace_back(arguments.json, &report.json);
-  }
   for (const auto& [path, text] : files) {
     write_text_atomically(path, *text);
   }
   const GazeQuality& q = report.quality.front();
-  print_result(fmt::format("{}: {} samples, data loss {:.1f} %, {} diagrams, {:.2f} MiB\n", arguments.output, q.samples,
-                           100 * q.data_loss, report.plots.size(),
-                           static_cast<double>(report.html.size()) / (1024.0 * 1024.0)));
+  arguments.json.print(
+      fmt::format("{}: {} samples, data loss {:.1f} %, {} diagrams, {:.2f} MiB\n", arguments.output, q.samples,
+                  100 * q.data_loss, report.plots.size(), static_cast<double>(report.html.size()) / (1024.0 * 1024.0)),
+      [&] { return report.json; });
   return exit_done;
 }
 
@@ -91,7 +90,7 @@ Command add_gaze_report_command(CLI::App& app, const Invocation& /*invocation*/)
   app.add_option("-o,--output", arguments->output, "The page, one file that needs nothing else")
       ->type_name("OUT.html")
       ->capture_default_str();
-  app.add_option("--json", arguments->json, "Writes all numbers")->type_name("OUT.json");
+  add_json_option(app, arguments->json, arguments->overwrite);
   app.add_option(
          "--parts", arguments->folder,
          "Writes every diagram as .svg, and as .tsv the events, those of each eye and the disparity of the eyes")

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_synth.hpp"
 #include "gazetrace/gaze_write.hpp"
@@ -21,6 +23,7 @@ struct SynthArguments {
   bool head = false;
   std::string output, truth;
   bool overwrite = false;
+  JsonOutput json;
 };
 
 int run_synth(const SynthArguments& arguments) {
@@ -40,6 +43,13 @@ int run_synth(const SynthArguments& arguments) {
     write_text_atomically(arguments.truth,
                           json ? events_as_json(synth.truth, synth.log) : events_as_tsv(synth.truth, synth.log));
   }
+  arguments.json.print("", [&] {
+    const nlohmann::ordered_json json{{"log", arguments.output},
+                                      {"truth", arguments.truth},
+                                      {"samples", synth.log.samples.size()},
+                                      {"events", synth.truth.events.size()}};
+    return json.dump(2) + "\n";
+  });
   return exit_done;
 }
 
@@ -73,6 +83,7 @@ Command add_gaze_synth_command(CLI::App& app, const Invocation& /*invocation*/) 
   app.add_option("--truth", arguments->truth, "What really happened, as 'gaze events' writes it: .tsv or .json")
       ->type_name("FILE");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
+  add_json_option(app, arguments->json, arguments->overwrite);
   return {[arguments, options] { return run_synth(*arguments); }, {}};
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_privacy.hpp"
 #include "gazetrace/gaze_trials.hpp"
@@ -21,7 +22,7 @@ struct TrialsArguments {
   ScreenSettings screen;
   FrameRate fps;
   bool keep_ids = false;
-  bool json = false;
+  JsonOutput json;
 };
 
 struct TrialRow {
@@ -100,11 +101,11 @@ int run_trials(const TrialsArguments& arguments) {
       row.trial.begin_ns -= first_ns;
       row.trial.end_ns -= first_ns;
     }
-    print_result(arguments.json ? as_json(rows, false) : as_table(rows, arguments.fps, 0, false));
+    arguments.json.print(as_table(rows, arguments.fps, 0, false), [&] { return as_json(rows, false); });
     return exit_done;
   }
-  print_result(arguments.json ? as_json(rows, arguments.keep_ids)
-                              : as_table(rows, arguments.fps, first_ns, arguments.keep_ids));
+  arguments.json.print(as_table(rows, arguments.fps, first_ns, arguments.keep_ids),
+                       [&] { return as_json(rows, arguments.keep_ids); });
   return exit_done;
 }
 
@@ -122,7 +123,7 @@ Command add_gaze_trials_command(CLI::App& app, const Invocation& /*invocation*/)
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");
   app.add_flag("--keep-ids", arguments->keep_ids,
                "Also prints the trials' names, which are texts of messages, and times of day");
-  app.add_flag("--json", arguments->json, "As JSON");
+  add_json_option(app, arguments->json);
   return {[arguments, options] { return run_trials(*arguments); }, {}};
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the further channels of a linear picture hold.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace gazetrace {
+
+struct AovInfo {
+  std::string name;
+  std::string description;  // channels, what they hold, its space and unit
+};
+// One for each of aov_names() (output.hpp), in the same order.
+const std::vector<AovInfo>& aov_infos();
+
+}  // namespace gazetrace

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shipped example from end to end, by the program's own commands, which are printed so that they can be repeated.
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "cli/json_output.hpp"
+#include "cli/progress.hpp"
+#include "gazetrace/error.hpp"
+
+extern char** environ;
+
+namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+struct DemoArguments {
+  std::string folder = "gazetrace-demo", data;
+  std::string frames = "1-24", size;
+  bool overwrite = false, without_sweep = false;
+  JsonOutput json;
+};
+
+fs::path own_program() {
+  std::error_code failed;
+  const fs::path path = fs::read_symlink("/proc/self/exe", failed);
+  return failed ? fs::path("gazetrace") : path;
+}
+
+// The folder that holds examples/, scenes/ and gazelogs/: share/gazetrace of an installation, the repository of a
+// build.
+fs::path find_data(const std::string& given) {
+  const auto holds_it = [](const fs::path& folder) {
+    std::error_code ignored;
+    return fs::is_regular_file(folder / "examples" / "example.toml", ignored);
+  };
+  if (!given.empty()) {
+    if (!holds_it(given)) {
+      throw Error(ErrorKind::input, given, "holds no examples/example.toml", "name the folder of examples and scenes");
+    }
+    return given;
+  }
+  for (fs::path folder = own_program().parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
+    for (const fs::path& place : {folder / "share" / "gazetrace", folder}) {
+      if (holds_it(place)) {
+        return place;
+      }
+    }
+  }
+  if (holds_it(".")) {
+    return ".";
+  }
+  throw Error(ErrorKind::input, "demo", "the example's scene and gaze are not beside the program",
+              "give `data` with the folder that holds examples/ and scenes/");
+}
+
+bool is_on_path(const std::string& program) {
+  const char* variable = std::getenv("PATH");
+  std::string rest = variable == nullptr ? std::string() : variable;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(':'), rest.size());
+    std::error_code ignored;
+    if (fs::is_regular_file(fs::path(rest.substr(0, end)) / program, ignored)) {
+      return true;
+    }
+    rest.erase(0, end + 1);
+  }
+  return false;
+}
+
+// Runs the program itself with these words. A code other than 0 ends the demo with the same code.
+int run_step(const char* what, const Words& words) {
+  std::fprintf(stderr, "\n== %s\n   gazetrace %s\n", what, fmt::format("{}", fmt::join(words, " ")).c_str());
+  std::fflush(nullptr);
+  const std::string program = own_program().string();
+  std::vector<char*> pointers{const_cast<char*>(program.c_str())};  // NOLINT: as posix_spawn takes them
+  for (const std::string& word : words) {
+    pointers.push_back(const_cast<char*>(word.c_str()));  // NOLINT
+  }
+  pointers.push_back(nullptr);
+  pid_t child = 0;
+  if (const int problem = posix_spawn(&child, program.c_str(), nullptr, nullptr, pointers.data(), environ);
+      problem != 0) {
+    throw Error(ErrorKind::runtime, program, std::string("cannot be started: ") + std::strerror(problem));
+  }
+  int state = 0;
+  while (waitpid(child, &state, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(state) ? WEXITSTATUS(state) : static_cast<int>(exit_interrupted);
+}
+
+struct Step {
+  const char* what;
+  Words words;
+};
+
+std::vector<Step> steps_of(const DemoArguments& arguments, const fs::path& data, bool has_ffmpeg) {
+  const fs::path folder(arguments.folder);
+  const auto in = [&](const char* name) { return (folder / name).string(); };
+  const std::string config = (data / "examples" / "example.toml").string();
+  Words common{"--config", config, "--frames", arguments.frames, "--overwrite"};
+  if (!arguments.size.empty()) {
+    common.insert(common.end(), {"--size", arguments.size});
+  }
+  const auto render = [&](const char* name, const Words& more) {
+    Words words{"render"};
+    words.insert(words.end(), common.begin(), common.end());
+    const std::string pattern = in(name) + "/frame.####";
+    words.insert(words.end(), {"-o", pattern + ".exr", "-o", pattern + ".png"});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  std::vector<Step> steps{
+      {"Frames that are sampled where the eye looked", render("foveated", {})},
+      {"The same frames with one sample in every pixel, which takes about the same time",
+       render("uniform", {"--falloff", "uniform", "--spp", "1"})},
+  };
+  if (has_ffmpeg) {
+    steps.push_back(
+        {"A video of them", {"video", in("foveated/frame.####.png"), "-o", in("foveated.mp4"), "--overwrite"}});
+    steps.push_back({"Both beside each other, with the gaze and the borders of the regions",
+                     {"video", in("uniform/frame.####.exr"), in("foveated/frame.####.exr"), "-o",
+                      in("side-by-side.mp4"), "--show-gaze", "--show-rings", "--overwrite"}});
+  }
+  if (arguments.without_sweep) {
+    return steps;
+  }
+  Words sweep{"sweep", (data / "examples" / "demo.toml").string(), "-o", in("sweep"), "--quiet"};
+  if (arguments.overwrite) {
+    sweep.emplace_back("--restart");
+  }
+  steps.push_back({"A small measurement: foveated beside uniform sampling of the same cost", sweep});
+  steps.push_back({"A page on it", {"report", in("sweep"), "-o", in("report.html"), "--overwrite"}});
+  return steps;
+}
+
+int run_demo(const DemoArguments& arguments) {
+  const fs::path folder(arguments.folder);
+  std::error_code ignored;
+  if (!arguments.overwrite && fs::exists(folder, ignored) && !fs::is_empty(folder, ignored)) {
+    throw Error(ErrorKind::input, arguments.folder, "this folder is there already",
+                "give --overwrite or another folder");
+  }
+  arguments.json.check();
+  const fs::path data = find_data(arguments.data);
+  const bool has_ffmpeg = is_on_path("ffmpeg");
+  const auto begin = std::chrono::steady_clock::now();
+  double first_picture_s = 0;
+  for (const Step& step : steps_of(arguments, data, has_ffmpeg)) {
+    if (const int code = run_step(step.what, step.words); code != exit_done) {
+      return code;
+    }
+    const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    first_picture_s = first_picture_s > 0 ? first_picture_s : now_s;
+  }
+  const double all_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const auto in = [&](const char* name) { return (folder / name).string(); };
+  std::vector<std::pair<std::string, std::string>> made{{"frames", in("foveated/frame.0001.png") + " and so on"}};
+  if (has_ffmpeg) {
+    made.emplace_back("video", in("foveated.mp4"));
+    made.emplace_back("side by side", in("side-by-side.mp4"));
+  }
+  if (!arguments.without_sweep) {
+    made.emplace_back("measurement", in("sweep/results.csv"));
+    made.emplace_back("report", in("report.html"));
+  }
+  std::string text = fmt::format("Done in {} (frames after {}). What there is to look at:\n", duration_text(all_s),
+                                 duration_text(first_picture_s));
+  nlohmann::ordered_json json{{"seconds", all_s}, {"first_frames_s", first_picture_s}};
+  for (const auto& [name, path] : made) {
+    text += fmt::format("  {:<14}{}\n", name, path);
+    json[name] = path;
+  }
+  if (!has_ffmpeg) {
+    text += "No video was made: there is no ffmpeg on the PATH.\n";
+  }
+  arguments.json.print(text, [&] { return json.dump(2) + "\n"; });
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_demo_command(CLI::App& app, const Invocation& /*invocation*/) {
+  const auto arguments = std::make_shared<DemoArguments>();
+  app.add_option("folder", arguments->folder, "Where everything goes")->type_name("DIR")->capture_default_str();
+  app.add_option("--data", arguments->data,
+                 "The folder that holds examples/, scenes/ and gazelogs/; default: that of the installation or the "
+                 "repository")
+      ->type_name("DIR");
+  app.add_option("--frames", arguments->frames, "Which frames of the example")
+      ->type_name("LIST")
+      ->capture_default_str();
+  app.add_option("--size", arguments->size, "Their size; default: that of the example")->type_name("WxH");
+  app.add_flag("--no-sweep", arguments->without_sweep, "Leaves out the measurement and its report");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces what the folder holds of an earlier demo");
+  add_json_option(app, arguments->json, arguments->overwrite);
+  app.footer(kExitCodesHelp);
+  return {[arguments] { return run_demo(*arguments); }, {}};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/exit_codes.hpp"
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+namespace {
+
+int run_help(const CLI::App& program, const std::vector<std::string>& words) {
+  const CLI::App* found = &program;
+  std::string name = program.get_name();
+  for (const std::string& word : words) {
+    std::vector<std::string> known;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* command : found->get_subcommands([](const CLI::App*) { return true; })) {
+      known.push_back(command->get_name());
+      next = command->get_name() == word ? command : next;
+    }
+    if (next == nullptr) {
+      throw Error(ErrorKind::usage, "help", unknown_name_message("command", word, known));
+    }
+    found = next;
+    name += " " + word;
+  }
+  // App::help() of a command within which another was chosen is that of the other, which here would be this command.
+  print_result(found->get_formatter()->make_help(found, name, CLI::AppFormatMode::Normal));
+  return exit_done;
+}
+
+}  // namespace
+
+Command add_help_command(CLI::App& app, const Invocation& /*invocation*/) {
+  const auto words = std::make_shared<std::vector<std::string>>();
+  app.add_option("command", *words, "Such as render or gaze inspect; default: the list of all")->type_name("COMMAND");
+  return {[words, &app] { return run_help(*app.get_parent(), *words); }, {}};
+}
+
+}  // namespace gazetrace

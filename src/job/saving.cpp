@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/saving.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gazetrace/foveation.hpp"
+#include "gazetrace/frame_renderer.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kLeastSaving = 1.1;
+
+bool is_known_before(const FoveationSettings& foveation) {
+  return foveation.falloff != "uniform" && !follows_picture(foveation) && !foveation.target.is_given() &&
+         !foveation.budget_spp && !foveation.budget_samples;
+}
+
+std::string remedies(const JobSettings& job) {
+  if (job.foveation.falloff == "regions") {
+    return "smaller `region-angles`, or a `screen` that fills more of the field of view, would change that";
+  }
+  return "a larger `size`, `falloff-normalisation` relative or `falloff` regions would change that";
+}
+
+}  // namespace
+
+Warnings saving_warnings(const JobSettings& job, const FramePlan& plan) {
+  const FoveationSettings& foveation = job.foveation;
+  const auto frame = std::find_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
+    return request.gaze_direction_render.has_value() && !request.eye_in_saccade;
+  });
+  if (!is_known_before(foveation) || frame == plan.frames.end()) {
+    return {};
+  }
+  const double full_rate = foveation.falloff == "regions" && foveation.border_blend_deg == 0
+                               ? static_cast<double>(foveation.region_samples[0])
+                               : static_cast<double>(foveation.uniform_spp);
+  const SamplingMap map = planned_sampling_map(foveation, *frame, job.trace.seed, job.threads);
+  const double all = full_rate * frame->width_px * frame->height_px;
+  const double saving = all / std::max(1.0, static_cast<double>(map.samples()));
+  if (saving >= kLeastSaving) {
+    return {};
+  }
+  return {
+      fmt::format("`falloff` {} saves only {:.2f} times the samples in frame {}: at {}x{} a degree has {:.1f} pixels, "
+                  "and nearly all of them keep their full rate; {}",
+                  foveation.falloff, saving, frame->frame, frame->width_px, frame->height_px,
+                  1 / (frame->view.step_x * kDegPerRad), remedies(job))};
+}
+
+}  // namespace gazetrace
