@@ -66,7 +66,7 @@ class Plan:
     def samples(self):
         """How many samples each frame takes; made from its sampling map. Raises where a pilot decides them."""
         if self._samples is None:
-            self._samples = np.array([self._core.samples()[row] for row in self._rows], dtype=np.uint64)
+            self._samples = np.array(self._core.samples(), dtype=np.uint64)[self._rows]
         return self._samples
 
     def sampling_map(self, index):

@@ -44,7 +44,7 @@ bool take_aovs_of_memory(JobSettings& settings) {
 
 }  // namespace
 
-Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {
+Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene, Threads& threads) : scene_(std::move(scene)) {
   const JobSettings& settings = job.settings;
   if (settings.scene.empty() && !scene_) {
     throw Error(ErrorKind::usage, "", "no scene was given", "give `scene`");
@@ -77,7 +77,7 @@ Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene) : scene_(std::
   }
   warnings_.insert(warnings_.end(), resolved_.warnings.begin(), resolved_.warnings.end());
   warnings_ = in_keywords(std::move(warnings_));
-  thread_ = std::thread([this] { run(); });
+  threads.run([this] { run(); });
 }
 
 Rendering::~Rendering() {
@@ -200,15 +200,21 @@ std::unique_ptr<GivenFrame> Rendering::next(const std::function<bool()>& interru
 }
 
 void Rendering::close() {
-  {
-    const std::lock_guard guard(mutex_);
-    stop_ = true;
-    changed_.notify_all();
-  }
-  if (thread_.joinable()) {
-    thread_.join();
-  }
+  std::unique_lock lock(mutex_);
+  stop_ = true;
+  changed_.notify_all();
+  changed_.wait(lock, [this] { return ended_; });
   given_.reset();
+}
+
+SequenceResult Rendering::result() const {
+  const std::lock_guard guard(mutex_);
+  return result_;
+}
+
+Warnings Rendering::warnings() const {
+  const std::lock_guard guard(mutex_);
+  return warnings_;
 }
 
 bool Rendering::has_ended() const {
@@ -249,9 +255,10 @@ py::object next_frame(Rendering& rendering) {
 }  // namespace
 
 void bind_rendering(py::module_& module) {
+  const auto threads = std::make_shared<Threads>();
   py::class_<Rendering>(module, "Rendering")
-      .def(py::init([](const Job& job, const std::shared_ptr<Scene>& scene) {
-             return std::make_unique<Rendering>(job, scene);
+      .def(py::init([threads](const Job& job, const std::shared_ptr<Scene>& scene) {
+             return std::make_unique<Rendering>(job, scene, *threads);
            }),
            py::arg("job"), py::arg("scene") = py::none(), py::call_guard<py::gil_scoped_release>())
       .def("next", &next_frame)
@@ -268,7 +275,8 @@ void bind_rendering(py::module_& module) {
       .def("facts", [](const Rendering& rendering) { return rendering.result().facts; })
       .def("timing", [](const Rendering& rendering) {
         std::vector<std::string> rows;
-        for (const TimingRow& row : rendering.result().rows) {
+        const SequenceResult result = rendering.result();
+        for (const TimingRow& row : result.rows) {
           rows.push_back(timing_row_text(row));
         }
         return rows;

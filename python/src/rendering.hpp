@@ -13,11 +13,11 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "frame.hpp"
 #include "gazetrace/resolve.hpp"
+#include "threads.hpp"
 
 namespace gazetrace::python {
 
@@ -25,7 +25,7 @@ class Rendering {
  public:
   // Loads and checks everything that the job names, as the program does before its first ray; its errors are those of
   // resolve() and prepare_outputs(). With `scene` the job's own scene file is not read.
-  Rendering(Job job, std::shared_ptr<const Scene> scene);
+  Rendering(Job job, std::shared_ptr<const Scene> scene, Threads& threads);
   ~Rendering();
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
@@ -38,10 +38,10 @@ class Rendering {
   void close();
 
   [[nodiscard]] const ResolvedJob& resolved() const { return resolved_; }
-  // Of the sequence, once it has ended.
-  [[nodiscard]] const SequenceResult& result() const { return result_; }
+  // Of the sequence; empty until it has ended.
+  [[nodiscard]] SequenceResult result() const;
   [[nodiscard]] bool has_ended() const;
-  [[nodiscard]] const Warnings& warnings() const { return warnings_; }
+  [[nodiscard]] Warnings warnings() const;
   [[nodiscard]] std::vector<std::string> files() const { return files_; }
   [[nodiscard]] std::string view() const { return color_->description(); }
 
@@ -70,7 +70,6 @@ class Rendering {
   std::exception_ptr failure_;
   SequenceResult result_;
   std::atomic<bool> stop_{false}, out_of_time_{false};
-  std::thread thread_;
 };
 
 }  // namespace gazetrace::python

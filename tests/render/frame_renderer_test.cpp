@@ -107,6 +107,12 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
     observer.frame_ready = [&](const FrameRequest&, const Frame& frame, double ev) {
       frames.emplace_back(frame.radiance, ev);
     };
+    std::vector<RenderedFrame> taken;
+    observer.take_frame = [&](const FrameRequest& request, RenderedFrame&& rendered, const TimingRow& row) {
+      EXPECT_EQ(request.frame, row.frame);
+      EXPECT_GT(row.total_ms, 0);
+      taken.push_back(std::move(rendered));
+    };
     const SequenceResult result = render_sequence(tracer, plan, color, settings, observer);
 
     const FrameRenderer renderer(tracer, settings);
@@ -115,6 +121,8 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
       const RenderedFrame rendered = renderer.render(plan.frames[i], history);
       EXPECT_TRUE(same_picture(rendered.frame.radiance, frames[i].first, std::to_string(i + 1)));
       EXPECT_EQ(rendered.exposure_ev, frames[i].second);
+      EXPECT_TRUE(same_picture(rendered.frame.radiance, taken.at(i).frame.radiance, std::to_string(i + 1)));
+      EXPECT_EQ(taken[i].map.samples(), rendered.map.samples());
       EXPECT_GT(rendered.first_look.samples, 0U);
       EXPECT_EQ(rendered.samples.samples + rendered.first_look.samples, result.rows[i].samples);
     }
