@@ -52,6 +52,7 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
     {"visible", "metrics"},       // predicts what a metric will measure
     {"visible", "color"},         // through the view that the picture is shown with
     {"study", "report"},          // pages are filled the same way
+    {"farm", "sweep"},            // the rows of a sweep are divided among tasks
 };
 
 // The public headers of each module.
