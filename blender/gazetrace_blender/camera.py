@@ -71,7 +71,7 @@ def projection(camera: bpy.types.Camera, width_px: int, height_px: int) -> Proje
 
 
 def scene_camera(scene: bpy.types.Scene) -> bpy.types.Object:
-    """The camera of the scene. Refuses what is not one picture of one pinhole or lens."""
+    """The camera of the scene at its current frame. Refuses what is not one picture of one pinhole or lens."""
     camera = scene.camera
     if camera is None or camera.type != "CAMERA":
         raise Refusal("the scene has no camera", "add one and make it the scene's camera")
@@ -81,12 +81,6 @@ def scene_camera(scene: bpy.types.Scene) -> bpy.types.Object:
         raise Refusal("only a region of the picture is to be rendered", "switch Render Region off")
     if scene.render.use_multiview:
         raise Refusal("the scene is stereoscopic", "switch Stereoscopy off and render an eye at a time")
-    switches = [marker for marker in scene.timeline_markers if marker.camera not in (None, camera)]
-    if switches:
-        raise Refusal(
-            f"marker '{switches[0].name}' switches to another camera",
-            "render the frames of each camera by themselves, without such markers",
-        )
     return camera
 
 

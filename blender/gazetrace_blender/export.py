@@ -37,8 +37,10 @@ EXPORTER_OPTIONS = {
 }
 
 
-def export_scene(scene: bpy.types.Scene, frames: FrameRange, projection: Projection, path: Path) -> str:
-    """Writes the scene, and returns the name of its camera in the file."""
+def export_scene(
+    scene: bpy.types.Scene, frames: FrameRange, camera: bpy.types.Object, projection: Projection, path: Path
+) -> str:
+    """Writes the scene, and returns the name of the camera in the file."""
     with frame_kept(scene):
         matrices = world_matrices(scene, frames.baked())
         scene.frame_set(frames.first)
@@ -47,7 +49,7 @@ def export_scene(scene: bpy.types.Scene, frames: FrameRange, projection: Project
     glb = Glb(path)
     scale_times(glb, scene.render.fps_base)
     animate(glb, matrices, frames)
-    name = place_camera(glb.document, scene.camera.name, projection)
+    name = place_camera(glb.document, camera.name, projection)
     glb.write(path)
     return name
 

@@ -44,13 +44,12 @@ def write_job(context: bpy.types.Context) -> Job:
     side_folder = blend.with_suffix(".gazetrace")
     frames = frame_range(scene)
     width_px, height_px = picture_size(scene)
-    camera = scene_camera(scene)
     # Refusals come before the export, which can take long.
-    lens, shown = camera_over_time(scene, camera, frames, width_px, height_px)
+    camera, lens, shown = camera_over_time(scene, frames, width_px, height_px)
     side_folder.mkdir(exist_ok=True)
     scene_file = side_folder / "scene.glb"
     options = settings_of_job(scene, frames, blend.parent, side_folder)
-    camera_name = export_scene(scene, frames, shown, scene_file)
+    camera_name = export_scene(scene, frames, camera, shown, scene_file)
     first: dict[str, Value] = {
         "scene": scene_file.relative_to(blend.parent).as_posix(),
         "camera": camera_name,
@@ -65,15 +64,22 @@ def write_job(context: bpy.types.Context) -> Job:
 
 
 def camera_over_time(
-    scene: bpy.types.Scene, camera: bpy.types.Object, frames: FrameRange, width_px: int, height_px: int
-) -> tuple[dict[str, Value], Projection]:
-    """The lens and the projection, which must be the same in every frame."""
+    scene: bpy.types.Scene, frames: FrameRange, width_px: int, height_px: int
+) -> tuple[bpy.types.Object, dict[str, Value], Projection]:
+    """The camera, its lens and its projection, which must be the same in every frame."""
     seen = []
     with frame_kept(scene):
         for frame in frames.rendered():
-            scene.frame_set(frame)
+            scene.frame_set(frame)  # Markers may switch cameras.
+            camera = scene_camera(scene)
             evaluated = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
-            seen.append((lens_options(scene, evaluated), projection(evaluated.data, width_px, height_px)))
+            lens = lens_options(scene, evaluated)
+            seen.append((camera, lens, projection(evaluated.data, width_px, height_px)))
+            if camera != seen[0][0]:
+                raise Refusal(
+                    f"a marker switches to camera '{camera.name}' in frame {frame}",
+                    "render the frames of each camera by themselves",
+                )
             if seen[-1] != seen[0]:
                 raise Refusal(
                     f"the lens of camera '{camera.name}' is another in frame {frame} than in frame {frames.first}",

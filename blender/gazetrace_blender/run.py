@@ -65,8 +65,9 @@ class Run:
         self._reader.start()
 
     def _read(self) -> None:
-        for line in self._process.stderr:
-            self._lines.put(line)
+        with self._process.stderr as told:
+            for line in told:
+                self._lines.put(line)
 
     def _hear_all(self) -> None:
         while not self._lines.empty():

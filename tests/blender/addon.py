@@ -110,11 +110,12 @@ class Refusals(AddOnTest):
         scenes.key(self.scene.camera.data, "lens", 20, 80.0)
         self.assert_refused("is another in frame 12 than in frame 11")
 
-    def test_a_marker_that_switches_cameras(self):
+    def test_markers_that_switch_cameras(self):
         other = bpy.data.objects.new("other", bpy.data.cameras.new("other"))
         self.scene.collection.objects.link(other)
-        self.scene.timeline_markers.new("cut", frame=12).camera = other
-        self.assert_refused("'cut' switches")
+        self.scene.timeline_markers.new("begin", frame=1).camera = self.scene.camera
+        self.scene.timeline_markers.new("cut", frame=13).camera = other
+        self.assert_refused("a marker switches to camera 'other' in frame 13")
 
     def test_a_world_that_is_computed(self):
         self.scene.world = bpy.data.worlds.new("sky")
@@ -195,10 +196,19 @@ class Settings(AddOnTest):
 class Runs(AddOnTest):
     def test_the_result_is_an_image_sequence(self):
         self.settings.display_pictures = True
+        windows = bpy.context.window_manager.windows
+        if windows:
+            windows[0].screen.areas[0].type = "IMAGE_EDITOR"
         self.picture()
         image = bpy.data.images["gazetrace"]
-        self.assertEqual((image.source, tuple(image.size)), ("SEQUENCE", (64, 36)))
+        self.assertEqual(image.source, "SEQUENCE")
         self.assertTrue(image.filepath.endswith(f"frame.{scenes.FIRST:04d}.exr"))
+        if windows:
+            editor = windows[0].screen.areas[0].spaces.active
+            user = editor.image_user
+            self.assertEqual(editor.image, image)
+            # Blender shows the file of number frame - frame_start + 1 + frame_offset.
+            self.assertEqual((user.frame_offset + 1, user.frame_start, user.frame_duration), (11, 11, 5))
         names = sorted(path.name for path in (self.folder / "gazetrace").glob("frame.*"))
         self.assertEqual(names, [f"frame.{n:04d}.{end}" for n in range(11, 16) for end in ("exr", "png")])
 
