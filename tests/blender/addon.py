@@ -271,9 +271,11 @@ class Light(AddOnTest):
     def test_the_world_stands_as_in_blender(self):
         """A picture of the surroundings with one bright place is seen at the same pixel, turned or not."""
         self.empty_scene()
+        bpy.ops.mesh.primitive_plane_add(size=0.1, location=(0, 0, 90))  # A scene needs a shape: this one is out of sight.
         radiance = np.full((64, 128, 4), 0.001, np.float32)
         radiance[20:24, 30:34, :3] = 50
         image = bpy.data.images.new("around", 128, 64, float_buffer=True)
+        image.colorspace_settings.name = "Non-Color"  # The file has the numbers as they are.
         image.pixels.foreach_set(radiance.ravel())
         image.file_format, image.filepath_raw = "OPEN_EXR", str(self.folder / "around.exr")
         image.save()
@@ -369,6 +371,7 @@ class Bones(AddOnTest):
         scenes.key(moved, "value", 1, 0.0)
         scenes.key(moved, "value", 30, 1.0)
         self.scene.render.resolution_x, self.scene.render.resolution_y = 160, 90
+        self.scene.render.fps_base = 1.25
         self.further('falloff = "uniform"\nfilter = "none"\nbounces = 0\n')
         self.settings.samples = 64
         self.save()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders each view by Cycles and by gazetrace, and prints by how many pixels the places of the balls differ.
 
-Runs inside Blender (blender -b --factory-startup -P framing.py -- FOLDER) or under a Python that has bpy.
+Runs inside Blender (blender -b --factory-startup -P framing.py -- FOLDER [NUMBER ...]) or under a Python that has bpy.
+Numbers choose among the views.
 """
 
 import json
@@ -70,12 +71,13 @@ def computed(scene: bpy.types.Scene, folder: Path) -> dict[int, np.ndarray]:
 
 def worst(a: dict[int, np.ndarray], b: dict[int, np.ndarray]) -> float:
     """The largest distance in pixels between two places of the same ball in the same frame."""
-    return max(float(np.linalg.norm(a[frame] - b[frame], axis=1).max()) for frame in a)
+    return float(np.max([np.linalg.norm(a[frame] - b[frame], axis=1) for frame in a]))
 
 
-def main(folder: Path) -> None:
+def main(folder: Path, numbers: list[int]) -> None:
     """Prints one JSON object a view."""
-    for number, view in enumerate(scenes.VIEWS):
+    for number in numbers or range(len(scenes.VIEWS)):
+        view = scenes.VIEWS[number]
         scene = scenes.build(view)
         gazetrace_blender.register()
         here = folder / str(number)
@@ -97,4 +99,5 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[sys.argv.index("--") + 1] if "--" in sys.argv else sys.argv[1]))
+    given = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
+    main(Path(given[0]), [int(number) for number in given[1:]])
