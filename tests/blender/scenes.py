@@ -28,7 +28,7 @@ VIEWS = [
     View("upright", size=(180, 320), lens_mm=28),
     View("vertical fit, half size", size=(501, 301), percentage=50, lens_mm=24, sensor_mm=(36, 20), fit="VERTICAL"),
     View("horizontal fit, upright", size=(200, 260), lens_mm=30, sensor_mm=(32, 18), fit="HORIZONTAL"),
-    View("long lens, vertical fit, upright", size=(180, 300), lens_mm=60, fit="VERTICAL"),
+    View("long lens, vertical fit", size=(400, 300), lens_mm=42, fit="VERTICAL"),
     View("parallel rays, vertical fit", size=(320, 180), fit="VERTICAL", kind="ORTHO"),
     View("parallel rays, upright", size=(180, 240), kind="ORTHO"),
 ]
