@@ -21,7 +21,7 @@ void check_confined(const Option& option, const std::vector<std::string>& values
   }
   for (const std::string& value : values) {
     if (names_file(option, value)) {
-      check_within(data_roots(path), located_file(option, value, path).value, value, at,
+      check_within(data_roots(path), value, value, at,
                    "put the file there, or leave `confine` out where you trust the settings");
     }
   }
@@ -32,7 +32,11 @@ void check_confined(const std::string& text, const std::string& path) {
   for (const auto& [key, node] : parse_toml(text, path).members) {
     // The reader of settings says it better where there is no such option.
     if (const Option* option = find_option(options, key)) {
-      check_confined(*option, toml_values(node, *option, path), path, toml_place(path, node));
+      std::vector<std::string> values = toml_values(node, *option, path);
+      for (std::string& value : values) {
+        value = located_file(*option, value, path).value;
+      }
+      check_confined(*option, values, path, toml_place(path, node));
     }
   }
 }
