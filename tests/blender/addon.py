@@ -323,7 +323,9 @@ class Light(AddOnTest):
         camera.location, camera.rotation_euler = (0, 0, 5), (0, 0, 0)
         self.further('falloff = "uniform"\nfilter = "none"\ndiffuse = "lambert"\nbounces = 1\n')
         self.settings.samples = 64
-        for kind, energy in (("POINT", 100), ("SPOT", 200), ("SUN", 3)):
+        # Cycles of Blender 3.4 darkens a spot by the cosine of the angle to its axis, which glTF cannot say: near the axis
+        # the two agree.
+        for kind, energy, height in (("POINT", 100, 3), ("SPOT", 4000, 15), ("SUN", 3, 3)):
             with self.subTest(kind):
                 lamp = bpy.data.lights.new(kind, kind)
                 lamp.energy, lamp.color = energy, (1, 0.5, 0.25)
@@ -332,7 +334,7 @@ class Light(AddOnTest):
                 if kind == "SPOT":
                     lamp.spot_size, lamp.spot_blend = 1.5, 0
                 item = bpy.data.objects.new(kind, lamp)
-                item.location = (0.3, 0.2, 3)
+                item.location = (0.3, 0.2, height)
                 self.scene.collection.objects.link(item)
                 blender = self.cycles_picture(64).mean(axis=(0, 1))
                 ours = self.picture().mean(axis=(0, 1))
