@@ -339,6 +339,9 @@ bool TableRows::read() {
 }
 
 void TableRows::note_group_mark(std::size_t column, std::string_view text) {
+  if (column < group_marks_.size() && group_marks_[column].has_others) {
+    return;  // the column has fractions
+  }
   const std::size_t at = text.find_first_of(",.");
   if (at == std::string_view::npos) {
     return;
@@ -347,9 +350,6 @@ void TableRows::note_group_mark(std::size_t column, std::string_view text) {
     group_marks_.resize(column + 1);
   }
   GroupMarks& marks = group_marks_[column];
-  if (marks.has_others) {
-    return;  // the column has fractions
-  }
   if (!is_grouped_by(text, text[at])) {
     marks.has_others = true;
   } else if (marks.grouped++ == 0) {
