@@ -120,6 +120,13 @@ Means means_of(const Scene& scene, const Camera& camera, const TraceSettings& gi
   return means;
 }
 
+TraceSettings settings_of(DiffuseModel diffuse, int max_bounces = 3) {
+  TraceSettings settings;
+  settings.diffuse = diffuse;
+  settings.max_bounces = max_bounces;
+  return settings;
+}
+
 // A wall that fills the view, under a sky of radiance 1 and nothing else.
 Scene wall(float metallic, float roughness) {
   Scene scene;
@@ -134,7 +141,7 @@ Scene wall(float metallic, float roughness) {
 
 TEST(LightGroups, LightGoesWhereItBelongs) {
   const Camera close = camera_at({0, 0, 5}, {0, 0, 0});
-  const Means matte = means_of(wall(0, 1), close, {.diffuse = DiffuseModel::matte});
+  const Means matte = means_of(wall(0, 1), close, settings_of(DiffuseModel::matte));
   EXPECT_NEAR(matte[LightGroup::diffuse_direct], 0.5, 2e-3);
   const Means metal = means_of(wall(1, 0.5F), close, {});
   EXPECT_EQ(metal[LightGroup::diffuse_direct], 0);
@@ -164,8 +171,7 @@ TEST(LightGroups, DirectLightMeetsOneSurface) {
   Scene scene;
   scene.materials = {diffuse_material({0.6F, 0.6F, 0.6F}, {1, 1, 1})};
   add_mesh(scene, box(3, true, 0));
-  const Means means =
-      means_of(scene, camera_at({0, 0, 2}, {0, 0, -1}), {.max_bounces = 3, .diffuse = DiffuseModel::matte}, 256);
+  const Means means = means_of(scene, camera_at({0, 0, 2}, {0, 0, -1}), settings_of(DiffuseModel::matte), 256);
   EXPECT_EQ(means[LightGroup::emission], 1);
   EXPECT_NEAR(means[LightGroup::diffuse_direct], kAlbedo, 4e-3);
   EXPECT_NEAR(means[LightGroup::diffuse_indirect], kAlbedo * kAlbedo + std::pow(kAlbedo, 3), 4e-3);

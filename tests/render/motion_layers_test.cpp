@@ -106,7 +106,7 @@ TEST(MotionLayers, AreFiniteDifferencesOfPlaces) {
   FrameSettings settings;
   settings.foveation.uniform_spp = 1;
   settings.reconstruction.filter = "none";
-  settings.layers = {.forward = true, .backward = true, .position = true};
+  settings.layers.forward = settings.layers.backward = settings.layers.position = true;
   FrameRequest request;
   const double now_s = 0.3;
   const auto at = [](double s) { return std::llround(s * 1e9); };
@@ -171,7 +171,7 @@ TEST(MotionLayers, TheSkyTurnsWithTheCameraAndWhatIsBehindItHasNoMotion) {
   FrameSettings settings;
   settings.foveation.uniform_spp = 1;
   settings.reconstruction.filter = "none";
-  settings.layers = {.forward = true, .backward = true};
+  settings.layers.forward = settings.layers.backward = true;
   FrameRequest request;
   request.width_px = kWidth;
   request.height_px = kHeight;
