@@ -30,7 +30,7 @@ def render(arguments, extra, folder, name, options):
          "-o", out / "f.png", *options, *extra], stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
         sys.exit(done.stderr)
-    with open(out / "timing.csv", newline="") as file:
+    with open(out / "f.timing.csv", newline="") as file:
         samples = float(next(csv.DictReader(file))["samples"])
     picture = Image.open(out / "f.png").convert("RGB")
     return picture, samples / (picture.width * picture.height)

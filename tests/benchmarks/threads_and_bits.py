@@ -37,7 +37,7 @@ def render(program, scene, extra, threads, folder):
     done = subprocess.run(words, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(words)}\n{done.stderr}")
-    with open(next(folder.glob("timing*.csv")), newline="") as file:
+    with open(folder / "picture.timing.csv", newline="") as file:
         row = next(csv.DictReader(file))
     return float(row["trace_ms"]) * 1000 / float(row["samples"]), pixels(out)
 

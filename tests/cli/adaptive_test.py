@@ -12,12 +12,13 @@ VIEW = ["--size", "64x40", "--eye", "0,0,3", "--target", "0,0,0", "--quiet", "--
 
 
 class Adaptive(harness.CliTest):
-    def rows(self, folder):
-        with open(self.folder / folder / "timing.csv", newline="") as file:
+    def rows(self, folder, still=""):
+        """Of a sequence; of the still f.exr with `still` = "f."."""
+        with open(self.folder / folder / f"{still}timing.csv", newline="") as file:
             return list(csv.DictReader(file))
 
-    def record(self, folder):
-        return json.loads((self.folder / folder / "run.json").read_text())
+    def record(self, folder, still=""):
+        return json.loads((self.folder / folder / f"{still}run.json").read_text())
 
     def render(self, folder, *more):
         self.run_ok("render", "box.gltf", *VIEW, *more, "-o", f"{folder}/f.####.exr")
@@ -47,7 +48,7 @@ class Adaptive(harness.CliTest):
         for budget in ("1", "4", "16"):
             self.run_ok("render", "box.gltf", *VIEW[2:], "--size", "320x256", "--budget-spp", budget, "--filter", "none", "-o",
                         f"error-{budget}/f.exr")
-            errors.append(float(self.rows(f"error-{budget}")[0]["predicted_relmse"]))
+            errors.append(float(self.rows(f"error-{budget}", "f.")[0]["predicted_relmse"]))
         for more, fewer in zip(errors[1:], errors):
             self.assertLess(more, 0.6 * fewer)
 
@@ -107,12 +108,12 @@ class Adaptive(harness.CliTest):
         def still(folder, target, *more, ppd="12"):
             self.run_ok("render", "box.gltf", *VIEW[:-2], "--screen-px", "64,40", "--screen-ppd", ppd, "--falloff",
                         "uniform", "--filter", "none", "--target-flip", target, *more, "-o", f"{folder}/f.exr")
-            row, = self.rows(folder)
+            row, = self.rows(folder, "f.")
             return int(row["samples"]) - int(row["pilot_samples"])
 
         least = still("flip-0.08", "0.08")
         self.assertGreater(still("flip-0.04", "0.04"), 1.5 * least)
-        self.assertIn("FLIP", self.record("flip-0.04")["facts"]["rate"])
+        self.assertIn("FLIP", self.record("flip-0.04", "f.")["facts"]["rate"])
         still("threads", "0.04", "--threads", "1")
         self.assertEqual(self.pictures("threads"), self.pictures("flip-0.04"))
         # The pixels of a screen that is farther away are smaller, and so is their noise.

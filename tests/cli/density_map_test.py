@@ -51,7 +51,7 @@ class DensityMap(harness.CliTest):
     def test_counts_need_no_rendering_and_the_map_of_one_run_serves_another(self):
         self.run_ok("render", "box.gltf", *VIEW, *harness.SCREEN, "--gaze-at", "0.4,0.5", "--falloff", "acuity", "--spp",
                     "6", "-o", "a/f.exr", "--map", "a/map.exr")
-        with open(self.folder / "a" / "timing.csv", newline="") as file:
+        with open(self.folder / "a" / "f.timing.csv", newline="") as file:
             samples = int(next(csv.DictReader(file))["samples"])
         counts = json.loads(self.run_ok("plan", "--counts", "--json", "--size", "64x36", "--falloff", "map", "--density-map",
                                         "a/map.exr", "--density-floor", "1e-6").stdout)[0]
