@@ -71,7 +71,8 @@ std::vector<std::string> assets_of(const Scene& scene) {
 
 TEST(Nodes, AssetsAreTheOutermostNodes) {
   GltfBuilder builder;
-  const int mesh = builder.add_triangle();
+  const int mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", builder.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}}}});
   builder.add_node({{"name", "table"}, {"children", {1}}});
   builder.add_node({{"name", "frame"}, {"mesh", mesh}, {"children", {2}}}, false);
   builder.add_node({{"mesh", mesh}}, false);
@@ -82,7 +83,8 @@ TEST(Nodes, AssetsAreTheOutermostNodes) {
 
 TEST(Nodes, ANodeAroundEverythingIsNoAsset) {
   GltfBuilder builder;
-  const int mesh = builder.add_triangle();
+  const int mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", builder.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}}}});
   builder.add_node({{"name", "Root"}, {"children", {1}}});
   builder.add_node({{"name", "RootNode"}, {"children", {2, 3}}}, false);
   builder.add_node({{"name", "cup"}, {"children", {4}}}, false);

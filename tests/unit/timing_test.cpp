@@ -110,7 +110,7 @@ TEST(Timing, BrokenTables) {
   const std::string header = timing_csv_text({});
   expect_error(path, "", "first line");
   expect_error(path, "frame,ms\n", "timing.csv:1: the columns");
-  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 62");
+  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 66");
   std::string letters = timing_csv_text({example(1)});
   letters.replace(letters.find("1234.5000"), 9, "fast");
   expect_error(path, letters, "timing.csv:2: 'fast' is not a number for column trace_ms");
