@@ -52,6 +52,7 @@ ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request) const
       return history_of_frame(done.frame, traced.map, motion, request, settings_.threads);
     });
   }
+  done.light = filtered_light(traced, done.times);
   done.map = std::move(traced.map);
   done.samples = std::move(traced.sparse.stats);
   done.first_look = std::move(traced.first_look);
@@ -94,6 +95,7 @@ RenderedFrame FrameRenderer::join(const std::vector<const ReconstructedFrame*>& 
   rendered.prediction = frame.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
+  add_layers(request, frame.light, rendered);
   return rendered;
 }
 
