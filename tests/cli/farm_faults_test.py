@@ -533,6 +533,9 @@ class Bombs(Farm):
         self.assert_refused(["scene", "glide.gltf", "--max-memory", "1K"], refusal)
         self.assert_refused(["render", *JOB, "-o", "o/f.exr", "--max-memory", "1K"], refusal)
         self.run_ok("scene", "glide.gltf", "--max-memory", "160M")
+        # JSON that is small as a text and large as a tree is refused before it is parsed.
+        self.write("tree.gltf", '{"asset": {"version": "2.0"}, "extras": [' + "[]," * 5_000_000 + "0]}")
+        self.assert_refused(["scene", "tree.gltf", "--max-memory", "160M"], ["to be parsed", "160 MiB", "--max-memory"])
         # A file that claims more than it has, told before anything is loaded.
         scene = harness.box_gltf()
         scene["accessors"][0].pop("bufferView")

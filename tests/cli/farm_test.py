@@ -10,7 +10,7 @@ import time
 
 import harness
 from farm_faults_test import JOB_TOML, Farm
-from farm_harm import Harm
+from farm_harm import renderers
 from gliding_job import job_toml
 
 HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
@@ -402,13 +402,12 @@ class Engines(Farm):
         (self.folder / "out").mkdir()
         broken = self.folder / "out/f.0001.exr"
         broken.mkdir()  # the first chunk fails, and the second one is held up
-        harm = Harm(self.folder, harness.PROGRAM, None)
         first = subprocess.Popen([harness.PROGRAM, "farm", "slow.toml", "--chunks", "2", "--processes", "2", "--threads", "1",
                                   "--retries", "0"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(first.kill)
         while not (self.folder / "out/run.4-6.json.lock").exists() and first.poll() is None:
             time.sleep(0.002)
-        held = harm.renderers()[2]
+        held = renderers(self.folder, harness.PROGRAM)[2]
         os.kill(held, signal.SIGSTOP)
         self.addCleanup(lambda: os.path.exists(f"/proc/{held}") and os.kill(held, signal.SIGKILL))
         while self.states().get("1") != "failed" and first.poll() is None:

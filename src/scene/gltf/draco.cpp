@@ -13,6 +13,7 @@
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/compression.hpp"
 #include "scene/gltf/document.hpp"
+#include "scene/gltf/draco_claims.hpp"
 #include "scene/parallel_errors.hpp"
 
 namespace gazetrace {
@@ -134,6 +135,26 @@ Plain unpack_indices(const draco::Mesh& mesh) {
   return plain;
 }
 
+// The memory of a scene is reckoned by its accessors; the stream must not ask for more.
+void check_claims(const GltfDocument& document, const GltfPrimitive& primitive, std::span<const std::uint8_t> bytes,
+                  const std::string& place) {
+  const auto claims = draco_claims(bytes);
+  if (!claims) {
+    fail(place, "the compressed bytes are no Draco mesh");
+  }
+  const auto count = [&](int accessor) { return document.accessors[static_cast<std::size_t>(accessor)].count; };
+  const auto positions = primitive.attributes.find("POSITION");
+  const std::uint64_t vertices = positions == primitive.attributes.end() ? 0 : count(positions->second);
+  // A strip has nearly as many triangles as corners; without indices, no closed surface has more than two for a vertex.
+  const std::uint64_t faces = primitive.indices >= 0 ? count(primitive.indices) : 2 * vertices;
+  if (claims->vertices > vertices || claims->faces > faces) {
+    fail(place, "the compressed bytes claim " + std::to_string(claims->faces) + " triangles of " +
+                    std::to_string(claims->vertices) + " vertices; the accessors have " +
+                    std::to_string(primitive.indices >= 0 ? faces : vertices) +
+                    (primitive.indices >= 0 ? " corners of " + std::to_string(vertices) + " vertices" : " vertices"));
+  }
+}
+
 PlainPrimitive unpack(const GltfDocument& document, const DracoPrimitive& packed) {
   const std::string place = document.path + ": meshes[" + std::to_string(packed.mesh) + "].primitives[" +
                             std::to_string(packed.primitive) + "].extensions.KHR_draco_mesh_compression";
@@ -142,7 +163,9 @@ PlainPrimitive unpack(const GltfDocument& document, const DracoPrimitive& packed
   if (primitive.mode != kTriangles && primitive.mode != kTriangles + 1) {
     fail(place, "mode " + std::to_string(primitive.mode) + " is neither triangles nor a triangle strip");
   }
-  const auto mesh = decode(view_bytes(document, packed.buffer_view, place), place);
+  const std::span<const std::uint8_t> bytes = view_bytes(document, packed.buffer_view, place);
+  check_claims(document, primitive, bytes, place);
+  const auto mesh = decode(bytes, place);
   PlainPrimitive plain;
   plain.indices = unpack_indices(*mesh);
   if (plain.indices.accessor.count == 0) {
