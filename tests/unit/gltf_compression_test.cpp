@@ -8,6 +8,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -467,14 +468,14 @@ TEST(Draco, RefusesClaimsBeforeTheyAreBelieved) {
       bomb.push_back(0);
     }
     for (int i = 0; i < 2; ++i) {
-      for (const std::uint8_t byte : {0x80, 0xC2, 0xD7, 0x2F}) {  // 100,000,000
+      for (const std::uint8_t byte : std::array<std::uint8_t, 4>{0x80, 0xC2, 0xD7, 0x2F}) {  // 100,000,000
         bomb.push_back(byte);
       }
     }
     bomb.resize(64, 1);
     stream.bytes = bomb;
     EXPECT_THAT(error_of(folder.write("bomb.glb", draco_file(source, stream).glb())),
-                HasSubstr("claim 100000000 triangles of 100000000 vertices; the accessors have 384 corners of 81"));
+                HasSubstr("claim 100000000 triangles of 100000000 vertices; the accessors have 81 vertices"));
   }
 }
 
@@ -488,12 +489,9 @@ TEST(Draco, RefusesWhatDoesNotFitTheAccessors) {
     return error_of(folder.write("scene.gltf", builder.text()));
   };
   EXPECT_THAT(
-      message([](json& all, json&) { all["accessors"][0]["count"] = 26; }),
+      message([](json& all, json&) { all["accessors"][0]["count"] = 24; }),
       HasSubstr("meshes[0].primitives[0].extensions.KHR_draco_mesh_compression.attributes.POSITION: accessors[0] "
-                "has a count of 26, the compressed mesh has 25 points"));
-  EXPECT_THAT(message([](json& all, json&) { all["accessors"][0]["count"] = 24; }),
-              HasSubstr("meshes[0].primitives[0].extensions.KHR_draco_mesh_compression: the compressed bytes claim 32 "
-                        "triangles of 25 vertices; the accessors have 96 corners of 24 vertices"));
+                "has a count of 24, the compressed mesh has 25 points"));
   EXPECT_THAT(message([](json& all, json&) { all["accessors"][1]["type"] = "VEC4"; }), HasSubstr("4 components"));
   EXPECT_THAT(message([](json&, json& packed) { packed["attributes"]["NORMAL"] = 99; }), HasSubstr("the id 99"));
   EXPECT_THAT(message([](json&, json& packed) { packed["attributes"]["NORMAL"] = "x"; }), HasSubstr("NORMAL"));
