@@ -32,9 +32,9 @@ std::string batch_script(const FarmPlan& plan) {
 }
 
 // Chunks of an earlier handing over that are in the queue or run are left to it, and what follows waits for them, too.
-// `jobs` remembers which jobs there were, "chunks 17"; what followed the earlier chunks is canceled. While a node cleans up
-// after a task (epilog, slow ends), nobody can see whether that task goes back into the queue or is gone, so this is
-// waited for.
+// `jobs` remembers which jobs there were, "chunks 17"; what followed the earlier chunks is canceled. While a node
+// cleans up after a task (epilog, slow ends), nobody can see whether that task goes back into the queue or is gone, so
+// this is waited for.
 constexpr const char* kBesideEarlier = R"sh(
 queued=
 waited=0
