@@ -70,7 +70,8 @@ class Harm:
         """Does to each chunk that is held what it is to suffer. `ways`: fate -> what does it to (chunk, process), true once
         it is done."""
         for chunk, process in self.attempts.held().items():
-            if chunk not in self.done and ways[self.fates[chunk]](chunk, process):
+            # Earlier harm may have left its marks.
+            if chunk in self.fates and chunk not in self.done and ways[self.fates[chunk]](chunk, process):
                 self.done[chunk] = self.fates[chunk]
 
 
