@@ -279,10 +279,19 @@ class Confined(Farm):
         self.assert_refused(["scene", "trap/out.gltf"], ["leads outside"])
         # The annex of a data set within another lies where .git says.
         self.write("super/.git/modules/sub/annex/objects/KEY", picture)
+        self.write("super/.git/modules/sub/config", "[core]\n\tworktree = ../../../sub\n")
         self.write("super/sub/.git", "gitdir: ../.git/modules/sub\n")
         (self.folder / "super/sub/annexed.png").symlink_to("../.git/modules/sub/annex/objects/KEY")
         self.write("super/sub/annexed.gltf", self.textured("annexed.png"))
         self.run_ok("scene", "super/sub/annexed.gltf")
+        # A scene cannot say that another data set's annex is its own, neither by a file nor by a link.
+        self.write("thief/.git", "gitdir: ../super/.git/modules/sub\n")
+        (self.folder / "thief/stolen.png").symlink_to("../super/.git/modules/sub/annex/objects/KEY")
+        self.write("thief/stolen.gltf", self.textured("stolen.png"))
+        self.assert_refused(["scene", "thief/stolen.gltf"], ["leads outside of"])
+        (self.folder / "thief/.git").unlink()
+        (self.folder / "thief/.git").symlink_to("../super/.git/modules/sub")
+        self.assert_refused(["scene", "thief/stolen.gltf"], ["leads outside of"])
 
     def test_a_link_to_a_scene_brings_its_files(self):
         self.write("real/picture.png", harness.png(2, 2, lambda x, y: (1, 2, 3)))

@@ -288,6 +288,21 @@ class Engines(Farm):
         self.assertEqual(seen - {"missing"}, {"running"})
         self.assertEqual(self.status()["tasks"][0]["state"], "interrupted")
 
+    def test_what_follows_is_seen_while_it_runs(self):
+        self.farm("--engine", "slurm", "--chunks", "2", "--then", "touch began; while [ ! -e go ]; do sleep 0.05; done")
+        script = str(self.folder / "out/farm/task.sh")
+        for task in ("1-2", "finish"):
+            subprocess.run(["sh", script, task], capture_output=True, check=True)
+        after = subprocess.Popen(["sh", script, "after-1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(after.kill)
+        begin = time.monotonic()
+        while not (self.folder / "began").exists() and time.monotonic() - begin < 100:
+            time.sleep(0.02)
+        self.assertEqual([task["state"] for task in self.status()["tasks"]], ["done", "done", "done", "running"])
+        (self.folder / "go").touch()
+        self.assertEqual(after.wait(timeout=100), 0)
+        self.assertTrue(self.status()["is_done"])
+
     def test_files_for_slurm(self):
         self.run_ok("render", "--config", "farm.toml", "-o", "whole/f.####.exr", "--quiet")
         self.farm("--engine", "slurm", "--chunks", "3", "--threads", "2", "--rate-from", "whole/timing.csv", "--then",
