@@ -289,7 +289,7 @@ class Engines(Farm):
         self.assertEqual(self.status()["tasks"][0]["state"], "interrupted")
 
     def test_what_follows_is_seen_while_it_runs(self):
-        self.farm("--engine", "slurm", "--chunks", "2", "--then", "touch began; while [ ! -e go ]; do sleep 0.05; done")
+        self.farm("--engine", "slurm", "--chunks", "2", "--then", "touch began; timeout 100 sh -c 'until [ -e go ]; do sleep 0.05; done'")
         script = str(self.folder / "out/farm/task.sh")
         for task in ("1-2", "finish"):
             subprocess.run(["sh", script, task], capture_output=True, check=True)
