@@ -5,7 +5,7 @@ A document's ```sh blocks run in one shell, in a folder of their own that holds 
 program on the PATH as `gazetrace` and as build/release/bin/gazetrace. HTML comments right above a block say what is special:
 
   <!-- not run by the tests: REASON -->         the block is left out
-  <!-- run by the tests after the last && -->   only what stands behind the last &&
+  <!-- run by the tests from: WORDS -->         what stands before these words is left out
   <!-- reduced: --size 64x36 --frames 1-2 -->   every `gazetrace render` of the block gets these options, in place of its own
   <!-- needs: ffmpeg -->                        the block is left out where there is no such program
   <!-- prints -->                               above a ```text block: the commands right before it print these lines
@@ -35,15 +35,15 @@ if reduced and arguments[:1] == ["render"]:
 os.execv({program!r}, ["gazetrace"] + arguments)
 """
 
-DIRECTIVE = re.compile(r"<!-- (not run by the tests: (?P<skip>.+)|(?P<tail>run by the tests after the last &&)|"
+DIRECTIVE = re.compile(r"<!-- (not run by the tests: (?P<skip>.+)|run by the tests from: (?P<start>.+)|"
                        r"reduced: (?P<reduced>.+)|needs: (?P<needs>\S+)|(?P<prints>prints)|test command) -->")
 
 
 class Block:
     def __init__(self, language, line):
         self.language, self.line, self.text = language, line, ""
-        self.skip = self.reduced = self.needs = None
-        self.tail = self.prints = False
+        self.skip = self.start = self.reduced = self.needs = None
+        self.prints = False
 
 
 def blocks_of(path):
@@ -93,7 +93,7 @@ class Documents(harness.CliTest):
                 printed.append((ran[-1], block))
             if block.language != "sh" or block.skip or (block.needs and not shutil.which(block.needs)):
                 continue
-            text = block.text.rsplit("&& ", 1)[-1] if block.tail else block.text
+            text = block.text[block.text.index(block.start):] if block.start else block.text
             script += [f"export GAZETRACE_REDUCED='{block.reduced or ''}'", f"echo {name}:{block.line} >.block",
                        "{", text.rstrip("\n"), f"}} >.stdout.{block.line}"]
             ran.append(block.line)
@@ -113,6 +113,8 @@ class Documents(harness.CliTest):
 
     def test_readme(self):
         self.assertGreaterEqual(self.run_document("README.md"), 7)
+        if shutil.which("ffmpeg"):  # the example's video lies beside its frames
+            self.assertGreater((self.folder / "out/example/gaze.mp4").stat().st_size, 1000)
 
     def test_examples(self):
         self.assertEqual(self.run_document("examples/README.md"), 1)

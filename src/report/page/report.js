@@ -128,16 +128,19 @@
     }
     context.restore();
   };
+  // In the pictures' own pixels, and scaled afterwards: browsers do not scale to the same bits for every way of drawing.
   const drawDifference = (a, b, view) => {
-    const w = canvas.width, h = canvas.height;
-    drawPicture(a, view, 0, 1);
-    if (!a || !b) return;
-    context.save();
-    context.globalCompositeOperation = "difference";
-    drawPicture(b, view, 0, 1);
-    context.globalCompositeOperation = "lighter";
-    for (let factor = Number(gain.value); factor > 1; factor /= 2) context.drawImage(canvas, 0, 0, w, h);
-    context.restore();
+    if (!a || !b) return drawPicture(a, view, 0, 1);
+    const own = document.createElement("canvas");
+    own.width = a.width;
+    own.height = a.height;
+    const pen = own.getContext("2d");
+    pen.drawImage(a, 0, 0);
+    pen.globalCompositeOperation = "difference";
+    pen.drawImage(b, 0, 0, own.width, own.height);
+    pen.globalCompositeOperation = "lighter";
+    for (let factor = Number(gain.value); factor > 1; factor /= 2) pen.drawImage(own, 0, 0);
+    drawPicture(own, view, 0, 1);
   };
   const drawOverlay = (frame, view) => {
     if (!frame.gaze) return;
