@@ -73,7 +73,8 @@ const ReconstructedFrame& FrameWindow::alone(std::int32_t frame, bool read_by_ot
   return *held.alone;
 }
 
-const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame, StageTimes& times) {
+const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame, bool beside_others,
+                                              StageTimes& times) {
   const FrameRequest& request = request_of(frame);
   if (!rested_ || rested_->run != run) {
     rested_.reset();
@@ -93,8 +94,12 @@ const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame
     rested_ = Rested{run, renderer_->reconstruct(request, all, guides)};
     add_times(std::exchange(rested_->frame.times, {}), times);
   }
-  const TracedFrame& own = held_.at(frame).traced;
   ReconstructedFrame& shown = rested_->frame;
+  if (beside_others && shown.alone.frames == 0) {  // what comes after it is compared with it, to find cuts
+    renderer_->keep_history(shown);
+    add_times(std::exchange(shown.times, {}), times);
+  }
+  const TracedFrame& own = held_.at(frame).traced;
   shown.request = request;
   shown.map = own.map;
   shown.samples = own.sparse.stats;
@@ -134,7 +139,7 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
     read.push_back(&alone(frame, true, times));
   }
   const ReconstructedFrame& own = run.first == run.last ? alone(request.frame, window.first != window.last, times)
-                                                        : rested(run, request.frame, times);
+                                                        : rested(run, request.frame, run != window, times);
   read.insert(read.begin() + static_cast<std::ptrdiff_t>(at), &own);
   RenderedFrame rendered = renderer_->join(read, at, history);
   rendered.others = std::move(others);

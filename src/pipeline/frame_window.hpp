@@ -54,7 +54,7 @@ class FrameWindow {
   [[nodiscard]] bool joins_next(std::int32_t earlier) const;
   const Guides* guides_of(const FrameRequest& request, StageTimes& times);
   const ReconstructedFrame& alone(std::int32_t frame, bool read_by_others, StageTimes& times);
-  const ReconstructedFrame& rested(const Run& run, std::int32_t frame, StageTimes& times);
+  const ReconstructedFrame& rested(const Run& run, std::int32_t frame, bool beside_others, StageTimes& times);
 
   const FrameRenderer* renderer_;
   std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included

@@ -245,8 +245,8 @@ TEST(TwoSidedRender, AFrameAtRestDoesNotDependOnWhichOthersAreRendered) {
   expect_same_bits(middle.at(6), whole.at(6));
 }
 
-// A camera that stops: its frames at rest join their samples, and look up those from before.
-TEST(TwoSidedRender, ACameraThatStopsIsReadOnBothSides) {
+// A camera that stops, and later goes on: its frames at rest join their samples, and look up those from before and after.
+TEST(TwoSidedRender, FramesAtRestAreReadBesideThoseThatMove) {
   const Scene scene = room(false);
   FramePlan plan = plan_of(numbers(1, 3), {}, true);
   for (const int frame : numbers(4, 8)) {
@@ -261,9 +261,13 @@ TEST(TwoSidedRender, ACameraThatStopsIsReadOnBothSides) {
     }
     return sum / static_cast<double>(frame.sample_count.pixels.size());
   };
+  FrameRequest next = request_of(9, false);
+  next.camera = plan.frames[1].camera;
+  plan.frames.push_back(next);
   const auto frames = render(scene, plan, guided(AccumulateMode::two_sided, 2, 4));
   EXPECT_NEAR(count(frames.at(6)), 5 * 4, 1e-3) << "4 to 8, all at rest";
   EXPECT_GT(count(frames.at(4)), 4 * 4 + 1) << "3 to 6 at rest, and what 2 saw";
+  EXPECT_GT(count(frames.at(8)), 3 * 4 + 1) << "6 to 8 at rest, and what 9 saw";
   FramePlan end;
   end.frames = {plan.frames[3], plan.frames[4]};
   end.around = {plan.frames[1], plan.frames[2], plan.frames[5], plan.frames[6]};
