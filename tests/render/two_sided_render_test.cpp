@@ -245,7 +245,8 @@ TEST(TwoSidedRender, AFrameAtRestDoesNotDependOnWhichOthersAreRendered) {
   expect_same_bits(middle.at(6), whole.at(6));
 }
 
-// A camera that stops, and later goes on: its frames at rest join their samples, and look up those from before and after.
+// A camera that stops, and later goes on: its frames at rest join their samples, and look up those from before and
+// after.
 TEST(TwoSidedRender, FramesAtRestAreReadBesideThoseThatMove) {
   const Scene scene = room(false);
   FramePlan plan = plan_of(numbers(1, 3), {}, true);
