@@ -2,6 +2,7 @@
 // Writing gaze logs: as gazetrace CSV, and as BIDS eye tracking.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,14 @@ void write_gaze_csv(const GazeLog& log, const std::string& path);
 // sub-01_task-view_physio.tsv.gz; a `recording-` in the name is replaced by eye1, eye2 and cyclopean. What is written
 // is read again bit by bit, as above. Error(usage) for a name that is none of BIDS, Error(input) for gaze on a scene
 // camera's picture.
-void write_gaze_bids(const GazeLog& log, const std::string& path);
+//
+// The files of a conversion belong together. Their folder is held from the first look at it to the last change of it,
+// so that of several conversions at once, in any processes, one comes wholly after the other; nothing is held where a
+// file system has no locks. `look` is called with the tables that will be written while the folder is held. It returns
+// the files that are to be removed once all is written, or throws, and nothing is written. Error(runtime) for a file
+// that cannot be removed.
+using BidsLook = std::function<std::vector<std::string>(const std::vector<std::string>& written)>;
+void write_gaze_bids(const GazeLog& log, const std::string& path, const BidsLook& look = {});
 // The tables that `write_gaze_bids` would write.
 std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& path);
 bool is_bids_file_name(const std::string& path);

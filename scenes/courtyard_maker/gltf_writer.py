@@ -75,8 +75,10 @@ class GltfWriter:
             info["extensions"] = {"KHR_texture_transform": {"scale": list(repeats)}}
         return info
 
-    def material(self, name, base=(1, 1, 1), roughness=1.0, metallic=0.0, emissive=None, strength=None, **more):
-        pbr = {"baseColorFactor": rounded([*base, 1.0]), "metallicFactor": metallic, "roughnessFactor": roughness}
+    def material(
+        self, name, base=(1, 1, 1), alpha=1.0, roughness=1.0, metallic=0.0, emissive=None, strength=None, **more
+    ):
+        pbr = {"baseColorFactor": rounded([*base, alpha]), "metallicFactor": metallic, "roughnessFactor": roughness}
         for key in ("baseColorTexture", "metallicRoughnessTexture"):
             if key in more:
                 pbr[key] = more.pop(key)

@@ -82,8 +82,8 @@ def ball():
 
 
 def lantern():
-    """(metal, light): a hexagonal lantern whose panes glow; its ring hangs at the origin, all of it lies below."""
-    metal, light = Shape(), Shape()
+    """(metal, glass, light): a hexagonal lantern with a bulb behind its panes; its ring hangs at the origin, all of it lies below."""
+    metal, glass, light = Shape(), Shape(), Shape()
     twist = math.pi / 6
     top, bottom, wide, narrow = -0.34, -0.78, 0.19, 0.15
     tube(metal, [(0, 0.68, 0), (0, 0.3, 0), (0, -0.06, 0)], 0.008, 8)
@@ -104,8 +104,14 @@ def lantern():
         for p, q in ((a, c), (b, d), (mix(a, d, 0.5), mix(a, b, 0.5)), (mix(a, b, 0.5), mix(b, c, 0.5)),
                      (mix(b, c, 0.5), mix(d, c, 0.5)), (mix(d, c, 0.5), mix(a, d, 0.5))):  # fmt: skip
             tube(metal, [p, q], 0.0045, 6, caps=False)
-    facets(light, 6, narrow - 0.012, wide - 0.012, bottom + 0.005, top - 0.005, twist=twist)
-    return metal, light
+    facets(glass, 6, narrow - 0.012, wide - 0.012, bottom + 0.005, top - 0.005, twist=twist)
+    # The bulb stands in a socket: a pear, 10 cm wide.
+    socket = bottom + 0.10
+    revolve(metal, [(0.0, bottom), (0.032, bottom), (0.032, bottom), (0.026, socket), (0.026, socket), (0.0, socket)], 20)
+    pear = [(0.05 * math.sin(a) * (1 - 0.18 * math.cos(a)), socket + 0.075 - 0.085 * math.cos(a))
+            for a in (math.pi * k / 12 for k in range(1, 12))]  # fmt: skip
+    revolve(light, [(0.0, socket - 0.01), *pear, (0.0, socket + 0.16)], 20)
+    return metal, glass, light
 
 
 def _circle(count):

@@ -174,7 +174,14 @@ class Runner {
 
 namespace {
 
-// Until no other farm is at a chunk. False where that was to be stopped.
+bool is_a_chunk_running(const FarmPlan& plan) {
+  const std::vector<TaskStatus> tasks = farm_status(plan).tasks;
+  return std::any_of(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(plan.chunks.size()),
+                     [](const TaskStatus& task) { return task.state == TaskState::running; });
+}
+
+// Until no other farm is at a chunk, and no chunk is left of a farm that was killed. False where that was to be
+// stopped.
 bool wait_for_others(const FarmPlan& plan, const LocalSettings& settings) {
   for (std::size_t chunk = 1; chunk <= plan.chunks.size(); ++chunk) {
     while (!FileLock(lock_path(plan, std::to_string(chunk)), FileLock::Kind::alone, false).is_held()) {
@@ -183,6 +190,12 @@ bool wait_for_others(const FarmPlan& plan, const LocalSettings& settings) {
       }
       std::this_thread::sleep_for(kLook);
     }
+  }
+  while (is_a_chunk_running(plan)) {
+    if (settings.stop && settings.stop()) {
+      return false;
+    }
+    std::this_thread::sleep_for(10 * kLook);
   }
   return true;
 }

@@ -110,11 +110,16 @@ void check_render_job(const FarmSettings& settings, const JobSettings& job) {
   }
 }
 
-// Every handing over has its own retries.
-void forget_tries(const FarmPlan& plan) {
+// Every handing over has its own retries, and does again what follows the chunks: how that ended before tells nothing
+// of frames that are made anew, nor of commands that are others now.
+void forget_earlier(const FarmPlan& plan) {
+  const fs::path tasks = fs::path(plan.folder) / "tasks";
   std::error_code failed;
   for (const std::string& task : farm_tasks(plan)) {
-    fs::remove(fs::path(plan.folder) / "tasks" / (task + ".tries"), failed);
+    fs::remove(tasks / (task + ".tries"), failed);
+  }
+  for (const std::string& task : tasks_after_chunks(plan)) {
+    fs::remove(tasks / (task + ".exit"), failed);
   }
 }
 
@@ -213,7 +218,7 @@ void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
     throw Error(ErrorKind::input, plan.folder, "the folder cannot be made: " + failed.message(),
                 "choose another output folder");
   }
-  forget_tries(plan);
+  forget_earlier(plan);
   for (const auto& [name, text] : farm_files(plan, chunks)) {
     write_text_atomically((fs::path(plan.folder) / name).string(), text);
   }

@@ -9,6 +9,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <span>
 
@@ -92,13 +93,22 @@ std::vector<File> files_of(const GazeLog& log, const std::string& path) {
   return files;
 }
 
+std::vector<std::string> names_of(const std::vector<File>& files) {
+  std::vector<std::string> names;
+  for (const File& file : files) {
+    names.push_back(file.path);
+  }
+  return names;
+}
+
 // Held by one at a time, in any process, until it is destroyed. Where a file system has no locks, nothing is held.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
       : descriptor_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
     if (descriptor_ >= 0) {
-      ::flock(descriptor_, LOCK_EX);
+      while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+      }
     }
   }
   ~FolderLock() {
@@ -121,18 +131,21 @@ bool is_bids_file_name(const std::string& path) {
 }
 
 std::vector<std::string> bids_file_names(const GazeLog& log, const std::string& path) {
-  std::vector<std::string> names;
-  for (const File& file : files_of(log, path)) {
-    names.push_back(file.path);
-  }
-  return names;
+  return names_of(files_of(log, path));
 }
 
-void write_gaze_bids(const GazeLog& log, const std::string& path) {
-  // The files of one conversion belong together: another one into the same folder waits for this one.
+void write_gaze_bids(const GazeLog& log, const std::string& path, const BidsLook& look) {
+  const std::vector<File> files = files_of(log, path);
   const FolderLock lock(parse_bids_name(path).folder);
-  for (const File& file : files_of(log, path)) {
+  const std::vector<std::string> removed = look ? look(names_of(files)) : std::vector<std::string>{};
+  for (const File& file : files) {
     write_bytes_atomically(file.path, std::as_bytes(std::span(file.bytes)));
+  }
+  for (const std::string& leftover : removed) {
+    std::error_code code;
+    if (!std::filesystem::remove(leftover, code) && code) {
+      throw Error(ErrorKind::runtime, leftover, "cannot be removed", "remove it: it would be read with the rest");
+    }
   }
 }
 

@@ -1,16 +1,50 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/confine.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "core/data_root.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/job_schema.hpp"
+#include "gazetrace/output.hpp"
 #include "job/settings_paths.hpp"
 #include "job/toml_values.hpp"
 
 namespace gazetrace {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a name with a place for the frame's number can lead to by symbolic links: the files that it stands for, and what
+// lies in the folder above the first folder whose name has such a place.
+std::vector<std::string> meanings(const std::string& pattern) {
+  std::vector<std::string> names;
+  fs::path above;
+  const fs::path folders = fs::path(pattern).parent_path();
+  for (const fs::path& part : folders) {
+    if (has_frame_number(part.string())) {
+      std::error_code missing;
+      for (const fs::directory_entry& entry : fs::directory_iterator(above.empty() ? "." : above, missing)) {
+        names.push_back(entry.path().string());
+      }
+      break;
+    }
+    above /= part;
+  }
+  try {
+    for (const std::int32_t frame : find_frames(pattern)) {
+      names.push_back(frame_file_name(pattern, frame));
+    }
+  } catch (const Error&) {
+    // There are none yet.
+  }
+  return names;
+}
+
+}  // namespace
 
 void check_confined(const Option& option, const std::vector<std::string>& values, const std::string& path,
                     const std::string& place) {
@@ -20,9 +54,16 @@ void check_confined(const Option& option, const std::vector<std::string>& values
                 "give `allow-outside` yourself, or leave `confine` out where you trust the settings");
   }
   for (const std::string& value : values) {
-    if (names_file(option, value)) {
-      check_within(data_roots(path), located_file(option, value, path).value, value, at,
-                   "put the file there, or leave `confine` out where you trust the settings");
+    if (!names_file(option, value)) {
+      continue;
+    }
+    const std::vector<fs::path> roots = data_roots(path);
+    const char* remedy = "put the file there, or leave `confine` out where you trust the settings";
+    check_within(roots, value, value, at, remedy);
+    if (has_frame_number(value)) {
+      for (const std::string& name : meanings(value)) {
+        check_within(roots, name, name, at, remedy);
+      }
     }
   }
 }
@@ -32,7 +73,11 @@ void check_confined(const std::string& text, const std::string& path) {
   for (const auto& [key, node] : parse_toml(text, path).members) {
     // The reader of settings says it better where there is no such option.
     if (const Option* option = find_option(options, key)) {
-      check_confined(*option, toml_values(node, *option, path), path, toml_place(path, node));
+      std::vector<std::string> values = toml_values(node, *option, path);
+      for (std::string& value : values) {
+        value = located_file(*option, value, path).value;
+      }
+      check_confined(*option, values, path, toml_place(path, node));
     }
   }
 }

@@ -118,7 +118,8 @@ std::string text_of(const std::string& digest, const std::vector<SweepShare>& sh
 }
 
 // Nothing where there is no such file, or a damaged one, which is made again.
-std::optional<std::vector<SweepShare>> written_shares(const std::string& path, const Divided& divided) {
+std::optional<std::vector<SweepShare>> written_shares(const std::string& path, const Divided& divided,
+                                                      std::uint32_t count) {
   try {
     const Json json = Json::parse(read_text_file(path));
     if (json.at("digest") != divided.digest) {
@@ -128,7 +129,7 @@ std::optional<std::vector<SweepShare>> written_shares(const std::string& path, c
     for (const Json& chunk : json.at("chunks")) {
       shares.push_back({chunk.at("rows").get<std::vector<std::string>>(), chunk.at("samples")});
     }
-    return shares;
+    return shares.size() == count ? std::optional(shares) : std::nullopt;
   } catch (const Error&) {
     return std::nullopt;
   } catch (const Json::exception&) {
@@ -149,12 +150,12 @@ std::vector<SweepShare> divide_sweep(const SweepPlan& plan, std::uint32_t count)
 std::set<std::string> rows_of_task(const SweepPlan& plan, const SweepTask& task) {
   const Divided divided = units_of(plan, task.count);
   const std::string path = fmt::format("{}/chunks.{}.{}.json", plan.directory, task.count, divided.digest.substr(0, 8));
-  std::optional<std::vector<SweepShare>> shares = written_shares(path, divided);
+  std::optional<std::vector<SweepShare>> shares = written_shares(path, divided, task.count);
   if (!shares) {
     shares = shares_by_cost(plan, divided.units, task.count);
     const std::string text = text_of(divided.digest, *shares);
     if (!create_file_once(path, std::as_bytes(std::span(text.data(), text.size())))) {
-      if (const auto first = written_shares(path, divided)) {
+      if (const auto first = written_shares(path, divided, task.count)) {
         shares = first;
       } else {
         write_text_atomically(path, text);  // damaged

@@ -308,6 +308,16 @@ class Confined(Farm):
         self.assert_refused(["plan", "--config", "jobs/job.toml", "--frames", "1", "--confine"], ["allow-outside"])
         self.write("jobs/job.toml", common + 'env = "sky"\noutput = ["jobs/out/f.####.exr"]\n')
         self.run_ok("plan", "--config", "jobs/job.toml", "--frames", "1", "--confine")
+        # Frames of a sequence lead nowhere else either, by links in their own place or in that of their folders.
+        (self.folder / "jobs/m.0001.exr").symlink_to(secret)
+        (self.folder / "jobs/frames").mkdir()
+        (self.folder / "jobs/frames/0001").symlink_to(self.folder / "secret")
+        for more, named in (('falloff = "map"\ndensity-map = "m.####.exr"', "density-map"),
+                            ('output = ["jobs/frames/%04d/%04d.exr"]', "output")):
+            with self.subTest(more):
+                self.write("jobs/job.toml", common + more)
+                self.assert_refused(["plan", "--config", "jobs/job.toml", "--frames", "1", "--confine"], [named, "leads outside"])
+        self.write("jobs/job.toml", common)
         # What the user says himself is not the settings' word.
         self.run_ok("plan", "--config", "jobs/job.toml", "--frames", "1", "--confine", "--gaze", "secret/log.csv")
 

@@ -214,6 +214,23 @@ class Engines(Farm):
         self.assertEqual([task["state"] for task in status["tasks"]], ["done"] * 5)
         self.assertIn("nothing to do", self.run_ok("farm", "retry", "out").stderr)
 
+    def test_what_follows_is_done_again(self):
+        """After frames that are made anew, and where its commands are others."""
+        for job in ("farm.toml", "history.toml"):
+            with self.subTest(job):
+                shutil.rmtree(self.folder / "out", ignore_errors=True)
+                local = ("--chunks", "3", "--processes", "2", "--threads", "1")
+                self.farm(*local, "--then", "echo made >> film.txt", job=job)
+                (self.folder / "film.txt").unlink()
+                (self.folder / "out/f.0003.exr").unlink()
+                for traced in (self.folder / "out").glob("traced.0003.*"):
+                    traced.unlink()
+                self.run_ok("farm", "retry", "out")
+                self.assertEqual((self.folder / "film.txt").read_text(), "made\n")
+                self.farm(*local, "--then", "echo other > other.txt", job=job)
+                self.assertEqual((self.folder / "other.txt").read_text(), "other\n")
+                self.assertTrue(self.status()["is_done"])
+
     def test_local_with_history(self):
         self.farm("--chunks", "3", "--processes", "2", "--threads", "1", job="history.toml")
         self.assertIn("farm/history", self.files("out"))

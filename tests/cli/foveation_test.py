@@ -6,7 +6,7 @@ import json
 
 import harness
 
-GAZE = [*harness.SCREEN, "--size", "64x36", "--gaze-at", "0.4,0.5"]
+GAZE = [*harness.SCREEN, "--size", "64x36", "--gaze-at", "0.4,0.5"]  # a still, whose records are named after it
 TABLE = "ecc_deg,density\n0,1\n5,0.5\n30,0.1\n"
 
 
@@ -38,7 +38,7 @@ class Foveation(harness.CliTest):
                 self.assertAlmostEqual(traced, 1.5 * 64 * 36, delta=1.1)
                 self.run_ok("render", "box.gltf", *GAZE, *arguments, "-o", f"{model}/f.exr", "--map", f"{model}/map.exr",
                             "--quiet")
-                with open(self.folder / model / "timing.csv", newline="") as file:
+                with open(self.folder / model / "f.timing.csv", newline="") as file:
                     row = next(csv.DictReader(file))
                 self.assertEqual(int(row["samples"]), traced)
                 regions = [name[:-7] for name in row if name.endswith("_pixels")]
@@ -74,7 +74,7 @@ class Foveation(harness.CliTest):
         for strength in ("0", "1"):
             self.run_ok("render", "box.gltf", *GAZE, "--falloff", "linear", "--contrast-strength", strength, "-o",
                         f"c{strength}/f.exr", "--quiet")
-            with open(self.folder / f"c{strength}" / "timing.csv", newline="") as file:
+            with open(self.folder / f"c{strength}" / "f.timing.csv", newline="") as file:
                 rows.append(next(csv.DictReader(file)))
         self.assertLess(int(rows[1]["samples"]), int(rows[0]["samples"]))
 
@@ -83,7 +83,7 @@ class Foveation(harness.CliTest):
         common = ["render", "box.gltf", *GAZE, "--falloff", "geisler-perry", "--contrast-strength", "1", "--quiet"]
         for name, budget in (("spp", ("--budget-spp", "0.5")), ("all", ("--budget-samples", "3001"))):
             self.run_ok(*common, *budget, "-o", f"{name}/f.exr")
-            with open(self.folder / name / "timing.csv", newline="") as file:
+            with open(self.folder / name / "f.timing.csv", newline="") as file:
                 row = next(csv.DictReader(file))
             wanted = int(row["pixels"]) // 2 if name == "spp" else 3001
             self.assertLessEqual(abs(int(row["samples"]) - wanted), 1)
@@ -103,7 +103,7 @@ class Foveation(harness.CliTest):
         self.assertIn(label, (self.folder / "e0.5/f.exr").read_bytes())
         self.assertIn(b"enhance_contrast=0.5", (self.folder / "e0.5/f.png").read_bytes())
         self.assertNotIn(b"enhance", (self.folder / "e0/f.exr").read_bytes() + (self.folder / "e0/f.png").read_bytes())
-        self.assertIn("enhance-contrast = 0.5", json.loads((self.folder / "e0.5/run.json").read_text())["config_toml"])
+        self.assertIn("enhance-contrast = 0.5", json.loads((self.folder / "e0.5/f.run.json").read_text())["config_toml"])
         for wanted, *arguments in [("0..1", "1.5"), ("guided", "1", "--filter", "guided"), ("none", "1", "--filter", "none")]:
             result = self.run_program("render", "box.gltf", *GAZE, "-o", "x/f.exr", "--enhance-contrast", *arguments)
             self.assertEqual(result.returncode, 2)
@@ -147,11 +147,11 @@ class Foveation(harness.CliTest):
                 ("linear", "--falloff", "uniform", "--spp", "1", "--accumulate", "running"),
                 ("linear", "--sample-range", "0:4"), ("linear", "--enhance-contrast", "1"), ("none", "--filter", "none")]):
             self.run_ok("render", "box.gltf", *GAZE, *more, "-o", f"{i}/f.exr", "--quiet")
-            record = json.loads(next((self.folder / str(i)).glob("run*.json")).read_text())
+            record = json.loads(next((self.folder / str(i)).glob("*run*.json")).read_text())
             self.assertEqual(config(record["config_toml"])["filter"], expected, more)
         # Without gaze all frames are uniform, whatever the fall-off.
         self.run_ok("render", "box.gltf", "--size", "64x36", "--spp", "2", "-o", "eyeless/f.exr", "--quiet")
-        record = json.loads((self.folder / "eyeless/run.json").read_text())
+        record = json.loads((self.folder / "eyeless/f.run.json").read_text())
         self.assertEqual(config(record["config_toml"])["filter"], "guided")
 
     def test_presets_are_what_the_list_says(self):

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Conversion to BIDS where recordings of the same name lie already."""
 
+import fcntl
 import json
+import os
 import subprocess
 
 import harness
@@ -39,8 +41,7 @@ class BidsFolder(harness.CliTest):
         (self.folder / "f").mkdir(exist_ok=True)
         for path in (self.folder / "f").iterdir():
             path.unlink()
-        self.run_ok("gaze", "convert", source, "-o", f"f/{NAME}")
-        return {path.name: path.read_bytes() for path in (self.folder / "f").iterdir()}
+        return {path.name: path.read_bytes() for path in self.written_in("f", source)}
 
     def test_overwriting_leaves_what_a_fresh_folder_has(self):
         for first, second in (("both", "left"), ("both", "gaze"), ("gaze", "both"), ("left", "gaze")):
@@ -83,6 +84,29 @@ class BidsFolder(harness.CliTest):
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for source in ("long_both.csv", "long_gaze.csv") * 2]
             self.assertEqual([process.wait() for process in running], [0] * len(running))
             self.assertIn(self.contents(), whole)
+
+    def test_what_another_conversion_leaves_while_one_waits_is_seen(self):
+        """A conversion that has to wait for the folder must not act on what it held before."""
+        left = {path: path.read_bytes() for path in self.written_in("f", "both.csv")}
+        expected = self.fresh("gaze.csv")
+        folder = os.open(self.folder / "b", os.O_RDONLY)
+        try:
+            fcntl.flock(folder, fcntl.LOCK_EX)
+            waiting = subprocess.Popen([harness.PROGRAM, "gaze", "convert", "gaze.csv", "-o", f"b/{NAME}", "--overwrite"], cwd=self.folder,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            self.assertRaises(subprocess.TimeoutExpired, waiting.wait, 2)  # long enough to have come to the lock
+            for path, content in left.items():
+                (self.folder / "b" / path.name).write_bytes(content)
+        finally:
+            os.close(folder)
+        _, warnings = waiting.communicate()
+        self.assertEqual(waiting.returncode, 0, warnings)
+        self.assertEqual(self.contents(), expected)
+
+    def written_in(self, folder, source):
+        (self.folder / folder).mkdir(exist_ok=True)
+        self.run_ok("gaze", "convert", source, "-o", f"{folder}/{NAME}")
+        return list((self.folder / folder).iterdir())
 
     def converted(self, source):
         self.run_ok("gaze", "convert", source, "-o", "alone.csv", "--overwrite")

@@ -98,20 +98,21 @@ class Chunks(harness.CliTest):
         self.assertEqual(told.returncode, 0, told.stderr)
 
     def test_plans_that_are_not_trusted(self):
+        """Paths begin in the plan's folder; those that lead out of it are refused, whether there is such a file or not."""
         secret = self.write("secret/box.gltf", json.dumps(harness.box_gltf()))
-        for more, named in (('[common]\n', None), ('[common]\nenv = "../secret/sky.hdr"\n', "env"),
-                            ('[common]\nallow-outside = true\n', "allow-outside")):
-            self.write("plans/gaze.csv", harness.moving_gaze())
-            self.write("plans/box.gltf", json.dumps(harness.box_gltf()))
-            plan = PLAN.replace("[common]\n", more).replace('"box.gltf"', '"plans/box.gltf"').replace('"gaze.csv"', '"plans/gaze.csv"')
-            self.write("plans/plan.toml", plan)
-            command = ["sweep", "plans/plan.toml", "-o", "out", "--dry-run", "--confine"]
-            if named is None:
-                self.run_ok(*command)
-                self.write("plans/plan.toml", plan.replace("plans/box.gltf", str(secret)))
-                self.assert_refused(command, ["scene", "leads outside"])
+        self.write("plans/gaze.csv", harness.moving_gaze())
+        self.write("plans/box.gltf", json.dumps(harness.box_gltf()))
+        command = ["sweep", "plans/plan.toml", "-o", "out", "--dry-run", "--confine"]
+        self.write("plans/plan.toml", PLAN)
+        self.run_ok(*command)
+        for path in ("../secret/box.gltf", str(secret)):
+            with self.subTest(path=path):
+                self.write("plans/plan.toml", PLAN.replace('"box.gltf"', f'"{path}"'))
+                self.assert_refused(command, ["plan.toml:", "scene", "leads outside"])
                 self.run_ok(*command[:-1])
-            else:
+        for line, named in (('env = "../secret/sky.hdr"', "env: '"), ('allow-outside = true', "allow-outside")):
+            with self.subTest(line=line):
+                self.write("plans/plan.toml", PLAN.replace("[common]\n", f"[common]\n{line}\n"))
                 self.assert_refused(command, [named])
 
 

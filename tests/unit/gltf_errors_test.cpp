@@ -445,7 +445,8 @@ TEST(BrokenContainers, MissingFileFolderAndNonsense) {
   const test::TempFolder folder;
   EXPECT_THAT(error_of(folder.file("gone.gltf")), HasSubstr("gone.gltf: there is no such file"));
   EXPECT_THAT(error_of(folder.file(".")), HasSubstr("is a folder"));
-  EXPECT_THAT(error_of(folder.write("empty.gltf", "")), HasSubstr("not valid JSON"));
+  EXPECT_THAT(error_of(folder.write("empty.gltf", "")),
+              HasSubstr("empty.gltf: the file is empty; copy or export it again"));
   EXPECT_THAT(error_of(folder.write("cut.gltf", R"({"asset": {"ver)")), HasSubstr("not valid JSON"));
   EXPECT_THAT(error_of(folder.write("array.gltf", "[]")), HasSubstr("not an object"));
   EXPECT_THAT(error_of(folder.write("deep.gltf", std::string(1000000, '['))), HasSubstr("nested"));

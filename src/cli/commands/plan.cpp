@@ -134,6 +134,23 @@ void print_chunks(const std::vector<FrameChunk>& chunks, const std::optional<dou
   output.print(text, [&] { return json.dump(2) + "\n"; });
 }
 
+/// Before anything is loaded or warned of, so that a refusal is the only line.
+void check_counts_are_known(const FoveationSettings& foveation) {
+  if (foveation.contrast_strength > 0) {
+    throw Error(ErrorKind::usage, "`contrast-strength`", "counts that follow the picture are known once it is rendered",
+                "leave it out, or render and read timing.csv");
+  }
+  if (foveation.falloff == "visible") {
+    throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
+                "give another one, or render and read timing.csv");
+  }
+  if (foveation.target.is_given()) {
+    throw Error(ErrorKind::usage, "`counts`",
+                "counts that follow from a target or a time are known once it is rendered",
+                "give a budget, or render and read timing.csv");
+  }
+}
+
 int run_plan(const PlanArguments& arguments) {
   const JobSettings& job = arguments.job.settings;
   check_job(arguments.job);
@@ -141,6 +158,9 @@ int run_plan(const PlanArguments& arguments) {
       !arguments.model_gain && arguments.chunks == 0) {
     throw Error(ErrorKind::usage, "", "no scene and no camera were given",
                 "name a scene, or give --camera-path or --eye and --target");
+  }
+  if (arguments.counts && arguments.chunks == 0) {
+    check_counts_are_known(job.foveation);
   }
   ResolveOptions resolving;
   resolving.scope = ResolveScope::plan;
@@ -159,10 +179,6 @@ int run_plan(const PlanArguments& arguments) {
     check_output_file(arguments.save_camera, true);  // a path was always replaced
     write_camera_path(frames, job.camera_read.rotation_order, arguments.save_camera);
   }
-  if (arguments.counts && job.foveation.contrast_strength > 0) {
-    throw Error(ErrorKind::usage, "`contrast-strength`", "counts that follow the picture are known once it is rendered",
-                "leave it out, or render and read timing.csv");
-  }
   if (arguments.model_gain) {
     const double fps = static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
     const GainOfPlan gain = gain_of_plan(resolved.plan, fps, job.threads);
@@ -175,15 +191,6 @@ int run_plan(const PlanArguments& arguments) {
         arguments.rate_from.empty() ? std::nullopt : minutes_a_sample(arguments.rate_from);
     print_chunks(chunks, minutes, arguments.json);
     return exit_done;
-  }
-  if (arguments.counts && job.foveation.falloff == "visible") {
-    throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
-                "give another one, or render and read timing.csv");
-  }
-  if (arguments.counts && job.foveation.target.is_given()) {
-    throw Error(ErrorKind::usage, "`counts`",
-                "counts that follow from a target or a time are known once it is rendered",
-                "give a budget, or render and read timing.csv");
   }
   if (!arguments.counts) {
     arguments.json.print(with_flags(plan_as_table(resolved.plan)),

@@ -100,23 +100,26 @@ int run_convert(const ConvertArguments& arguments) {
     tell(log, {arguments.output});
     return exit_done;
   }
-  const std::vector<std::string> written = bids_file_names(log, arguments.output);
-  const std::vector<BidsLeftover> leftovers = removable_leftovers(written, arguments);
-  for (const std::string& path : written) {
-    check_output_file(path, arguments.overwrite);
-  }
+  check_output_file(arguments.output, true);  // makes the folder, which is held while it is looked at and written
+  std::vector<std::string> written;
+  std::vector<BidsLeftover> leftovers;
+  write_gaze_bids(log, arguments.output, [&](const std::vector<std::string>& files) {
+    written = files;
+    leftovers = removable_leftovers(written, arguments);
+    std::vector<std::string> removed;
+    for (const BidsLeftover& leftover : leftovers) {
+      removed.push_back(leftover.path);
+    }
+    for (const std::string& path : written) {
+      check_output_file(path, arguments.overwrite);
+    }
+    return removed;
+  });
   if (!log.head.empty()) {
     print_warnings(
         {fmt::format("{}: {} poses of the head are left out: BIDS eye tracking has no place for them, "
                      "gazetrace CSV keeps them",
                      log.source, log.head.size())});
-  }
-  write_gaze_bids(log, arguments.output);
-  for (const BidsLeftover& leftover : leftovers) {
-    std::error_code code;
-    if (!std::filesystem::remove(leftover.path, code) && code) {
-      throw Error(ErrorKind::runtime, leftover.path, "cannot be removed", "remove it: it would be read with the rest");
-    }
   }
   if (!leftovers.empty()) {
     print_warnings({fmt::format("{}: removed, of an earlier conversion: {}", arguments.output, file_names(leftovers))});

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes the scene as binary glTF, with everything that moves baked frame by frame, and the projection of its camera."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+
+from .camera import Projection
+from .frames import FrameRange
+from .glb import Glb
+from .motion import animate, from_the_roots, scale_times, world_matrices
+from .refusal import Refusal
+
+# What is asked of Blender's exporter. Names that an older or newer one does not know are left out.
+EXPORTER_OPTIONS = {
+    "export_format": "GLB",
+    "use_active_scene": True,
+    "use_renderable": True,
+    "export_cameras": True,
+    "export_lights": True,
+    "export_apply": True,
+    "export_yup": True,
+    "export_extras": False,
+    "export_current_frame": True,
+    "export_animations": True,
+    "export_frame_range": True,
+    "export_force_sampling": True,
+    "export_optimize_animation_size": False,
+    "export_nla_strips": False,  # 3.4: what is shown, not all actions
+    "export_animation_mode": "SCENE",  # newer ones say it so
+    "export_anim_slide_to_zero": False,
+    # Watts per steradian and per square metre as they are; gazetrace's light has no unit but the scene's.
+    "convert_lighting_mode": "COMPAT",
+    "export_import_convert_lighting_mode": "COMPAT",
+}
+
+
+def export_scene(
+    scene: bpy.types.Scene, frames: FrameRange, camera: bpy.types.Object, projection: Projection, path: Path
+) -> str:
+    """Writes the scene, and returns the name of the camera in the file."""
+    with frame_kept(scene):
+        matrices = world_matrices(scene, frames.baked())
+        scene.frame_set(frames.first)
+        with time_for_exporter(scene, frames):
+            run_exporter(path)
+    glb = Glb(path)
+    scale_times(glb, scene.render.fps_base)
+    animate(glb, matrices, frames)
+    name = place_camera(glb.document, camera.name, projection)
+    glb.write(path)
+    return name
+
+
+def run_exporter(path: Path) -> None:
+    """Calls the exporter that comes with Blender."""
+    try:
+        known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+    except (AttributeError, KeyError):
+        raise Refusal("Blender's glTF exporter is off", "switch on the add-on 'glTF 2.0 format'") from None
+    options = {name: value for name, value in EXPORTER_OPTIONS.items() if name in known}
+    bpy.ops.export_scene.gltf(filepath=str(path), **options)
+
+
+def place_camera(document: dict, object_name: str, projection: Projection) -> str:
+    """Gives the scene's camera its projection, and returns the name by which gazetrace finds it."""
+    nodes = document.get("nodes", [])
+    parents = {child: index for index, node in enumerate(nodes) for child in node.get("children", [])}
+    for index in from_the_roots(nodes, parents):
+        owner = nodes[index] if nodes[index].get("name") == object_name else nodes[parents.get(index, index)]
+        if "camera" in nodes[index] and owner.get("name") == object_name:
+            document["cameras"].append({"name": object_name, **projection.gltf()})
+            nodes[index]["camera"] = len(document["cameras"]) - 1
+            nodes[index]["name"] = "camera of the job"
+            return nodes[index]["name"]
+    raise Refusal(f"camera '{object_name}' was not exported", "let it be shown in renders")
+
+
+def left_out(scene: bpy.types.Scene) -> list[str]:
+    """What of the scene glTF does not carry, in a sentence each."""
+    sentences = []
+    for item in scene.objects:
+        if item.hide_render:
+            continue
+        if item.type == "LIGHT" and item.data.type == "AREA":
+            sentences.append(f"Area light '{item.name}' is left out: glTF has none. A mesh that emits light takes its place.")
+        if item.type == "VOLUME" or item.particle_systems:
+            sentences.append(f"Volumes and particles of '{item.name}' are left out: glTF has none.")
+        keys = getattr(item.data, "shape_keys", None)
+        if keys is not None and any(modifier.type != "ARMATURE" for modifier in item.modifiers):
+            sentences.append(f"The shape keys of '{item.name}' stay at rest: its modifiers are applied.")
+    return sentences
+
+
+@contextmanager
+def frame_kept(scene: bpy.types.Scene) -> Iterator[None]:
+    """Returns to the current frame in the end."""
+    frame, subframe = scene.frame_current, scene.frame_subframe
+    try:
+        yield
+    finally:
+        scene.frame_set(frame, subframe=subframe)
+
+
+@contextmanager
+def time_for_exporter(scene: bpy.types.Scene, frames: FrameRange) -> Iterator[None]:
+    """Lets the exporter bake as many frames, at a rate without a base, with which exporters deal each in its own way."""
+    kept = scene.frame_start, scene.frame_end, scene.render.fps_base
+    try:
+        scene.frame_start, scene.frame_end, scene.render.fps_base = frames.baked()[0], frames.baked()[-1], 1
+        yield
+    finally:
+        scene.frame_start, scene.frame_end, scene.render.fps_base = kept
