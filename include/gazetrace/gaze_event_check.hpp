@@ -42,4 +42,8 @@ std::string events_as_json(const EyeEvents& events, const GazeLog& log, const st
 // what they find, such as "`method` idt (47 fixations, 46 saccades)". Only those that leave no doubt; empty: none does.
 std::vector<std::string> better_event_methods(const GazeLog& log, const EyeEvents& events);
 
+// A sentence for each doubt and, where there is one, another that says what to do. Options stand in back quotes.
+std::vector<std::string> doubts_in_words(const std::vector<EventDoubt>& doubts, const EyeEvents& events,
+                                         const GazeLog& log);
+
 }  // namespace gazetrace

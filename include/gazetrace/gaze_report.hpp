@@ -11,6 +11,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_log.hpp"
+#include "gazetrace/gaze_process.hpp"
 
 namespace gazetrace {
 
@@ -48,6 +49,8 @@ struct GazeReportSettings {
   std::string picture;        // .png or .jpg of what was seen, behind scanpath and heat map; empty: none
   double heat_sigma_deg = 1;  // standard deviation of the spot that each fixation leaves on the heat map
   bool keep_ids = false;
+  std::vector<GazeStep> steps;  // of processing: events and diagrams are those of the gaze after them, the quality is
+                                // that of the recording
 };
 
 struct GazePlot {

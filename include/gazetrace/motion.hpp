@@ -22,6 +22,7 @@ struct SurfaceMotion {
   ImageGray depth_m;            // along the view axis; +Inf for a miss
   ImageRgb normal;              // of the triangle, unit, towards the camera; zero for a miss
   Image<std::uint32_t> object;  // 1 + index into Scene::instances; 0: a miss
+  ImageRgb position_m;          // in the world; zero for a miss
   Image<Vec2d> other_px;        // where the same point of the surface is, in continuous coordinates (pixel centres at
                                 // + 0.5); NaN where it is not in front of the other camera
   ImageGray other_depth_m;      // along the other view's axis; +Inf for a miss

@@ -164,6 +164,7 @@ GAZETRACE_ENUM_NAMES(AccumulateMode, "accumulation", {E::off, "off"}, {E::runnin
 GAZETRACE_ENUM_NAMES(AccumulateOrder, "order of accumulation", {E::before, "before"}, {E::after, "after"})
 GAZETRACE_ENUM_NAMES(ViewPrecision, "view precision", {E::automatic, "auto"}, {E::exact, "exact"}, {E::baked, "baked"})
 GAZETRACE_ENUM_NAMES(ExrPixels, "EXR pixel type", {E::half, "half"}, {E::float32, "float"})
+GAZETRACE_ENUM_NAMES(ExrParts, "parts of an EXR", {E::single, "single"}, {E::multi, "multi"})
 GAZETRACE_ENUM_NAMES(SequenceStage, "stage", {E::whole, "whole"}, {E::trace, "trace"}, {E::finish, "finish"})
 #undef GAZETRACE_ENUM_NAMES
 

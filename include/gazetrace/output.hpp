@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "gazetrace/color.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/frame_layers.hpp"
 #include "gazetrace/plan.hpp"
 #include "gazetrace/reconstruct.hpp"
 #include "gazetrace/trace.hpp"
@@ -32,6 +34,9 @@ std::string folder_of_frames(const std::string& pattern);
 std::vector<std::int32_t> find_frames(const std::string& pattern);
 
 enum class ExrPixels { half, float32 };
+// Whether all channels are in one part of the file, or each layer is a part of its own, named after it, the picture
+// first as "beauty". Readers that want one layer of many then read that alone.
+enum class ExrParts { single, multi };
 
 struct ExrSettings {
   std::string pattern;  // empty: no EXR
@@ -41,8 +46,13 @@ struct ExrSettings {
   std::string compression = "piz";
   int zip_level = 1;              // of zip and zips: 1 (fast) .. 9 (small); lossless at every level
   std::vector<std::string> aovs;  // some of aov_names()
+  // With `multi` and a lossy compression, layers of numbers (all but light, albedo and normals) are compressed by zip.
+  ExrParts parts = ExrParts::single;
+  std::optional<double> sky_depth_m;  // the depth of pixels that see nothing; empty: infinite
+  int crypto_ranks = 6;               // CoverageSettings::ranks of Cryptomatte layers: an even number, 2..16
+  int crypto_rays = 64;               // CoverageSettings::rays, 1..1024
 };
-const std::vector<std::string>& aov_names();  // albedo normal depth samples variance eccentricity
+const std::vector<std::string>& aov_names();  // those of aov_infos()
 
 struct DisplaySettings {
   std::string pattern;  // .png .jpg .tif .dpx; empty: no display image
@@ -79,6 +89,14 @@ struct WrittenFile {
 // Files of a run by their names, relative to the folder of its record, or absolute where they lie elsewhere.
 using WrittenFiles = std::map<std::string, WrittenFile>;
 
+// The clean gaze of the log as numbers, for programs that read headers and tables.
+struct GazeNumbers {
+  // Fractions of the screen, origin top left; of logs that hold directions, fractions of the frame. NaN without gaze.
+  double u = std::numeric_limits<double>::quiet_NaN(), v = std::numeric_limits<double>::quiet_NaN();
+  int valid = 0;  // 1: the log has gaze at this time; 0: it has none, and u and v are what stands in for it, or NaN
+};
+GazeNumbers gaze_numbers(const FrameRequest& request);
+
 // What the header of a frame's file states. It contains no time of day, so that a resumed run writes the same bytes.
 struct FrameHeader {
   std::int32_t frame = 0;
@@ -87,6 +105,7 @@ struct FrameHeader {
   Camera camera;
   std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: an instant
   GazeAtTime gaze_render, gaze_true;
+  GazeNumbers gaze;
   std::vector<std::string> gaze_processing;  // FramePlan::gaze_processing
   double exposure_ev = 0;
   double enhance_contrast = 0;  // above 0: contrast was enhanced, and the picture no longer estimates radiance
@@ -100,10 +119,12 @@ struct WrittenExr {
   std::uint64_t clamped_values = 0;  // values that were clamped to half's range
   WrittenFile file;
 };
-// Writes a scene-linear EXR with OpenEXR; the file appears under its name only when it is complete. Without
-// `eccentricity_deg` (a frame without gaze) that AOV is NaN.
+// Writes a scene-linear EXR with OpenEXR. Error(usage) where an AOV was asked for that the frame does not have. The
+// file appears under its name only when it is complete. Without `eccentricity_deg` (a frame without gaze) that AOV is
+// NaN.
 WrittenExr write_frame_exr(const std::string& path, const Frame& frame, const ImageGray* eccentricity_deg,
-                           const FrameHeader& header, const ExrSettings& settings, int threads = 0);
+                           const FrameHeader& header, const ExrSettings& settings, int threads = 0,
+                           const FrameLayers& layers = {});
 WrittenFile write_sampling_map_exr(const std::string& path, const SamplingMap& map, const ImageGray* eccentricity_deg);
 // Writes a PNG, JPEG, TIFF or DPX, by the suffix, with OpenImageIO; the file is complete or absent.
 WrittenFile write_display_image(const std::string& path, const DisplayImage& image, const FrameHeader& header,
@@ -129,7 +150,7 @@ constexpr std::size_t kTimingRegions = 11;
 struct TimingRow {
   std::int32_t frame = 0;
   double plan_ms = 0, pilot_ms = 0, trace_ms = 0, guides_ms = 0, reconstruct_ms = 0, temporal_ms = 0, exposure_ms = 0,
-         color_ms = 0, write_ms = 0, total_ms = 0;
+         layers_ms = 0, color_ms = 0, write_ms = 0, total_ms = 0;
   double trace_cpu_ms = 0;
   std::uint64_t pixels = 0, samples = 0, pilot_samples = 0;  // those of the pilot are among the samples
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
@@ -140,6 +161,7 @@ struct TimingRow {
   double exposure_ev = 0;
   std::string predicted_relmse, predicted_jod;  // by the pilot; empty where it did not
   std::string gaze_state;                       // of the gaze that steers the frame
+  GazeNumbers gaze;                             // of the clean log
   std::string gaze_event;                       // fixation, saccade, blink, ...; "none": not known
   std::string gaze_age_ms;            // "unknown" where a log repeats values once per frame; empty without a row
   std::string gaze_effective_age_ms;  // GazeAges: in the middle of the frame's display; empty where not known

@@ -73,6 +73,12 @@ struct PlanSettings {
   FrameRect frame_rect;  // default: the whole display
 };
 
+// The view a frame earlier or later at the frame rate, whichever frames are rendered: where things move from and to.
+struct NeighborView {
+  CameraPose pose;  // the camera's path is held beyond its ends
+  std::int64_t t_video_ns = 0;
+};
+
 // Everything about one frame: it can be rendered from this and the scene alone, apart from temporal history.
 struct FrameRequest {
   std::int32_t frame = 1;
@@ -80,6 +86,7 @@ struct FrameRequest {
   std::int64_t shutter_open_ns = 0, shutter_close_ns = 0;  // video time; equal: no motion blur
   int width_px = 0, height_px = 0;
   Camera camera;
+  NeighborView before, after;
   PlanarView view;         // the eye's view of the frame on the display or, for gaze directions, the camera's frustum
   GazeAtTime gaze_render;  // the gaze that steers the sampling: processed and delayed, if so asked
   GazeAtTime gaze_true;    // the gaze of the unprocessed log at the frame's time; metrics use this one

@@ -47,6 +47,9 @@ struct Instance {
   std::int32_t motion = -1;       // index into Scene::motions; -1: stands still
   std::int32_t deformation = -1;  // index into Scene::deformations; -1: keeps its shape
   std::string node{};             // name of the glTF node that places it; "#3" for node 3 without a name
+  // Name of the outermost node above it, or its own. Where the scene has a single outermost node without a mesh, as
+  // many exporters write it, that node's children count as outermost ones.
+  std::string asset{};
 };
 
 // Where an instance is over time: a node's animation together with those of its parents. May be called with any time;

@@ -13,6 +13,7 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/guides.hpp"
 #include "gazetrace/image.hpp"
+#include "gazetrace/light_groups.hpp"
 #include "gazetrace/material.hpp"
 #include "gazetrace/motion.hpp"
 #include "gazetrace/sample_sums.hpp"
@@ -57,8 +58,9 @@ struct TraceSettings {
   // pixels of the larger frame, eight apart, and their samples have the noise that they have there.
   double footprint = 1;
   std::uint64_t seed = 0;
-  bool guides = false;    // collect albedo, normal and depth of the first hit
-  bool surfaces = false;  // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
+  bool guides = false;        // collect albedo, normal and depth of the first hit
+  bool light_groups = false;  // collect SparseFrame::light_groups
+  bool surfaces = false;      // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
   std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
   // Splits the samples of every site into two halves of independent scramblings: sample k is number k / 2 of one of
   // them. Their difference says how far off their mean is (SparseFrame::half_difference). Each half is stratified by
@@ -155,11 +157,12 @@ struct TraceStats {
 // What the tracer found: one entry per site of the map, in the map's order.
 struct SparseFrame {
   int width_px = 0, height_px = 0;
-  std::vector<Vec3f> sum;                   // radiance, summed over the site's samples
-  std::vector<float> sum_square_luminance;  // squared luminance (Rec.709) of each sample, summed, for the variance;
-                                            // saturates at float's largest value
-  std::vector<std::uint32_t> count;         // of samples
-  std::vector<GuideSums> guides;            // empty unless TraceSettings::guides
+  std::vector<Vec3f> sum;                    // radiance, summed over the site's samples
+  std::vector<float> sum_square_luminance;   // squared luminance (Rec.709) of each sample, summed, for the variance;
+                                             // saturates at float's largest value
+  std::vector<std::uint32_t> count;          // of samples
+  std::vector<GuideSums> guides;             // empty unless TraceSettings::guides
+  std::vector<LightGroupSums> light_groups;  // empty unless TraceSettings::light_groups; they add up to `sum`
   // Of each site, (a - b) sqrt(n_a n_b) / (n_a + n_b), where a and b are the mean luminances of its halves and n_a and
   // n_b their numbers of samples. Its expectation is 0, and that of its square is the variance of the mean of all
   // samples: it is a replica of that mean's error. 0 where a half has no samples; empty unless TraceSettings::halves.
@@ -221,6 +224,9 @@ struct RayHit {
 };
 
 class PosedScene;
+struct SurfaceIds;  // coverage.hpp
+struct CoverageSettings;
+struct Coverage;
 
 class PathTracer {
  public:
@@ -243,6 +249,7 @@ class PathTracer {
   // Whether anything in the scene moves or deforms, at whatever time.
   [[nodiscard]] bool moves() const;
 
+  [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.
   [[nodiscard]] std::string ray_library() const;
@@ -274,6 +281,13 @@ class PosedScene {
   // decided by a hash of its index, so that many rays through one place hit it as often as it is opaque.
   [[nodiscard]] std::vector<RayHit> first_hits(const Camera& camera, int width_px, int height_px,
                                                const std::vector<Vec2d>& places_px) const;
+
+  // How much of each pixel each surface covers (coverage.hpp), one result for each way of naming surfaces. Rays go
+  // through the camera's lens, at the times of an open shutter and through transparent surfaces as those of samples do;
+  // `frame` and the seed decide their random numbers. Error(usage) for numbers out of range.
+  [[nodiscard]] std::vector<Coverage> coverage(const Camera& camera, std::int32_t frame, int width_px, int height_px,
+                                               const std::vector<SurfaceIds>& surfaces,
+                                               const CoverageSettings& settings) const;
 
   // What the pixels' centres see in this pose, and where that is in another view, earlier or later.
   [[nodiscard]] SurfaceMotion surface_motion(const Camera& camera, int width_px, int height_px,

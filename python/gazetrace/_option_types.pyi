@@ -190,6 +190,10 @@ class JobOptions(TypedDict, total=False):
     exr_compression: Value | None
     exr_zip_level: Value | None
     aov: Value | Sequence[Value] | None
+    exr_parts: Value | None
+    sky_depth: Value | None
+    crypto_ranks: Value | None
+    crypto_samples: Value | None
     map: Value | None
     bits: Value | None
     jpeg_quality: Value | None

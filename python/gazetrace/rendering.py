@@ -145,7 +145,16 @@ class Frame:
             "variance": self._core.variance,
             "eccentricity": self._core.eccentricity(),
         }
+        arrays.update({name: self._core.layer(name) for name in _core.aov_names() if name not in arrays})
         return {name: array for name, array in arrays.items() if array is not None}
+
+    def matte(self, layer, name):
+        """How much of each pixel something covers, by its name in a layer such as "crypto_object"."""
+        return self._core.matte(layer, name)
+
+    def matte_names(self, layer):
+        """The names that matte() knows in a layer."""
+        return list(json.loads(self._core.manifest(layer)))
 
     @property
     def sampling_map(self):

@@ -19,15 +19,18 @@ namespace gazetrace::python {
 namespace py = pybind11;
 
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && std::is_standard_layout_v<Vec3f>);
+static_assert(sizeof(Vec2f) == 2 * sizeof(float) && std::is_standard_layout_v<Vec2f>);
 
-// The image's own memory as an array of the shape (height, width) or, for colours, (height, width, 3). `owner` is what
-// keeps that memory alive; the array refers to it.
+// The image's own memory as an array of the shape (height, width) or, for colours and vectors, (height, width, 3 or 2).
+// `owner` is what keeps that memory alive; the array refers to it.
 template <class T>
 py::array view_of(const Image<T>& image, const py::object& owner) {
   const auto height = static_cast<py::ssize_t>(image.height_px);
   const auto width = static_cast<py::ssize_t>(image.width_px);
   if constexpr (std::is_same_v<T, Vec3f>) {
     return py::array(py::dtype::of<float>(), {height, width, py::ssize_t{3}}, {}, image.pixels.data(), owner);
+  } else if constexpr (std::is_same_v<T, Vec2f>) {
+    return py::array(py::dtype::of<float>(), {height, width, py::ssize_t{2}}, {}, image.pixels.data(), owner);
   } else {
     return py::array(py::dtype::of<T>(), {height, width}, {}, image.pixels.data(), owner);
   }

@@ -4,12 +4,17 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bind.hpp"
+#include "gazetrace/cryptomatte.hpp"
+#include "gazetrace/light_groups.hpp"
 
 namespace gazetrace::python {
 namespace {
@@ -20,6 +25,50 @@ template <class Choose>
 py::object part(const FramePtr& frame, Choose choose) {
   const auto& image = choose(*frame);
   return image.empty() ? py::object(py::none()) : view_of(image, py::cast(frame));
+}
+
+// A layer of FrameLayers by the name of its AOV; None where it was not asked for.
+py::object layer(const FramePtr& held, const std::string& name) {
+  const FrameLayers& layers = held->rendered.layers;
+  const auto image = [&](const auto& one) {
+    return one.empty() ? py::object(py::none()) : py::object(view_of(one, py::cast(held)));
+  };
+  const std::vector<std::string>& groups = light_group_names();
+  const auto group = static_cast<std::size_t>(std::find(groups.begin(), groups.end(), name) - groups.begin());
+  if (group < layers.light.size()) {
+    return image(layers.light[group]);
+  }
+  return name == "forward"    ? image(layers.motion.forward_px)
+         : name == "backward" ? image(layers.motion.backward_px)
+         : name == "position" ? image(layers.motion.position_m)
+                              : py::object(py::none());
+}
+
+const MatteTable* matte_table_of(const GivenFrame& frame, const std::string& name, std::size_t& index) {
+  const FrameLayers& layers = frame.rendered.layers;
+  for (index = 0; layers.tables && index < layers.tables->size(); ++index) {
+    if ((*layers.tables)[index].layer == name) {
+      return &(*layers.tables)[index];
+    }
+  }
+  throw Error(ErrorKind::usage, "", "the frame has no mattes '" + name + "'", "give `aov` " + name);
+}
+
+// How much of each pixel the thing of a name covers.
+py::array matte(const GivenFrame& frame, const std::string& layer_name, const std::string& name) {
+  std::size_t index = 0;
+  matte_table_of(frame, layer_name, index);
+  const Coverage& coverage = frame.rendered.layers.mattes[index];
+  const std::uint32_t id = cryptomatte_id(name);
+  ImageGray image(frame.request.width_px, frame.request.height_px);
+  for (std::size_t rank = 0; rank < coverage.id.size(); ++rank) {
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+      if (std::bit_cast<std::uint32_t>(coverage.id[rank].pixels[i]) == id) {
+        image.pixels[i] = coverage.share[rank].pixels[i];
+      }
+    }
+  }
+  return given_away(std::move(image));
 }
 
 // A picture with 8 or 16 bits that takes over the bytes of the library's.
@@ -174,6 +223,13 @@ void bind_frame(py::module_& module) {
           "sampling_map",
           [](const FramePtr& held) { return HeldMap{std::shared_ptr<const SamplingMap>(held, &held->rendered.map)}; })
       .def("eccentricity", &eccentricity)
+      .def("layer", &layer)
+      .def("matte", &matte)
+      .def("manifest",
+           [](const GivenFrame& frame, const std::string& name) {
+             std::size_t index = 0;
+             return matte_table_of(frame, name, index)->manifest;
+           })
       .def("display", &display_picture, py::arg("bits") = 8)
       .def("request_json", &request_json)
       .def("timing_text", [](const GivenFrame& frame) { return timing_row_text(frame.row); });

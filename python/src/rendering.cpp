@@ -8,6 +8,7 @@
 
 #include "bind.hpp"
 #include "errors.hpp"
+#include "gazetrace/aovs.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace::python {
@@ -28,18 +29,22 @@ RunRecord record_in_keywords(RunRecord record) {
   return record;
 }
 
-// AOVs that no EXR is to hold are no mistake here, since frames are looked at in memory. Returns whether these show
-// what samples hit first, and takes them out of the job.
-bool take_aovs_of_memory(JobSettings& settings) {
+struct AovsOfMemory {
+  bool first_hits = false;  // they show what samples hit first
+  LayerSettings layers;
+};
+
+// AOVs that no EXR is to hold are no mistake here, since frames are looked at in memory. Takes them out of the job.
+AovsOfMemory take_aovs_of_memory(JobSettings& settings) {
   OutputSettings output = pipeline_settings(settings).output;
   if (!output.exr.pattern.empty()) {
-    return false;
+    return {};
   }
   output.exr.pattern = "frame.####.exr";
   check_output_settings(output, false);
-  const bool traces_first_hits = pipeline_settings(settings).trace.guides;
+  const AovsOfMemory aovs{pipeline_settings(settings).trace.guides, layer_settings(output.exr)};
   settings.exr.aovs.clear();
-  return traces_first_hits;
+  return aovs;
 }
 
 }  // namespace
@@ -53,11 +58,12 @@ Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene, Threads& threa
     latest_ = Clock::now() + std::chrono::nanoseconds(settings.max_time->ns);
   }
   color_ = std::make_shared<ColorPipeline>(settings.color);
-  const bool traces_first_hits = take_aovs_of_memory(job.settings);
+  const AovsOfMemory aovs = take_aovs_of_memory(job.settings);
   ResolveOptions options;
   options.loaded = scene_.get();
   resolved_ = resolve(job, options);
-  resolved_.pipeline.trace.guides = resolved_.pipeline.trace.guides || traces_first_hits;
+  resolved_.pipeline.trace.guides = resolved_.pipeline.trace.guides || aovs.first_hits;
+  resolved_.pipeline.layers = aovs.layers;
   prepare_outputs(resolved_);
   files_ = output_files(resolved_.pipeline, resolved_.frames);
   if (!files_.empty()) {

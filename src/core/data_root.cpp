@@ -33,10 +33,50 @@ fs::path git_folder(const fs::path& tree) {
   return line.starts_with(kKey) ? resolved(tree / line.substr(kKey.size())) : git;
 }
 
+bool lies_in(const fs::path& file, const fs::path& root) {
+  return std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first == root.end();
+}
+
+// Whether git's data are those of this tree. A tree may name any folder as its own; where that lies elsewhere, as that
+// of a dataset within another, it must name the tree, too, as `core.worktree` in its configuration. Else a file that
+// came with a scene would open the annex of another dataset.
+bool belongs_to(const fs::path& git, const fs::path& tree) {
+  const fs::path folder = resolved(git);
+  const fs::path root = resolved(tree);
+  if (lies_in(folder, root)) {
+    return true;
+  }
+  std::ifstream config(folder / "config");
+  constexpr std::string_view kBlank = " \t";
+  for (std::string line; std::getline(config, line);) {
+    std::string_view rest = line;
+    const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(kBlank), rest.size())); };
+    skip_blanks();
+    if (!rest.starts_with("worktree")) {
+      continue;
+    }
+    rest.remove_prefix(std::string_view("worktree").size());
+    skip_blanks();
+    if (rest.starts_with('=')) {
+      rest.remove_prefix(1);
+      skip_blanks();
+      return resolved(folder / rest) == root;
+    }
+  }
+  return false;
+}
+
+// The annex of a tree; empty where there is none.
+fs::path annex_of(const fs::path& tree) {
+  const fs::path git = git_folder(tree);
+  std::error_code ignored;
+  return fs::exists(git / "annex", ignored) && belongs_to(git, tree) ? git / "annex" : fs::path();
+}
+
 bool is_root(const fs::path& folder) {
   std::error_code ignored;
   return fs::exists(folder / "dataset_description.json", ignored) || fs::exists(folder / ".datalad", ignored) ||
-         fs::exists(git_folder(folder) / "annex", ignored);
+         !annex_of(folder).empty();
 }
 
 void add_root(std::vector<fs::path>& roots, const fs::path& folder) {
@@ -58,17 +98,13 @@ void add_root(std::vector<fs::path>& roots, const fs::path& folder) {
   add(root);
   // The object store alone, and only where it is one: a link in its place must not open another folder.
   std::error_code ignored;
-  const fs::path store = git_folder(root) / "annex" / "objects";
-  if (fs::is_directory(store, ignored)) {
+  const fs::path annex = annex_of(root);
+  if (const fs::path store = annex / "objects"; !annex.empty() && fs::is_directory(store, ignored)) {
     if (const fs::path real = resolved(store);
         real.filename() == "objects" && real.parent_path().filename() == "annex") {
       add(real);
     }
   }
-}
-
-bool lies_in(const fs::path& file, const fs::path& root) {
-  return std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first == root.end();
 }
 
 }  // namespace

@@ -105,13 +105,21 @@ Observed observe_run(const FarmPlan& plan, const std::string& task, const std::s
   return run;
 }
 
-// What follows the frames leaves no record of a run: all that is known is how it ended.
+bool is_held(const std::string& lock, FileLock::Kind tried) {
+  std::error_code missing;
+  return fs::exists(lock, missing) && !FileLock(lock, tried, false).is_held();
+}
+
+// What follows the frames leaves no record of a run: all that is known is whether its script runs, which then holds a
+// shared lock, and how it ended.
 TaskStatus observe_exit(const FarmPlan& plan, const std::string& name) {
   TaskStatus task;
   task.name = name;
   task.exit_code = exit_code_of(plan, name);
   if (task.exit_code) {
     task.state = *task.exit_code == 0 ? TaskState::done : TaskState::failed;
+  } else if (is_held(fmt::format("{}/tasks/{}.running", plan.folder, name), FileLock::Kind::alone)) {
+    task.state = TaskState::running;
   }
   return task;
 }
@@ -121,9 +129,8 @@ Observed observe_rows(const FarmPlan& plan, std::size_t chunk) {
   Observed run;
   run.task = observe_exit(plan, std::to_string(chunk + 1));
   run.task.frames = plan.chunks[chunk];
-  const std::string lock = fmt::format("{}/lock.{}-of-{}", plan.run_folder, chunk + 1, plan.chunks.size());
-  std::error_code missing;
-  if (fs::exists(lock, missing) && !FileLock(lock, FileLock::Kind::shared, false).is_held()) {
+  if (is_held(fmt::format("{}/lock.{}-of-{}", plan.run_folder, chunk + 1, plan.chunks.size()),
+              FileLock::Kind::shared)) {
     run.task.state = TaskState::running;
   }
   return run;

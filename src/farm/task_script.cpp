@@ -32,6 +32,9 @@ run() {
   name=$1
   shift
   rm -f "$tasks/$name.exit"
+  # A lock that tells the status that the task runs, and goes with the last process that holds it.
+  exec 9>"$tasks/$name.running"
+  command -v flock >/dev/null && flock -s 9
   "$@" &
   child=$!
   while :; do
@@ -41,6 +44,7 @@ run() {
     { [ "$code" -gt 128 ] && kill -0 "$child" 2>/dev/null; } || break
   done
   child=
+  exec 9>&-
   echo "$code" > "$tasks/.$name.$$" && mv "$tasks/.$name.$$" "$tasks/$name.exit"
   return "$code"
 }

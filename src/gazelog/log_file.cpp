@@ -137,6 +137,16 @@ bool ends_early(std::string_view text) {
   return false;
 }
 
+// Spreadsheets that are told the separator in a first line of its own, `sep=;`, write it themselves, too. It becomes a
+// comment, so that the numbers of the lines stay.
+void hide_separator_line(std::string& text) {
+  constexpr std::size_t kLength = 5;
+  const std::string_view line = trim(std::string_view(text).substr(0, text.find('\n')));
+  if (line.starts_with("sep=") && line.size() <= kLength && text.starts_with("sep=")) {
+    text.front() = '#';
+  }
+}
+
 }  // namespace
 
 GazeFile open_log_file(const std::string& path) {
@@ -149,7 +159,11 @@ GazeFile open_log_file(const std::string& path) {
     }
   }
   // Records of numbers may begin like a byte-order mark.
-  file.text = is_binary(file.path, bytes) ? std::move(bytes) : with_line_ends(utf8_text(std::move(bytes)));
+  const bool is_text = !is_binary(file.path, bytes);
+  file.text = is_text ? with_line_ends(utf8_text(std::move(bytes))) : std::move(bytes);
+  if (is_text) {
+    hide_separator_line(file.text);
+  }
   return file;
 }
 

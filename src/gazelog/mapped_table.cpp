@@ -176,6 +176,9 @@ int time_exponent_by_statistics(const GazeFile& file, const DelimitedTable& tabl
   std::vector<double> times;
   TableRows rows(file, table, column + 1);
   while (times.size() < 2000 && rows.next()) {
+    if (const auto text = rows.cell(column); times.empty() && !number_from(text) && !is_missing(text)) {
+      rows.time_ns(column, {});  // says what a first time is that is no number
+    }
     if (const auto value = number_from(rows.cell(column))) {
       times.push_back(*value);
     }

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include "core/text.hpp"
 #include "gazelog/units.hpp"
@@ -86,25 +87,50 @@ std::optional<std::size_t> first_called(const std::vector<ColumnHeading>& headin
 }
 
 constexpr std::string_view kThousandsRemedy =
-    "export again without thousands separators, or remove the commas from the numbers of that column";
+    "export again without thousands separators, or remove them from the numbers of that column";
 
-// 1,234 and -12,345,678.9: a comma before every three digits of the whole part.
-bool is_grouped(std::string_view text) {
+// Whether `mark` stands before every three digits of the whole part, as in 1,234 and -12,345,678.9; the fraction begins
+// with a point, or with a comma where the mark is a point.
+bool is_grouped_by(std::string_view text, char mark) {
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
     text.remove_prefix(1);
   }
-  text = text.substr(0, text.find('.'));
-  const std::size_t first = text.find(',');
-  if (first == std::string_view::npos || first == 0 || first > 3 || text.front() == '0' ||
-      text.find_first_not_of("0123456789,") != std::string_view::npos) {
+  text = text.substr(0, text.find(mark == '.' ? ',' : '.'));
+  const std::size_t first = text.find(mark);
+  if (first == std::string_view::npos || first == 0 || first > 3 || text.front() == '0') {
     return false;
   }
+  const auto are_digits = [](std::string_view part) {
+    return part.find_first_not_of("0123456789") == std::string_view::npos;
+  };
   for (std::size_t at = first; at < text.size(); at += 4) {
-    if (text[at] != ',' || text.size() - at < 4 || text.substr(at + 1, 3).find(',') != std::string_view::npos) {
+    if (text[at] != mark || text.size() - at < 4 || !are_digits(text.substr(at + 1, 3))) {
       return false;
     }
   }
-  return true;
+  return are_digits(text.substr(0, first));
+}
+
+// For a text that is no number: whether it is one with thousands separators of any country, 1,234.5 as well as 1.234,5
+// and those with apostrophes or blanks, of which spreadsheets write several.
+bool has_thousands(std::string_view text) {
+  std::string plain(text);
+  for (const std::string_view mark : {"'", " ", "\u00a0", "\u2009", "\u2019", "\u202f"}) {
+    for (std::size_t at = plain.find(mark); at != std::string::npos; at = plain.find(mark, at)) {
+      plain.replace(at, mark.size(), "_");
+    }
+  }
+  std::string with_point = plain;
+  std::replace(with_point.begin(), with_point.end(), ',', '.');
+  return is_grouped_by(plain, ',') || is_grouped_by(plain, '.') || is_grouped_by(with_point, '_');
+}
+
+// 12:30, 12:30:05.250 and 2026-05-01T12:30:05Z.
+bool is_time_of_day(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const auto is_digit = [&](std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; };
+  return colon != std::string_view::npos && colon > 0 && is_digit(colon - 1) && is_digit(colon + 1) &&
+         is_digit(colon + 2);
 }
 
 bool is_known_unit(std::string_view text) {
@@ -284,7 +310,7 @@ TableRows::TableRows(const GazeFile& file, const DelimitedTable& table, std::siz
 
 bool TableRows::next() {
   const bool is_there = read();
-  if (!is_there && !commas_.empty()) {
+  if (!is_there && !group_marks_.empty()) {
     refuse_thousands();
   }
   return is_there;
@@ -312,34 +338,52 @@ bool TableRows::read() {
   return false;
 }
 
-void TableRows::note_comma(std::size_t column, std::string_view text) {
-  Commas& commas = commas_[column];
-  if (!is_grouped(text)) {
-    ++commas.others;
-  } else if (commas.grouped++ == 0) {
-    commas.first = text;
-    commas.first_line = line_;
+void TableRows::note_group_mark(std::size_t column, std::string_view text) {
+  if (column < group_marks_.size() && group_marks_[column].has_others) {
+    return;  // the column has fractions
+  }
+  const std::size_t at = text.find_first_of(",.");
+  if (at == std::string_view::npos) {
+    return;
+  }
+  if (column >= group_marks_.size()) {
+    group_marks_.resize(column + 1);
+  }
+  GroupMarks& marks = group_marks_[column];
+  if (!is_grouped_by(text, text[at])) {
+    marks.has_others = true;
+  } else if (marks.grouped++ == 0) {
+    marks.first = text;
+    marks.first_line = line_;
   }
 }
 
 void TableRows::refuse_thousands() const {
   constexpr std::size_t kLeast = 2;
-  for (const auto& [column, commas] : commas_) {
-    if (commas.grouped < kLeast || commas.others > 0) {
+  // Points are the usual mark of fractions, and marks of missing values are whole numbers, too: more must be seen.
+  constexpr std::size_t kLeastBelow = 1;
+  constexpr std::size_t kLeastBelowWithPoints = 5;
+  for (std::size_t column = 0; column < group_marks_.size(); ++column) {
+    const GroupMarks& marks = group_marks_[column];
+    if (marks.grouped < kLeast || marks.has_others) {
       continue;
     }
     // Of a column of decimal fractions with three digits, one or another number would be whole, or above a thousand.
-    std::size_t below = 0;
+    const bool are_points = marks.first.find(',') == std::string::npos;
+    const std::size_t least_below = are_points ? kLeastBelowWithPoints : kLeastBelow;
+    std::set<double> below;
     std::size_t above = 0;
     TableRows again(file_, table_, needed_);
-    while (again.read()) {
+    while (again.read() && above == 0) {
       const std::string_view text = again.cell(column);
-      const auto value = text.find(',') == std::string_view::npos ? number_from(text) : std::nullopt;
-      below += value && std::abs(*value) < 1000 ? 1 : 0;
+      const auto value = text.find_first_of(",.") == std::string_view::npos ? number_from(text) : std::nullopt;
       above += value && std::abs(*value) >= 1000 ? 1 : 0;
+      if (value && below.size() < least_below) {
+        below.insert(*value);
+      }
     }
-    if (below > 0 && above == 0) {
-      throw Error(ErrorKind::input, place_of(file_, commas.first_line), thousands_problem(commas.first, column),
+    if (below.size() >= least_below && above == 0) {
+      throw Error(ErrorKind::input, place_of(file_, marks.first_line), thousands_problem(marks.first, column),
                   kThousandsRemedy);
     }
   }
@@ -364,12 +408,10 @@ std::string_view TableRows::cell(std::size_t column) {
 double TableRows::number(std::size_t column) {
   const std::string_view text = cell(column);
   if (const auto value = number_from(text)) {
-    if (text.find(',') != std::string_view::npos) {
-      note_comma(column, text);
-    }
+    note_group_mark(column, text);
     return *value;
   }
-  if (is_grouped(text)) {
+  if (has_thousands(text)) {
     fail(thousands_problem(text, column), kThousandsRemedy);
   }
   if (!is_missing(text)) {
@@ -400,12 +442,10 @@ std::int64_t TableRows::time_ns(std::size_t column, const TimeScale& scale) {
     }
   }
   if (status == NumberStatus::ok) {
-    if (text.find(',') != std::string_view::npos) {
-      note_comma(column, text);
-    }
+    note_group_mark(column, text);
     return t_ns;
   }
-  if (is_grouped(text)) {
+  if (has_thousands(text)) {
     fail(thousands_problem(text, column), kThousandsRemedy);
   }
   if (status == NumberStatus::overflow) {
@@ -416,10 +456,21 @@ std::int64_t TableRows::time_ns(std::size_t column, const TimeScale& scale) {
   if (is_missing(text)) {
     fail("this row has no time", "remove the row, or give it a time");
   }
+  if (is_time_of_day(text)) {
+    fail(fmt::format("time '{}' is a time of day", text.substr(0, 60)),
+         "write times as numbers, such as milliseconds from the beginning, or name the column of the tracker's own "
+         "clock with `gaze-time-column`");
+  }
   fail(fmt::format("time '{}' is not a number", text.substr(0, 60)), "remove or mend the row");
 }
 
 void TableRows::fail(const std::string& problem, std::string_view remedy) const {
+  const auto has_zeros = [](std::string_view cell) { return cell.find('\0') != std::string_view::npos; };
+  if (std::any_of(cells_.begin(), cells_.end(), has_zeros)) {
+    throw Error(ErrorKind::input, place_of(file_, line_),
+                "bytes of value zero stand in this row, as after a crash or on a full disk",
+                "copy the file again, or remove the row");
+  }
   throw Error(ErrorKind::input, place_of(file_, line_), problem, remedy);
 }
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -92,17 +91,18 @@ class TableRows {
   std::size_t repeated_headers = 0;
 
  private:
-  // Numbers with a comma, of one column: such as could have it between thousands and hundreds, and others.
-  struct Commas {
-    std::size_t grouped = 0, others = 0;
+  // Numbers with a comma or a point, of one column: such as could have it between thousands and hundreds, and others.
+  struct GroupMarks {
+    bool has_others = false;
+    std::size_t grouped = 0;
     std::int64_t first_line = 0;
     std::string first;
   };
   // The next row, without a look at what the columns hold.
   bool read();
   [[nodiscard]] std::string thousands_problem(std::string_view text, std::size_t column) const;
-  void note_comma(std::size_t column, std::string_view text);
-  // Throws Error(input) where the numbers of a column that are below a thousand are the only ones without a comma.
+  void note_group_mark(std::size_t column, std::string_view text);
+  // Throws Error(input) where the numbers of a column that are below a thousand are the only ones without such a mark.
   void refuse_thousands() const;
 
   const GazeFile& file_;
@@ -112,7 +112,7 @@ class TableRows {
   std::int64_t line_;
   std::vector<std::string_view> cells_;
   std::string buffer_;
-  std::map<std::size_t, Commas> commas_;  // by column
+  std::vector<GroupMarks> group_marks_;  // by column
 };
 
 std::string place_of(const GazeFile& file, std::int64_t line);

@@ -163,6 +163,7 @@ void check_sample_range(const JobSettings& job) {
   settings.exposure = job.exposure;
   settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
   settings.trace.only_pixel = job.only_pixel;
+  settings.output.exr = job.exr;
   if (const std::string reason = needs_all_samples(settings); !reason.empty()) {
     throw Error(ErrorKind::usage, "`sample-range`", reason, "leave it out, or change that");
   }

@@ -106,6 +106,17 @@ class Bsdf {
             valid ? above.pdf : 0.0F};
   }
 
+  // What the diffuse lobe has of evaluate(wi).f_cos.
+  [[nodiscard]] Vec3f diffuse_f_cos(const Vec3f& wi) const noexcept {
+    if (!(wo_.z > 0) || !(wi.z > 0)) {
+      return {};
+    }
+    if constexpr (kDiffuse == DiffuseModel::matte) {
+      return diffuse_ * wi.z;
+    }
+    return diffuse_ * (shape(wi, albedo_terms(row_, std::clamp(wi.z, 0.0F, 1.0F))) * wi.z);
+  }
+
   struct Direction {
     Vec3f direction, half;
   };
@@ -141,6 +152,15 @@ class Bsdf {
  private:
   static constexpr float kInvPi = static_cast<float>(1 / kPi);
 
+  // The factor s(i) shape of the diffuse lobe.
+  [[nodiscard]] float shape(const Vec3f& wi, const AlbedoTerms& terms) const noexcept {
+    if constexpr (kDiffuse == DiffuseModel::burley) {
+      const float t = roughness_ * (1.0F + dot(wo_, wi)) - 0.5F;
+      return terms.burley * (1.0F + t * weight_o_) * (1.0F + t * schlick_weight(wi.z));
+    }
+    return terms.lambert;
+  }
+
   [[nodiscard]] BsdfEval evaluate_half(const Vec3f& wi, const Vec3f& half, const AlbedoTerms& terms) const noexcept {
     if constexpr (kDiffuse == DiffuseModel::matte) {
       return {diffuse_ * wi.z, kInvPi * wi.z};
@@ -151,13 +171,9 @@ class Bsdf {
     const float fresnel = schlick_weight(dot(wo_, half));
     const Vec3f reflectance = f0_ + (Vec3f{1, 1, 1} - f0_) * fresnel;
 
-    float shape = terms.lambert;
-    if constexpr (kDiffuse == DiffuseModel::burley) {
-      const float t = roughness_ * (1.0F + dot(wo_, wi)) - 0.5F;
-      shape = terms.burley * (1.0F + t * weight_o_) * (1.0F + t * schlick_weight(wi.z));
-    }
     BsdfEval result;
-    result.f_cos = (reflectance * (distribution * visible) + multiple_ * (1.0F - terms.e) + diffuse_ * shape) * wi.z;
+    result.f_cos =
+        (reflectance * (distribution * visible) + multiple_ * (1.0F - terms.e) + diffuse_ * shape(wi, terms)) * wi.z;
     result.pdf = specular_probability_ * visible_reflection_pdf(wo_.z, smith_o_, distribution) +
                  (1.0F - specular_probability_) * kInvPi * wi.z;
     return result;

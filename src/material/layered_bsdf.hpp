@@ -111,6 +111,17 @@ class LayeredBsdf {
     return result;
   }
 
+  // What the diffuse lobe, reflected or transmitted, has of evaluate(wi).f_cos.
+  [[nodiscard]] Vec3f diffuse_f_cos(const Vec3f& wi) const noexcept {
+    const bool through = wi.z < 0;
+    const float cosine = std::fabs(wi.z);
+    if (!(wo_.z > 0) || !(cosine > 0) || (through && !transmits()) || !(facets_.opaque() > 0)) {
+      return {};
+    }
+    const Vec3f up{wi.x, wi.y, cosine};
+    return diffuse(up, terms_at(up), through) * (layer_scale(wi, through).broad * cosine);
+  }
+
   [[nodiscard]] BsdfSample sample(const Vec2f& u, float u_lobe) const noexcept {
     BsdfSample result;
     float left = u_lobe;
@@ -230,18 +241,24 @@ class LayeredBsdf {
     return lambertian() || terms.lambert < 1e-6F ? left : left * terms.burley / terms.lambert;
   }
 
+  // The diffuse lobe, of an opaque part that is not nothing: f without the cosine. `up` is the direction, turned to the
+  // side of the view.
+  [[nodiscard]] Vec3f diffuse(const Vec3f& up, const AlbedoTerms& at_i, bool through) const noexcept {
+    float shape = 1;
+    if (!lambertian()) {
+      const float t = s_.base.roughness * (1.0F + dot(wo_, up)) - 0.5F;
+      shape = (1.0F + t * schlick_weight(wo_.z)) * (1.0F + t * schlick_weight(up.z));
+    }
+    return diffuse_color(through) * (facets_.opaque() * diffuse_o_ * diffuse_scale(up.z, at_i) * shape * kInvPi);
+  }
+
   // The lobes over the whole hemisphere, diffuse light and repeated scattering: f without the cosine.
   [[nodiscard]] Vec3f broad(const Vec3f& wi, bool through) const noexcept {
     const Vec3f up{wi.x, wi.y, std::fabs(wi.z)};
     const AlbedoTerms at_i = terms_at(up);
     Vec3f f{0, 0, 0};
     if (facets_.opaque() > 0) {
-      float shape = 1;
-      if (!lambertian()) {
-        const float t = s_.base.roughness * (1.0F + dot(wo_, up)) - 0.5F;
-        shape = (1.0F + t * schlick_weight(wo_.z)) * (1.0F + t * schlick_weight(up.z));
-      }
-      f += diffuse_color(through) * (facets_.opaque() * diffuse_o_ * diffuse_scale(up.z, at_i) * shape * kInvPi);
+      f += diffuse(up, at_i, through);
     }
     const float repeated = terms_.repeated_lobe(at_o_.e, at_i.e);
     if (!through) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/aovs.hpp"
+
 namespace gazetrace {
 
 // Whether the AOVs show what samples hit first, which TraceSettings::guides collects.

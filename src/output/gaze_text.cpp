@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "gazetrace/output.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -22,6 +24,23 @@ std::string gaze_words(const GazeAtTime& gaze) {
                      to_string(gaze.state), where(gaze), gaze.t_log_ns, gaze.row_before, gaze.row_after, age,
                      to_string(gaze.validity), gaze.movement ? to_string(*gaze.movement) : "none", since,
                      gaze.no_gaze ? 1 : 0);
+}
+
+GazeNumbers gaze_numbers(const FrameRequest& request) {
+  const GazeAtTime& gaze = request.gaze_true;
+  GazeNumbers numbers;
+  if (gaze.state == GazeState::none) {
+    return numbers;
+  }
+  numbers.u = gaze.u;
+  numbers.v = gaze.v;
+  if (gaze.kind == GazeKind::direction) {
+    const Vec2d px = request.view.pixel(request.gaze_direction_true.value_or(gaze.direction));
+    numbers.u = px.x / request.view.width_px;
+    numbers.v = px.y / request.view.height_px;
+  }
+  numbers.valid = gaze.no_gaze ? 0 : 1;
+  return numbers;
 }
 
 }  // namespace gazetrace

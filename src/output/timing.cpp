@@ -27,6 +27,7 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("reconstruct_ms", row.reconstruct_ms);
   visit("temporal_ms", row.temporal_ms);
   visit("exposure_ms", row.exposure_ms);
+  visit("layers_ms", row.layers_ms);
   visit("color_ms", row.color_ms);
   visit("write_ms", row.write_ms);
   visit("total_ms", row.total_ms);
@@ -47,6 +48,9 @@ void for_each_column(Row& row, const Visit& visit) {
   visit("exposure_ev", row.exposure_ev);
   visit("predicted_relmse", row.predicted_relmse);
   visit("predicted_jod", row.predicted_jod);
+  visit("gaze.u", row.gaze.u);
+  visit("gaze.v", row.gaze.v);
+  visit("gaze.valid", row.gaze.valid);
   visit("gaze_state", row.gaze_state);
   visit("gaze_event", row.gaze_event);
   visit("gaze_age_ms", row.gaze_age_ms);
@@ -115,7 +119,9 @@ std::string timing_row_text(const TimingRow& row) {
     line += line.empty() ? "" : ",";
     if constexpr (std::is_same_v<std::decay_t<decltype(field)>, double>) {
       // A tenth of a microsecond is below the noise of any clock. Exposure is a setting and keeps every digit.
-      line += name == "exposure_ev" ? fmt::format("{}", field) : fmt::format("{:.4f}", field);
+      line += name == "exposure_ev"       ? fmt::format("{}", field)
+              : name.starts_with("gaze.") ? fmt::format("{:.6f}", field)
+                                          : fmt::format("{:.4f}", field);
     } else {
       line += fmt::format("{}", field);
     }

@@ -26,6 +26,7 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.shutter_close_ns = request.shutter_close_ns;
   header.gaze_render = request.gaze_render;
   header.gaze_true = request.gaze_true;
+  header.gaze = gaze_numbers(request);
   header.gaze_processing = plan.gaze_processing;
   header.exposure_ev = exposure_ev;
   header.enhance_contrast = settings.enhance_contrast;
@@ -83,7 +84,8 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
   if (!output.exr.pattern.empty()) {
     const std::string path = frame_file_name(output.exr.pattern, request.frame);
     WrittenExr written = timed(row.write_ms, [&] {
-      return write_frame_exr(path, rendered.frame, eccentricity_deg, header, output.exr, settings.threads);
+      return write_frame_exr(path, rendered.frame, eccentricity_deg, header, output.exr, settings.threads,
+                             rendered.layers);
     });
     result.clamped_half_values += written.clamped_values;
     list(path, std::move(written.file));

@@ -6,6 +6,7 @@
 
 #include "pipeline/adaptive_rates.hpp"
 #include "pipeline/first_look.hpp"
+#include "pipeline/frame_layers.hpp"
 #include "pipeline/frame_stages.hpp"
 
 namespace gazetrace {
@@ -18,7 +19,10 @@ ShutterTimes shutter_of(const FrameRequest& request) {
 }  // namespace
 
 FrameRenderer::FrameRenderer(PathTracer& tracer, FrameSettings settings)
-    : tracer_(&tracer), settings_(std::move(settings)), reconstruction_(settings_.reconstruction) {}
+    : tracer_(&tracer),
+      settings_(std::move(settings)),
+      reconstruction_(settings_.reconstruction),
+      tables_(matte_tables(tracer.scene(), settings_.layers.mattes)) {}
 
 TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   TracedFrame traced;
@@ -54,9 +58,10 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   traced.map = timed(times.plan_ms, [&] {
     return make_sampling_map(foveation, request.view, request.gaze_direction_render, context);
   });
-  traced.sparse = timed(times.trace_ms, [&] {
-    return scene.trace(request.camera, request.frame, traced.map, reconstruction_.trace_settings(settings_.trace));
-  });
+  TraceSettings settings = reconstruction_.trace_settings(settings_.trace);
+  settings.light_groups = settings_.layers.light;
+  traced.sparse =
+      timed(times.trace_ms, [&] { return scene.trace(request.camera, request.frame, traced.map, settings); });
   return traced;
 }
 
@@ -102,12 +107,14 @@ RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame tra
   } else {
     rendered.frame = reprojected(filtered(traced.sparse, reconstruction_));
   }
+  std::vector<ImageRgb> light = filtered_light(traced, times);
   rendered.map = std::move(traced.map);
   rendered.samples = std::move(traced.sparse.stats);
   rendered.first_look = std::move(traced.first_look);
   rendered.prediction = traced.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
+  add_layers(request, std::move(light), rendered);
   return rendered;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gazetrace/pipeline.hpp"
+#include "output/aovs.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/frame_stages.hpp"
 #include "pipeline/timing_row.hpp"
@@ -117,6 +118,9 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   const Reconstruction reconstruction(settings.reconstruction);
   if (reconstruction.needs().surfaces || reconstruction.needs().guides) {  // sums alone are what parts leave behind
     return fmt::format("the filter '{}' looks at every sample", reconstruction.filter().name);
+  }
+  if (layer_settings(settings.output.exr).any()) {
+    return "some of the AOVs are found by rays of their own, and what joins the parts traces none";
   }
   if (settings.foveation.target.jod || settings.foveation.target.flip) {
     return "the rate needs a pilot of the sequence";

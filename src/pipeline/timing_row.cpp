@@ -29,6 +29,7 @@ TimingRow timing_row(const FrameRequest& request) {
   row.frame = request.frame;
   row.pixels = static_cast<std::uint64_t>(request.width_px) * static_cast<std::uint64_t>(request.height_px);
   const GazeAtTime& gaze = request.gaze_render;
+  row.gaze = gaze_numbers(request);
   row.gaze_state = to_string(gaze.state);
   row.gaze_event = gaze.movement ? to_string(*gaze.movement) : "none";
   const bool has_row = gaze.row_before != 0 || gaze.row_after != 0;
@@ -45,9 +46,9 @@ TimingRow timing_row(const FrameRequest& request) {
 TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   TimingRow row = timing_row(request);
-  for (double* ms :
-       {&row.plan_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms, &row.temporal_ms,
-        &row.exposure_ms, &row.color_ms, &row.write_ms, &row.total_ms, &row.trace_cpu_ms, &row.peak_memory_mib}) {
+  for (double* ms : {&row.plan_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms, &row.temporal_ms,
+                     &row.exposure_ms, &row.layers_ms, &row.color_ms, &row.write_ms, &row.total_ms, &row.trace_cpu_ms,
+                     &row.peak_memory_mib}) {
     *ms = kUnknown;
   }
   row.region_cpu_ms.fill(kUnknown);
@@ -63,6 +64,7 @@ void add_times(const StageTimes& times, TimingRow& row) {
   row.reconstruct_ms += times.reconstruct_ms;
   row.temporal_ms += times.temporal_ms;
   row.exposure_ms += times.exposure_ms;
+  row.layers_ms += times.layers_ms;
 }
 
 void add_prediction(const Prediction& prediction, TimingRow& row) {

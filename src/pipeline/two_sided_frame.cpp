@@ -54,6 +54,7 @@ ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request, const
   done.request = request;
   done.frame = timed(done.times.reconstruct_ms,
                      [&] { return reconstruction_.frame(traced.sparse, traced.map, guides, settings_.threads); });
+  done.light = filtered_light(traced, done.times);
   done.map = traced.map;
   done.samples = traced.sparse.stats;
   done.first_look = traced.first_look;
@@ -118,6 +119,7 @@ RenderedFrame FrameRenderer::join(const std::vector<const ReconstructedFrame*>& 
   rendered.prediction = frame.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
+  add_layers(request, frame.light, rendered);
   return rendered;
 }
 

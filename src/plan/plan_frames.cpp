@@ -51,6 +51,10 @@ CameraPose pose_at(const CameraPath& camera, std::int64_t t_ns) {
   return camera.pose_at(camera.is_static ? t_ns : std::clamp(t_ns, camera.begin_ns, camera.end_ns));
 }
 
+NeighborView view_at(const CameraPath& camera, std::int64_t t_ns) {
+  return {pose_at(camera, t_ns), t_ns};
+}
+
 // A camera need not move evenly while the shutter is open, so its path is sampled at this many steps.
 constexpr int kShutterSteps = 16;
 
@@ -181,6 +185,8 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
       request.shutter_close_ns = time_in_frame_ns(settings, frame, settings.shutter.close);
     }
     request.camera.pose = pose_at(camera, request.t_video_ns);
+    request.before = view_at(camera, time_in_frame_ns(settings, frame, -0.5));
+    request.after = view_at(camera, time_in_frame_ns(settings, frame, 1.5));
     request.camera.projection = camera.projection;
     request.camera.lens = camera.lens;
     request.camera.shutter_poses = shutter_poses(camera, request.shutter_open_ns, request.shutter_close_ns);

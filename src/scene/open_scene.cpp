@@ -5,6 +5,7 @@
 #include "gazetrace/error.hpp"
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/animation.hpp"
+#include "scene/gltf/estimate.hpp"
 
 namespace gazetrace {
 
@@ -14,6 +15,7 @@ OpenScene open_scene(const std::string& path, const SceneReadOptions& options) {
   if (!options.allow_outside) {
     scene.file.roots = data_roots(path);
   }
+  check_json_memory(path, scene.file.bytes.size(), scene.file.json, options.limits);
   scene.checked = check_gltf_json(path, scene.file.json, options.limits);
   scene.document = parse_gltf(path, scene.checked);
   scene.document.data_roots = scene.file.roots;

@@ -6,6 +6,7 @@
 
 #include "gazelog/screen_angles.hpp"
 #include "gazetrace/gaze_aois.hpp"
+#include "gazetrace/gaze_event_durations.hpp"
 #include "gazetrace/gaze_trials.hpp"
 
 namespace gazetrace {
@@ -14,8 +15,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kConePlaces = 512;
 
-double milliseconds(std::int64_t begin_ns, std::int64_t end_ns) {
-  return static_cast<double>(end_ns - begin_ns) * 1e-6;
+double milliseconds(std::int64_t duration_ns) {
+  return static_cast<double>(duration_ns) * 1e-6;
 }
 
 // Shares are of whole names, so a pattern without * or ? must be the name.
@@ -32,10 +33,10 @@ class AoiFinder {
  public:
   AoiFinder(const GazeLog& log, const std::vector<Aoi>& areas, const std::optional<GazeUncertainty>& uncertainty,
             const GazeObjects* objects)
-      : areas_(areas), uncertainty_(uncertainty), objects_(objects), screen_(log) {}
+      : areas_(areas), uncertainty_(uncertainty), objects_(objects), screen_(log), step_ns_(event_step_ns(log)) {}
 
   [[nodiscard]] AoiFixation find(const EyeEvent& event) const {
-    AoiFixation fixation{event, std::nullopt, kNan};
+    AoiFixation fixation{event, event_duration_ns(event, step_ns_), std::nullopt, kNan};
     for (std::size_t i = 0; i < areas_.size(); ++i) {
       if (contains(areas_[i], {event.u, event.v})) {
         fixation.aoi = i;
@@ -116,6 +117,7 @@ class AoiFinder {
   const std::optional<GazeUncertainty>& uncertainty_;
   const GazeObjects* objects_;
   ScreenAngles screen_;
+  std::int64_t step_ns_;
 };
 
 void count_visits(const GazeLog& log, AoiAnalysis& analysis) {
@@ -128,15 +130,15 @@ void count_visits(const GazeLog& log, AoiAnalysis& analysis) {
   std::int64_t visit_end_ns = 0;
   const auto end_visit = [&] {
     if (before) {
-      analysis.figures[*before].dwell_ms += milliseconds(visit_begin_ns, visit_end_ns);
+      analysis.figures[*before].dwell_ms += milliseconds(visit_end_ns - visit_begin_ns);
     }
   };
   for (const AoiFixation& fixation : analysis.fixations) {
     const std::size_t area = fixation.aoi.value_or(none);
-    const double duration_ms = milliseconds(fixation.event.begin_ns, fixation.event.end_ns);
+    const double duration_ms = milliseconds(fixation.duration_ns);
     AoiFigures& figures = analysis.figures[area];
     if (figures.fixations++ == 0) {
-      figures.first_fixation_at_ms = milliseconds(begin_ns, fixation.event.begin_ns);
+      figures.first_fixation_at_ms = milliseconds(fixation.event.begin_ns - begin_ns);
       figures.first_fixation_ms = duration_ms;
     }
     figures.fixation_ms += duration_ms;
@@ -150,7 +152,7 @@ void count_visits(const GazeLog& log, AoiAnalysis& analysis) {
       visit_begin_ns = fixation.event.begin_ns;
       before = area;
     }
-    visit_end_ns = fixation.event.end_ns;
+    visit_end_ns = fixation.event.begin_ns + fixation.duration_ns;
   }
   end_visit();
 }

@@ -34,8 +34,8 @@ Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-double milliseconds(const EyeEvent& event) {
-  return static_cast<double>(event.end_ns - event.begin_ns) * 1e-6;
+double milliseconds(const AoiFixation& fixation) {
+  return static_cast<double>(fixation.duration_ns) * 1e-6;
 }
 
 double part(double value, double whole) {
@@ -48,7 +48,7 @@ std::string aoi_fixations_as_tsv(const AoiAnalysis& analysis) {
   std::string text = "onset_ns\toffset_ns\tduration_ms\tu\tv\taoi\tshare\n";
   for (const AoiFixation& fixation : analysis.fixations) {
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\n", fixation.event.begin_ns,
-                   fixation.event.end_ns, number(milliseconds(fixation.event)), number(fixation.event.u),
+                   fixation.event.end_ns, number(milliseconds(fixation)), number(fixation.event.u),
                    number(fixation.event.v), name_of(analysis, fixation.aoi.value_or(analysis.areas.size())),
                    share(fixation.share));
   }
@@ -88,7 +88,7 @@ std::string aois_as_json(const AoiAnalysis& analysis) {
   for (const AoiFixation& f : analysis.fixations) {
     fixations.push_back({{"onset_ns", f.event.begin_ns},
                          {"offset_ns", f.event.end_ns},
-                         {"duration_ms", milliseconds(f.event)},
+                         {"duration_ms", milliseconds(f)},
                          {"u", number_or_null(f.event.u)},
                          {"v", number_or_null(f.event.v)},
                          {"aoi", f.aoi ? Json(analysis.areas[*f.aoi].name) : Json(nullptr)},

@@ -58,6 +58,9 @@ class SiteAdder {
     out_.sum[site] = to_float(sum);
     out_.sum_square_luminance[site] = in_range(square);
     out_.count[site] = count[0] + count[1];
+    if (!out_.light_groups.empty()) {
+      add_light_groups(site);
+    }
     if (!out_.half_difference.empty()) {
       out_.half_difference[site] = half_difference(bright, count);
     }
@@ -80,6 +83,17 @@ class SiteAdder {
     const std::size_t before = surfaces.size();
     sorter_.finish_site(out_.first_hits.empty() ? std::array<std::uint32_t, 2>{} : count, surfaces);
     out_.first_surface[site] = static_cast<std::uint32_t>(surfaces.size() - before);
+  }
+
+  void add_light_groups(std::size_t site) {
+    LightGroupSums& to = out_.light_groups[site];
+    for (std::size_t group = 0; group < to.sum.size(); ++group) {
+      Vec3d sum;
+      for (const SamplesOfFrame& one : frames_) {
+        sum += to_double(one.sparse->light_groups[site].sum[group]);
+      }
+      to.sum[group] = to_float(sum);
+    }
   }
 
   void add_first_hits(std::size_t site, const std::array<std::uint32_t, 2>& count) {
@@ -166,6 +180,7 @@ SamplesAtRest add_up(const std::vector<SamplesOfFrame>& frames, const GuideCamer
   out.sum_square_luminance.resize(sites);
   out.count.resize(sites);
   out.guides.resize(first.guides.size());
+  out.light_groups.resize(first.light_groups.size());
   out.half_difference.resize(first.half_difference.size());
   out.first_surface.resize(first.first_surface.size());
   out.first_hits.resize(first.first_hits.size());

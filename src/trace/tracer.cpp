@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PathTracer: traces tiles in parallel and the batches of a tile in order, and adds up samples without rounding.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "gazetrace/trace.hpp"
+#include "trace/guides/coverage.hpp"
 #include "trace/guides/first_hits.hpp"
 #include "trace/guides/guides.hpp"
 #include "trace/kernel/kernel.hpp"
@@ -50,6 +52,7 @@ void keep_first(std::vector<BadSample>& list, BadSample sample) {
 struct SiteSum {
   SiteSums light;
   SiteGuideSums guides;
+  std::array<Vec3d, kLightGroups> groups{};  // a site belongs to one thread, which adds its samples in their order
 };
 
 void add_guides(const GuideBatch& g, std::size_t i, SiteGuideSums& sums) {
@@ -74,7 +77,16 @@ void add_light(const Vec3f& radiance, SiteSums& sums) {
   sums.square_luminance.add(static_cast<double>(static_cast<float>(std::min(shone * shone, kMost))));
 }
 
+void add_groups(const LightGroupBatch& batch, std::size_t i, std::array<Vec3d, kLightGroups>& sums) {
+  for (std::size_t group = 0; group < kLightGroups; ++group) {
+    sums[group] += to_double(batch.radiance[group].get(i));
+  }
+}
+
 void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
+  for (std::size_t group = 0; group < kLightGroups && !out.light_groups.empty(); ++group) {
+    out.light_groups[site].sum[group] = to_float(sum.groups[group]);
+  }
   store_rounded(sum.light, out.guides.empty() ? nullptr : &sum.guides, site, out);
   if (!out.unrounded.sites.empty()) {
     out.unrounded.sites[site] = sum.light;
@@ -256,6 +268,9 @@ void PathTracer::Impl::trace_sites(const FrameContext& context, Kernel kernel, c
         continue;
       }
       add_light({r, g, b}, sum.light);
+      if (!out.light_groups.empty()) {
+        add_groups(work.groups, i, sum.groups);
+      }
       halves.add(luminance(to_double(Vec3f{r, g, b})), work.samples.half[i]);
       if (surfaces && pass_through.needs_filtering(current)) {
         sorter.add(work.surfaces, i, {r, g, b}, work.samples.half[i]);
@@ -319,6 +334,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   out.sum_square_luminance.resize(map.sites.size());
   out.count.resize(map.sites.size());
   out.guides.resize(settings.guides ? map.sites.size() : 0);
+  out.light_groups.resize(settings.light_groups ? map.sites.size() : 0);
   out.half_difference.resize(settings.halves ? map.sites.size() : 0);
   out.unrounded.sites.resize(settings.samples ? map.sites.size() : 0);
   out.unrounded.guides.resize(settings.samples && settings.guides ? map.sites.size() : 0);
@@ -390,11 +406,23 @@ std::vector<RayHit> PosedScene::first_hits(const Camera& camera, int width_px, i
                           places_px, tracer_->options.threads);
 }
 
+std::vector<Coverage> PosedScene::coverage(const Camera& camera, std::int32_t frame, int width_px, int height_px,
+                                           const std::vector<SurfaceIds>& surfaces,
+                                           const CoverageSettings& settings) const {
+  tracer_->pose(times_);
+  return trace_coverage(*tracer_->scene, tracer_->render_scene, CameraRays(camera, height_px), frame, width_px,
+                        height_px, surfaces, settings, tracer_->options.threads);
+}
+
 SurfaceMotion PosedScene::surface_motion(const Camera& camera, int width_px, int height_px,
                                          const OtherView& other) const {
   tracer_->pose(times_);
   return trace_surface_motion(*tracer_->scene, tracer_->render_scene, camera, width_px, height_px, other,
                               tracer_->options.threads);
+}
+
+const Scene& PathTracer::scene() const {
+  return *impl_->scene;
 }
 
 TracerMemory PathTracer::memory() const {

@@ -141,6 +141,18 @@ def exr_head(width, height):
         attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0"
 
 
+def draco_of_claims():
+    """A mesh whose stream says that it has 100 million triangles and vertices; the decoder makes room for them at once."""
+    stream = b"DRACO\2\2\1\1\0\0\0" + 2 * b"\x80\xc2\xd7\x2f" + bytes(16)
+    scene = harness.box_gltf()
+    scene["buffers"].append({"byteLength": len(stream), "uri": "data:;base64," + base64.b64encode(stream).decode()})
+    scene["bufferViews"].append({"buffer": len(scene["buffers"]) - 1, "byteLength": len(stream)})
+    scene["meshes"][0]["primitives"][0]["extensions"] = {
+        "KHR_draco_mesh_compression": {"bufferView": len(scene["bufferViews"]) - 1, "attributes": {"POSITION": 0}}}
+    scene["extensionsUsed"].append("KHR_draco_mesh_compression")
+    return json.dumps(scene)
+
+
 def scenes():
     """Name -> a scene, or a scene with the files beside it."""
     yield "nodes: a million", changed(many_nodes(1_000_000))
@@ -187,10 +199,12 @@ def scenes():
     yield "primitives: 100,000 of one mesh", changed(put("meshes.0.primitives", [{"attributes": {"POSITION": 0}, "indices": 1}] * 100_000))
     yield "extensions: an unknown one is required", changed(put("extensionsRequired", ["X_none"]))
     yield "draco: an empty stream", changed(put("meshes.0.primitives.0.extensions", {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}))
+    yield "draco: thirty bytes that claim 100 million triangles", draco_of_claims()
     yield "meshopt: a count of 2^31", changed(put("bufferViews.0.extensions", {"EXT_meshopt_compression": {
         "buffer": 0, "byteLength": 96, "byteStride": 12, "count": 2**31 - 1, "mode": "ATTRIBUTES"}}))
     yield "json: 100,000 arrays deep", "[" * 100_000
     yield "json: 50 MB of digits", '{"asset": {"version": "2.0"}, "x": ' + "9" * 50_000_000 + "}"
+    yield "json: 15 MB of empty arrays", '{"asset": {"version": "2.0"}, "extras": [' + "[]," * 5_000_000 + "0]}"
     yield "json: half a file", json.dumps(harness.box_gltf())[:800]
     yield "json: zeros", "\0" * 1000
     yield "json: empty", ""

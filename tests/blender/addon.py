@@ -396,4 +396,4 @@ class Bones(AddOnTest):
 
 if __name__ == "__main__":
     names = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
-    sys.exit(not unittest.main(argv=["addon.py", *names], exit=False, verbosity=2).result.wasSuccessful())
+    scenes.leave(0 if unittest.main(argv=["addon.py", *names], exit=False, verbosity=2).result.wasSuccessful() else 1)

@@ -101,3 +101,4 @@ def main(folder: Path, numbers: list[int]) -> None:
 if __name__ == "__main__":
     given = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     main(Path(given[0]), [int(number) for number in given[1:]])
+    scenes.leave(0)

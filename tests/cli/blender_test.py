@@ -29,7 +29,7 @@ def hosts():
     """Commands that run a script inside Blender, by what they are called."""
     found = {}
     if shutil.which("blender"):
-        found["blender"] = ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P"]
+        found["blender"] = [shutil.which("blender"), "-b", "--factory-startup", "--python-exit-code", "1", "-P"]
     python = os.environ.get("GAZETRACE_BPY_PYTHON", sys.executable)
     if has_bpy(python):
         found["bpy"] = [python, "-B"]
@@ -43,8 +43,11 @@ HOSTS = hosts()
 class Blender(harness.CliTest):
     def inside(self, host, script, *arguments):
         command = [*HOSTS[host], str(SCRIPTS / script), *(["--"] if host == "blender" else []), *arguments]
-        done = subprocess.run(command, cwd=self.folder, env={**os.environ, "GAZETRACE": harness.PROGRAM}, timeout=500,
-                              capture_output=True, text=True, check=False)
+        environment = {**os.environ, "GAZETRACE": harness.PROGRAM}
+        if host == "blender":
+            # Debian's Blender takes its modules from beside the first python3 on the PATH, which must be Debian's.
+            environment["PATH"] = os.defpath
+        done = subprocess.run(command, cwd=self.folder, env=environment, timeout=500, capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, (done.stdout + done.stderr)[-6000:])
         return done.stdout
 

@@ -10,7 +10,7 @@ import time
 
 import harness
 from farm_faults_test import JOB_TOML, Farm
-from farm_harm import Harm
+from farm_harm import renderers
 from gliding_job import job_toml
 
 HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
@@ -288,6 +288,21 @@ class Engines(Farm):
         self.assertEqual(seen - {"missing"}, {"running"})
         self.assertEqual(self.status()["tasks"][0]["state"], "interrupted")
 
+    def test_what_follows_is_seen_while_it_runs(self):
+        self.farm("--engine", "slurm", "--chunks", "2", "--then", "touch began; while [ ! -e go ]; do sleep 0.05; done")
+        script = str(self.folder / "out/farm/task.sh")
+        for task in ("1-2", "finish"):
+            subprocess.run(["sh", script, task], capture_output=True, check=True)
+        after = subprocess.Popen(["sh", script, "after-1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(after.kill)
+        begin = time.monotonic()
+        while not (self.folder / "began").exists() and time.monotonic() - begin < 100:
+            time.sleep(0.02)
+        self.assertEqual([task["state"] for task in self.status()["tasks"]], ["done", "done", "done", "running"])
+        (self.folder / "go").touch()
+        self.assertEqual(after.wait(timeout=100), 0)
+        self.assertTrue(self.status()["is_done"])
+
     def test_files_for_slurm(self):
         self.run_ok("render", "--config", "farm.toml", "-o", "whole/f.####.exr", "--quiet")
         self.farm("--engine", "slurm", "--chunks", "3", "--threads", "2", "--rate-from", "whole/timing.csv", "--then",
@@ -402,13 +417,12 @@ class Engines(Farm):
         (self.folder / "out").mkdir()
         broken = self.folder / "out/f.0001.exr"
         broken.mkdir()  # the first chunk fails, and the second one is held up
-        harm = Harm(self.folder, harness.PROGRAM, None)
         first = subprocess.Popen([harness.PROGRAM, "farm", "slow.toml", "--chunks", "2", "--processes", "2", "--threads", "1",
                                   "--retries", "0"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(first.kill)
         while not (self.folder / "out/run.4-6.json.lock").exists() and first.poll() is None:
             time.sleep(0.002)
-        held = harm.renderers()[2]
+        held = renderers(self.folder, harness.PROGRAM)[2]
         os.kill(held, signal.SIGSTOP)
         self.addCleanup(lambda: os.path.exists(f"/proc/{held}") and os.kill(held, signal.SIGKILL))
         while self.states().get("1") != "failed" and first.poll() is None:

@@ -43,6 +43,14 @@ class DamagedFiles(harness.CliTest):
         self.assertIn("zeros.csv:301: 4096 bytes of value zero", warnings)
         self.assertIn("damaged", self.accused("zeros.csv"))
 
+    def test_zeros_in_a_row_are_not_called_a_number(self):
+        lines = TABLE.splitlines(keepends=True)
+        for name, content in (("middle.csv", "".join(lines[:300]) + lines[300][:5] + "\0" * 40 + "".join(lines[301:])),
+                              ("end.csv", TABLE + "\0" * 4000)):
+            self.write(name, content)
+            line = 301 if name == "middle.csv" else 1 + len(lines)
+            self.assert_refused(["gaze", "inspect", name], [f"{name}:{line}: bytes of value zero", "copy the file again"])
+
     def test_a_log_of_one_row_is_no_good_log(self):
         self.write("one.csv", "t[ns],u[1],v[1]\n5,0.5,0.5\n")
         self.assertIn("one-row", self.accused("one.csv"))
@@ -75,9 +83,34 @@ class DamagedFiles(harness.CliTest):
         self.assert_refused(["gaze", "convert", "bare.csv", "-o", "no.csv", *more], ["group the digits", "without thousands separators"])
         self.write("point.tsv", "time\tx\ty\n" + "".join(f"{4 * i}\t{1000.5 + i:,.1f}\t540\n" for i in range(20)))
         self.assert_refused(["gaze", "convert", "point.tsv", "-o", "no.csv", *more], ["thousands separators", "'1,000.5' in column 'x'"])
+        for mark in ("'", ".", " ", "\u00a0", "\u2019", "\u202f"):
+            def spaced(value):
+                return f"{value:,}".replace(",", mark)
+
+            self.write("country.tsv", "time\tx\ty\n" + rows("\t", lambda v: spaced(v) + ",5"))
+            self.assert_refused(["gaze", "convert", "country.tsv", "-o", "no.csv", *more], ["thousands separators", "'1" + mark + "000,5'"])
+            self.write("country.tsv", "time\tx\ty\n" + rows("\t", spaced))
+            self.assert_refused(["gaze", "convert", "country.tsv", "-o", "no.csv", *more], ["thousands separators", "'1" + mark + "000'"])
+        # Points before three digits are fractions as well, with marks of missing values between them.
+        marks = ("-1", "0", "9999", "-9999")
+        self.write("points.tsv", "time\tx\ty\n" + "".join(
+            f"{4 * i}\t{marks[i // 20 % 4] if i % 20 == 0 else f'{900 + i / 1000:.3f}'}\t540\n" for i in range(600)))
+        self.assertEqual(len(self.convert("points.tsv", *more)[0]), 601)
         # Decimal commas are still understood, with three digits, too.
         self.write("comma.tsv", "time\tx\ty\n" + "".join(f"{4 * i}\t{f'{900 + i / 1000:.3f}'.replace('.', ',')}\t540\n" for i in range(600)))
         self.assertEqual(len(self.convert("comma.tsv", *more)[0]), 601)
+
+    def test_a_first_line_that_tells_spreadsheets_the_separator(self):
+        for separator in (";", ",", "\t"):
+            table = TABLE.replace(",", separator)
+            self.write("plain.csv", table)
+            self.write("sep.csv", f"sep={separator}\n" + table)
+            self.assertEqual(self.convert("sep.csv")[0], self.convert("plain.csv")[0])
+
+    def test_times_of_day_are_called_so(self):
+        for first in ("12:30:05.250", "2026-05-01T12:30:05.250Z"):
+            self.write("day.csv", "timestamp,x,y\n" + "".join(f"{first.replace('.250', f'.{i:03d}')},500,400\n" for i in range(20)))
+            self.assert_refused(["gaze", "inspect", "day.csv"], ["is a time of day", "write times as numbers", "--gaze-time-column"])
 
     def test_a_line_without_an_end_is_not_held_whole(self):
         with open(self.folder / "line.csv", "wb") as file:

@@ -146,7 +146,27 @@ class Study(harness.CliTest):
         # Events that are not to be relied on are said to be so on the page.
         self.run_ok("gaze", "synth", "-o", "noisy.csv", "--duration", "20s", "--noise", "0.5", "--rate", "300")
         self.run_ok("gaze", "report", "noisy.csv", "-o", "noisy.html")
-        self.assertIn("events by ivt: noise of ", (self.folder / "noisy.html").read_text())
+        page = (self.folder / "noisy.html").read_text()
+        self.assertIn("<li>events by ivt: noise of ", page)
+        self.assertIn("these events are not to be relied on; ", page)
+        self.assertNotIn("`", page)
+
+    def test_a_report_of_processed_gaze_and_its_durations(self):
+        self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "20s", "--noise", "0.05", "--rate", "60")
+        for steps in ([], ["--gaze-process", "median:samples=5"]):
+            self.run_ok("gaze", "report", "log.csv", "-o", "page.html", "--json", "page.json", "--parts", "parts", "--overwrite", *steps)
+            self.run_ok("gaze", "events", "log.csv", "-o", "events.tsv", "--overwrite", *steps)
+            self.assertEqual((self.folder / "parts" / "events.tsv").read_text(), (self.folder / "events.tsv").read_text())
+            rows = list(csv.DictReader((self.folder / "events.tsv").read_text().splitlines(), delimiter="\t"))
+            numbers = json.loads((self.folder / "page.json").read_text())
+            for movement in ("fixation", "saccade"):
+                durations = sorted(float(row["duration_ms"]) for row in rows if row["movement"] == movement)
+                self.assertGreater(durations[0], 0)
+                self.assertAlmostEqual(numbers["events"][movement]["duration_ms_median"], durations[len(durations) // 2 - (len(durations) % 2 == 0)],
+                                       places=2)
+            # The quality stays that of the recording.
+            self.assertAlmostEqual(numbers["quality"][0]["precision_rms_s2s"], 0.1, delta=0.015)
+        self.assertIn("median", "".join(numbers["warnings"]))
 
 
 if __name__ == "__main__":

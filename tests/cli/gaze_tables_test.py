@@ -86,6 +86,13 @@ class Tables(harness.CliTest):
         self.assertEqual(report["flags"], ["--gaze-missing-value -1"])
         mended = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--gaze-missing-value", "-1", "--json").stdout)
         self.assertEqual((mended["usable"], mended["flags"]), (380, []))
+        # Scattered, as at the tracker's edge, so that gaze jumps to the place again and again.
+        rows = "".join(f"{4 * i},{-1 if i % 7 == 3 else 900 + i % 300},540\n" for i in range(1400))
+        self.write("mark.csv", "time[ms],x[px],y[px]\n" + rows)
+        report = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--json").stdout)
+        self.assertEqual(report["flags"], ["--gaze-missing-value -1"])
+        mended = json.loads(self.run_ok("gaze", "inspect", "mark.csv", *more, "--gaze-missing-value", "-1", "--json").stdout)
+        self.assertEqual((mended["usable"], mended["flags"]), (1200, []))
 
 
 if __name__ == "__main__":

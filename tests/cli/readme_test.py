@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every command of README.md, of the manual (docs/) and of examples/README.md, top to bottom, as a reader would type it.
 
-A document's ```sh blocks run in one shell, in a folder of their own that holds examples/, scenes/ and gazelogs/, with the
+A document's ```sh blocks run in one shell, in a folder of their own that holds blender/, examples/, scenes/ and gazelogs/, with the
 program on the PATH as `gazetrace` and as build/release/bin/gazetrace. HTML comments right above a block say what is special:
 
   <!-- not run by the tests: REASON -->         the block is left out
@@ -76,7 +76,7 @@ class Documents(harness.CliTest):
     def setUp(self):
         super().setUp()
         (self.folder / "box.gltf").unlink()
-        for name in ("examples", "scenes", "gazelogs"):
+        for name in ("blender", "examples", "scenes", "gazelogs"):
             shutil.copytree(harness.SOURCE / name, self.folder / name, symlinks=True)
         for place in ("path", "build/release/bin"):
             wrapper = self.folder / place / "gazetrace"

@@ -27,6 +27,9 @@ SelectTypeParameters=CR_Core
 ReturnToService=2
 JobRequeue=1
 KillWait=30
+BatchStartTimeout=120
+MessageTimeout=60
+Epilog={folder}/epilog.sh
 MinJobAge=3600
 MpiDefault=none
 MailProg=/bin/true
@@ -51,10 +54,16 @@ def why_not():
     return "" if os.geteuid() == 0 else "the daemons need root"
 
 
-def free_port():
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        return taken.getsockname()[1]
+def free_ports(count):
+    """Different ones that nobody listens at."""
+    taken = [socket.socket() for _ in range(count)]
+    try:
+        for one in taken:
+            one.bind(("127.0.0.1", 0))
+        return [one.getsockname()[1] for one in taken]
+    finally:
+        for one in taken:
+            one.close()
 
 
 class Node:
@@ -80,12 +89,17 @@ class Node:
             (self.folder / name).mkdir(parents=True)
         with open("/proc/meminfo", encoding="ascii") as file:
             memory_mib = int(file.readline().split()[1]) // 1024 * 9 // 10
+        # Nodes clean up after a task, which is neither running nor waiting meanwhile. Here that takes as long as elsewhere.
+        epilog = self.folder / "epilog.sh"
+        epilog.write_text("#!/bin/sh\nsleep 3\n")
+        epilog.chmod(0o755)
+        port, node_port = free_ports(2)
         (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
-            host=self.host, folder=self.folder, port=free_port(), node_port=free_port(), cpus=self.cpus, memory=memory_mib))
+            host=self.host, folder=self.folder, port=port, node_port=node_port, cpus=self.cpus, memory=memory_mib))
         self.start_munge()
         self.start("slurmctld", "-D", "-f", self.folder / "slurm.conf")
         self.start("slurmd", "-D", "-f", self.folder / "slurm.conf", "-N", self.host)
-        self.wait_for(lambda: "idle" in self.run("sinfo", "-h", "-o", "%t"), 60, "the node is not idle")
+        self.wait_for(lambda: "idle" in self.run("sinfo", "-h", "-o", "%t"), 120, "the node is not idle")
 
     def start_munge(self):
         munge = self.folder / "munge"
@@ -121,9 +135,14 @@ class Node:
         return done.stdout + done.stderr
 
     def jobs(self):
-        """Number of each task in the queue -> state."""
-        lines = self.run("squeue", "-h", "-r", "-o", "%i %T %r").splitlines()
-        return {words[0]: words[1:] for words in (line.split() for line in lines)}
+        """Number of each task in the queue -> state. A controller that is busy is asked again."""
+        for _ in range(30):
+            told = subprocess.run(["squeue", "-h", "-r", "-o", "%i %T %r"], capture_output=True, text=True, env=self.environment,
+                                  check=False)
+            if told.returncode == 0:
+                return {words[0]: words[1:] for words in (line.split() for line in told.stdout.splitlines())}
+            time.sleep(2)
+        raise TimeoutError(f"squeue does not answer: {told.stderr}")
 
     def begin_soon(self):
         """A requeued task need not wait for its two minutes, but for three seconds: slurmd knows by the second when it

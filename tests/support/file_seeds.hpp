@@ -113,8 +113,9 @@ inline void add_pictures(std::vector<FileSeed>& files, const std::string& folder
     ExrSettings exr;
     exr.compression = compression;
     exr.pixels = compression[0] == 'z' ? ExrPixels::float32 : ExrPixels::half;
-    exr.aovs = compression[0] == 'p' ? aov_names() : std::vector<std::string>{};
-    std::erase(exr.aovs, "eccentricity");
+    if (compression[0] == 'p') {
+      exr.aovs = {"albedo", "normal", "depth", "samples", "variance"};
+    }
     const std::string path = folder + "/seed.exr";
     write_frame_exr(path, frame, nullptr, header(), exr, 1);
     files.push_back({"picture-exr", compression, gazetrace::read_file(path)});

@@ -63,7 +63,10 @@ inline std::string keep_pictures(const ImageRgb& picture, const ImageRgb& refere
     frame.variance = ImageGray(image.width_px, image.height_px);
     frame.radiance = std::move(image);
     const std::string path = (test_output_folder() / (name + "-" + what + ".exr")).string();
-    write_frame_exr(path, frame, nullptr, {}, {.pattern = path, .pixels = ExrPixels::float32, .aovs = {}});
+    ExrSettings settings;
+    settings.pattern = path;
+    settings.pixels = ExrPixels::float32;
+    write_frame_exr(path, frame, nullptr, {}, settings);
     text << "\n" << what << ": " << path;
   }
   return text.str();

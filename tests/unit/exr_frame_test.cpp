@@ -3,7 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfTimeCode.h>
+
+#include <bit>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "core/image_io.hpp"
@@ -59,6 +66,9 @@ ExrSettings settings(ExrPixels pixels, const std::string& compression, std::vect
   return result;
 }
 
+// What every frame can have.
+const std::vector<std::string> kOfFrames{"albedo", "normal", "depth", "samples", "variance", "eccentricity"};
+
 TEST(ExrFrame, FloatPixelsComeBackBitEqualFromEveryLosslessCompression) {
   const TemporaryFolder folder;
   const Frame frame = example_frame(67, 35);
@@ -108,25 +118,155 @@ TEST(ExrFrame, LayersKeepTheirTypes) {
   const Frame frame = example_frame(33, 17);
   ImageGray eccentricity(33, 17, 12.5F);
   const std::string path = folder / "layers.exr";
-  write_frame_exr(path, frame, &eccentricity, example_header(), settings(ExrPixels::half, "zip", aov_names()));
-  EXPECT_THAT(exr_channels(path),
-              testing::UnorderedElementsAre("R half", "G half", "B half", "albedo.R half", "albedo.G half",
-                                            "albedo.B half", "normal.X half", "normal.Y half", "normal.Z half",
-                                            "depth.Z float", "samples float", "variance float", "eccentricity float"));
+  write_frame_exr(path, frame, &eccentricity, example_header(), settings(ExrPixels::half, "zip", kOfFrames));
+  EXPECT_THAT(exr_channels(path), testing::UnorderedElementsAre(
+                                      "R half", "G half", "B half", "albedo.R half", "albedo.G half", "albedo.B half",
+                                      "normal.X half", "normal.Y half", "normal.Z half", "depth.Z float",
+                                      "samples.X float", "variance.X float", "eccentricity.X float"));
   EXPECT_EQ(exr_value(path, "albedo.B", 5, 5), 0.125F);
   EXPECT_EQ(exr_value(path, "normal.Y", 5, 5), -1.0F);
   EXPECT_EQ(exr_value(path, "depth.Z", 5, 5), 123456.789F);
   EXPECT_EQ(exr_value(path, "depth.Z", 32, 16), kInf);
-  EXPECT_EQ(exr_value(path, "samples", 0, 0), 0.75F);
-  EXPECT_EQ(exr_value(path, "variance", 0, 0), 1e-30F);
-  EXPECT_EQ(exr_value(path, "eccentricity", 32, 0), 12.5F);
+  EXPECT_EQ(exr_value(path, "samples.X", 0, 0), 0.75F);
+  EXPECT_EQ(exr_value(path, "variance.X", 0, 0), 1e-30F);
+  EXPECT_EQ(exr_value(path, "eccentricity.X", 32, 0), 12.5F);
+}
+
+// A frame of 5 x 3 pixels with every layer.
+FrameLayers example_layers(int ranks) {
+  FrameLayers layers;
+  auto tables = std::make_shared<std::vector<MatteTable>>();
+  for (const std::string& name : cryptomatte_layers()) {
+    tables->push_back({name, {}, R"({"floor":"7819c83c"})"});
+    Coverage& coverage = layers.mattes.emplace_back();
+    for (int rank = 0; rank < ranks; ++rank) {
+      coverage.id.emplace_back(5, 3, std::bit_cast<float>(0x7819c83cU + static_cast<std::uint32_t>(rank)));
+      coverage.share.emplace_back(5, 3, 0.5F / static_cast<float>(1 + rank));
+    }
+  }
+  layers.tables = std::move(tables);
+  layers.motion.forward_px = Image<Vec2f>(5, 3, {1.5F, -2});
+  layers.motion.backward_px = Image<Vec2f>(5, 3, {-1.5F, 2});
+  layers.motion.position_m = ImageRgb(5, 3, {1, 2, 3});
+  for (std::size_t group = 0; group < kLightGroups; ++group) {
+    layers.light.emplace_back(5, 3, Vec3f{static_cast<float>(group), 1, 1});
+  }
+  return layers;
+}
+
+TEST(ExrFrame, EveryLayerHasAGroupOfItsOwn) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "all.exr";
+  write_frame_exr(path, example_frame(5, 3), nullptr, example_header(), settings(ExrPixels::half, "zip", aov_names()),
+                  1, example_layers(6));
+  const std::vector<std::string> channels = exr_channels(path);
+  EXPECT_EQ(channels.size(), 3U + 3 + 3 + 1 + 6 * 3 + 3 + 2 + 2 + 3 * 12 + 3);
+  for (const std::string& channel : channels) {
+    const bool is_picture = channel.starts_with("R ") || channel.starts_with("G ") || channel.starts_with("B ");
+    EXPECT_EQ(channel.find('.') == std::string::npos, is_picture) << channel;
+  }
+  EXPECT_EQ(exr_value(path, "forward.u", 4, 2), 1.5F);
+  EXPECT_EQ(exr_value(path, "forward.v", 4, 2), -2);
+  EXPECT_EQ(exr_value(path, "backward.u", 0, 0), -1.5F);
+  EXPECT_EQ(exr_value(path, "position.Z", 0, 0), 3);
+  EXPECT_EQ(exr_value(path, "specular_indirect.R", 0, 0), 3);
+  EXPECT_EQ(exr_value(path, "background.R", 0, 0), 5);
+  // Rank 3 is the second one of the second layer.
+  EXPECT_EQ(std::bit_cast<std::uint32_t>(exr_value(path, "crypto_material01.B", 4, 2)), 0x7819c83fU);
+  EXPECT_EQ(exr_value(path, "crypto_material01.A", 4, 2), 0.125F);
+  EXPECT_EQ(exr_attributes(path).at("cryptomatte/f834d0a/manifest"), R"({"floor":"7819c83c"})");
+  EXPECT_EQ(exr_attributes(path).at("cryptomatte/f834d0a/conversion"), "uint32_to_float32");
+}
+
+TEST(ExrFrame, EveryLayerIsAPartWhereThatIsAskedFor) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "parts.exr";
+  ExrSettings parts = settings(ExrPixels::half, "dwaa", {"albedo", "crypto_object", "depth"});
+  parts.parts = ExrParts::multi;
+  const Frame frame = example_frame(5, 3);
+  write_frame_exr(path, frame, nullptr, example_header(), parts, 2, example_layers(2));
+  const Imf::MultiPartInputFile file(path.c_str(), 0);
+  ASSERT_EQ(file.parts(), 4);
+  const std::array<const char*, 4> names{"beauty", "albedo", "crypto_object", "depth"};
+  const std::array<Imf::Compression, 4> packed{Imf::DWAA_COMPRESSION, Imf::DWAA_COMPRESSION, Imf::ZIP_COMPRESSION,
+                                               Imf::ZIP_COMPRESSION};
+  for (int part = 0; part < 4; ++part) {
+    EXPECT_EQ(file.header(part).name(), names.at(static_cast<std::size_t>(part)));
+    EXPECT_EQ(file.header(part).compression(), packed.at(static_cast<std::size_t>(part)));
+    EXPECT_TRUE(Imf::hasTimeCode(file.header(part)));
+  }
+  EXPECT_NE(file.header(2).channels().findChannel("crypto_object00.A"), nullptr);
+  EXPECT_NE(file.header(2).findTypedAttribute<Imf::StringAttribute>("cryptomatte/f834d0a/name"), nullptr);
+  EXPECT_NEAR(read_exr_rgb(path)(3, 1).y, 1 / 3.0F, 0.01F);
+  EXPECT_EQ(read_settings_digest(path), example_header().settings_digest);
+  // A file that was cut behind its first part is not finished.
+  const auto whole = std::filesystem::file_size(path);
+  std::filesystem::resize_file(path, whole - 8);
+  EXPECT_EQ(read_settings_digest(path), "");
+}
+
+TEST(ExrFrame, TheSkyHasTheDepthThatIsAskedFor) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "depth.exr";
+  ExrSettings depth = settings(ExrPixels::half, "zip", {"depth"});
+  const Frame frame = example_frame(5, 3);
+  write_frame_exr(path, frame, nullptr, example_header(), depth);
+  EXPECT_EQ(exr_value(path, "depth.Z", 4, 2), kInf);
+  EXPECT_EQ(exr_attributes(path).at("gazetrace:sky_depth_m"), "inf");
+  depth.sky_depth_m = 10000;
+  write_frame_exr(path, frame, nullptr, example_header(), depth);
+  EXPECT_EQ(exr_value(path, "depth.Z", 4, 2), 10000);
+  EXPECT_EQ(exr_value(path, "depth.Z", 0, 0), 123456.789F);
+  EXPECT_EQ(exr_attributes(path).at("gazetrace:sky_depth_m"), "10000");
+}
+
+// By SMPTE 12M: hours, minutes, seconds and frames; from 31 frames a second on, pairs of frames.
+TEST(ExrFrame, TheTimeCodeCountsFrames) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "time.exr";
+  const auto code = [&](FrameRate fps, std::int32_t frame) -> std::string {
+    FrameHeader header = example_header();
+    header.fps = fps;
+    header.frame = frame;
+    write_frame_exr(path, example_frame(4, 2), nullptr, header, settings(ExrPixels::half, "zip"));
+    const Imf::InputFile file(path.c_str(), 0);
+    if (!Imf::hasTimeCode(file.header())) {
+      return "none";
+    }
+    const Imf::TimeCode& t = Imf::timeCode(file.header());
+    return fmt::format("{:02}:{:02}:{:02}:{:02}{}", t.hours(), t.minutes(), t.seconds(), t.frame(),
+                       t.fieldPhase() ? "+" : "");
+  };
+  EXPECT_EQ(code({24, 1}, 1), "00:00:00:00");
+  EXPECT_EQ(code({24, 1}, 25), "00:00:01:00");
+  EXPECT_EQ(code({24, 1}, 24 * 3600 * 25 + 24 * 61 + 24), "01:01:01:23");
+  EXPECT_EQ(code({30000, 1001}, 31), "00:00:01:00");
+  EXPECT_EQ(code({60, 1}, 60), "00:00:00:29+");
+  EXPECT_EQ(code({50, 1}, 53), "00:00:01:01");
+  EXPECT_EQ(code({120, 1}, 53), "none");
+}
+
+TEST(ExrFrame, GazeIsInTheHeaderAsNumbers) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "gaze.exr";
+  FrameHeader header = example_header();
+  header.gaze = {0.25, 0.75, 1};
+  write_frame_exr(path, example_frame(4, 2), nullptr, header, settings(ExrPixels::half, "zip"));
+  const Imf::InputFile file(path.c_str(), 0);
+  EXPECT_EQ(file.header().typedAttribute<Imf::FloatAttribute>("gaze.u").value(), 0.25F);
+  EXPECT_EQ(file.header().typedAttribute<Imf::FloatAttribute>("gaze.v").value(), 0.75F);
+  EXPECT_EQ(file.header().typedAttribute<Imf::IntAttribute>("gaze.valid").value(), 1);
+  write_frame_exr(path, example_frame(4, 2), nullptr, example_header(), settings(ExrPixels::half, "zip"));
+  const Imf::InputFile without(path.c_str(), 0);
+  EXPECT_TRUE(std::isnan(without.header().typedAttribute<Imf::FloatAttribute>("gaze.u").value()));
+  EXPECT_EQ(without.header().typedAttribute<Imf::IntAttribute>("gaze.valid").value(), 0);
 }
 
 TEST(ExrFrame, MissingLayersAreNamed) {
   const TemporaryFolder folder;
   Frame frame = example_frame(4, 4);
   frame.albedo = {};
-  for (const char* aov : {"albedo", "colour"}) {
+  for (const char* aov : {"albedo", "colour", "forward", "position", "crypto_asset", "emission"}) {
     try {
       write_frame_exr(folder / "a.exr", frame, nullptr, example_header(), settings(ExrPixels::half, "zip", {aov}));
       FAIL() << aov;
@@ -142,7 +282,7 @@ TEST(ExrFrame, AFrameWithoutGazeKeepsTheChannel) {
   const std::string path = folder / "a.exr";
   write_frame_exr(path, example_frame(4, 4), nullptr, example_header(),
                   settings(ExrPixels::half, "zip", {"eccentricity"}));
-  EXPECT_TRUE(std::isnan(exr_value(path, "eccentricity", 3, 3)));
+  EXPECT_TRUE(std::isnan(exr_value(path, "eccentricity.X", 3, 3)));
 }
 
 TEST(ExrFrame, TheHeaderSaysHowItWasMade) {

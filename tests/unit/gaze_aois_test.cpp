@@ -86,9 +86,11 @@ TEST(GazeAois, VisitsDwellsAndTransitions) {
   GazeLog log;
   log.samples.resize(2);
   log.samples[0].t_ns = 100'000'000;
+  log.samples[1].t_ns = 110'000'000;
   const std::vector<Aoi> areas{{"left", AoiShape::rectangle, {{0, 0}, {0.3, 1}}, "", ""},
                                {"right", AoiShape::rectangle, {{0.7, 0}, {1, 1}}, "", ""}};
   EyeEvents events;
+  // A step of the clock is 10 ms, so that each fixation lasts that much longer than from its first sample to its last.
   // left, left, none, right, left: the pause between the first two belongs to the visit.
   events.events = {fixation(0.1, 200, 400), fixation(0.2, 450, 550), fixation(0.5, 600, 700), fixation(0.9, 750, 1050),
                    fixation(0.2, 1100, 1200)};
@@ -96,12 +98,12 @@ TEST(GazeAois, VisitsDwellsAndTransitions) {
   const AoiFigures& left = found.figures[0];
   EXPECT_EQ(left.fixations, 3U);
   EXPECT_EQ(left.visits, 2U);
-  EXPECT_DOUBLE_EQ(left.fixation_ms, 400);
-  EXPECT_DOUBLE_EQ(left.dwell_ms, 450);
+  EXPECT_DOUBLE_EQ(left.fixation_ms, 430);
+  EXPECT_DOUBLE_EQ(left.dwell_ms, 470);
   EXPECT_DOUBLE_EQ(left.first_fixation_at_ms, 100);
-  EXPECT_DOUBLE_EQ(left.first_fixation_ms, 200);
-  EXPECT_DOUBLE_EQ(found.figures[1].dwell_ms, 300);
-  EXPECT_DOUBLE_EQ(found.figures[2].fixation_ms, 100);
+  EXPECT_DOUBLE_EQ(left.first_fixation_ms, 210);
+  EXPECT_DOUBLE_EQ(found.figures[1].dwell_ms, 310);
+  EXPECT_DOUBLE_EQ(found.figures[2].fixation_ms, 110);
   EXPECT_EQ(found.transitions[0], (std::vector<std::size_t>{0, 0, 1}));
   EXPECT_EQ(found.transitions[1], (std::vector<std::size_t>{1, 0, 0}));
   EXPECT_EQ(found.transitions[2], (std::vector<std::size_t>{0, 1, 0}));

@@ -123,7 +123,11 @@ TEST(GazeErrors, Rows) {
        "cut.csv:4: the row has 1 of the 5 cells that reach to column 'eye'; it is short or cut off; remove or mend it"},
       {"timeless.csv", header + ",.5,.5,1,left\n",
        "timeless.csv:3: this row has no time; remove the row, or give it a time"},
-      {"clock.csv", header + "12:30,.5,.5,1,left\n", "clock.csv:3: time '12:30' is not a number" + mend},
+      {"clock.csv", header + "12:30,.5,.5,1,left\n",
+       "clock.csv:3: time '12:30' is a time of day; write times as numbers, such as milliseconds from the beginning, "
+       "or "
+       "name the column of the tracker's own clock with `gaze-time-column`"},
+      {"word.csv", header + "noon,.5,.5,1,left\n", "word.csv:3: time 'noon' is not a number" + mend},
       {"overflow.csv", header + "9223372036.854775808,.5,.5,1,left\n",
        "overflow.csv:3: time '9223372036.854775808' in s does not fit int64 nanoseconds; check the unit of the time "
        "column"},

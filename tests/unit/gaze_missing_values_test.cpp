@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "gazetrace/gaze_inspect.hpp"
@@ -127,12 +128,17 @@ TEST_F(GazeMissingValues, TheDoctorNamesAMarkBesideTheDisplay) {
   EXPECT_EQ(found->setting, "`gaze-missing-value` -1");
   EXPECT_THAT(found->what, HasSubstr("100 of 1000 rows are exactly at (-1, -1)"));
   EXPECT_THAT(report.verdict, HasSubstr("`gaze-missing-value` -1 mends it"));
-  // Two different numbers no option takes; they are told all the same.
-  for (const auto& [cells, place] : {std::pair("-9999,-1", "(-9999, -1)"), std::pair("-1,500", "(-1, 500)")}) {
-    const GazeInspection unequal = inspect("b.csv", with_marks(cells), full_hd());
+  // One axis is enough, where no place on the display has this number.
+  for (const auto& [cells, place, mark] :
+       {std::tuple("-9999,-1", "(-9999, -1)", -9999), std::tuple("-1,500", "(-1, 500)", -1)}) {
+    const std::string text = with_marks(cells);
+    const GazeInspection unequal = inspect("b.csv", text, full_hd());
     ASSERT_NE(finding(unequal, "missing-value"), nullptr) << cells;
-    EXPECT_EQ(finding(unequal, "missing-value")->setting, "");
+    EXPECT_EQ(finding(unequal, "missing-value")->setting, fmt::format("`gaze-missing-value` {}", mark));
     EXPECT_THAT(finding(unequal, "missing-value")->what, HasSubstr(place));
+    GazeReadOptions options = full_hd();
+    options.missing_value = mark;
+    EXPECT_EQ(lost_rows(read("b.csv", text, options)), 100) << cells;
   }
   // Of two the one with more rows.
   const GazeInspection two = inspect("c.csv", with_marks("-1,-1", "-9,-9"), full_hd());

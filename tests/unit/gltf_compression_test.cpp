@@ -8,10 +8,16 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <set>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "gazetrace/scene.hpp"
+#include "scene/gltf/draco_claims.hpp"
 #include "support/gltf_builder.hpp"
 
 namespace gazetrace {
@@ -303,7 +309,7 @@ int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, int co
   return id;
 }
 
-DracoStream encode_draco(const Source& source, int method) {
+DracoStream encode_draco(const Source& source, int method, bool with_metadata = false) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(source.positions.size()));
   for (std::size_t i = 0; i < source.indices.size(); i += 3) {
@@ -313,6 +319,17 @@ DracoStream encode_draco(const Source& source, int method) {
   const int position = add_attribute(mesh, draco::GeometryAttribute::POSITION, 3, source.positions);
   const int normal = add_attribute(mesh, draco::GeometryAttribute::NORMAL, 3, source.normals);
   const int uv = add_attribute(mesh, draco::GeometryAttribute::TEX_COORD, 2, source.uvs);
+  if (with_metadata) {
+    auto metadata = std::make_unique<draco::GeometryMetadata>();
+    auto inner = std::make_unique<draco::Metadata>();
+    inner->AddEntryString("exporter", std::string(200, 'x'));
+    metadata->AddSubMetadata("inner", std::move(inner));
+    metadata->AddEntryInt("version", 3);
+    mesh.AddMetadata(std::move(metadata));
+    auto of_normals = std::make_unique<draco::AttributeMetadata>();
+    of_normals->AddEntryString("name", "normals");
+    mesh.AddAttributeMetadata(normal, std::move(of_normals));
+  }
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(method);
   encoder.SetAttributeQuantization(position, kPositionBits);
@@ -420,6 +437,45 @@ TEST(Draco, RefusesDamagedStreamsWithOneLine) {
       }
     }
     EXPECT_GT(refused, 20);
+  }
+}
+
+// What the library encoded is told by its first bytes, so that the check reads what the decoder will read.
+TEST(Draco, ClaimsAreThoseOfTheStream) {
+  const Source source = sheet(9);
+  for (const int method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
+    for (const bool with_metadata : {false, true}) {
+      const DracoStream stream = encode_draco(source, method, with_metadata);
+      const auto claims = draco_claims(stream.bytes);
+      ASSERT_TRUE(claims);
+      EXPECT_EQ(claims->faces, source.indices.size() / 3);
+      EXPECT_EQ(claims->vertices, source.positions.size());
+      for (std::size_t length = 0; length < 13; ++length) {
+        EXPECT_FALSE(draco_claims(std::span(stream.bytes).first(length)));
+      }
+    }
+  }
+}
+
+// Thirty bytes that ask for gigabytes.
+TEST(Draco, RefusesClaimsBeforeTheyAreBelieved) {
+  const test::TempFolder folder;
+  const Source source = sheet(9);
+  for (const int method : {draco::MESH_EDGEBREAKER_ENCODING, draco::MESH_SEQUENTIAL_ENCODING}) {
+    DracoStream stream = encode_draco(source, method);
+    Bytes bomb(stream.bytes.begin(), stream.bytes.begin() + 11);
+    if (method == draco::MESH_EDGEBREAKER_ENCODING) {
+      bomb.push_back(0);
+    }
+    for (int i = 0; i < 2; ++i) {
+      for (const std::uint8_t byte : std::array<std::uint8_t, 4>{0x80, 0xC2, 0xD7, 0x2F}) {  // 100,000,000
+        bomb.push_back(byte);
+      }
+    }
+    bomb.resize(64, 1);
+    stream.bytes = bomb;
+    EXPECT_THAT(error_of(folder.write("bomb.glb", draco_file(source, stream).glb())),
+                HasSubstr("claim 100000000 triangles of 100000000 vertices; the accessors have 81 vertices"));
   }
 }
 

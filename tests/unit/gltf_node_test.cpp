@@ -61,6 +61,38 @@ TEST(Nodes, DeepHierarchiesAreFollowedInDouble) {
   EXPECT_NEAR(scene.instances[0].to_world.t.x, 1e7 + 0.001 * (kDepth - 1), 1e-4);
 }
 
+std::vector<std::string> assets_of(const Scene& scene) {
+  std::vector<std::string> assets;
+  for (const Instance& instance : scene.instances) {
+    assets.push_back(instance.node + " of " + instance.asset);
+  }
+  return assets;
+}
+
+TEST(Nodes, AssetsAreTheOutermostNodes) {
+  GltfBuilder builder;
+  const int mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", builder.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}}}});
+  builder.add_node({{"name", "table"}, {"children", {1}}});
+  builder.add_node({{"name", "frame"}, {"mesh", mesh}, {"children", {2}}}, false);
+  builder.add_node({{"mesh", mesh}}, false);
+  builder.add_node({{"name", "lamp"}, {"mesh", mesh}});
+  EXPECT_THAT(assets_of(load(builder)),
+              ::testing::UnorderedElementsAre("frame of table", "#2 of table", "lamp of lamp"));
+}
+
+TEST(Nodes, ANodeAroundEverythingIsNoAsset) {
+  GltfBuilder builder;
+  const int mesh =
+      builder.add_mesh({{"attributes", {{"POSITION", builder.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}}}});
+  builder.add_node({{"name", "Root"}, {"children", {1}}});
+  builder.add_node({{"name", "RootNode"}, {"children", {2, 3}}}, false);
+  builder.add_node({{"name", "cup"}, {"children", {4}}}, false);
+  builder.add_node({{"name", "plate"}, {"mesh", mesh}}, false);
+  builder.add_node({{"name", "handle"}, {"mesh", mesh}}, false);
+  EXPECT_THAT(assets_of(load(builder)), ::testing::UnorderedElementsAre("handle of cup", "plate of plate"));
+}
+
 TEST(Nodes, InstancesWithoutAnInverseAreLeftOutWithOneWarning) {
   GltfBuilder builder;
   const int mesh = builder.add_triangle();

@@ -91,6 +91,20 @@ TEST(SequenceName, SettingsAreCheckedBeforeTheFirstRay) {
   refused([](OutputSettings& s) { s.exr.pattern = "a.exr"; }, "same file");
   refused([](OutputSettings& s) { s.exr.compression = "pizz"; }, "did you mean 'piz'");
   refused([](OutputSettings& s) { s.exr.aovs = {"albdo"}; }, "did you mean 'albedo'");
+  refused([](OutputSettings& s) { s.exr.aovs = {"depth", "depth"}; }, "named twice");
+  refused([](OutputSettings& s) { s.exr.crypto_ranks = 5; }, "even number");
+  refused([](OutputSettings& s) { s.exr.sky_depth_m = -1; }, "no depth");
+  for (const char* lossy : {"pxr24", "b44", "b44a", "dwaa", "dwab"}) {
+    const auto mattes = [&](OutputSettings& s) {
+      s.exr.aovs = {"crypto_material"};
+      s.exr.compression = lossy;
+    };
+    refused(mattes, "identifiers");
+    OutputSettings parts = good;
+    mattes(parts);
+    parts.exr.parts = ExrParts::multi;
+    EXPECT_NO_THROW(check_output_settings(parts, true));
+  }
   refused([](OutputSettings& s) { s.map_pattern = "map.####"; }, "must end in .exr");
   refused([](OutputSettings& s) { s.display.pattern = "a.####.gif"; }, ".png, .jpg");
   refused([](OutputSettings& s) { s.display.pattern = "a_####"; }, "needs a suffix");

@@ -32,11 +32,18 @@ std::string batch_script(const FarmPlan& plan) {
 }
 
 // Chunks of an earlier handing over that are in the queue or run are left to it, and what follows waits for them, too.
-// `jobs` remembers which jobs there were, "chunks 17"; what followed the earlier chunks is canceled.
-constexpr const char* kBesideEarlier = R"(
+// `jobs` remembers which jobs there were, "chunks 17"; what followed the earlier chunks is canceled. While a node
+// cleans up after a task (epilog, slow ends), nobody can see whether that task goes back into the queue or is gone, so
+// this is waited for.
+constexpr const char* kBesideEarlier = R"sh(
 queued=
+waited=0
 known() { sed -n "s/^$1 //p" jobs 2>/dev/null; }
 for job in $(known chunks); do
+  while [ "$waited" -lt 300 ] && [ -n "$(squeue -h -r -j "$job" -t CG -o %K 2>/dev/null)" ]; do
+    sleep 1
+    waited=$((waited + 1))
+  done
   for task in $(squeue -h -r -j "$job" -t PD,R,S,CF -o %K 2>/dev/null); do
     queued="$queued ${job}_$task"
   done
@@ -67,7 +74,7 @@ submit() {
   echo "$1: $job"
   after=":$job"
 }
-)";
+)sh";
 
 std::string submit_script(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
   std::string numbers;
@@ -101,11 +108,15 @@ std::string again(const FarmPlan& plan) {
   slurm_task=${{SLURM_ARRAY_TASK_ID:+${{SLURM_ARRAY_JOB_ID}}_}}${{SLURM_ARRAY_TASK_ID:-${{SLURM_JOB_ID:-}}}}
   if [ -n "$slurm_task" ] && [ "$tries" -lt {} ]; then
     echo $((tries + 1)) > "$tasks/$1.tries"
-    if scontrol requeue "$slurm_task"; then
-      trap 'exit 4' TERM
-      sleep 60 &
-      wait  # Slurm ends this attempt
-    fi
+    for _ in 1 2 3; do  # a controller that is busy may refuse it once
+      if scontrol requeue "$slurm_task"; then
+        trap 'exit 4' TERM
+        sleep 300 &
+        wait  # Slurm ends this attempt
+        break
+      fi
+      sleep 5
+    done
   fi
 )",
       plan.retries);

@@ -326,4 +326,23 @@ std::vector<std::string> better_event_methods(const GazeLog& log, const EyeEvent
   return better;
 }
 
+// The method itself never changes, since the participants of a study must stay comparable.
+std::vector<std::string> doubts_in_words(const std::vector<EventDoubt>& found, const EyeEvents& events,
+                                         const GazeLog& log) {
+  std::vector<std::string> lines;
+  for (const EventDoubt& doubt : found) {
+    lines.push_back(fmt::format("{}: events by {}: {}", log.source, events.preset, doubt.what));
+  }
+  if (!found.empty()) {
+    const std::vector<std::string> better = better_event_methods(log, events);
+    lines.push_back(fmt::format(
+        "{}: these events are not to be relied on; {}", log.source,
+        better.empty()
+            ? "no method and no single step of processing here suits this log: use the tracker's own events "
+              "(`method` log), or record with less noise"
+            : fmt::format("without such doubts: {}; choose one for all participants", fmt::join(better, ", "))));
+  }
+  return lines;
+}
+
 }  // namespace gazetrace

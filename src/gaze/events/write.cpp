@@ -10,6 +10,7 @@
 
 #include "gaze/angles.hpp"
 #include "gazetrace/gaze_event_check.hpp"
+#include "gazetrace/gaze_event_durations.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
@@ -48,13 +49,6 @@ std::vector<Column> measures(const EyeEvents& events) {
 // n samples last n steps of the clock, so that an event of one sample does not last 0 ms.
 std::int64_t measured_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
   return event.end_ns - event.begin_ns + step_ns;
-}
-
-// What a tracker says, where it says so; else the time from begin to end.
-std::int64_t stated_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
-  return !event.stated               ? measured_duration_ns(event, step_ns)
-         : event.stated->duration_ns ? *event.stated->duration_ns
-                                     : event.stated->end_ns - event.stated->begin_ns;
 }
 
 // Milliseconds to the microsecond, without zeros at the end.
@@ -96,10 +90,21 @@ Json number(double value) {
 
 }  // namespace
 
+// What a tracker says, where it says so; else the time from begin to end.
+std::int64_t event_duration_ns(const EyeEvent& event, std::int64_t step_ns) {
+  return !event.stated               ? measured_duration_ns(event, step_ns)
+         : event.stated->duration_ns ? *event.stated->duration_ns
+                                     : event.stated->end_ns - event.stated->begin_ns;
+}
+
+std::int64_t event_step_ns(const GazeLog& log) {
+  return median_step_ns(times_of(log));
+}
+
 std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
   const bool are_stated = events.preset == kStatedByLog;
   const std::vector<Column> columns = measures(events);
-  const std::int64_t step_ns = median_step_ns(times_of(log));
+  const std::int64_t step_ns = event_step_ns(log);
   std::string text = "movement\tonset_ns\toffset_ns\tduration_ms\tfirst_row\tlast_row";
   text += are_stated ? "\tamplitude_deg\tpeak_velocity_deg_s\tmeasured_duration_ms" : "";
   for (const Column& column : columns) {
@@ -108,7 +113,7 @@ std::string events_as_tsv(const EyeEvents& events, const GazeLog& log) {
   text += "\tdx\tdy\tdz\n";
   for (const EyeEvent& event : events.events) {
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", to_string(event.movement), onset_ns(event),
-                   offset_ns(event), milliseconds(stated_duration_ns(event, step_ns)), row_of(log, event.first),
+                   offset_ns(event), milliseconds(event_duration_ns(event, step_ns)), row_of(log, event.first),
                    row_of(log, event.last));
     if (are_stated) {
       append_number(text, stated_amplitude_deg(event));
@@ -132,13 +137,13 @@ Json events_json(const EyeEvents& events, const GazeLog& log) {
   const EventSettings& s = events.settings;
   const bool are_stated = events.preset == kStatedByLog;
   const std::vector<Column> columns = measures(events);
-  const std::int64_t step_ns = median_step_ns(times_of(log));
+  const std::int64_t step_ns = event_step_ns(log);
   Json list = Json::array();
   for (const EyeEvent& event : events.events) {
     Json item{{"movement", to_string(event.movement)},
               {"onset_ns", onset_ns(event)},
               {"offset_ns", offset_ns(event)},
-              {"duration_ms", std::stod(milliseconds(stated_duration_ns(event, step_ns)))},
+              {"duration_ms", std::stod(milliseconds(event_duration_ns(event, step_ns)))},
               {"first_row", row_of(log, event.first)},
               {"last_row", row_of(log, event.last)}};
     if (are_stated) {

@@ -265,13 +265,20 @@ class Doctor {
     const std::string where = is_vector && x == 0 ? "straight ahead"
                               : is_vector         ? fmt::format("at ({0}, {0}, {0})", x)
                                                   : fmt::format("at ({}, {})", x, y);
-    const bool option_takes_it = x == y && x != 0;
+    // The option takes a value that both axes have, or a whole negative one of one axis, as trackers write it that
+    // lose one axis alone.
+    const auto is_mark = [&](double value) {
+      return value < 0 && value == std::floor(value) && !is_vector &&
+             log_.conventions.origin.value != PositionOrigin::center;
+    };
+    const double mark = x == y || is_mark(x) ? x : is_mark(y) ? y : 0;
+    const bool option_takes_it = mark != 0;
     add(FindingKind::suspicion, "missing-value",
         fmt::format("{} of {} rows are exactly {} and count as good: a mark of missing values", place->rows,
                     log_.order.rows, where),
         "statistics: gaze comes to this place again and again, and by jumps" +
-            (option_takes_it ? read_otherwise([&](Conventions& c) { c.missing_value = x; }) : ""),
-        option_takes_it ? fmt::format("`gaze-missing-value` {}", x) : "");
+            (option_takes_it ? read_otherwise([&](Conventions& c) { c.missing_value = mark; }) : ""),
+        option_takes_it ? fmt::format("`gaze-missing-value` {}", mark) : "");
   }
 
   // Trackers that lose one axis alone write their mark, a whole negative number, into that one.
@@ -471,10 +478,14 @@ class Doctor {
     if (faults == 0) {
       report_.verdict = "nothing suspicious was found" + untested_axes();
     } else if (report_.settings.empty()) {
-      report_.verdict = "suspicious, and no option mends it";
+      report_.verdict =
+          "suspicious, and no option mends it: read above what each suspicion is from, then export or copy the file "
+          "again, or use the log knowing what is wrong";
     } else {
       report_.verdict = fmt::format("{}{}", fmt::join(report_.settings, " "),
-                                    helpless > 0 ? " mends a part of it; the rest no option mends" : " mends it");
+                                    helpless > 0 ? " mends a part of it; no option mends the rest: export or copy the "
+                                                   "file again, or use the log knowing what is wrong"
+                                                 : " mends it");
     }
   }
 

@@ -59,6 +59,14 @@ JobIdleRule without_reprojection() {
           }};
 }
 
+JobIdleRule without_aov(const std::string& name) {
+  return {fmt::format("without `aov` {}{}", name, name.ends_with('_') ? "object, _material or _asset" : ""),
+          [name](const JobSettings& job) {
+            return std::none_of(job.exr.aovs.begin(), job.exr.aovs.end(),
+                                [&](const std::string& aov) { return aov.starts_with(name); });
+          }};
+}
+
 JobIdleRule without_automatic_exposure() {
   return {"without `exposure` auto",
           [](const JobSettings& job) { return job.exposure.mode != ExposureMode::log_average; }};

@@ -24,6 +24,8 @@ JobIdleRule without_regions();
 JobIdleRule without_reproject();
 JobIdleRule without_two_sided();
 JobIdleRule without_reprojection();  // neither reproject nor two-sided
+// No AOV whose name begins so is asked for.
+JobIdleRule without_aov(const std::string& name);
 JobIdleRule without_automatic_exposure();
 // With any fall-off except these.
 JobIdleRule with_other_falloffs(const std::vector<std::string>& models);

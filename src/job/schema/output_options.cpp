@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 
 namespace gazetrace {
@@ -24,6 +25,28 @@ void add_exr_options(JobSchema& schema) {
       .value("--aov", exr(&ExrSettings::aovs), "NAME,NAME", Touch::output,
              "Further channels of the .exr ('gazetrace list aovs')")
       .with(Trait::one_run);
+  schema
+      .value("--exr-parts", exr(&ExrSettings::parts), choices<ExrParts>(), Touch::output,
+             "All channels of the .exr in one part, or each layer in a part of its own")
+      .with(Trait::one_run);
+  schema
+      .value("--sky-depth", exr(&ExrSettings::sky_depth_m), "METRES", Touch::output,
+             "Depth of pixels that see nothing, for programs that cannot take infinite ones")
+      .within(0, 1e9)
+      .with(Trait::one_run)
+      .idle_when({without_aov("depth")});
+  schema
+      .value("--crypto-ranks", exr(&ExrSettings::crypto_ranks), "N", Touch::output,
+             "How many names Cryptomatte layers keep for a pixel: an even number, two to a layer")
+      .within(2, 16)
+      .with(Trait::one_run)
+      .idle_when({without_aov("crypto_")});
+  schema
+      .value("--crypto-samples", exr(&ExrSettings::crypto_rays), "N", Touch::output,
+             "First hits in each pixel that Cryptomatte's coverage is counted from, the same in all pixels")
+      .within(1, 1024)
+      .with(Trait::one_run)
+      .idle_when({without_aov("crypto_")});
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // KHR_draco_mesh_compression with the Draco library, which only this file uses.
 #include <draco/compression/decode.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/compression.hpp"
 #include "scene/gltf/document.hpp"
+#include "scene/gltf/draco_claims.hpp"
 #include "scene/parallel_errors.hpp"
 
 namespace gazetrace {
@@ -134,6 +136,27 @@ Plain unpack_indices(const draco::Mesh& mesh) {
   return plain;
 }
 
+// The memory of a scene is reckoned by its accessors, so a stream must not ask for much more than they have. That it
+// has exactly as much is looked at once it is decoded; here, what a stream counts otherwise than accessors do, such as
+// vertices at seams, has room.
+void check_claims(const GltfDocument& document, const GltfPrimitive& primitive, std::span<const std::uint8_t> bytes,
+                  const std::string& place) {
+  constexpr std::uint64_t kRoom = 16;
+  const auto claims = draco_claims(bytes);
+  if (!claims) {
+    fail(place, "the compressed bytes are no Draco mesh");
+  }
+  const auto positions = primitive.attributes.find("POSITION");
+  const std::uint64_t vertices = positions == primitive.attributes.end()
+                                     ? 0
+                                     : document.accessors[static_cast<std::size_t>(positions->second)].count;
+  if (std::max(claims->vertices, claims->faces) > kRoom * vertices) {
+    fail(place, "the compressed bytes claim " + std::to_string(claims->faces) + " triangles of " +
+                    std::to_string(claims->vertices) + " vertices; the accessors have " + std::to_string(vertices) +
+                    " vertices");
+  }
+}
+
 PlainPrimitive unpack(const GltfDocument& document, const DracoPrimitive& packed) {
   const std::string place = document.path + ": meshes[" + std::to_string(packed.mesh) + "].primitives[" +
                             std::to_string(packed.primitive) + "].extensions.KHR_draco_mesh_compression";
@@ -142,7 +165,9 @@ PlainPrimitive unpack(const GltfDocument& document, const DracoPrimitive& packed
   if (primitive.mode != kTriangles && primitive.mode != kTriangles + 1) {
     fail(place, "mode " + std::to_string(primitive.mode) + " is neither triangles nor a triangle strip");
   }
-  const auto mesh = decode(view_bytes(document, packed.buffer_view, place), place);
+  const std::span<const std::uint8_t> bytes = view_bytes(document, packed.buffer_view, place);
+  check_claims(document, primitive, bytes, place);
+  const auto mesh = decode(bytes, place);
   PlainPrimitive plain;
   plain.indices = unpack_indices(*mesh);
   if (plain.indices.accessor.count == 0) {

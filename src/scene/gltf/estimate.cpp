@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/estimate.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "core/memory_limit.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
+#include "scene/gltf/json.hpp"
 
 namespace gazetrace {
 namespace {
@@ -166,25 +165,10 @@ std::string mib(std::uint64_t bytes) {
   return std::to_string(bytes >> 20U) + " MiB";
 }
 
-std::uint64_t number_in(const char* path) {
-  std::ifstream file(path);
-  std::uint64_t number = 0;
-  return file >> number ? number : 0;
-}
-
 }  // namespace
 
 std::uint64_t most_memory_bytes() {
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long page = ::sysconf(_SC_PAGE_SIZE);
-  std::uint64_t bytes = pages > 0 && page > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page)
-                                              : std::uint64_t{8} << 30U;
-  for (const char* limit : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
-    if (const std::uint64_t most = number_in(limit); most > 0) {
-      bytes = std::min(bytes, most);
-    }
-  }
-  return bytes / 4 * 3;
+  return memory_of_process_bytes() / 4 * 3;
 }
 
 SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked, const GltfDocument& document) {
@@ -230,6 +214,17 @@ SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked
   add_to(estimate.node_bytes, MotionSizes(document).bytes());
   estimate.tree_bytes = times(tree_triangles, kTreeBytes) + kProgramBytes;
   return estimate;
+}
+
+void check_json_memory(const std::string& path, std::uint64_t file_bytes, std::string_view json,
+                       const SceneLimits& limits) {
+  const std::uint64_t most = limits.memory_bytes > 0 ? limits.memory_bytes : most_memory_bytes();
+  const std::uint64_t wanted = kProgramBytes + file_bytes + json_memory_bytes(json);
+  if (wanted > most) {
+    throw Error(ErrorKind::input, path,
+                "will take about " + mib(wanted) + " of memory to be parsed; the limit is " + mib(most),
+                "keep large data in buffers, or raise `max-memory`");
+  }
 }
 
 void add_pictures(const TextureTable& textures, int threads, SceneEstimate& estimate) {

@@ -2,6 +2,10 @@
 // What a document will take in memory, reckoned before it is loaded.
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <string_view>
+
 #include "gazetrace/scene.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/gltf/file.hpp"
@@ -11,6 +15,9 @@ namespace gazetrace {
 
 // All but pictures, from the counts that the JSON states and the sizes of the files.
 SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked, const GltfDocument& document);
+// Error(input) at `path` where the JSON would take more than the limit while it is parsed, before it is.
+void check_json_memory(const std::string& path, std::uint64_t file_bytes, std::string_view json,
+                       const SceneLimits& limits);
 // Adds the pictures that the table would decode, by their headers.
 void add_pictures(const TextureTable& textures, int threads, SceneEstimate& estimate);
 

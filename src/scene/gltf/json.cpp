@@ -31,10 +31,9 @@ void tidy_value(Json& value, bool sizes) {
   }
 }
 
-}  // namespace
-
-bool is_nested_too_deep(std::string_view text, int most) {
-  int depth = 0;
+// Calls `see` with every character outside of strings, until it returns false.
+template <class See>
+void for_each_mark(std::string_view text, See&& see) {
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -46,15 +45,37 @@ bool is_nested_too_deep(std::string_view text, int most) {
       }
     } else if (c == '"') {
       in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > most) {
-        return true;
-      }
+    } else if (!see(c)) {
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+bool is_nested_too_deep(std::string_view text, int most) {
+  int depth = 0;
+  for_each_mark(text, [&](char c) {
+    if (c == '{' || c == '[') {
+      ++depth;
     } else if (c == '}' || c == ']') {
       --depth;
     }
-  }
-  return false;
+    return depth <= most;
+  });
+  return depth > most;
+}
+
+std::uint64_t json_memory_bytes(std::string_view text) {
+  // Of glibc's allocator: a value is 16 bytes, in a vector that doubles while it is copied; arrays and objects are
+  // blocks of their own; a member is a node of a map with its key.
+  constexpr std::uint64_t kValue = 48, kArray = 48, kObject = 64, kMember = 96;
+  std::uint64_t bytes = 2 * text.size();
+  for_each_mark(text, [&](char c) {
+    bytes += c == ',' ? kValue : c == '[' ? kArray : c == '{' ? kObject : c == ':' ? kMember : 0;
+    return true;
+  });
+  return bytes;
 }
 
 void tidy_numbers(Json& root) {

@@ -105,6 +105,33 @@ std::vector<int> all_parents(const GltfDocument& document) {
   return parents;
 }
 
+std::string name_of_node(const GltfDocument& document, int index) {
+  const std::string& name = document.nodes[static_cast<std::size_t>(index)].name;
+  return name.empty() ? "#" + std::to_string(index) : name;
+}
+
+// Of each node, the outermost one above it; see Instance::asset. Parents come before their children.
+std::vector<int> outermost_nodes(const GltfDocument& document, const std::vector<WorldNode>& nodes,
+                                 const std::vector<int>& parents) {
+  std::vector<int> outermost(document.nodes.size(), -1);
+  int wrapper = -1;  // the last node in a row that holds all others and no mesh
+  for (std::vector<int> level = document.roots; level.size() == 1;) {
+    const GltfNode& only = document.nodes[static_cast<std::size_t>(level.front())];
+    if (only.mesh >= 0 || only.children.empty()) {
+      break;
+    }
+    wrapper = level.front();
+    level = only.children;
+  }
+  for (const WorldNode& world : nodes) {
+    const int parent = parents[static_cast<std::size_t>(world.node)];
+    const bool is_outermost = parent < 0 || parent == wrapper || outermost[static_cast<std::size_t>(parent)] < 0;
+    outermost[static_cast<std::size_t>(world.node)] =
+        is_outermost ? world.node : outermost[static_cast<std::size_t>(parent)];
+  }
+  return outermost;
+}
+
 // Frees the morph targets and influences of meshes that nothing deforms, and meshes that are used only in another pose.
 void drop_unused_shapes(const PlacedMeshes& placed, const std::vector<char>& was_posed, std::vector<Mesh>& meshes) {
   std::vector<char> deforms(meshes.size(), 0);
@@ -170,6 +197,7 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
   const std::vector<int> skeleton_parents = all_parents(document);
   std::vector<char> was_posed(meshes.size(), 0);
   const std::vector<char> moved = moved_nodes(document, nodes, parents);
+  const std::vector<int> outermost = outermost_nodes(document, nodes, parents);
   Warnings of_motions;
   std::size_t left_out = 0;
   int first_left_out = -1;
@@ -202,18 +230,19 @@ PlacedMeshes make_instances(const GltfDocument& document, const std::vector<Worl
       deformation = static_cast<std::int32_t>(placed.deformations.size());
       placed.deformations.push_back(std::move(*shape.animated));
     }
-    const std::string name = node.name.empty() ? "#" + std::to_string(world.node) : node.name;
+    const std::string name = name_of_node(document, world.node);
+    const std::string asset = name_of_node(document, outermost[static_cast<std::size_t>(world.node)]);
     for (const Affine& place : places) {
       const Affine to_world = has_skin ? Affine{} : world.to_world * place;
       if (chain) {
         // Kept whatever its transform is at rest, since the tracer checks the transform at each time.
         placed.instances.push_back(
-            {mesh, to_world, static_cast<std::int32_t>(placed.motions.size()), deformation, name});
+            {mesh, to_world, static_cast<std::int32_t>(placed.motions.size()), deformation, name, asset});
         placed.motions.push_back(
             {[chain, place](std::int64_t t_ns) { return transform_of_chain(*chain, t_ns) * place; },
              last_key_ns(*chain)});
       } else if (has_usable_inverse(to_world)) {
-        placed.instances.push_back({mesh, to_world, -1, deformation, name});
+        placed.instances.push_back({mesh, to_world, -1, deformation, name, asset});
       } else if (left_out++ == 0) {
         first_left_out = world.node;
       }

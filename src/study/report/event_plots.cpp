@@ -151,7 +151,7 @@ GazePlot histogram_plot(const std::string& name, const std::string& title, const
              is_right ? "start" : "end");
   }
   if (beyond > 0) {
-    svg.text(x.end, y.end + 28, fmt::format("{} farther right", beyond), "end",
+    svg.text(x.end, y.begin + 36, fmt::format("{} farther right", beyond), "end",
              R"(fill="#555555" stroke="#ffffff" stroke-width="3" paint-order="stroke")");
   }
   svg.frame(x, y);

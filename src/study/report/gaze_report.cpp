@@ -10,6 +10,7 @@
 
 #include "gaze/inspect/inspect.hpp"
 #include "gazetrace/gaze_event_check.hpp"
+#include "gazetrace/gaze_event_durations.hpp"
 #include "study/report/drawing.hpp"
 #include "study/report/page.hpp"
 
@@ -118,11 +119,12 @@ std::size_t count_of(const EyeEvents& events, EyeMovement movement) {
                                                 [&](const EyeEvent& e) { return e.movement == movement; }));
 }
 
-std::vector<double> durations_ms(const EyeEvents& events, EyeMovement movement) {
+std::vector<double> durations_ms(const GazeLog& log, const EyeEvents& events, EyeMovement movement) {
+  const std::int64_t step_ns = event_step_ns(log);
   std::vector<double> values;
   for (const EyeEvent& event : events.events) {
     if (event.movement == movement) {
-      values.push_back(static_cast<double>(event.end_ns - event.begin_ns) * 1e-6);
+      values.push_back(static_cast<double>(event_duration_ns(event, step_ns)) * 1e-6);
     }
   }
   return values;
@@ -138,27 +140,33 @@ std::vector<double> amplitudes_deg(const EyeEvents& events, EyeMovement movement
   return values;
 }
 
-GazeReport gaze_report(const GazeLog& log, const GazeReportSettings& settings) {
+GazeReport gaze_report(const GazeLog& recorded, const GazeReportSettings& settings) {
   if (!(settings.heat_sigma_deg > 0) || settings.heat_sigma_deg > 45) {
     throw Error(ErrorKind::usage, "`heat-sigma`", "must be above 0 and at most 45 degrees");
   }
-  if (log.samples.empty()) {
-    throw Error(ErrorKind::input, log.source, "has no samples to report on");
+  if (recorded.samples.empty()) {
+    throw Error(ErrorKind::input, recorded.source, "has no samples to report on");
   }
   const std::string picture = picture_uri(settings.picture);
   GazeReport report;
-  report.warnings = log.warnings;
+  report.warnings = recorded.warnings;
+  std::optional<ProcessedGaze> processed;
+  if (!settings.steps.empty()) {
+    processed = process_gaze(recorded, settings.steps);
+    report.warnings.insert(report.warnings.end(), processed->reports.begin(), processed->reports.end());
+  }
+  const GazeLog& log = processed ? processed->log : recorded;
   report.events = events_by(log, settings);
   if (settings.method != "log") {
-    for (const EventDoubt& doubt : doubt_events(log, report.events)) {
-      report.warnings.push_back(fmt::format("{}: events by {}: {}", log.source, report.events.preset, doubt.what));
+    for (std::string& doubt : doubts_in_words(doubt_events(log, report.events), report.events, log)) {
+      report.warnings.push_back(std::move(doubt));
     }
   }
   report.main_sequence = fit_main_sequence(report.events.events);
-  report.quality.push_back(measure_quality(log));
+  report.quality.push_back(measure_quality(recorded));
   if (has_both_eyes(log)) {
     for (const Eye eye : {Eye::left, Eye::right}) {
-      report.quality.push_back(measure_quality(log, eye));
+      report.quality.push_back(measure_quality(recorded, eye));
       const GazeLog alone = one_eye(log, eye);
       report.tables.push_back({eye == Eye::left ? "events_left.tsv" : "events_right.tsv",
                                events_as_tsv(events_by(alone, settings), alone)});
@@ -168,7 +176,7 @@ GazeReport gaze_report(const GazeLog& log, const GazeReportSettings& settings) {
   const std::vector<EyeEvent>& events = report.events.events;
   report.plots.push_back(main_sequence_plot(events, report.main_sequence));
   report.plots.push_back(histogram_plot("fixation_durations", "Durations of fixations", "duration [ms]",
-                                        durations_ms(report.events, EyeMovement::fixation), "#009e73"));
+                                        durations_ms(log, report.events, EyeMovement::fixation), "#009e73"));
   report.plots.push_back(histogram_plot("saccade_amplitudes", "Amplitudes of saccades", "amplitude [deg]",
                                         amplitudes_deg(report.events, EyeMovement::saccade), kLeftColor));
   if (auto heat = heat_map_plot(log, events, picture, settings.heat_sigma_deg)) {

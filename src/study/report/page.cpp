@@ -67,7 +67,7 @@ std::string quality_table(const std::vector<GazeQuality>& quality) {
   return html + "</tbody></table></div>";
 }
 
-std::string events_table(const EyeEvents& events) {
+std::string events_table(const GazeLog& log, const EyeEvents& events) {
   std::string html =
       "<div class=\"scroll\"><table><thead><tr><th></th><th scope=\"col\">count</th><th scope=\"col\">median "
       "duration</th><th scope=\"col\">middle half</th><th scope=\"col\">median amplitude</th></tr></thead><tbody>";
@@ -77,7 +77,7 @@ std::string events_table(const EyeEvents& events) {
     if (count == 0) {
       continue;
     }
-    const std::vector<double> ms = durations_ms(events, movement);
+    const std::vector<double> ms = durations_ms(log, events, movement);
     const std::vector<double> deg = amplitudes_deg(events, movement);
     html += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td>{:.0f} ms</td><td>{:.0f} to {:.0f} ms</td><td>{}</td></tr>",
@@ -95,13 +95,15 @@ std::string figure(const GazePlot& plot) {
                      escaped(plot.title), frame, plot.is_wide && !is_place ? " tabindex=\"0\"" : "", plot.svg, note);
 }
 
-std::string warnings_of(const GazeReport& report) {
+// The page's title names the recording already.
+std::string warnings_of(const GazeLog& log, const GazeReport& report) {
+  const std::string place = log.source + ": ";
   if (report.warnings.empty()) {
     return {};
   }
   std::string html = "<div class=\"warnings\" role=\"note\"><b>To be checked</b><ul>";
   for (const std::string& warning : report.warnings) {
-    html += "<li>" + escaped(warning) + "</li>";
+    html += "<li>" + escaped(warning.starts_with(place) ? warning.substr(place.size()) : warning) + "</li>";
   }
   return html + "</ul></div>";
 }
@@ -134,9 +136,9 @@ std::string gaze_page(const GazeLog& log, const GazeReport& report) {
   return fill_template(gaze_page_html, {{"title", escaped("Gaze of " + name)},
                                         {"style", std::string(gaze_page_style)},
                                         {"facts", escaped(fmt::format("{}, {}", log.format, kind))},
-                                        {"warnings", warnings_of(report)},
+                                        {"warnings", warnings_of(log, report)},
                                         {"quality", quality_table(report.quality)},
-                                        {"events", events_table(report.events)},
+                                        {"events", events_table(log, report.events)},
                                         {"event_plots", small},
                                         {"place_plots", places},
                                         {"time_plots", times},
@@ -165,7 +167,7 @@ std::string gaze_report_json(const GazeLog& log, const GazeReport& report) {
   for (const EyeMovement movement :
        {EyeMovement::fixation, EyeMovement::saccade, EyeMovement::microsaccade, EyeMovement::pursuit,
         EyeMovement::blink, EyeMovement::lost, EyeMovement::unclassified}) {
-    const std::vector<double> ms = durations_ms(report.events, movement);
+    const std::vector<double> ms = durations_ms(log, report.events, movement);
     const std::vector<double> deg = amplitudes_deg(report.events, movement);
     events[std::string(to_string(movement))] = {{"count", ms.size()},
                                                 {"duration_ms_q1", number(quantile(ms, 0.25))},

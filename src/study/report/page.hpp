@@ -13,7 +13,7 @@ std::string gaze_page(const GazeLog& log, const GazeReport& report);
 std::string gaze_report_json(const GazeLog& log, const GazeReport& report);
 // How often a movement occurs, and the quantile of a measure of its events; NaN of none.
 std::size_t count_of(const EyeEvents& events, EyeMovement movement);
-std::vector<double> durations_ms(const EyeEvents& events, EyeMovement movement);
+std::vector<double> durations_ms(const GazeLog& log, const EyeEvents& events, EyeMovement movement);
 std::vector<double> amplitudes_deg(const EyeEvents& events, EyeMovement movement);
 
 }  // namespace gazetrace

@@ -10,6 +10,7 @@
 #include "core/statistics.hpp"
 #include "gaze/inspect/inspect.hpp"
 #include "gazelog/screen_angles.hpp"
+#include "gazetrace/gaze_event_durations.hpp"
 #include "study/report/drawing.hpp"
 #include "study/report/heat.hpp"
 
@@ -97,7 +98,7 @@ std::string beside_note(const std::vector<const EyeEvent*>& fixations, const Pla
 }
 
 HeatGrid heat_of(const std::vector<const EyeEvent*>& fixations, const ScreenAngles& screen, double aspect,
-                 double sigma_deg) {
+                 double sigma_deg, std::int64_t step_ns) {
   HeatGrid grid;
   grid.rows =
       std::max<std::size_t>(1, static_cast<std::size_t>(std::round(static_cast<double>(grid.columns) * aspect)));
@@ -114,7 +115,7 @@ HeatGrid heat_of(const std::vector<const EyeEvent*>& fixations, const ScreenAngl
         const Vec3d apart = direction - f->direction;
         const double squares = dot(apart, apart) / (sigma * sigma);
         if (squares < 18) {
-          value += static_cast<double>(f->end_ns - f->begin_ns) * 1e-9 * peak * std::exp(-0.5 * squares);
+          value += static_cast<double>(event_duration_ns(*f, step_ns)) * 1e-9 * peak * std::exp(-0.5 * squares);
         }
       }
       grid.highest = std::max(grid.highest, value);
@@ -129,6 +130,7 @@ GazePlot scanpath_plot(const GazeLog& log, const std::vector<EyeEvent>& events, 
   const bool is_screen = log.kind != GazeKind::direction;
   const std::vector<const EyeEvent*> fixations = placed_fixations(events, is_screen);
   const Plane plane = plane_of(log, fixations);
+  const std::int64_t step_ns = event_step_ns(log);
   Drawing svg(kWideWidth, plane.height, "Scanpath: fixations in their order, larger where they last longer");
   draw_ground(svg, plane, picture, 0.25);
   svg.add(
@@ -147,7 +149,7 @@ GazePlot scanpath_plot(const GazeLog& log, const std::vector<EyeEvent>& events, 
       on_picture ? "#ffffff" : "#555555"));
   for (std::size_t i = 0; i < fixations.size(); ++i) {
     const Vec2d at = place_of(*fixations[i], is_screen);
-    const double seconds = static_cast<double>(fixations[i]->end_ns - fixations[i]->begin_ns) * 1e-9;
+    const double seconds = static_cast<double>(event_duration_ns(*fixations[i], step_ns)) * 1e-9;
     const double radius = std::clamp(16 * std::sqrt(seconds), 3.0, 30.0);
     svg.add(fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" fill="{}" fill-opacity="0.5" stroke="{}"/>)",
                         plane.x.at(at.x), plane.y.at(at.y), radius, on_picture ? "#ffd34d" : "#56b4e9",
@@ -178,7 +180,7 @@ std::optional<GazePlot> heat_map_plot(const GazeLog& log, const std::vector<EyeE
   const Plane plane = plane_of(log, fixations);
   Drawing svg(kWideWidth, plane.height, "Heat map: where fixations spent their time");
   draw_ground(svg, plane, picture, 0.35);
-  const HeatGrid grid = heat_of(fixations, screen, aspect_of(log), sigma_deg);
+  const HeatGrid grid = heat_of(fixations, screen, aspect_of(log), sigma_deg, event_step_ns(log));
   if (grid.highest > 0) {
     draw_heat(svg, grid, plane.x, plane.y, "s of fixation per square degree");
   }

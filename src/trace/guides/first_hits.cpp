@@ -8,6 +8,7 @@
 
 #include "core/hash.hpp"
 #include "core/parallel.hpp"
+#include "trace/guides/hit_identity.hpp"
 #include "trace/guides/primary_rays.hpp"
 
 namespace gazetrace {
@@ -22,25 +23,16 @@ struct Workspace {
 
 RayHit hit_of(const Scene& scene, const RenderScene& render_scene, const Workspace& work, std::size_t k) {
   const HitBatch& hits = work.hits;
+  const HitIdentity identity = identity_of_hit(scene, render_scene, hits, k);
   RayHit hit;
-  std::uint32_t record = hits.geometry[k];
-  if (record == kNoId || record == kRejected) {
+  if (identity.object == 0) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     hit.distance_m = std::numeric_limits<double>::infinity();
     hit.position_m = {nan, nan, nan};
     return hit;
   }
-  std::uint32_t scene_instance = kNoId;
-  if (hits.instance[k] != kNoId) {
-    const ShadingInstance& instance = render_scene.instances[hits.instance[k] - render_scene.first_instance_id];
-    record += instance.first_geometry;
-    scene_instance = instance.scene_instance;
-  }
-  const GeometryRecord& geometry = render_scene.geometries[record];
-  scene_instance = scene_instance == kNoId ? geometry.scene_instance : scene_instance;
-  const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[scene_instance].mesh)];
-  hit.object = 1 + scene_instance;
-  hit.material = 1 + static_cast<std::uint32_t>(mesh.geometries[geometry.scene_geometry].material);
+  hit.object = identity.object;
+  hit.material = identity.material;
   hit.distance_m = static_cast<double>(hits.t[k]);
   const Vec3d origin{work.rays.ox[k], work.rays.oy[k], work.rays.oz[k]};
   const Vec3d direction{work.rays.dx[k], work.rays.dy[k], work.rays.dz[k]};

@@ -92,6 +92,8 @@ struct ChunkHits {
   ChunkArray<float> random_lobe;
   ChunkVec3 next, next_weight;  // the BSDF sample
   ChunkArray<float> next_pdf, next_good;
+  // Of camera rays' hits, what the diffuse lobe has of light_f_cos and next_weight, 0..1; only with light groups.
+  ChunkVec3 light_diffuse, next_diffuse;
 };
 
 }  // namespace gazetrace

@@ -33,7 +33,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_emission(int vertex, std::size_
     }
     weight = weight_of_found_light(vertex, pdf_bsdf, pdf_light);
   }
-  add(slot, clamped(vertex, throughput * emission * weight));
+  add(slot, clamped(vertex, throughput * emission * weight), vertex);
 }
 
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>

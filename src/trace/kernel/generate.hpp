@@ -44,6 +44,16 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
       paths.body[i] = kNoId;
     }
   }
+  if (frame_.settings.light_groups) {
+    for (BatchVec3& radiance : work_.groups.radiance) {
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+        radiance.set(i, {});
+      }
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      work_.groups.diffuse.set(i, {});
+    }
+  }
   if (frame_.settings.guides) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       work_.guides.hit[i] = 0;

@@ -4,6 +4,7 @@
 #include "trace/kernel/emission.hpp"
 #include "trace/kernel/generate.hpp"
 #include "trace/kernel/layers.hpp"
+#include "trace/kernel/light_groups.hpp"
 #include "trace/kernel/path_kernel.hpp"
 #include "trace/kernel/scatter.hpp"
 #include "trace/kernel/shade.hpp"

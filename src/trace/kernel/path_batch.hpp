@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "gazetrace/guides.hpp"
+#include "gazetrace/light_groups.hpp"
 #include "gazetrace/math.hpp"
 #include "trace/kernel/chunk.hpp"
 #include "trace/rays/ray_batch.hpp"
@@ -68,6 +69,13 @@ struct ShadowBatch {
   RayBatch rays;
   BatchArray<std::uint32_t> slot;
   BatchArray<float> r, g, b;  // the contribution if nothing is in the way
+  BatchVec3 diffuse;          // as LightGroupBatch::diffuse, of this contribution
+};
+
+// The radiance of each sample by LightGroup. Only with TraceSettings::light_groups.
+struct LightGroupBatch {
+  std::array<BatchVec3, kLightGroups> radiance;
+  BatchVec3 diffuse;  // of what the path's next contributions are, the share that the first surface's diffuse lobe has
 };
 
 // One per thread, of about 0.5 MiB.
@@ -76,6 +84,7 @@ struct Workspace {
   RadianceBatch radiance;
   GuideBatch guides;
   SurfaceBatch surfaces;
+  LightGroupBatch groups;
   std::array<RayBatch, 2> rays;
   std::array<PathBatch, 2> paths;
   HitBatch hits;

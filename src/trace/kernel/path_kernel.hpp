@@ -108,10 +108,14 @@ class PathKernel {
     }
   }
 
-  void add(std::size_t slot, const Vec3f& radiance) {
+  // `events`: how many surfaces scattered the light on its way to the camera.
+  void add(std::size_t slot, const Vec3f& radiance, int events, LightGroup seen = LightGroup::emission) {
     work_.radiance.r[slot] += radiance.x;
     work_.radiance.g[slot] += radiance.y;
     work_.radiance.b[slot] += radiance.z;
+    if (frame_.settings.light_groups) {
+      add_to_groups(slot, radiance, events, seen, work_.groups.diffuse.get(slot));
+    }
   }
 
   // Applies TraceSettings::clamp_indirect; `events` is the number of scattering events between the light and the
@@ -199,6 +203,13 @@ class PathKernel {
                                                                               bool lit, bool bounces);
   void take_light_sample(int vertex, std::size_t i, const LightSample& light, const PathBatch& paths);
   void take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths);
+
+  // light_groups.hpp; out of line, so that they do not grow the loops that seldom need them
+  [[gnu::noinline]] void add_to_groups(std::size_t slot, const Vec3f& radiance, int events, LightGroup seen,
+                                       const Vec3f& diffuse);
+  [[gnu::noinline]] void find_diffuse_shares(const std::uint16_t* active, std::size_t active_count,
+                                             const LightSample* lights, bool bounces);
+  [[nodiscard]] Vec3f diffuse_share(std::size_t i, const Vec3f& world) const;
 
   // layers.hpp
   void absorb(int vertex, std::size_t count);

@@ -68,6 +68,9 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
   if constexpr (kLayers) {
     scatter_layers(vertex, active, active_count, lit ? lights.data() : nullptr, bounces);
   }
+  if (vertex == 0 && frame_.settings.light_groups) {
+    find_diffuse_shares(active, active_count, lit ? lights.data() : nullptr, bounces);
+  }
   for (std::size_t a = 0; a < active_count; ++a) {
     const std::size_t i = active[a];
     if (lit && lights[i].valid) {
@@ -221,6 +224,9 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   RayBatch& out = work_.rays[to];
   PathBatch& state = work_.paths[to];
   const std::size_t n = next_count_++;
+  if (vertex == 0 && frame_.settings.light_groups) {
+    work_.groups.diffuse.set(slot, chunk.next_diffuse.get(i));
+  }
   const Vec3f direction = chunk.next.get(i);
   set_ray(out, n, leaving_point(i, direction), direction, 0.0F, std::numeric_limits<float>::infinity());
   if constexpr (kLayers) {

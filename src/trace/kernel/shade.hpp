@@ -92,7 +92,7 @@ inline bool PathKernel<kFeatures, kDiffuse>::goes_on(int vertex, std::size_t i, 
     const Vec3f throughput{paths.r[k], paths.g[k], paths.b[k]};
     const ShadingMaterial& material = frame_.scene->materials[chunk.material[i]];
     if (material.unlit) {
-      add(slot, clamped(vertex, throughput * chunk.base_color.get(i)));
+      add(slot, clamped(vertex, throughput * chunk.base_color.get(i)), vertex);
       return false;
     }
     if (material.emissive && (chunk.side[i] > 0 || material.double_sided)) {

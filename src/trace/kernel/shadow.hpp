@@ -20,6 +20,9 @@ inline void PathKernel<kFeatures, kDiffuse>::queue_shadow(int vertex, std::size_
   shadows.r[n] = arriving.x;
   shadows.g[n] = arriving.y;
   shadows.b[n] = arriving.z;
+  if (frame_.settings.light_groups) {
+    shadows.diffuse.set(n, vertex == 0 ? chunk.light_diffuse.get(i) : work_.groups.diffuse.get(slot));
+  }
 }
 
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
@@ -34,7 +37,14 @@ inline void PathKernel<kFeatures, kDiffuse>::trace_shadows(int vertex) {
       static_cast<std::uint64_t>(frame_.scene->rays->occluded(shadows.rays, count, shape, work_.occluded.data));
   for (std::size_t n = 0; n < shadow_count_; ++n) {
     if (work_.occluded[n] == 0) {
-      add(shadows.slot[n], {shadows.r[n], shadows.g[n], shadows.b[n]});
+      const Vec3f arriving{shadows.r[n], shadows.g[n], shadows.b[n]};
+      const std::size_t slot = shadows.slot[n];
+      work_.radiance.r[slot] += arriving.x;
+      work_.radiance.g[slot] += arriving.y;
+      work_.radiance.b[slot] += arriving.z;
+      if (frame_.settings.light_groups) {
+        add_to_groups(slot, arriving, vertex + 1, LightGroup::emission, shadows.diffuse.get(n));
+      }
     } else if (work_.occluded[n] == 2) {
       work_.radiance.rejected[shadows.slot[n]] = 1;
     }

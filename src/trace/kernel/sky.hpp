@@ -49,7 +49,7 @@ inline void PathKernel<kFeatures, kDiffuse>::add_sky(int vertex, const RayBatch&
       }
     }
     const float weight = weight_of_found_light(vertex, paths.pdf[k], sky[i].pdf);
-    add(paths.slot[k], clamped(vertex, throughput * sky[i].radiance * weight));
+    add(paths.slot[k], clamped(vertex, throughput * sky[i].radiance * weight), vertex, LightGroup::background);
   }
 }
 

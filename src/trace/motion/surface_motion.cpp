@@ -161,6 +161,7 @@ class MotionTracer {
     const bool still = same_view_ && (poses == nullptr || !poses->moved);
     out.object.pixels[pixel] = 1 + scene_instance;
     out.depth_m.pixels[pixel] = static_cast<float>(view_.point(now).depth_m);
+    out.position_m.pixels[pixel] = to_float(now);
     out.normal.pixels[pixel] = facing(corners.now, view_.toward(now));
     out.other_px.pixels[pixel] = still ? center_of(pixel) : place.px;
     out.other_depth_m.pixels[pixel] = static_cast<float>(place.depth_m);
@@ -211,6 +212,7 @@ SurfaceMotion trace_surface_motion(const Scene& scene, const RenderScene& render
   out.depth_m = ImageGray(width_px, height_px, kFar);
   out.normal = ImageRgb(width_px, height_px);
   out.object = Image<std::uint32_t>(width_px, height_px);
+  out.position_m = ImageRgb(width_px, height_px);
   out.other_px = Image<Vec2d>(width_px, height_px);
   out.other_depth_m = ImageGray(width_px, height_px, kFar);
   out.other_normal = ImageRgb(width_px, height_px);

@@ -124,6 +124,14 @@ int fill_packet(const RayBatch& rays, std::size_t first, int count, Rays& packet
     const bool good = acceptable(rays, first + static_cast<std::size_t>(lane));
     valid[lane] = inside && good ? -1 : 0;
     refused += inside && !good ? 1 : 0;
+    if (!good) {
+      // On processors without AVX-512 the library looks at lanes that are masked, too.
+      packet.org_x[lane] = packet.org_y[lane] = packet.org_z[lane] = 0;
+      packet.dir_x[lane] = packet.dir_y[lane] = 0;
+      packet.dir_z[lane] = 1;
+      packet.tnear[lane] = 0;
+      packet.tfar[lane] = std::isnan(packet.tfar[lane]) ? 0 : packet.tfar[lane];
+    }
   }
   return refused;
 }

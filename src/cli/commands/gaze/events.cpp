@@ -63,25 +63,6 @@ std::string summary(const EyeEvents& events, const GazeLog& log) {
   return text + "\n";
 }
 
-// What speaks against the events, and what would suit the log. The method itself never changes, since the participants
-// of a study must stay comparable.
-std::vector<std::string> in_words(const std::vector<EventDoubt>& found, const EyeEvents& events, const GazeLog& log) {
-  std::vector<std::string> lines;
-  for (const EventDoubt& doubt : found) {
-    lines.push_back(fmt::format("{}: events by {}: {}", log.source, events.preset, doubt.what));
-  }
-  if (!found.empty()) {
-    const std::vector<std::string> better = better_event_methods(log, events);
-    lines.push_back(fmt::format(
-        "{}: these events are not to be relied on; {}", log.source,
-        better.empty()
-            ? "no method and no single step of processing here suits this log: use the tracker's own events "
-              "(`method` log), or record with less noise"
-            : fmt::format("without such doubts: {}; choose one for all participants", fmt::join(better, ", "))));
-  }
-  return lines;
-}
-
 int run_events(const EventsArguments& arguments) {
   if (!arguments.output.empty()) {
     check_output_file(arguments.output, arguments.overwrite);
@@ -107,7 +88,7 @@ int run_events(const EventsArguments& arguments) {
   // Of both eyes, events are those of the left one.
   const GazeLog judged = arguments.binocular ? one_eye(log, Eye::left) : std::move(log);
   const std::vector<EventDoubt> doubts = are_stated ? std::vector<EventDoubt>() : doubt_events(judged, events);
-  print_warnings(in_words(doubts, events, judged));
+  print_warnings(doubts_in_words(doubts, events, judged));
   const bool json = arguments.output.ends_with(".json");
   const auto as_json = [&] {
     return are_stated ? events_as_json(events, judged) : events_as_json(events, judged, doubts);

@@ -22,6 +22,7 @@ struct GazeReportArguments {
   GazeFileSettings gaze;
   ScreenSettings screen;
   GazeReportSettings report;
+  std::vector<std::string> steps;
   std::string output = "gaze.html", folder;
   bool overwrite = false;
   JsonOutput json;
@@ -38,7 +39,11 @@ int run_gaze_report(const GazeReportArguments& arguments) {
     log = without_times_of_day(std::move(log)).log;
   }
   log.warnings = with_flags(std::move(log.warnings));  // the page shows them to the program's users
-  const GazeReport report = gaze_report(log, arguments.report);
+  GazeReportSettings settings = arguments.report;
+  settings.steps = gaze_steps_of(arguments.steps);
+  GazeReport report = gaze_report(log, settings);
+  report.html = with_flags(report.html);
+  report.json = with_flags(report.json);
   print_warnings(report.warnings);
   std::vector<std::pair<std::string, const std::string*>> files;
   if (!arguments.folder.empty()) {
@@ -84,6 +89,8 @@ Command add_gaze_report_command(CLI::App& app, const Invocation& /*invocation*/)
                "What it was recorded on, where places or directions do not tell");
   schema.include(gaze_file_schema(), &GazeReportArguments::gaze);
   schema.include(screen_schema(), &GazeReportArguments::screen);
+  schema.include(gaze_process_schema().with_headings([](const Option&) { return "Processing"; }),
+                 &GazeReportArguments::steps);
   const auto options = std::make_shared<CommandOptions<GazeReportArguments>>(std::move(schema));
   options->bind(app, *arguments);
   app.add_option("log", arguments->gaze.path, "Gaze log")->required()->type_name("FILE");

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a frame has beside its picture where that is asked for: mattes, motion, places and light in groups.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gazetrace/coverage.hpp"
+#include "gazetrace/cryptomatte.hpp"
+#include "gazetrace/image.hpp"
+#include "gazetrace/light_groups.hpp"
+
+namespace gazetrace {
+
+// Where the surface behind a pixel's centre is and was, through a pinhole in the middle of the frame's time.
+struct MotionLayers {
+  // In pixels, x right and y up, from the pixel to where the same point of the surface is in the frame before
+  // (backward) or after (forward) at the frame rate, whichever frames are rendered; 0 where it is not in front of that
+  // camera.
+  Image<Vec2f> backward_px, forward_px;
+  ImageRgb position_m;  // world axes; 0 where there is nothing but the environment
+};
+
+// Which of them a frame is asked for.
+struct LayerSettings {
+  bool forward = false, backward = false, position = false;
+  bool light = false;               // FrameLayers::light
+  std::vector<std::string> mattes;  // some of cryptomatte_layers()
+  // Of mattes. Filter, footprint and seed are those that the frame's samples are traced with.
+  CoverageSettings coverage;
+  [[nodiscard]] bool any() const { return forward || backward || position || light || !mattes.empty(); }
+};
+
+struct FrameLayers {
+  // One for each Cryptomatte layer that was asked for.
+  std::shared_ptr<const std::vector<MatteTable>> tables;
+  std::vector<Coverage> mattes;
+  MotionLayers motion;  // images are empty where they were not asked for
+  // One for each LightGroup, or none. Under the filters none, linear, tent and push-pull, whose weights do not depend
+  // on the light, each is what the filter makes of the group's own samples. Under other filters, and where frames are
+  // accumulated or contrast is enhanced, a group is the picture itself times the group's share of the light, as the
+  // filter `linear` (or, in single pixels, the samples' mean) finds it in the frame's own samples. Both ways the layers
+  // add up to the picture, apart from rounding.
+  std::vector<ImageRgb> light;
+};
+
+}  // namespace gazetrace

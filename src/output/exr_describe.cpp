@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output/exr_describe.hpp"
+
+#include <ImathMatrix.h>
+#include <OpenEXR/ImfChromaticities.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfRationalAttribute.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTimeCode.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "output/gaze_text.hpp"
+
+namespace gazetrace {
+
+void add_text(Imf::Header& header, const std::string& name, const std::string& value) {
+  header.insert("gazetrace:" + name, Imf::StringAttribute(value));
+}
+
+namespace {
+
+void add_color_space(Imf::Header& header) {
+  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65
+  header.insert("colorSpace", Imf::StringAttribute("lin_rec709"));
+}
+
+// From world space to the camera space of the EXR standard, which is left-handed with +z forward. Imath multiplies row
+// vectors: p M.
+Imath::M44d world_to_camera(const CameraPose& pose) {
+  const Vec3d right = rotate(pose.orientation, {1, 0, 0});
+  const Vec3d up = rotate(pose.orientation, {0, 1, 0});
+  const Vec3d forward = rotate(pose.orientation, {0, 0, -1});
+  const Vec3d& p = pose.position_m;
+  return {right.x,        up.x,        forward.x,        0,  //
+          right.y,        up.y,        forward.y,        0,  //
+          right.z,        up.z,        forward.z,        0,  //
+          -dot(right, p), -dot(up, p), -dot(forward, p), 1};
+}
+
+// From that camera space to NDC, with (0, 0) at the top left and (1, 1) at the bottom right. Depth, which the standard
+// leaves open, is 0 at the near plane.
+Imath::M44d camera_to_ndc(const Projection& projection, double aspect) {
+  const double near_m = projection.near_m > 0 ? projection.near_m : 1e-3;
+  if (projection.kind == ProjectionKind::orthographic) {
+    return {0.5 / (projection.ymag_m * aspect),
+            0,
+            0,
+            0,  //
+            0,
+            -0.5 / projection.ymag_m,
+            0,
+            0,  //
+            0,
+            0,
+            1,
+            0,  //
+            0.5,
+            0.5,
+            -near_m,
+            1};
+  }
+  const double slope = std::tan(projection.yfov_rad / 2);
+  return {0.5 / (slope * aspect),
+          0,
+          0,
+          0,  //
+          0,
+          -0.5 / slope,
+          0,
+          0,  //
+          0.5,
+          0.5,
+          1,
+          1,  //
+          0,
+          0,
+          -near_m,
+          0};
+}
+
+std::string camera_text(const Camera& camera) {
+  const Vec3d& p = camera.pose.position_m;
+  const Quatd& q = camera.pose.orientation;
+  const Projection& projection = camera.projection;
+  const std::string view = projection.kind == ProjectionKind::perspective
+                               ? fmt::format("perspective yfov_rad={}", projection.yfov_rad)
+                               : fmt::format("orthographic ymag_m={}", projection.ymag_m);
+  const std::string lens = camera.lens.radius_m > 0 ? fmt::format(" aperture_radius_m={} focus_distance_m={}",
+                                                                  camera.lens.radius_m, camera.lens.focus_distance_m)
+                                                    : "";
+  return fmt::format("position_m={},{},{} orientation_xyzw={},{},{},{} projection={} near_m={} far_m={}{}", p.x, p.y,
+                     p.z, q.x, q.y, q.z, q.w, view, projection.near_m, projection.far_m, lens);
+}
+
+std::string gaze_header(const GazeAtTime& gaze) {
+  return gaze_words(gaze) + " reason=" + gaze.reason;
+}
+
+// SMPTE 12M counts frames within a second in two digits up to 29. Rates up to 60 count pairs of frames, and mark the
+// second of each in the bit for the field; beyond that there is no time code. Rates such as 30000/1001 count on without
+// dropping numbers.
+void add_time_code(Imf::Header& header, const FrameHeader& frame) {
+  constexpr std::int64_t kMostFrames = 30;
+  const std::int64_t rate =
+      (frame.fps.numerator + frame.fps.denominator / 2) / std::max<std::int64_t>(frame.fps.denominator, 1);
+  const bool in_pairs = rate > kMostFrames;
+  if (rate < 1 || rate > 2 * kMostFrames || frame.frame < 1) {
+    return;
+  }
+  const std::int64_t index = frame.frame - 1;
+  const std::int64_t second = index / rate;
+  const auto within = static_cast<int>(index % rate);
+  Imf::TimeCode code(static_cast<int>(second / 3600 % 24), static_cast<int>(second / 60 % 60),
+                     static_cast<int>(second % 60), in_pairs ? within / 2 : within);
+  code.setFieldPhase(in_pairs && within % 2 == 1);
+  Imf::addTimeCode(header, code);
+}
+
+void add_gaze_numbers(Imf::Header& header, const GazeNumbers& gaze) {
+  header.insert("gaze.u", Imf::FloatAttribute(static_cast<float>(gaze.u)));
+  header.insert("gaze.v", Imf::FloatAttribute(static_cast<float>(gaze.v)));
+  header.insert("gaze.valid", Imf::IntAttribute(gaze.valid));
+}
+
+}  // namespace
+
+void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
+  add_color_space(header);
+  header.insert("software", Imf::StringAttribute(frame.software));
+  if (frame.fps.numerator <= std::numeric_limits<int>::max() &&
+      frame.fps.denominator <= std::numeric_limits<int>::max()) {
+    Imf::addFramesPerSecond(
+        header, Imf::Rational(static_cast<int>(frame.fps.numerator), static_cast<int>(frame.fps.denominator)));
+  }
+  add_time_code(header, frame);
+  add_gaze_numbers(header, frame.gaze);
+  const Imath::M44d to_camera = world_to_camera(frame.camera.pose);
+  Imf::addWorldToCamera(header, Imath::M44f(to_camera));
+  Imf::addWorldToNDC(header, Imath::M44f(to_camera * camera_to_ndc(frame.camera.projection, aspect)));
+  header.insert("gazetrace:frame", Imf::IntAttribute(frame.frame));
+  header.insert("gazetrace:exposure_ev", Imf::DoubleAttribute(frame.exposure_ev));
+  // Stored as text, since there is no attribute type for 64-bit integers.
+  add_text(header, "t_video_ns", std::to_string(frame.t_video_ns));
+  add_text(header, "seed", std::to_string(frame.seed));
+  add_text(header, "settings_digest", frame.settings_digest);
+  if (!frame.history.empty()) {
+    add_text(header, "history", frame.history);
+  }
+  if (frame.enhance_contrast > 0) {
+    add_text(header, "enhanced", fmt::format("contrast by {}: no estimate of radiance", frame.enhance_contrast));
+  }
+  add_text(header, "camera", camera_text(frame.camera));
+  if (frame.shutter_close_ns > frame.shutter_open_ns) {
+    add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));
+  }
+  add_text(header, "gaze_render", gaze_header(frame.gaze_render));
+  add_text(header, "gaze_true", gaze_header(frame.gaze_true));
+  if (!frame.gaze_processing.empty()) {
+    add_text(header, "gaze_processing", fmt::format("{}", fmt::join(frame.gaze_processing, "; ")));
+  }
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pixels and header values of EXR files.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfRationalAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <new>
+#include <string>
+#include <system_error>
+
+#include "core/exr_header.hpp"
+#include "gazetrace/output.hpp"
+#include "output/exr.hpp"
+
+namespace gazetrace {
+namespace {
+
+// The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
+// compression is lossless, and up to 2700 where it is dwaa or dwab.
+void check_size(const Imf::InputFile& file, const std::string& path) {
+  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30U;
+  constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;
+  const Imath::Box2i window = file.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const bool is_dwa =
+      file.header().compression() == Imf::DWAA_COMPRESSION || file.header().compression() == Imf::DWAB_COMPRESSION;
+  std::error_code ignored;
+  const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (pixels > kMostPixels || ignored || pixels > kPixelsOfAnyFile + (is_dwa ? 8192 : 1024) * bytes) {
+    throw Error(ErrorKind::input, path,
+                fmt::format("an EXR of {} x {} pixels and {} bytes cannot be used", width, height, bytes),
+                pixels > kMostPixels ? "make it smaller" : "it is damaged: export it again");
+  }
+}
+
+// Opens an EXR and gives what `read` makes of it; what OpenEXR throws becomes Error(input).
+template <class Read>
+auto read_exr(const std::string& path, const Read& read) {
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::input, path, "there is no such file");
+  }
+  try {
+    check_exr_header(path, path);
+    Imf::InputFile file(path.c_str(), 0);
+    check_size(file, path);
+    return read(file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(ErrorKind::runtime, path, "there is no memory for the EXR", "make it smaller");
+  } catch (const std::exception& e) {
+    throw Error(ErrorKind::input, path, std::string("cannot read the EXR: ") + e.what());
+  }
+}
+
+std::string gray_channel(const Imf::ChannelList& channels) {
+  auto second = channels.begin();
+  if (second != channels.end() && ++second == channels.end()) {
+    return channels.begin().name();
+  }
+  for (const char* name : {"Y", "samples_per_pixel", "R"}) {
+    if (channels.findChannel(name) != nullptr) {
+      return name;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ImageRgb read_exr_rgb(const std::string& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    const Imath::Box2i window = file.header().dataWindow();
+    if (file.header().channels().findChannel("R") == nullptr) {
+      throw Error(ErrorKind::input, path, "the EXR has no channel R", "name an RGB picture");
+    }
+    ImageRgb image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+    Imf::FrameBuffer buffer;
+    constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) {
+      buffer.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, &image.pixels.data()->x + c, window, sizeof(Vec3f),
+                                                sizeof(Vec3f) * static_cast<std::size_t>(image.width_px)));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  });
+}
+
+ImageGray read_exr_gray(const std::string& path) {
+  return read_exr(path, [&](Imf::InputFile& file) {
+    const Imath::Box2i window = file.header().dataWindow();
+    const std::string name = gray_channel(file.header().channels());
+    if (name.empty()) {
+      throw Error(ErrorKind::input, path, "the EXR has several channels, and none of them is Y, samples_per_pixel or R",
+                  "write a picture of one channel");
+    }
+    ImageGray image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
+    Imf::FrameBuffer buffer;
+    buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, image.pixels.data(), window, sizeof(float),
+                                         sizeof(float) * static_cast<std::size_t>(image.width_px)));
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  });
+}
+
+std::string read_exr_text(const std::string& path, const std::string& attribute) {
+  try {
+    check_exr_header(path, path);
+    Imf::MultiPartInputFile file(path.c_str(), 0);
+    const auto* text = file.header(0).findTypedAttribute<Imf::StringAttribute>(attribute);
+    for (int i = 0; i < file.parts(); ++i) {
+      if (text == nullptr || !file.partComplete(i)) {
+        return {};
+      }
+    }
+    // A truncated copy still has its table of offsets, so the last block, at the end of the file, is read.
+    Imf::InputPart last(file, file.parts() - 1);
+    const char* pixels = nullptr;
+    int size = 0;
+    last.rawPixelData(last.header().dataWindow().max.y, pixels, size);
+    return text->value();
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+std::optional<double> read_exr_number(const std::string& path, const std::string& attribute) {
+  try {
+    check_exr_header(path, path);
+    Imf::InputFile file(path.c_str(), 0);
+    if (const auto* number = file.header().findTypedAttribute<Imf::DoubleAttribute>(attribute)) {
+      return number->value();
+    }
+    if (const auto* fraction = file.header().findTypedAttribute<Imf::RationalAttribute>(attribute)) {
+      return static_cast<double>(fraction->value());
+    }
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::int32_t> read_exr_integer(const std::string& path, const std::string& attribute) {
+  try {
+    check_exr_header(path, path);
+    Imf::InputFile file(path.c_str(), 0);
+    if (const auto* number = file.header().findTypedAttribute<Imf::IntAttribute>(attribute)) {
+      return number->value();
+    }
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace gazetrace
