@@ -89,7 +89,8 @@ struct ReconstructedFrame {
   Frame frame;
   SamplingMap map;
   std::vector<ImageRgb> light;  // FrameLayers::light before it is brought to the light of the finished picture
-  TemporalHistory alone;        // what the frame would leave as history if it were the first one
+  // What the frame would leave as history if it were the first one; only where other frames read it.
+  TemporalHistory alone;
   TraceStats samples, first_look;
   Prediction prediction;
   StageTimes times;
@@ -110,9 +111,19 @@ class FrameRenderer {
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
 
   // AccumulateMode::two_sided in two steps: the stages up to reconstruction, and, once the frames around it are there,
-  // accumulation and all that follows. `window` holds consecutive frames in order, at most AccumulateSettings::window
-  // on each side of `own`; where there are fewer, fewer are read.
+  // accumulation and all that follows. `window` holds frames in order, at most AccumulateSettings::window on each side
+  // of `own`; where there are fewer, fewer are read. `own` may hold the samples of several frames at rest
+  // (FrameWindow): these are not in the window then.
   [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request) const;
+  // The same from samples that are there. `guides`: those of the request; nullptr where the filter needs none.
+  [[nodiscard]] ReconstructedFrame reconstruct(const FrameRequest& request, const TracedFrame& traced,
+                                               const Guides* guides) const;
+  // What the filter must know of first hits; empty where it needs nothing. Frames at rest have the same.
+  [[nodiscard]] std::optional<Guides> guides(const FrameRequest& request) const;
+  // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
+  [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
+  // Lets other frames read this one: fills in ReconstructedFrame::alone.
+  void keep_history(ReconstructedFrame& frame) const;
   [[nodiscard]] RenderedFrame join(const std::vector<const ReconstructedFrame*>& window, std::size_t own,
                                    TemporalHistory& history) const;
 

@@ -246,6 +246,9 @@ class PathTracer {
   // The scene as its file places it when no animation plays.
   [[nodiscard]] PosedScene at_rest();
 
+  // Whether anything in the scene moves or deforms, at whatever time.
+  [[nodiscard]] bool moves() const;
+
   [[nodiscard]] const Scene& scene() const;
   [[nodiscard]] TracerMemory memory() const;
   // "Embree 3.13.5 avx512" and the like, for the run record.

@@ -16,6 +16,15 @@ auto timed(double& ms, Stage&& stage) {
   return result;
 }
 
+inline void add_times(const StageTimes& from, StageTimes& to) {
+  to.plan_ms += from.plan_ms;
+  to.pilot_ms += from.pilot_ms;
+  to.trace_ms += from.trace_ms;
+  to.guides_ms += from.guides_ms;
+  to.reconstruct_ms += from.reconstruct_ms;
+  to.temporal_ms += from.temporal_ms;
+}
+
 // Chooses the frame's exposure, then enhances its picture where that is asked for.
 void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,
             RenderedFrame& rendered);

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/frame_window.hpp"
 
-#include <iterator>
 #include <utility>
 
+#include "pipeline/frame_stages.hpp"
 #include "pipeline/trace_counts.hpp"
+#include "temporal/clip.hpp"
+#include "temporal/frames_at_rest.hpp"
+#include "temporal/worth.hpp"
 
 namespace gazetrace {
-
-namespace {
-
-void add_times(const StageTimes& from, StageTimes& to) {
-  to.plan_ms += from.plan_ms;
-  to.pilot_ms += from.pilot_ms;
-  to.trace_ms += from.trace_ms;
-  to.guides_ms += from.guides_ms;
-  to.reconstruct_ms += from.reconstruct_ms;
-  to.temporal_ms += from.temporal_ms;
-}
-
-}  // namespace
 
 FrameWindow::FrameWindow(const FrameRenderer& renderer, const FramePlan& plan, std::set<std::int32_t> counted)
     : renderer_(&renderer), counted_(std::move(counted)) {
@@ -30,40 +20,130 @@ FrameWindow::FrameWindow(const FrameRenderer& renderer, const FramePlan& plan, s
   }
 }
 
-RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& history) {
+FrameWindow::Run FrameWindow::window_around(std::int32_t frame) const {
   const std::int32_t reach = renderer_->settings().accumulate.window;
-  held_.erase(held_.begin(), held_.lower_bound(request.frame - reach));
-  const auto own = requests_.find(request.frame);
-  auto first = own;
-  while (first != requests_.begin() && std::prev(first)->first + 1 == first->first &&
-         first->first > request.frame - reach) {
-    --first;
+  Run window{frame, frame};
+  while (window.first > frame - reach && requests_.contains(window.first - 1)) {
+    --window.first;
   }
-  std::vector<const ReconstructedFrame*> window;
-  TraceStats others;
-  StageTimes times_of_others;
-  std::size_t at = 0;
-  for (auto next = first; next != requests_.end() && next->first <= request.frame + reach; ++next) {
-    if (next != first && std::prev(next)->first + 1 != next->first) {
-      break;
-    }
-    auto held = held_.find(next->first);
-    if (held == held_.end()) {
-      held = held_.emplace(next->first, renderer_->reconstruct(*next->second)).first;
-      if (next != own && !counted_.contains(next->first)) {
-        add_traces(held->second.samples, others);
-        add_traces(held->second.first_look, others);
-        add_times(held->second.times, times_of_others);
+  while (window.last < frame + reach && requests_.contains(window.last + 1)) {
+    ++window.last;
+  }
+  return window;
+}
+
+bool FrameWindow::joins_next(std::int32_t earlier) const {
+  const AccumulateSettings& settings = renderer_->settings().accumulate;
+  const FrameRequest& later = request_of(earlier + 1);
+  return !(settings.blend > 0) && !eye_forbids(later, settings) && renderer_->at_rest(request_of(earlier), later) &&
+         same_sites(held_.at(earlier).traced.map, held_.at(earlier + 1).traced.map);
+}
+
+FrameWindow::Run FrameWindow::at_rest_with(std::int32_t frame, const Run& window) const {
+  Run run{frame, frame};
+  while (run.first > window.first && joins_next(run.first - 1)) {
+    --run.first;
+  }
+  while (run.last < window.last && joins_next(run.last)) {
+    ++run.last;
+  }
+  return run;
+}
+
+const Guides* FrameWindow::guides_of(const FrameRequest& request, StageTimes& times) {
+  if (!first_hits_ || !renderer_->at_rest(first_hits_->request, request)) {
+    first_hits_.reset();
+    first_hits_ = FirstHits{request, timed(times.guides_ms, [&] { return renderer_->guides(request); })};
+  }
+  return first_hits_->guides ? &*first_hits_->guides : nullptr;
+}
+
+const ReconstructedFrame& FrameWindow::alone(std::int32_t frame, bool read_by_others, StageTimes& times) {
+  Held& held = held_.at(frame);
+  const FrameRequest& request = request_of(frame);
+  if (!held.alone) {
+    const Guides* guides = guides_of(request, times);
+    held.alone = renderer_->reconstruct(request, held.traced, guides);
+    add_times(std::exchange(held.alone->times, {}), times);
+  }
+  if (read_by_others && held.alone->alone.frames == 0) {
+    renderer_->keep_history(*held.alone);
+    add_times(std::exchange(held.alone->times, {}), times);
+  }
+  return *held.alone;
+}
+
+const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame, bool beside_others,
+                                              StageTimes& times) {
+  const FrameRequest& request = request_of(frame);
+  if (!rested_ || rested_->run != run) {
+    rested_.reset();
+    const Guides* guides = guides_of(request, times);
+    TracedFrame all;
+    timed(times.temporal_ms, [&] {
+      std::vector<SamplesOfFrame> frames;
+      for (std::int32_t one = run.first; one <= run.last; ++one) {
+        const TracedFrame& traced = held_.at(one).traced;
+        frames.push_back({one, &traced.map, &traced.sparse});
       }
-    }
-    if (next == own) {
-      at = window.size();
-    }
-    window.push_back(&held->second);
+      SamplesAtRest sums = add_up(frames, guides != nullptr ? &guides->camera : nullptr, renderer_->settings().threads);
+      all.map = std::move(sums.map);
+      all.sparse = std::move(sums.sparse);
+      return true;
+    });
+    rested_ = Rested{run, renderer_->reconstruct(request, all, guides)};
+    add_times(std::exchange(rested_->frame.times, {}), times);
   }
-  RenderedFrame rendered = renderer_->join(window, at, history);
+  ReconstructedFrame& shown = rested_->frame;
+  if (beside_others && shown.alone.frames == 0) {  // what comes after it is compared with it, to find cuts
+    renderer_->keep_history(shown);
+    add_times(std::exchange(shown.times, {}), times);
+  }
+  const TracedFrame& own = held_.at(frame).traced;
+  shown.request = request;
+  shown.map = own.map;
+  shown.samples = own.sparse.stats;
+  shown.first_look = own.first_look;
+  shown.prediction = own.prediction;
+  return shown;
+}
+
+RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& history) {
+  const Run window = window_around(request.frame);
+  held_.erase(held_.begin(), held_.lower_bound(window.first));
+  TraceStats others;
+  StageTimes times;
+  for (std::int32_t frame = window.first; frame <= window.last; ++frame) {
+    if (held_.contains(frame)) {
+      continue;
+    }
+    const TracedFrame& traced =
+        held_.emplace(frame, Held{renderer_->trace(request_of(frame)), {}}).first->second.traced;
+    if (frame != request.frame && !counted_.contains(frame)) {
+      add_traces(traced.sparse.stats, others);
+      add_traces(traced.first_look, others);
+      add_times(traced.times, times);
+    }
+  }
+  add_times(held_.at(request.frame).traced.times, times);
+  const Run run = at_rest_with(request.frame, window);
+  std::vector<const ReconstructedFrame*> read;
+  // Before a saccade or blink nothing is read; that of the frame itself is looked at by join().
+  if (run.first == request.frame || !eye_forbids(request_of(run.first), renderer_->settings().accumulate)) {
+    for (std::int32_t frame = window.first; frame < run.first; ++frame) {
+      read.push_back(&alone(frame, true, times));
+    }
+  }
+  const std::size_t at = read.size();
+  for (std::int32_t frame = run.last + 1; frame <= window.last; ++frame) {
+    read.push_back(&alone(frame, true, times));
+  }
+  const ReconstructedFrame& own = run.first == run.last ? alone(request.frame, window.first != window.last, times)
+                                                        : rested(run, request.frame, run != window, times);
+  read.insert(read.begin() + static_cast<std::ptrdiff_t>(at), &own);
+  RenderedFrame rendered = renderer_->join(read, at, history);
   rendered.others = std::move(others);
-  add_times(times_of_others, rendered.times);
+  add_times(times, rendered.times);
   return rendered;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -11,22 +12,56 @@
 
 namespace gazetrace {
 
-// Holds at most 2 * AccumulateSettings::window + 1 reconstructed frames, which is all the memory that it takes.
+// Neighbours are read in one of two ways. Where nothing moves between them and a frame, and their sites are the same,
+// their samples are added to the frame's own before the filter (temporal/frames_at_rest.hpp). Others are looked up in
+// their own reconstructed pictures (temporal/two_sided.hpp).
+//
+// Holds the samples of at most 2 * AccumulateSettings::window + 1 frames, and the pictures of those that are looked up,
+// which is all the memory that it takes.
 class FrameWindow {
  public:
   // Keeps references to both, which must outlive it. `counted` are the frames whose own samples and times are counted
   // where they themselves are rendered.
   FrameWindow(const FrameRenderer& renderer, const FramePlan& plan, std::set<std::int32_t> counted);
 
-  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render(). Frames beside `counted`
-  // ones are counted in RenderedFrame::others of the first frame that reads them.
+  // Frames must be asked for in ascending order. `history` is as for FrameRenderer::render(). The samples of frames
+  // beside `counted` ones are counted in RenderedFrame::others of the first frame that reads them.
   RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
 
  private:
+  struct Held {
+    TracedFrame traced;
+    std::optional<ReconstructedFrame> alone;  // once it was looked up, or shown without neighbours at rest
+  };
+  // The first and the last of consecutive frames.
+  struct Run {
+    std::int32_t first = 0, last = 0;
+    friend bool operator==(const Run&, const Run&) = default;
+  };
+  struct Rested {
+    Run run;
+    ReconstructedFrame frame;
+  };
+  struct FirstHits {
+    FrameRequest request;  // whose they are
+    std::optional<Guides> guides;
+  };
+
+  [[nodiscard]] const FrameRequest& request_of(std::int32_t frame) const { return *requests_.at(frame); }
+  [[nodiscard]] Run window_around(std::int32_t frame) const;
+  // The frames of the window whose samples join those of the frame.
+  [[nodiscard]] Run at_rest_with(std::int32_t frame, const Run& window) const;
+  [[nodiscard]] bool joins_next(std::int32_t earlier) const;
+  const Guides* guides_of(const FrameRequest& request, StageTimes& times);
+  const ReconstructedFrame& alone(std::int32_t frame, bool read_by_others, StageTimes& times);
+  const ReconstructedFrame& rested(const Run& run, std::int32_t frame, bool beside_others, StageTimes& times);
+
   const FrameRenderer* renderer_;
   std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included
   std::set<std::int32_t> counted_;
-  std::map<std::int32_t, ReconstructedFrame> held_;
+  std::map<std::int32_t, Held> held_;
+  std::optional<Rested> rested_;  // the last one: while nothing moves, the next frame may be the same
+  std::optional<FirstHits> first_hits_;
 };
 
 }  // namespace gazetrace

@@ -6,10 +6,15 @@
 
 #include "gazetrace/frame_renderer.hpp"
 #include "pipeline/frame_stages.hpp"
+#include "temporal/same_camera.hpp"
 #include "temporal/two_sided.hpp"
 
 namespace gazetrace {
 namespace {
+
+PosedScene scene_of(PathTracer& tracer, const FrameRequest& request) {
+  return tracer.at({request.shutter_open_ns, request.shutter_close_ns});
+}
 
 OtherView view_of(const FrameRequest& request) {
   return {request.camera, request.t_video_ns};
@@ -31,32 +36,51 @@ std::vector<std::size_t> outwards(const WindowReach& reach, std::size_t own) {
 
 }  // namespace
 
-ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request) const {
-  TracedFrame traced = trace(request);
+std::optional<Guides> FrameRenderer::guides(const FrameRequest& request) const {
+  const auto wanted = reconstruction_.guide_settings(settings_.trace);
+  if (!wanted) {
+    return std::nullopt;
+  }
+  return scene_of(*tracer_, request).guides(request.camera, request.width_px, request.height_px, *wanted);
+}
+
+bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const {
+  return !tracer_->moves() && a.width_px == b.width_px && a.height_px == b.height_px && same_camera(a.camera, b.camera);
+}
+
+ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request, const TracedFrame& traced,
+                                              const Guides* guides) const {
   ReconstructedFrame done;
   done.request = request;
-  done.times = traced.times;
-  const PosedScene scene = tracer_->at({request.shutter_open_ns, request.shutter_close_ns});
-  std::optional<Guides> guides;
-  if (const auto wanted = reconstruction_.guide_settings(settings_.trace)) {
-    guides = timed(done.times.guides_ms,
-                   [&] { return scene.guides(request.camera, request.width_px, request.height_px, *wanted); });
-  }
-  done.frame = timed(done.times.reconstruct_ms, [&] {
-    return reconstruction_.frame(traced.sparse, traced.map, guides ? &*guides : nullptr, settings_.threads);
-  });
-  if (settings_.accumulate.window > 0) {
-    done.alone = timed(done.times.temporal_ms, [&] {
-      const SurfaceMotion motion =
-          scene.surface_motion(request.camera, traced.map.width_px, traced.map.height_px, view_of(request));
-      return history_of_frame(done.frame, traced.map, motion, request, settings_.threads);
-    });
-  }
+  done.frame = timed(done.times.reconstruct_ms,
+                     [&] { return reconstruction_.frame(traced.sparse, traced.map, guides, settings_.threads); });
   done.light = filtered_light(traced, done.times);
-  done.map = std::move(traced.map);
-  done.samples = std::move(traced.sparse.stats);
-  done.first_look = std::move(traced.first_look);
+  done.map = traced.map;
+  done.samples = traced.sparse.stats;
+  done.first_look = traced.first_look;
   done.prediction = traced.prediction;
+  return done;
+}
+
+void FrameRenderer::keep_history(ReconstructedFrame& frame) const {
+  const FrameRequest& request = frame.request;
+  frame.alone = timed(frame.times.temporal_ms, [&] {
+    const SurfaceMotion motion =
+        scene_of(*tracer_, request)
+            .surface_motion(request.camera, frame.map.width_px, frame.map.height_px, view_of(request));
+    return history_of_frame(frame.frame, frame.map, motion, request, settings_.threads);
+  });
+}
+
+ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request) const {
+  const TracedFrame traced = trace(request);
+  StageTimes times = traced.times;
+  const std::optional<Guides> first_hits = timed(times.guides_ms, [&] { return guides(request); });
+  ReconstructedFrame done = reconstruct(request, traced, first_hits ? &*first_hits : nullptr);
+  if (settings_.accumulate.window > 0) {
+    keep_history(done);
+  }
+  add_times(times, done.times);
   return done;
 }
 
@@ -79,13 +103,13 @@ RenderedFrame FrameRenderer::join(const std::vector<const ReconstructedFrame*>& 
     if (order.empty()) {
       return frame.frame;
     }
-    const PosedScene scene = tracer_->at({request.shutter_open_ns, request.shutter_close_ns});
+    const PosedScene scene = scene_of(*tracer_, request);
     NeighbourSums sums(frame.frame, frame.map, settings_.accumulate, settings_.threads);
     SurfaceMotion motion;
     for (const std::size_t other : order) {
       motion = scene.surface_motion(request.camera, frame.map.width_px, frame.map.height_px,
                                     view_of(window[other]->request));
-      sums.add(window[other]->alone, motion, static_cast<int>(other) - static_cast<int>(own));
+      sums.add(window[other]->alone, motion, window[other]->request.frame - request.frame);
     }
     return sums.joined(motion);
   });

@@ -5,13 +5,10 @@
 
 #include "core/parallel.hpp"
 #include "gazetrace/temporal.hpp"
+#include "temporal/same_camera.hpp"
 
 namespace gazetrace {
 namespace {
-
-bool same_camera(const Camera& a, const Camera& b) {
-  return a.pose == b.pose && a.projection == b.projection && a.lens == b.lens && a.shutter_poses == b.shutter_poses;
-}
 
 bool fits(const TemporalHistory& history, const Frame& frame, const Camera& camera) {
   return history.frames > 0 && history.camera && same_camera(*history.camera, camera) &&

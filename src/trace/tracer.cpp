@@ -298,6 +298,10 @@ PathTracer::~PathTracer() = default;
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer& PathTracer::operator=(PathTracer&&) noexcept = default;
 
+bool PathTracer::moves() const {
+  return !(impl_->scene->motions.empty() && impl_->scene->deformations.empty());
+}
+
 PosedScene PathTracer::at(const ShutterTimes& times) {
   return {*impl_, times};
 }

@@ -5,7 +5,8 @@
   fixed_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--display desktop|hmd|WxH@PPD] [--frames 24]
                    [--gazes "0.5,0.5 0.25,0.6 0.75,0.35"] [--targets 8.5,9,9.5] [--budgets 0.5,1,2,4,8,16]
                    [--accumulate "two-sided --accumulate-window 8"]
-                   [--wrong-budget 4] [--reference-spp 4096] [--inner 96] [--margin 32] [--stride 480] [--whole] [--paper]
+                   [--wrong-budget 4] [--reference-spp 4096] [--raw-rates 1,4,16,...,65536] [--inner 96] [--margin 32] [--stride 480] [--whole] [--paper]
+                   [--tool-in-windows]
 
 OPTIONS are those of `gazetrace render`. `desktop` is 61 degrees wide at 28 pixels a degree, `hmd` 87 x 93 degrees at 13.
 Clips are views at rest at 24 frames a second; one reference stands for all frames.
@@ -25,9 +26,16 @@ frames between. Those of raw frames follow from whole frames at 2 and 10 samples
 `--falloff visible --filter guided --accumulate ...` at each budget, with the gaze, without any, and (`--wrong-budget`) with the
 gaze where it was not. Costs at a target are interpolated in their logarithm between the two budgets around it, and never beyond
 the smallest and the largest one. `--paper`: what the preset `paper` costs and scores, and what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are used again. Needs numpy and OpenEXR.
+
+`--tool-in-windows`, where whole frames are too dear: the tool chooses its rates for one whole frame (`--falloff visible`), and
+the clip is traced with these rates in the windows only. What it would have cost follows from what a sample of that whole frame
+took, for all samples of all frames that the clip reads (those after its end as well), and from what the clip took beside its
+samples, which it takes for the whole frame: first hits, sums, filter, files. The same price of a sample is that of raw frames.
+Everything is processor time, so that other work on the machine matters less.
 """
 
 import argparse
+import csv
 import json
 import math
 import pathlib
@@ -44,7 +52,6 @@ import OpenEXR
 DISPLAYS = {"desktop": (1708, 961, 28), "hmd": (1131, 1209, 13)}
 FRAMES_PER_SECOND = 24
 RAW_SPP = 16
-RAW_RATES = [4.0**k for k in range(0, 9)]  # samples a pixel
 OUTSIDE_SPP = 1 / 256
 METRICS = ("fovvideovdp", "flicker")
 
@@ -128,7 +135,7 @@ class Scene:
     def render(self, name, frames, *options):
         """The folder of the frames."""
         folder = self.folder / name
-        if not (folder / "done").exists():
+        if not (folder / "done").exists() or name not in self.costs:
             shutil.rmtree(folder, ignore_errors=True)
             seconds = run(self.asked.program, "render", *self.options, "--size", self.bench.size, *self.bench.screen, "--frames",
                           frames, "--fps", FRAMES_PER_SECOND, "--exr-pixels", "half", "--quiet", "-o",
@@ -186,6 +193,57 @@ class Scene:
             shutil.rmtree(work)
         return {s["metric"]: s["value"] for s in json.loads(record.read_text())["sequence"][0]["scores"]}
 
+    def traced(self, name):
+        """Samples and processor seconds of tracing, of all rows."""
+        with open(self.folder / name / "timing.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        return (sum(int(row["samples"]) for row in rows), sum(float(row["trace_cpu_ms"]) for row in rows) / 1000,
+                sum(int(row["pilot_samples"]) for row in rows))
+
+    def loading(self):
+        if "loading" not in self.costs:
+            self.costs["loading"] = run(self.asked.program, "render", *self.options, "--size", "8x8", "--falloff", "uniform", "--spp", "1",
+                                        "--filter", "none", "--quiet", "--overwrite", "-o", self.folder / "loading.exr")
+        return self.costs["loading"]
+
+    def seconds_of_sample(self):
+        """Of a whole frame's samples."""
+        self.rates(self.asked.budgets[0], None)
+        name = f"rates-of-nowhere-{self.asked.budgets[0]:g}"
+        samples, seconds, pilot = self.traced(name)
+        return seconds / (samples - pilot)
+
+    def beside_samples(self, name, frames):
+        """Processor seconds a frame that the clip took for all but its samples."""
+        return max(self.costs[name] - self.traced(name)[1] - self.loading(), 0) / frames
+
+    def rates(self, budget, looks_at):
+        """The rates that the tool chooses for a whole frame."""
+        name = f"rates-of-{'nowhere' if looks_at is None else looks_at.replace(',', '_')}-{budget:g}"
+        folder = self.render(name, "1", "--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided", "--max-block", "1",
+                             "--map", self.folder / f"{name}.exr", "--overwrite",
+                             *(["--gaze-at", looks_at] if looks_at is not None else []))
+        assert folder.exists()
+        with OpenEXR.File(str(self.folder / f"{name}.exr"), separate_channels=True) as file:
+            return file.channels()["samples_per_pixel"].pixels.astype(numpy.float32), self.traced(name)[0]
+
+    def tool_in_windows(self, gaze, looks_at, budget):
+        told = "nowhere" if looks_at is None else looks_at.replace(",", "_")
+        name = f"in-windows-{self.asked.accumulate.replace(' ', '')}-{told}-{budget:g}"
+        rates, samples_of_frame = self.rates(budget, looks_at)
+        path = self.folder / f"{name}.exr"
+        write_exr(path, {"Y": numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP)})
+        frames = self.asked.frames
+        folder = self.render(name, f"1-{frames}", "--falloff", "map", "--density-map", path, "--max-block", "1", "--filter", "guided",
+                             *(["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []))
+        # How many frames were traced for those that are shown.
+        in_windows = float(numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP).sum())
+        traced_frames = self.traced(name)[0] / in_windows
+        cost = self.seconds_of_sample() * samples_of_frame * traced_frames / frames + self.beside_samples(name, frames)
+        print(f"  {name}: {samples_of_frame / rates.size:.2f} samples a pixel of {traced_frames:.1f} frames for {frames}, beside samples "
+              f"{self.beside_samples(name, frames) / self.seconds_of_sample() / rates.size:.2f} a pixel", flush=True)
+        return cost, self.score(name, gaze, lambda frame: read_exr(folder / f"f.{frame:04d}.exr")), budget
+
     def frame_cost(self, name, *options):
         """Processor seconds of one of the clip's frames, and the folder."""
         folder = self.render(name, f"1-{self.asked.frames}", *options)
@@ -196,6 +254,10 @@ class Scene:
 
     def raw_curve(self, gaze):
         """(cost, scores, rate) by rate."""
+        clip = self.in_windows("raw", f"1-{self.asked.frames}", RAW_SPP, 11)
+        if self.asked.tool_in_windows:
+            pixels = self.bench.windows.is_traced.size
+            return self.raw_scores(gaze, clip, self.beside_samples("raw", self.asked.frames), pixels * self.seconds_of_sample())
         for spp in (2, 10):
             for frames in ("1", "1-3"):
                 name = f"cost-{spp}-{frames}"
@@ -204,9 +266,11 @@ class Scene:
         of_frame = {spp: (self.costs[f"cost-{spp}-1-3"] - self.costs[f"cost-{spp}-1"]) / 2 for spp in (2, 10)}
         of_sample = (of_frame[10] - of_frame[2]) / 8
         fixed = max(of_frame[2] - 2 * of_sample, 0)
-        clip = self.in_windows("raw", f"1-{self.asked.frames}", RAW_SPP, 11)
+        return self.raw_scores(gaze, clip, fixed, of_sample)
+
+    def raw_scores(self, gaze, clip, fixed, of_sample):
         curve = []
-        for rate in RAW_RATES:
+        for rate in self.asked.raw_rates:
             scale = math.sqrt(RAW_SPP / rate)
             scores = self.score(f"raw-{rate:g}", gaze,
                                 lambda frame, s=scale: self.truth + s * (read_exr(clip / f"f.{frame:04d}.exr") - self.truth))
@@ -231,6 +295,8 @@ class Scene:
         return curve
 
     def tool(self, gaze, looks_at, budget):
+        if self.asked.tool_in_windows:
+            return self.tool_in_windows(gaze, looks_at, budget)
         told = "nowhere" if looks_at is None else looks_at.replace(",", "_")
         name = f"tool-{self.asked.accumulate.replace(' ', '')}-{told}-{budget:g}"
         options = ["--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided"]
@@ -279,7 +345,7 @@ class Bench:
         scene.prepare()
         for k, gaze in enumerate(self.gazes):
             raw = scene.raw_curve(gaze)
-            if k == 0:
+            if k == 0 and 64 in self.asked.raw_rates:
                 scene.check_scaling(gaze)
             curves = {"raw": raw, "no gaze": scene.tool_curve(gaze, None), "gaze": scene.tool_curve(gaze, gaze)}
             for which, curve in curves.items():
@@ -336,6 +402,8 @@ def main():
     parser.add_argument("--accumulate", default="two-sided --accumulate-window 8")
     parser.add_argument("--wrong-budget", type=float, default=0)
     parser.add_argument("--reference-spp", type=int, default=4096)
+    parser.add_argument("--raw-rates", default=",".join(str(4**k) for k in range(9)))
+    parser.add_argument("--tool-in-windows", action="store_true")
     parser.add_argument("--inner", type=int, default=96)
     parser.add_argument("--margin", type=int, default=32)
     parser.add_argument("--stride", type=int, default=480)
@@ -344,6 +412,7 @@ def main():
     asked = parser.parse_args()
     asked.targets = sorted(float(t) for t in asked.targets.split(","))
     asked.budgets = sorted(float(b) for b in asked.budgets.split(","))
+    asked.raw_rates = sorted(float(r) for r in asked.raw_rates.split(","))
     bench = Bench(asked)
     print("| scene | gaze | JOD | raw uniform | tool without gaze | tool with gaze | raw over tool | without over with gaze |\n|"
           + " --- |" * 8, flush=True)

@@ -200,6 +200,83 @@ TEST(TwoSidedRender, ErrorFallsWithTheWindowAsFromOneSide) {
   EXPECT_LT(four, 1.2 * past);
 }
 
+PipelineSettings guided(AccumulateMode mode, int window, std::uint32_t spp) {
+  PipelineSettings settings = settings_of(mode, window);
+  settings.foveation.falloff = "uniform";
+  settings.foveation.uniform_spp = spp;
+  settings.reconstruction.filter = "guided";
+  return settings;
+}
+
+// While nothing moves, a filter sees the samples of the whole window: its error is that of one frame with as many, in
+// which there is less bias than in the mean of what it made of each frame's few.
+TEST(TwoSidedRender, AFilterSeesAllSamplesOfTheWindowWhileNothingMoves) {
+  const Scene scene = room(false);
+  PipelineSettings exact = settings_of(AccumulateMode::off);
+  exact.foveation.falloff = "uniform";
+  exact.foveation.uniform_spp = 2048;
+  exact.reconstruction.filter = "none";
+  exact.trace.seed = 99;
+  const Frame reference = render(scene, plan_of({1}, {}, false), exact).at(1);
+  const auto window = render(scene, plan_of(numbers(1, 9), {}, false), guided(AccumulateMode::two_sided, 4, 4));
+  const auto apart = render(scene, plan_of(numbers(1, 9), {}, false), guided(AccumulateMode::off, 0, 4));
+  const Frame single = render(scene, plan_of({1}, {}, false), guided(AccumulateMode::off, 0, 36)).at(1);
+  Frame mean = apart.at(1);
+  for (std::size_t i = 0; i < mean.radiance.pixels.size(); ++i) {
+    Vec3d sum;
+    for (const auto& [number, frame] : apart) {
+      sum += to_double(frame.radiance.pixels[i]);
+    }
+    mean.radiance.pixels[i] = to_float(sum / 9.0);
+  }
+  const double joined = error_of(window.at(5), reference);
+  EXPECT_LT(joined, 1.5 * error_of(single, reference));
+  EXPECT_LT(joined, 0.8 * error_of(mean, reference));
+  EXPECT_NE(window.at(1).radiance, window.at(5).radiance) << "the first frame reads four others, the fifth eight";
+}
+
+TEST(TwoSidedRender, AFrameAtRestDoesNotDependOnWhichOthersAreRendered) {
+  const Scene scene = room(false);
+  PipelineSettings settings = guided(AccumulateMode::two_sided, 2, 1);
+  const auto whole = render(scene, plan_of(numbers(1, 9), {}, false), settings);
+  settings.threads = 1;
+  const auto middle = render(scene, plan_of({4, 6}, {2, 3, 5, 7, 8}, false), settings);
+  expect_same_bits(middle.at(4), whole.at(4));
+  expect_same_bits(middle.at(6), whole.at(6));
+}
+
+// A camera that stops, and later goes on: its frames at rest join their samples, and look up those from before and
+// after.
+TEST(TwoSidedRender, FramesAtRestAreReadBesideThoseThatMove) {
+  const Scene scene = room(false);
+  FramePlan plan = plan_of(numbers(1, 3), {}, true);
+  for (const int frame : numbers(4, 8)) {
+    FrameRequest request = request_of(frame, false);
+    request.camera = plan.frames.back().camera;
+    plan.frames.push_back(request);
+  }
+  const auto count = [](const Frame& frame) {
+    double sum = 0;
+    for (const float samples : frame.sample_count.pixels) {
+      sum += static_cast<double>(samples);
+    }
+    return sum / static_cast<double>(frame.sample_count.pixels.size());
+  };
+  FrameRequest next = request_of(9, false);
+  next.camera = plan.frames[1].camera;
+  plan.frames.push_back(next);
+  const auto frames = render(scene, plan, guided(AccumulateMode::two_sided, 2, 4));
+  EXPECT_NEAR(count(frames.at(6)), 5 * 4, 1e-3) << "4 to 8, all at rest";
+  EXPECT_GT(count(frames.at(4)), 4 * 4 + 0.5) << "3 to 6 at rest, and what 2 saw";
+  EXPECT_GT(count(frames.at(8)), 3 * 4 + 0.5) << "6 to 8 at rest, and what 9 saw";
+  FramePlan end;
+  end.frames = {plan.frames[3], plan.frames[4]};
+  end.around = {plan.frames[1], plan.frames[2], plan.frames[5], plan.frames[6]};
+  const auto again = render(scene, end, guided(AccumulateMode::two_sided, 2, 4));
+  expect_same_bits(again.at(4), frames.at(4));
+  expect_same_bits(again.at(5), frames.at(5));
+}
+
 // A light goes on between two frames. What shows of it before is no more than what shows after a light has gone out,
 // from one side.
 TEST(TwoSidedRender, WhatIsStillToComeDoesNotShow) {

@@ -61,6 +61,21 @@ void SurfaceSorter::add(const SurfaceBatch& batch, std::size_t slot, const Vec3d
   ++surface.count;
 }
 
+void SurfaceSorter::add(const SurfaceSums& sums, std::uint8_t half) {
+  const float share = 1.0F / static_cast<float>(sums.count);
+  const float length = std::sqrt(dot(sums.normal, sums.normal));
+  Surface& surface = surface_of(sums.kind, (length > 0 ? 1.0F / length : 0.0F) * sums.normal, share * sums.position_m);
+  surface.reflected += to_double(sums.reflected);
+  surface.albedo += to_double(sums.albedo);
+  surface.normal += to_double(sums.normal);
+  surface.place += to_double(sums.position_m);
+  surface.square += static_cast<double>(sums.square);
+  surface.halves.luminance[half] += luminance(to_double(sums.reflected));
+  surface.halves.count[half] += sums.count;
+  surface.albedo_of_half[half] += luminance(to_double(sums.albedo));
+  surface.count += sums.count;
+}
+
 void SurfaceSorter::finish_site(const std::array<std::uint32_t, 2>& samples, std::vector<SurfaceSums>& out) {
   for (std::size_t k = 0; k < used_; ++k) {
     const Surface& s = surfaces_[k];

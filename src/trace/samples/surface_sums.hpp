@@ -49,6 +49,8 @@ class SurfaceSorter {
 
   // `radiance` must be finite. Samples that miss, and those on unlit surfaces, are left out.
   void add(const SurfaceBatch& batch, std::size_t slot, const Vec3d& radiance, std::uint8_t half);
+  // Sums of a surface of the same site, all of whose samples belong to `half`.
+  void add(const SurfaceSums& sums, std::uint8_t half);
   // Appends the site's surfaces and starts a new site. `samples`: of each half, in all; 0 leaves out albedo_difference.
   void finish_site(const std::array<std::uint32_t, 2>& samples, std::vector<SurfaceSums>& out);
 
