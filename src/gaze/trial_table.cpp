@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -25,13 +26,18 @@ class TrialTable {
       GazeTrial trial;
       trial.name = name_ ? text_of(*name_) : "";
       trial.begin_ns = time_of(onset_, onset_is_ns_ ? 0 : kSecondsToNs);
-      if (offset_) {
-        trial.end_ns = time_of(*offset_, 0);
-      } else if (__builtin_add_overflow(trial.begin_ns, time_of(*duration_, kSecondsToNs), &trial.end_ns)) {
-        fail("the trial ends ages after it begins");
-      }
-      if (trial.end_ns < trial.begin_ns) {
+      const bool fits =
+          offset_ || !__builtin_add_overflow(trial.begin_ns, time_of(*duration_, kSecondsToNs), &trial.end_ns);
+      trial.end_ns = offset_ ? time_of(*offset_, 0) : trial.end_ns;
+      if (fits && trial.end_ns < trial.begin_ns) {
         fail("the trial ends before it begins");
+      }
+      // As of a log: durations are taken everywhere, and half of what an int64 holds leaves room for their sums.
+      std::int64_t duration_ns = 0;
+      if (!fits || __builtin_sub_overflow(trial.end_ns, trial.begin_ns, &duration_ns) ||
+          duration_ns > std::numeric_limits<std::int64_t>::max() / 2) {
+        fail("the trial lasts more than a hundred years",
+             "give onset and duration in seconds, or onset_ns and offset_ns");
       }
       trials.push_back(std::move(trial));
     }

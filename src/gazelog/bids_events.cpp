@@ -93,22 +93,29 @@ std::string seconds_since(std::int64_t t_ns, std::int64_t first_ns) {
 }
 
 // What happened in the run: when it was recorded, and the messages of the experiment. What the eye did stands in
-// physioevents, as the standard asks.
+// physioevents, as the standard asks; so do all messages. Those of more than a minute before the first sample, such as
+// EyeLink's at the start of its file, are no events of the run, and the official validator suspects them of being
+// damaged.
 std::string run_events_table(const GazeLog& log) {
   struct RunEvent {
     std::int64_t begin_ns, end_ns;
     std::string_view type;
     std::string message;
   };
+  constexpr std::int64_t kMinuteNs = 60'000'000'000;
+  const std::int64_t first_ns = log.samples.front().t_ns;
+  const auto is_long_before = [&](std::int64_t t_ns) {
+    std::int64_t before_ns = 0;
+    return t_ns < first_ns && (__builtin_sub_overflow(first_ns, t_ns, &before_ns) || before_ns > kMinuteNs);
+  };
   std::vector<RunEvent> rows;
   for (const GazeEvent& event : log.events) {
     if (event.type == GazeEventType::segment) {
       rows.push_back({event.begin_ns, event.end_ns, "recording", {}});
-    } else if (event.type == GazeEventType::message) {
+    } else if (event.type == GazeEventType::message && !is_long_before(event.begin_ns)) {
       rows.push_back({event.begin_ns, event.begin_ns, "message", event.text});
     }
   }
-  const std::int64_t first_ns = log.samples.front().t_ns;
   if (std::none_of(rows.begin(), rows.end(), [](const RunEvent& row) { return row.type == "recording"; })) {
     rows.push_back({first_ns, log.samples.back().t_ns, "recording", {}});
   }

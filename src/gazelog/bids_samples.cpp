@@ -152,9 +152,8 @@ class RecordingWriter {
                                               ? "The pupil, as the tracker gives it; the log does not state whether "
                                                 "it is an area or a diameter"
                                               : "The diameter of the pupil, as the tracker gives it"}};
-    if (!unit.empty()) {
-      json["pupil_size"]["Units"] = is_bare ? "arbitrary" : unit;
-    }
+    // Without units the official validator takes the column for one of texts.
+    json["pupil_size"]["Units"] = is_bare || unit.empty() ? "arbitrary" : unit;
     if (is_bare) {
       json["pupil_size"]["Measure"] = unit;  // a key of gazetrace's own
     }

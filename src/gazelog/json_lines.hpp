@@ -31,10 +31,10 @@ inline std::optional<std::int64_t> json_time_ns(const JsonLeaves& json, std::str
   return t_ns;
 }
 
-// Calls use(json, line number, place) for each line. A last line that was cut off is left out with a warning, because
-// recordings end like this when the battery is empty.
+// Calls use(json, line number, place) for each line. A last line that was cut off is left out and told among `damages`,
+// because recordings end like this when the battery is empty.
 template <class Use>
-void for_each_json_line(const GazeFile& file, Warnings& warnings, const Use& use) {
+void for_each_json_line(const GazeFile& file, Warnings& damages, const Use& use) {
   LineReader lines(file.text);
   for (std::string_view line; lines.next(line);) {
     if (trim(line).empty()) {
@@ -48,7 +48,7 @@ void for_each_json_line(const GazeFile& file, Warnings& warnings, const Use& use
       if (!lines.rest().empty() || file.text.ends_with('\n') || lines.number() == 1) {
         throw;
       }
-      warnings.push_back(place + ": the last line is cut off; left out");
+      damages.push_back(place + ": the last line is cut off; left out");
       return;
     }
     use(*json, lines.number(), place);

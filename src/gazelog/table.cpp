@@ -464,13 +464,16 @@ std::int64_t TableRows::time_ns(std::size_t column, const TimeScale& scale) {
   fail(fmt::format("time '{}' is not a number", text.substr(0, 60)), "remove or mend the row");
 }
 
-void TableRows::fail(const std::string& problem, std::string_view remedy) const {
+void refuse_zero_bytes(const std::vector<std::string_view>& cells, const std::string& place) {
   const auto has_zeros = [](std::string_view cell) { return cell.find('\0') != std::string_view::npos; };
-  if (std::any_of(cells_.begin(), cells_.end(), has_zeros)) {
-    throw Error(ErrorKind::input, place_of(file_, line_),
-                "bytes of value zero stand in this row, as after a crash or on a full disk",
+  if (std::any_of(cells.begin(), cells.end(), has_zeros)) {
+    throw Error(ErrorKind::input, place, "bytes of value zero stand in this row, as after a crash or on a full disk",
                 "copy the file again, or remove the row");
   }
+}
+
+void TableRows::fail(const std::string& problem, std::string_view remedy) const {
+  refuse_zero_bytes(cells_, place_of(file_, line_));
   throw Error(ErrorKind::input, place_of(file_, line_), problem, remedy);
 }
 

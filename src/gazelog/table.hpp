@@ -68,6 +68,10 @@ struct TimeScale {
   std::int64_t subtract = 0;  // in the unit of the stamps, which are whole numbers then
 };
 
+// Refuses a row of which a cell holds bytes of value zero, as after a crash: what is wrong with it otherwise follows
+// from them.
+void refuse_zero_bytes(const std::vector<std::string_view>& cells, const std::string& place);
+
 // Goes through the rows. Blank lines, comments and repetitions of the header are skipped.
 class TableRows {
  public:

@@ -276,7 +276,7 @@ void even_out(const XdfStream& stream, std::vector<double>& times_s) {
 
 }  // namespace
 
-std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path, Warnings& warnings,
+std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path, Warnings& damages,
                                 void (*read_header)(XdfStream& stream)) {
   std::vector<XdfStream> streams;
   std::string_view rest = bytes.substr(std::min<std::size_t>(4, bytes.size()));  // "XDF:"
@@ -300,8 +300,8 @@ std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path,
     rest.remove_prefix(boundary + kBoundary.size());
   }
   if (damaged > 0) {
-    warnings.push_back(fmt::format("{}: {} damaged or cut off {}; what could be read is used", path, damaged,
-                                   damaged == 1 ? "chunk" : "chunks"));
+    damages.push_back(fmt::format("{}: {} damaged or cut off {}; what could be read is used", path, damaged,
+                                  damaged == 1 ? "chunk" : "chunks"));
   }
   return streams;
 }

@@ -28,8 +28,8 @@ struct XdfStream {
 };
 
 // `read_header` fills channels, channel_format and nominal_rate_hz from the XML. Streams of strings keep no values.
-// After a damaged chunk, reading goes on at the next boundary, with a warning.
-std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path, Warnings& warnings,
+// After a damaged chunk, reading goes on at the next boundary, and `damages` tells of it.
+std::vector<XdfStream> read_xdf(std::string_view bytes, const std::string& path, Warnings& damages,
                                 void (*read_header)(XdfStream& stream));
 
 // Puts the times on the common clock by adding offsets from a robust linear fit, which starts anew where the clock was

@@ -14,11 +14,11 @@ import harness
 VALIDATOR = os.environ.get("BIDS_VALIDATOR") or shutil.which("bids-validator-deno")
 
 
-def eyelink():
+def eyelink(starts=(10_000, 20_000), pupil=("PUPIL\tAREA",)):
     lines = ["** CONVERTED FROM x.edf using edfapi", "** EYELINK II 1", "MSG\t1 DISPLAY_COORDS 0 0 1919 1079",
              "MSG\t9000 !CAL VALIDATION HV9 LR LEFT GOOD ERROR 0.35 avg. 0.48 max OFFSET 0.18 deg. -6.4,-0.9 pix."]
-    for block, start in enumerate((10_000, 20_000)):
-        lines += [f"MSG\t{start - 2} TRIALID {block + 1}", f"START\t{start} \tLEFT\tSAMPLES\tEVENTS", "PUPIL\tAREA",
+    for block, start in enumerate(starts):
+        lines += [f"MSG\t{start - 2} TRIALID {block + 1}", f"START\t{start} \tLEFT\tSAMPLES\tEVENTS", *pupil,
                   "SAMPLES\tGAZE\tLEFT\tRATE\t250.00\tTRACKING\tCR"]
         lines += [f"{start + 4 * i}\t{960 + i % 5:.1f}\t540.0\t900.0\t..." for i in range(250)]
         lines += [f"EFIX L\t{start}\t{start + 996}\t1000\t962.0\t540.0\t900", f"END\t{start + 1000} \tSAMPLES\tEVENTS\tRES\t35.00\t35.00"]
@@ -46,7 +46,10 @@ class BidsValidator(harness.CliTest):
         self.write("eyelink.asc", eyelink())
         self.write("eyes.csv", two_eyes())
         self.run_ok("gaze", "synth", "-o", "head.csv", "--head", "--duration", "5s")
-        return [self.data_set("one", "eyelink.asc", "--keep-ids"), self.data_set("two", "eyes.csv"), self.data_set("three", "head.csv")]
+        # Of no stated measure of the pupil, and with messages of long before the recording.
+        self.write("bare.asc", eyelink((100_000, 110_000), pupil=()))
+        return [self.data_set("one", "eyelink.asc", "--keep-ids"), self.data_set("two", "eyes.csv"), self.data_set("three", "head.csv"),
+                self.data_set("four", "bare.asc", "--keep-ids")]
 
     @unittest.skipUnless(VALIDATOR, "bids-validator-deno is not installed")
     def test_the_validator_reports_nothing(self):
@@ -58,7 +61,7 @@ class BidsValidator(harness.CliTest):
             self.assertEqual(issues, [], root.name)
 
     def test_what_the_standard_asks_for(self):
-        one, two, _ = self.sets()
+        one, two, _, four = self.sets()
         func = one / "sub-01/func"
         table = (func / "sub-01_task-view_events.tsv").read_text().splitlines()
         self.assertEqual(table[0].split("\t")[:3], ["onset", "duration", "trial_type"])
@@ -78,6 +81,18 @@ class BidsValidator(harness.CliTest):
         kinds = ("# calibration", "# event fixation", "t[ns]")
         again, first = ([line for line in (self.folder / name).read_text().splitlines() if line.startswith(kinds)] for name in ("again.csv", "first.csv"))
         self.assertEqual(again, first)
+
+        # A message of long before the recording is no event of the run, and is kept beside what the eye did.
+        func = four / "sub-01/func"
+        table = (func / "sub-01_task-view_events.tsv").read_text()
+        self.assertIn("TRIALID 1", table)
+        self.assertNotIn("DISPLAY_COORDS", table)
+        self.assertIn(b"DISPLAY_COORDS", gzip.decompress((func / "sub-01_task-view_recording-eye1_physioevents.tsv.gz").read_bytes()))
+        self.assertEqual(json.loads((func / "sub-01_task-view_recording-eye1_physio.json").read_text())["pupil_size"]["Units"], "arbitrary")
+        self.run_ok("gaze", "convert", func / "sub-01_task-view_recording-eye1_physio.tsv.gz", "-o", "bare.csv")
+        self.run_ok("gaze", "convert", "bare.asc", "-o", "own.csv")
+        headers = [next(line for line in (self.folder / name).read_text().splitlines() if line.startswith("t[ns]")) for name in ("bare.csv", "own.csv")]
+        self.assertEqual(*headers)
 
     def test_calibrations_by_the_standards_names_are_read(self):
         self.write("sub-1_physio.tsv.gz", gzip.compress(b"".join(b"%d\t960\t540\n" % (4 * i) for i in range(100))))

@@ -43,6 +43,24 @@ class DamagedFiles(harness.CliTest):
         self.assertIn("zeros.csv:301: 4096 bytes of value zero", warnings)
         self.assertIn("damaged", self.accused("zeros.csv"))
 
+    def test_files_without_their_end_are_no_whole_ones(self):
+        """Where the format itself tells that an end is missing, the doctor says so, too."""
+        head = "** CONVERTED FROM x.edf\nMSG\t1 DISPLAY_COORDS 0 0 1919 1079\nSTART\t5000 \tLEFT\tSAMPLES\tEVENTS\n"
+        samples = "".join(f"{5000 + 4 * i}\t{960 + i % 7}.0\t540.0\t900.0\t...\n" for i in range(300))
+        glasses = "".join('{"type":"gaze","timestamp":%.2f,"data":{"gaze2d":[0.5,0.%d],"eyeleft":{"gazeorigin":[30,0,0],"gazedirection":'
+                          '[0,0,1],"pupildiameter":3},"eyeright":{}}}\n' % (i / 50, 40 + i % 9) for i in range(300))
+        for name, text, words in (("block.asc", head + samples, "no END"), ("gazedata", glasses[:-40], "the last line is cut off")):
+            self.write(name, text)
+            report = self.inspect(name)
+            self.assertIn(words, " ".join(f["what"] for f in report["findings"] if f["code"] == "damaged"), name)
+            self.assertNotIn("nothing suspicious", report["verdict"])
+        self.write("block.asc", head + samples + "END\t6200 \tSAMPLES\tEVENTS\tRES\t35.00\t35.00\n")
+        self.assertEqual(self.accused("block.asc"), [])
+        # A disk that was full in the middle of an EyeLink's row.
+        self.write("zeros.asc", head + samples[:4000] + "\0" * 300 + samples[4300:])
+        line = 4 + samples[:4000].count("\n")
+        self.assert_refused(["gaze", "inspect", "zeros.asc"], [f"zeros.asc:{line}: bytes of value zero", "copy the file again"])
+
     def test_zeros_in_a_row_are_not_called_a_number(self):
         lines = TABLE.splitlines(keepends=True)
         for name, content in (("middle.csv", "".join(lines[:300]) + lines[300][:5] + "\0" * 40 + "".join(lines[301:])),

@@ -68,6 +68,28 @@ class Study(harness.CliTest):
                             ["has no trial by messages", "3 blocks"])
         self.assert_refused(["gaze", "events", "blocks.asc", "--trial-nth", "2"], ["--trial-nth"])
 
+    def test_a_table_of_ages_is_refused(self):
+        self.write("blocks.asc", blocks(1))
+        for rows in ("-9000000000000000000\t9000000000000000000\n", "-5000000000000000000\t2000000000\n", "0\t5000000000000000000\n"):
+            self.write("ages.tsv", "onset_ns\toffset_ns\n" + rows)
+            self.assert_refused(["gaze", "trials", "blocks.asc", "--trial-table", "ages.tsv"], ["ages.tsv:2: the trial lasts more than a hundred years"])
+
+    def test_all_trials_of_a_recording_are_one_sweep(self):
+        """By a grid over `trial`, or by a [[gaze]] for each; each row has the frames of its trial."""
+        self.write("blocks.asc", blocks(2))
+        self.write("trials.tsv", "onset\tduration\n1\t0.95\n6\t1.95\n")
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        plan = ('[common]\nsize = "64x36"\nscreen-px = [64, 36]\nscreen-cm = [64, 36]\nscreen-distance-cm = 60\nfps = 4\n'
+                'gaze-transfer = "fraction"\ntrial-table = "trials.tsv"\n[[scene]]\nname = "box"\npath = "box.gltf"\n{}\n[reference]\nspp = 4\n'
+                '[measure]\nrepeats = 2\ncontrols = false\nefficiency-spp = 0\nreference-rate = 8\nbaselines = ["none"]\nmetrics = ["mse"]\n')
+        rates = 'region-samples = [[2, 2, 2]]\nregion-blocks = [[1, 1]]\n'
+        each = '[[gaze]]\nname = "{0}"\nlog = "blocks.asc"\ntrial = "{1}"\n'
+        for text in ('[[gaze]]\nname = "log"\nlog = "blocks.asc"\n[grid]\ntrial = ["1", "2"]\n' + rates,
+                     each.format("first", 1) + each.format("second", 2) + "[grid]\n" + rates):
+            self.write("plan.toml", plan.format(text))
+            rows = [line.split() for line in self.run_ok("sweep", "plan.toml", "--dry-run").stdout.splitlines() if " test " in line]
+            self.assertEqual([int(row[2]) for row in rows], [2 * 64 * 36 * count for count in (4, 8)])
+
     def test_objects_and_areas_of_a_scene(self):
         self.write("box.gltf", json.dumps(harness.box_gltf()))
         self.write("log.csv", harness.gaze_csv(f"{i * 10_000_000},0.5,0.6,ok,cyclopean" for i in range(50)))
@@ -164,6 +186,9 @@ class Study(harness.CliTest):
                 self.assertGreater(durations[0], 0)
                 self.assertAlmostEqual(numbers["events"][movement]["duration_ms_median"], durations[len(durations) // 2 - (len(durations) % 2 == 0)],
                                        places=2)
+            # The drawing shows the median that the numbers have.
+            drawn = re.search(r"median ([0-9.e+]+)", (self.folder / "parts/saccade_amplitudes.svg").read_text()).group(1)
+            self.assertEqual(float(drawn), float(f"{numbers['events']['saccade']['amplitude_deg_median']:.3g}"))
             # The quality stays that of the recording.
             self.assertAlmostEqual(numbers["quality"][0]["precision_rms_s2s"], 0.1, delta=0.015)
         self.assertIn("median", "".join(numbers["warnings"]))

@@ -4,11 +4,13 @@
 // test use it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -16,13 +18,15 @@
 
 #include "gazetrace/camera.hpp"
 #include "gazetrace/gaze.hpp"
+#include "gazetrace/gaze_trials.hpp"
 
 namespace gazetrace {
 
 // "gaze-eyelink-asc", "camera-tum", ...; "gaze-any" and "camera-any" choose the format by sniffing, "gaze-recordings"
-// takes the second recording of such a file, and "gaze-event-table" reads the events of a log from the file.
+// takes the second recording of such a file, "gaze-event-table" reads the events of a log from the file, and
+// "gaze-trial-table" its trials.
 inline std::vector<std::string> fuzz_readers() {
-  std::vector<std::string> names{"gaze-any", "gaze-recordings", "gaze-event-table", "camera-any"};
+  std::vector<std::string> names{"gaze-any", "gaze-recordings", "gaze-event-table", "gaze-trial-table", "camera-any"};
   for (const GazeFormatInfo& format : gaze_formats()) {
     names.push_back("gaze-" + format.name);
   }
@@ -174,16 +178,38 @@ inline void read_second_recording(const std::string& path, std::size_t length) {
   check_log(load_gaze_log(path, options));
 }
 
-// The input as the events of a log of ten seconds.
-inline void read_events(FuzzFolder& folder, std::string_view input) {
+// A log of ten seconds beside the input as `name`; its path.
+inline std::string log_beside(FuzzFolder& folder, const std::string& name, std::string_view input) {
   std::string log = "t[ns],u[1],v[1]\n";
   for (int i = 0; i <= 10; ++i) {
     log += std::to_string(i * 1'000'000'000LL) + ",0.5,0.5\n";
   }
+  return folder.put("log", log + "\n%%FILE " + name + "\n" + std::string(input));
+}
+
+// The input as the events of a log.
+inline void read_events(FuzzFolder& folder, std::string_view input) {
   GazeReadOptions options;
-  const std::string path = folder.put("log", log + "\n%%FILE events.csv\n" + std::string(input));
+  const std::string path = log_beside(folder, "events.csv", input);
   options.events_file = path.substr(0, path.size() - 3) + "events.csv";
   check_log(load_gaze_log(path, options));
+}
+
+// The input as the trials of a log, and the log cut to each of the first.
+inline void read_trials(FuzzFolder& folder, std::string_view input) {
+  const std::string path = log_beside(folder, "trials.csv", input);
+  const GazeLog log = load_gaze_log(path, {});
+  TrialSettings settings;
+  settings.table = path.substr(0, path.size() - 3) + "trials.csv";
+  std::vector<GazeTrial> trials = find_trials(log, settings);
+  require(!trials.empty(), "there are trials, or a refusal");
+  trials.resize(std::min<std::size_t>(trials.size(), 20));
+  for (const GazeTrial& trial : trials) {
+    require(trial.begin_ns <= trial.end_ns, "a trial begins before it ends");
+    require(trial.end_ns / 2 - trial.begin_ns / 2 < std::numeric_limits<std::int64_t>::max() / 2,
+            "the duration of a trial is a number");
+    check_log(cut_to_trial(log, trial));
+  }
 }
 
 inline void read_camera(const std::string& format, const std::string& path, std::size_t length) {
@@ -205,6 +231,10 @@ inline bool fuzz_reader(const std::string& reader, std::string_view input, FuzzF
   try {
     if (reader == "gaze-event-table") {
       fuzz::read_events(folder, input);
+      return true;
+    }
+    if (reader == "gaze-trial-table") {
+      fuzz::read_trials(folder, input);
       return true;
     }
     const std::string path = folder.put(fuzz::first_name(reader), input);

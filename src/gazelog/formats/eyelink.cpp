@@ -76,6 +76,7 @@ class AscReader {
 
  private:
   [[noreturn]] void fail(const std::string& problem, std::string_view remedy = "the line is damaged; remove it") const {
+    refuse_zero_bytes(words_, place_of(file_, line_));
     throw Error(ErrorKind::input, place_of(file_, line_), problem, remedy);
   }
   [[nodiscard]] bool has_word(std::string_view word) const {
@@ -409,7 +410,7 @@ class AscReader {
     if (in_block_) {
       raw_.events.push_back({GazeEventType::segment, Eye::cyclopean, block_start_, raw_.rows.back().t_ns,
                              "recording block without its end", line_});
-      raw_.warnings.push_back(
+      raw_.damages.push_back(
           fmt::format("{}: the last recording block has no END: the file may be cut off", file_.path));
     }
     if (!resolutions_.empty()) {

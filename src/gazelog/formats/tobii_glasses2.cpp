@@ -120,7 +120,7 @@ RawGaze read_gaze_tobii_glasses2(const GazeFile& file, const GazeReadOptions& op
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const int exponent = declare_time(raw, options, "ts", 3, Evidence::format, file.path).exponent;
   std::map<std::int64_t, GazeOfIndex> gazes;
-  for_each_json_line(file, raw.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
+  for_each_json_line(file, raw.damages, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
     if (const auto t_ns = json_time_ns(json, "ts", exponent, place)) {
       add_line(json, *t_ns, row, gazes);
       add_event(json, *t_ns, row, raw);

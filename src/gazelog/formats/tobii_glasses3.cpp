@@ -64,7 +64,7 @@ RawGaze read_gaze_tobii_glasses3(const GazeFile& file, const GazeReadOptions& op
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
   const int exponent = declare_time(raw, options, "timestamp", 9, Evidence::format, file.path).exponent;
   WitnessTally points;
-  for_each_json_line(file, raw.warnings, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
+  for_each_json_line(file, raw.damages, [&](const JsonLeaves& json, std::int64_t row, const std::string& place) {
     if (json.text("type") != "gaze") {
       return;
     }

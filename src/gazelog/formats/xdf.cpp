@@ -185,7 +185,7 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   raw.source = file.path;
   raw.format = "xdf";
   raw.clock = "LSL";
-  const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.warnings, read_header);
+  const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.damages, read_header);
   const XdfStream& stream = gaze_stream(streams, file.path);
   const std::vector<Channel> channels = channels_of(stream);
   if (channels.size() > stream.channels) {

@@ -142,7 +142,7 @@ GazePlot histogram_plot(const std::string& name, const std::string& title, const
                         left + 0.5, y.at(shares[i]), right - left - 1, y.begin - y.at(shares[i]), color));
   }
   if (count > 0) {
-    const double median = upper_median(values);
+    const double median = lower_quantile(values, 0.5);  // as in the page's table
     svg.add(
         fmt::format(R"(<path d="M{:.1f} {:.1f}V{:.1f}" stroke="#111111" stroke-width="1.4" stroke-dasharray="3 3"/>)",
                     x.at(median), y.begin, y.end));
