@@ -167,8 +167,7 @@ BidsColumns read_bids_samples(const GazeFile& file, const Sidecars& sidecars, co
       declare_time(raw, options, time_name, exponent, stated ? Evidence::sidecar : Evidence::statistics, file.path);
   if (c.pupil) {
     const std::string measure = sidecars.text(names[*c.pupil] + ".Measure");  // area or diameter, in no unit
-    const std::string units = sidecars.text(names[*c.pupil] + ".Units");
-    raw.pupil_unit = !measure.empty() ? measure : units == "arbitrary" ? "" : units;
+    raw.pupil_unit = measure.empty() ? sidecars.text(names[*c.pupil] + ".Units") : measure;
   }
   const Eye eye = recorded_eye(sidecars);
   TableRows rows(file, table, c.needed());

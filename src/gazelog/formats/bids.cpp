@@ -165,6 +165,9 @@ RawGaze read_gaze_bids(const GazeFile& file, const GazeReadOptions& options) {
   const BidsColumns columns = read_bids_samples(file, sidecars, options, raw);
   read_bids_events(sidecars, file.path, raw);
   join_other_eyes(name, sidecars, columns, options, raw);
+  if (raw.pupil_unit == "arbitrary") {  // the standard's word for no unit, told apart from others until here
+    raw.pupil_unit.clear();
+  }
   if (columns.is_direction) {
     declare_directions(raw, {}, GazeAxes::gl, Evidence::sidecar, file.path);
     return raw;
