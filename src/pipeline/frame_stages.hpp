@@ -16,13 +16,17 @@ auto timed(double& ms, Stage&& stage) {
   return result;
 }
 
-inline void add_times(const StageTimes& from, StageTimes& to) {
+// `From` and `To` are StageTimes or TimingRow, which name these times alike.
+template <class From, class To>
+void add_times(const From& from, To& to) {
   to.plan_ms += from.plan_ms;
   to.pilot_ms += from.pilot_ms;
   to.trace_ms += from.trace_ms;
   to.guides_ms += from.guides_ms;
   to.reconstruct_ms += from.reconstruct_ms;
   to.temporal_ms += from.temporal_ms;
+  to.exposure_ms += from.exposure_ms;
+  to.layers_ms += from.layers_ms;
 }
 
 // Chooses the frame's exposure, then enhances its picture where that is asked for.

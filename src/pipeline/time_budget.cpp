@@ -11,6 +11,7 @@
 #include "core/stopwatch.hpp"
 #include "pipeline/adaptive_rates.hpp"
 #include "pipeline/first_look.hpp"
+#include "pipeline/frame_stages.hpp"
 #include "pipeline/pilot.hpp"
 #include "pipeline/timing_row.hpp"
 #include "pipeline/trace_counts.hpp"

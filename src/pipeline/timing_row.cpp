@@ -56,17 +56,6 @@ TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exp
   return row;
 }
 
-void add_times(const StageTimes& times, TimingRow& row) {
-  row.plan_ms += times.plan_ms;
-  row.pilot_ms += times.pilot_ms;
-  row.trace_ms += times.trace_ms;
-  row.guides_ms += times.guides_ms;
-  row.reconstruct_ms += times.reconstruct_ms;
-  row.temporal_ms += times.temporal_ms;
-  row.exposure_ms += times.exposure_ms;
-  row.layers_ms += times.layers_ms;
-}
-
 void add_prediction(const Prediction& prediction, TimingRow& row) {
   const auto text = [](const std::optional<double>& value) {
     return value ? fmt::format("{:.6g}", *value) : std::string();

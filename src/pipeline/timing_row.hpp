@@ -15,7 +15,6 @@ TimingRow timing_row(const FrameRequest& request);
 // The row of a frame that is finished, whose own was lost: times are not known (NaN), and counts are 0.
 TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev);
 
-void add_times(const StageTimes& times, TimingRow& row);
 void add_prediction(const Prediction& prediction, TimingRow& row);
 // `samples` are those of the map's sites; those of the first look or pilot belong to no region.
 void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row);

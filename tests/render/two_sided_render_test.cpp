@@ -171,15 +171,20 @@ double error_of(const Frame& frame, const Frame& reference) {
   return squares / static_cast<double>(frame.radiance.pixels.size());
 }
 
-// Noise falls as samples add up: 2 N + 1 frames on both sides are worth what as many are at the end of one side.
-TEST(TwoSidedRender, ErrorFallsWithTheWindowAsFromOneSide) {
-  const Scene scene = room(false);
+// Many samples of another seed, unfiltered.
+Frame reference_of(const Scene& scene) {
   PipelineSettings exact = settings_of(AccumulateMode::off);
   exact.foveation.falloff = "uniform";
   exact.foveation.uniform_spp = 2048;
   exact.reconstruction.filter = "none";
   exact.trace.seed = 99;
-  const Frame reference = render(scene, plan_of({1}, {}, false), exact).at(1);
+  return render(scene, plan_of({1}, {}, false), exact).at(1);
+}
+
+// Noise falls as samples add up: 2 N + 1 frames on both sides are worth what as many are at the end of one side.
+TEST(TwoSidedRender, ErrorFallsWithTheWindowAsFromOneSide) {
+  const Scene scene = room(false);
+  const Frame reference = reference_of(scene);
   const auto uniform = [&](AccumulateMode mode, int window) {
     PipelineSettings settings = settings_of(mode, window);
     settings.foveation.falloff = "uniform";
@@ -212,12 +217,7 @@ PipelineSettings guided(AccumulateMode mode, int window, std::uint32_t spp) {
 // which there is less bias than in the mean of what it made of each frame's few.
 TEST(TwoSidedRender, AFilterSeesAllSamplesOfTheWindowWhileNothingMoves) {
   const Scene scene = room(false);
-  PipelineSettings exact = settings_of(AccumulateMode::off);
-  exact.foveation.falloff = "uniform";
-  exact.foveation.uniform_spp = 2048;
-  exact.reconstruction.filter = "none";
-  exact.trace.seed = 99;
-  const Frame reference = render(scene, plan_of({1}, {}, false), exact).at(1);
+  const Frame reference = reference_of(scene);
   const auto window = render(scene, plan_of(numbers(1, 9), {}, false), guided(AccumulateMode::two_sided, 4, 4));
   const auto apart = render(scene, plan_of(numbers(1, 9), {}, false), guided(AccumulateMode::off, 0, 4));
   const Frame single = render(scene, plan_of({1}, {}, false), guided(AccumulateMode::off, 0, 36)).at(1);
