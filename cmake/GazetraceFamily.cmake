@@ -26,4 +26,6 @@ function(gazetrace_family target def_file macro folder)
     endif()
   endforeach()
   target_sources(${target} PRIVATE ${paths})
+  # Members answer to the same names, so that they cannot be compiled as one.
+  set_source_files_properties(${paths} TARGET_DIRECTORY ${target} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -92,6 +92,8 @@ std::vector<double> fovvideovdp_bands_cpd(double pixels_per_degree, int width_px
 // The score in just-objectionable differences: 10 means no visible difference, 9.5 one that 63 % of viewers see, 9 one
 // that 75 % see. There is no lower limit.
 double fovvideovdp_jod(double q);
+// The visible difference Q that has this score, 10 or less.
+double fovvideovdp_q(double jod);
 
 // Scores two sequences frame by frame. Its state is the luminance of the last 250 ms of both, so that its memory does
 // not grow with time.

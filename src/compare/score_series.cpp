@@ -2,8 +2,8 @@
 #include "compare/score_series.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 
 namespace gazetrace {
@@ -38,7 +38,6 @@ void summarise(const MetricInfo& info, const PrintedNumbers& printed, const Scor
                SequenceScores& summary) {
   summary.scored_frames.push_back(series.values.size());
   if (series.values.empty()) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     summary.scores.emplace_back().metric = info.name;
     summary.quantiles.push_back({kNan, kNan, kNan});
     summary.worst_frame.emplace_back();

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -68,7 +68,6 @@ double pixels_per_degree(const DisplayGeometry& display) {
 
 Vec2d PlanarView::pixel(const Vec3d& direction) const {
   if (!(direction.z < 0)) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     return {kNan, kNan};
   }
   return {(direction.x / -direction.z - left) / step_x, (top - direction.y / -direction.z) / step_y};

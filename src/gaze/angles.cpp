@@ -2,15 +2,13 @@
 #include "gaze/angles.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gazetrace/gaze_events.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Poses at increasing times, which are also asked for at increasing times.
 class HeadWalker {

@@ -13,13 +13,13 @@
 namespace gazetrace {
 namespace {
 
-using Names = std::span<const std::string_view>;
+using RoleNames = std::span<const std::string_view>;
 
 class Finder {
  public:
   Finder(const DelimitedTable& table, const std::string& place) : table_(table), place_(place) {}
 
-  [[nodiscard]] OptionalColumn by_role(Names names) const {
+  [[nodiscard]] OptionalColumn by_role(RoleNames names) const {
     for (const std::string_view name : names) {
       for (std::size_t i = 0; i < table_.headings.size(); ++i) {
         if (letters_and_digits(table_.headings[i].name) == name) {
@@ -31,11 +31,11 @@ class Finder {
     return std::nullopt;
   }
 
-  [[nodiscard]] OptionalColumn optional(const std::string& name, Names names = {}) const {
+  [[nodiscard]] OptionalColumn optional(const std::string& name, RoleNames names = {}) const {
     return name.empty() ? by_role(names) : std::optional(declared_column(table_, name, place_));
   }
 
-  [[nodiscard]] std::size_t required(const std::string& name, Names names, std::string_view what,
+  [[nodiscard]] std::size_t required(const std::string& name, RoleNames names, std::string_view what,
                                      std::string_view option) const {
     if (const auto found = optional(name, names)) {
       return *found;

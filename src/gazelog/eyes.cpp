@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gazelog/screen_angles.hpp"
 
@@ -175,7 +176,6 @@ void note_taken(GazeLog& log, TakenEye eye, Evidence evidence, bool is_alone = f
 
 // A time at which the log has no combined gaze of its own.
 GazeSample missing_sample(std::int64_t t_ns, std::int64_t row, GazeKind kind) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   GazeSample sample;
   sample.t_ns = t_ns;
   sample.row = row;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/nan.hpp"
 #include "gazetrace/gaze_raw_rows.hpp"
 
 #include <algorithm>
@@ -31,7 +32,6 @@ bool same_bits(double a, double b) {
 // Whether every value is a whole number over this power of ten; of those that were looked at, `whole` holds the number.
 template <class Values>
 bool fits(const Values& values, double power_of_ten, std::vector<std::int32_t>& whole) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (same_bits(values[i], kNan)) {

@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "core/nan.hpp"
 #include "gazelog/scene_lens.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInt16Min = -32768;
 constexpr double kLarge = 1e7;
 

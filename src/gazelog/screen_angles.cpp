@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gazelog/screen_angles.hpp"
+#include "core/nan.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace gazetrace {
 
@@ -32,7 +32,6 @@ ScreenAngles::ScreenAngles(const DisplayGeometry& screen, const std::optional<Ve
 
 Vec2d ScreenAngles::place(const Vec3d& direction) const {
   if (!(direction.z < 0)) {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     return {kNan, kNan};
   }
   return {0.5 + (direction.x / -direction.z + eye_x_) / width_, 0.5 - (direction.y / -direction.z + eye_y_) / height_};

@@ -4,17 +4,15 @@
 
 #include <cstdint>
 #include <initializer_list>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/nan.hpp"
 #include "gazelog/gaze_format.hpp"
 
 namespace gazetrace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // "gaze x [px]", "time (ms)", "x_px": name and unit; the text of the cell is kept for messages.
 struct ColumnHeading {

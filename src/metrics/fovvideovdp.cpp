@@ -151,6 +151,10 @@ double fovvideovdp_jod(double q) {
   return 10 - kJodScale * std::pow(q, kExponent);
 }
 
+double fovvideovdp_q(double jod) {
+  return std::pow((10 - jod) / kJodScale, 1 / std::pow(10, kLog10JodExponent));
+}
+
 struct FovVideoVdp::Impl {
   FovVideoVdpSettings settings;
   int width_px, height_px;

@@ -23,24 +23,11 @@ constexpr double kLeastSpp = 0.25;
 // samples as a frame has, or between these parts of it. At less the prediction drifts, since samples of a sequence are
 // better than independent ones.
 constexpr double kPilotPart = 1.0 / 4, kLeastPart = 1.0 / 7, kMostPart = 1.0 / 2.5;
-constexpr int kMostRounds = 4;
+constexpr int kMostClipRounds = 4;
 // What stands for the reference goes through `guided`: with half of the samples of a frame, or this many, it has less
 // noise than the frames.
 constexpr double kBasePart = 0.5, kLeastBaseSpp = 16;
 constexpr double kLeastShare = 1e-6, kMostShare = 64;  // of the pilot's squared error, between which is searched
-
-double q_of_jod(double jod) {
-  double low = 0;
-  double high = 1;
-  while (fovvideovdp_jod(high) > jod && high < 1e12) {
-    high *= 2;
-  }
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    (fovvideovdp_jod(middle) > jod ? low : high) = middle;
-  }
-  return high;
-}
 
 // What is seen of an error, and how much of it may be: Q of FovVideoVDP, or FLIP.
 struct Judge {
@@ -51,7 +38,7 @@ struct Judge {
 
 Judge judge_of(const QualityTarget& target, const ReplicaClip& clip) {
   if (target.jod) {
-    return {q_of_jod(*target.jod), 0.9,
+    return {fovvideovdp_q(*target.jod), 0.9,
             [&clip](const ReplicaNoise& noise, double share) { return clip.q_at(noise, share); }};
   }
   return {*target.flip, 0.4, [&clip](const ReplicaNoise& noise, double share) { return clip.flip_at(noise, share); }};
@@ -109,7 +96,7 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
     const double share = share_for(judge, noise, result.rounds == 1 ? kRoughly : kClosely);
     result.spp = std::max(kLeastSpp, pilot_spp / share);
     const double part = pilot_spp / result.spp;
-    near = result.rounds == kMostRounds || pilot_spp == kLeastSpp || (part >= kLeastPart && part <= kMostPart);
+    near = result.rounds == kMostClipRounds || pilot_spp == kLeastSpp || (part >= kLeastPart && part <= kMostPart);
     // A first guess may be too high.
     if (!(result.spp <= (near ? 1 : 2) * most)) {
       throw Error(ErrorKind::usage, target.jod ? "`target-jod`" : "`target-flip`",

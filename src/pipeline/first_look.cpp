@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kReduction = 8;
 constexpr std::uint32_t kSpp = 4;
-constexpr std::uint64_t kSeedTag = 0x434f4e5452415354ULL;
+constexpr std::uint64_t kFirstLookTag = 0x434f4e5452415354ULL;
 constexpr double kFullContrast = 0.25;
 constexpr double kMostTaken = 0.75;
 
@@ -128,7 +128,7 @@ FirstLook trace_first_look(const PosedScene& scene, const FrameRequest& request,
   uniform.uniform_spp = kSpp;
   const SamplingMap map = make_sampling_map(uniform, small_view(request), std::nullopt);
   TraceSettings own = settings;
-  own.seed = hash_combine(settings.seed, kSeedTag);
+  own.seed = hash_combine(settings.seed, kFirstLookTag);
   own.guides = false;
   own.surfaces = false;
   own.only_pixel.reset();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLargestCellPx = 8;
 constexpr int kLeastRows = 64;
-constexpr std::uint64_t kSeedTag = 0x50494c4f54ULL;  // "PILOT"
+constexpr std::uint64_t kPilotTag = 0x50494c4f54ULL;  // "PILOT"
 
 // Single pixels, however low the rates are: blocks of a small frame would stand for much larger ones of the frame.
 SamplingMap pilot_map(const PlanarView& view, const ImageGray& rates, const MapContext& context) {
@@ -76,7 +76,7 @@ Pilot trace_pilot(const PosedScene& scene, const FrameRequest& request, const Fr
   const double share = 1.0 / pilot.cell_px;
   const Reconstruction reconstruction(settings.reconstruction);
   TraceSettings trace = reconstruction.trace_settings(settings.trace);
-  trace.seed = hash_combine(hash_combine(settings.trace.seed, kSeedTag), round);
+  trace.seed = hash_combine(hash_combine(settings.trace.seed, kPilotTag), round);
   trace.footprint = share;
   trace.pixel_cone *= share;
   trace.guides = false;

@@ -13,7 +13,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::uint64_t kSeedTag = 0x5245504c494341ULL;  // "REPLICA"
+constexpr std::uint64_t kReplicaTag = 0x5245504c494341ULL;  // "REPLICA"
 // By how much the noise is moved, in steps of this many pixels, between frames that show the same of the three: noise
 // of single pixels is then uncorrelated in these frames. It stays near enough to where it is as strong.
 constexpr int kStepPx = 2;
@@ -40,7 +40,7 @@ FrameSettings discarded_settings(const FrameSettings& settings, double spp, std:
   discarded.foveation.target = {};
   discarded.foveation.budget_samples.reset();
   discarded.foveation.budget_spp = spp;
-  discarded.trace.seed = hash_combine(hash_combine(settings.trace.seed, kSeedTag), tag);
+  discarded.trace.seed = hash_combine(hash_combine(settings.trace.seed, kReplicaTag), tag);
   discarded.trace.guides = false;
   discarded.trace.only_pixel.reset();
   return discarded;

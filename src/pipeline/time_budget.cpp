@@ -27,8 +27,9 @@ constexpr double kLeastRehearsal = 1.0 / 16, kMostRehearsal = 8;
 constexpr double kMoreShare = 0.1;        // of the time, for the second rehearsal; at least
 constexpr double kLeastMore = 2;          // times the samples of the first
 constexpr double kPilotShare = 1.0 / 16;  // of a frame's samples, that a pilot at the frame's rates may have
-constexpr std::uint64_t kSeedTag = 0x52454845415253ULL;  // "REHEARS": no sample of the frame has a part in its rate
-constexpr double kLate = 1.1;                            // over the budget: worth a warning
+constexpr std::uint64_t kRehearsalTag =
+    0x52454845415253ULL;       // "REHEARS": no sample of the frame has a part in its rate
+constexpr double kLate = 1.1;  // over the budget: worth a warning
 // Until the first frame's files are written: milliseconds a megapixel of a common machine.
 constexpr double kExrMs = 60, kDisplayMs = 200;
 
@@ -164,7 +165,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   // than a sample falls on a pixel, every further one is a further pixel's, too, and costs more.
   const auto settings_at = [&](double spp) {
     FrameSettings settings = with_budget(settings_, spp);
-    settings.trace.seed = hash_combine(settings.trace.seed, kSeedTag);
+    settings.trace.seed = hash_combine(settings.trace.seed, kRehearsalTag);
     if (by_pilot) {
       settings.foveation.falloff = "uniform";
     }

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 
 namespace gazetrace {
@@ -130,7 +130,6 @@ void warn_about_latency(const PlanSettings& settings, Warnings& warnings) {
 }
 
 GazeUncertainty uncertainty_of(const GazeLog& log) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   GazeUncertainty uncertainty{kNan, kNan};
   double sum = 0;
   double count = 0;

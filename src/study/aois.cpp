@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "core/nan.hpp"
 #include "gazelog/screen_angles.hpp"
 #include "gazetrace/gaze_aois.hpp"
 #include "gazetrace/gaze_event_durations.hpp"
@@ -12,7 +12,6 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kConePlaces = 512;
 
 double milliseconds(std::int64_t duration_ns) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gazetrace/gaze_aois.hpp"
+#include "study/cells.hpp"
 
 namespace gazetrace {
 namespace {
@@ -22,16 +23,8 @@ std::string name_of(const AoiAnalysis& analysis, std::size_t area) {
   return name;
 }
 
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "n/a";
-}
-
 std::string share(double value) {
   return std::isfinite(value) ? fmt::format("{:.3f}", value) : "n/a";
-}
-
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 double milliseconds(const AoiFixation& fixation) {
@@ -48,8 +41,8 @@ std::string aoi_fixations_as_tsv(const AoiAnalysis& analysis) {
   std::string text = "onset_ns\toffset_ns\tduration_ms\tu\tv\taoi\tshare\n";
   for (const AoiFixation& fixation : analysis.fixations) {
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\n", fixation.event.begin_ns,
-                   fixation.event.end_ns, number(milliseconds(fixation)), number(fixation.event.u),
-                   number(fixation.event.v), name_of(analysis, fixation.aoi.value_or(analysis.areas.size())),
+                   fixation.event.end_ns, number_cell(milliseconds(fixation)), number_cell(fixation.event.u),
+                   number_cell(fixation.event.v), name_of(analysis, fixation.aoi.value_or(analysis.areas.size())),
                    share(fixation.share));
   }
   return text;
@@ -61,8 +54,8 @@ std::string aoi_figures_as_tsv(const AoiAnalysis& analysis) {
   for (std::size_t i = 0; i < analysis.figures.size(); ++i) {
     const AoiFigures& f = analysis.figures[i];
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", name_of(analysis, i), f.fixations,
-                   number(f.fixation_ms), share(part(f.fixation_ms, analysis.fixation_ms)), f.visits,
-                   number(f.dwell_ms), number(f.first_fixation_at_ms), number(f.first_fixation_ms));
+                   number_cell(f.fixation_ms), share(part(f.fixation_ms, analysis.fixation_ms)), f.visits,
+                   number_cell(f.dwell_ms), number_cell(f.first_fixation_at_ms), number_cell(f.first_fixation_ms));
   }
   return text;
 }

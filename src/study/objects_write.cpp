@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gazetrace/gaze_objects.hpp"
+#include "study/cells.hpp"
 
 namespace gazetrace {
 namespace {
@@ -31,14 +32,6 @@ std::string node_and_material(const GazeObjects& objects, std::size_t object) {
   return node_of(objects, object) + (material.empty() ? "" : " (" + material + ")");
 }
 
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "n/a";
-}
-
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 const char* name_of(Stimulus stimulus) {
   return stimulus == Stimulus::recorded ? "recorded" : "replayed";
 }
@@ -57,7 +50,7 @@ std::string objects_as_tsv(const GazeObjects& objects) {
     fmt::format_to(std::back_inserter(text), "\tnear_{0}\tnear_{0}_deg", i);
   }
   text += '\n';
-  const std::string cone = number(gaze_cone_95_deg(objects.settings.uncertainty));
+  const std::string cone = number_cell(gaze_cone_95_deg(objects.settings.uncertainty));
   for (const FrameObjects& frame : objects.frames) {
     fmt::format_to(std::back_inserter(text), "{}\t{}\t{}\t{}\t{}\t{}", frame.frame, frame.t_video_ns, frame.t_log_ns,
                    to_string(frame.state), movement_of(frame), name_of(objects.settings.stimulus));
@@ -67,8 +60,8 @@ std::string objects_as_tsv(const GazeObjects& objects) {
       const ObjectShare& first = frame.shares.front();
       const std::string material = without_tabs(objects.objects[first.object].material);
       fmt::format_to(std::back_inserter(text), "\t{}\t{}\t{:.4f}\t{}\t{}\t{}\t{}\t", node_of(objects, first.object),
-                     material.empty() ? "n/a" : material, first.share, number(first.distance_m),
-                     number(first.position_m.x), number(first.position_m.y), number(first.position_m.z));
+                     material.empty() ? "n/a" : material, first.share, number_cell(first.distance_m),
+                     number_cell(first.position_m.x), number_cell(first.position_m.y), number_cell(first.position_m.z));
       std::string also;
       for (std::size_t i = 1; i < frame.shares.size(); ++i) {
         if (frame.shares[i].share >= kLeastListed) {

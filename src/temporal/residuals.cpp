@@ -8,7 +8,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kReach = 2;  // the neighborhood is 5x5 pixels
+constexpr int kResidualReach = 2;  // the neighborhood is 5x5 pixels
 // Residuals count as a bias where they exceed what noise does by chance by so many standard deviations: kLasting in the
 // product of two frames, kBeyondStated against the stated variance. kCaution weights a bias above its mean over the
 // neighborhood, since pixels differ. All three are measured: fewer deviations take away more of what was gathered (with
@@ -31,8 +31,8 @@ double Residuals::share_kept(const SurfaceMotion& motion, double count, double p
   double products = 0;
   double variance = 0;
   int taps = 0;
-  for (int j = std::max(y - kReach, 0); j <= std::min(y + kReach, now.height_px - 1); ++j) {
-    for (int i = std::max(x - kReach, 0); i <= std::min(x + kReach, now.width_px - 1); ++i) {
+  for (int j = std::max(y - kResidualReach, 0); j <= std::min(y + kResidualReach, now.height_px - 1); ++j) {
+    for (int i = std::max(x - kResidualReach, 0); i <= std::min(x + kResidualReach, now.width_px - 1); ++i) {
       if ((i != x || j != y) && motion.object(i, j) == object) {
         const auto a = static_cast<double>(now(i, j));
         const auto b = static_cast<double>(before(i, j));

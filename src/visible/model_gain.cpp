@@ -148,18 +148,6 @@ double limited_q(const BandPowers& powers, const std::vector<double>& rates, dou
   return pooled_over_bands(sustained, transient);
 }
 
-// Q that has this JOD, by the metric's formula, which has no limit below.
-double q_of_jod(double jod) {
-  double low = -30;
-  double high = 60;
-  constexpr int kSteps = 60;
-  for (int step = 0; step < kSteps; ++step) {
-    const double middle = (low + high) / 2;
-    (fovvideovdp_jod(std::exp2(middle)) > jod ? low : high) = middle;
-  }
-  return std::exp2((low + high) / 2);
-}
-
 // The samples a pixel that reach a Q (which the limit must not make impossible): without the limit, Q falls as their
 // power of -p / (2 r), and the limit only makes it fall more slowly, so that steps by that power settle from above or
 // below.
@@ -212,7 +200,7 @@ ModelGain model_gain(const ModelGainSettings& settings, const Vec3d& gaze_direct
     }
   }
   const std::vector<double> uniform(rates.size(), 1.0);
-  const double wanted = q_of_jod(settings.target_jod);
+  const double wanted = fovvideovdp_q(settings.target_jod);
   ModelGain result;
   result.uniform_spp = spp_for(powers, uniform, wanted);
   result.allocated_spp = spp_for(powers, rates, wanted);

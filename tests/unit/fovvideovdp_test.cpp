@@ -233,6 +233,13 @@ void expect_still(const Json& pair, const std::string& id) {
   }
 }
 
+TEST(FovVideoVdp, FindsTheDifferenceOfAScore) {
+  for (const double jod : {9.9, 9.5, 9.0, 3.0, -2.0}) {
+    EXPECT_NEAR(fovvideovdp_jod(fovvideovdp_q(jod)), jod, 1e-12);
+  }
+  EXPECT_EQ(fovvideovdp_q(10), 0);
+}
+
 TEST(FovVideoVdpReference, Stills) {
   GAZETRACE_SKIP_WITHOUT_METRICS_REFERENCE();
   const Json expected = read_reference_json("expected.json");

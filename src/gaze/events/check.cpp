@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gaze/angles.hpp"
 #include "gazetrace/gaze_event_check.hpp"
@@ -13,8 +14,6 @@
 
 namespace gazetrace {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::size_t kLeastEvents = 8;      // fewer tell nothing about their median
 constexpr double kLeastSeenS = 3;            // nor does a shorter recording tell about rates

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/nan.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/events/event_method.hpp"
 
@@ -29,7 +30,6 @@ Eye eye_of_events(const GazeLog& log) {
 
 // The directions of a log whose places mean no angles: none is known.
 GazeDirections unknown_directions(const std::vector<std::int64_t>& t_ns) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   return {t_ns, std::vector<Vec3d>(t_ns.size(), Vec3d{kNan, kNan, kNan})};
 }
 

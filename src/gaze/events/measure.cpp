@@ -2,15 +2,13 @@
 // From labels to events: where a fixation was, and how far and how fast a saccade went.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/events/event_method.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class Measures {
  public:

@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "core/nan.hpp"
 #include "gaze/angles.hpp"
 #include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_event_durations.hpp"
@@ -18,7 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kStatedByLog = "log";  // as `events_of_log` calls it
 
 struct Column {

@@ -4,17 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "gaze/inspect/inspect.hpp"
+#include "gaze/inspect/report_order.hpp"
 #include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::array kValidities{GazeValidity::ok,   GazeValidity::low_confidence, GazeValidity::blink,
-                                 GazeValidity::lost, GazeValidity::off_screen,     GazeValidity::interpolated};
-constexpr std::array kEvents{GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                             GazeEventType::message,  GazeEventType::segment, GazeEventType::aoi};
 
 Json facts(const GazeInspection& r) {
   Json json = Json::array();
@@ -56,7 +52,7 @@ void add_quality(const GazeInspection& r, Json& json) {
   if (loss.left_share) {
     json["usable_share_of_eye"] = {{"left", *loss.left_share}, {"right", *loss.right_share}};
   }
-  for (const GazeValidity validity : kValidities) {
+  for (const GazeValidity validity : kReportedValidities) {
     json["validity"][std::string(to_string(validity))] = loss.by_validity[static_cast<std::size_t>(validity)];
   }
   json["losses"] = {{"blink_like", loss.blink_like}, {"blink_like_median_ms", loss.blink_like_median_ms},
@@ -120,8 +116,8 @@ std::string inspection_json(const GazeInspection& r) {
   add_quality(r, json);
   json["both_eyes"] = r.both_eyes;
   json["head_poses"] = r.head_poses;
-  for (std::size_t i = 0; i < kEvents.size(); ++i) {
-    json["events"][std::string(to_string(kEvents[i]))] = r.events[i];
+  for (std::size_t i = 0; i < kReportedEvents.size(); ++i) {
+    json["events"][std::string(to_string(kReportedEvents[i]))] = r.events[i];
   }
   json["axes"] = Json::array();
   for (const GazeAxisTest& test : r.axes) {

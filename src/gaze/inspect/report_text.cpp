@@ -7,15 +7,11 @@
 #include <iterator>
 
 #include "gaze/inspect/inspect.hpp"
+#include "gaze/inspect/report_order.hpp"
 #include "gazelog/recordings.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr std::array kValidities{GazeValidity::ok,   GazeValidity::low_confidence, GazeValidity::blink,
-                                 GazeValidity::lost, GazeValidity::off_screen,     GazeValidity::interpolated};
-constexpr std::array kEvents{GazeEventType::fixation, GazeEventType::saccade, GazeEventType::blink,
-                             GazeEventType::message,  GazeEventType::segment, GazeEventType::aoi};
 
 double ms(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-6;
@@ -143,7 +139,7 @@ void write_quality(const GazeInspection& r, Text& text) {
             loss.left_share ? fmt::format("; left eye {:.2f} %, right eye {:.2f} %", 100 * *loss.left_share,
                                           100 * *loss.right_share)
                             : "");
-  for (const GazeValidity validity : kValidities) {
+  for (const GazeValidity validity : kReportedValidities) {
     if (const std::size_t count = loss.by_validity[static_cast<std::size_t>(validity)]; count > 0) {
       text.plain(fmt::format("  {:<17} {} ({:.2f} %)", to_string(validity), count, percent(count)));
     }
@@ -188,9 +184,9 @@ void write_quality(const GazeInspection& r, Text& text) {
               digits);
   }
   std::string events;
-  for (std::size_t i = 0; i < kEvents.size(); ++i) {
+  for (std::size_t i = 0; i < kReportedEvents.size(); ++i) {
     if (r.events[i] > 0) {
-      events += fmt::format("{}{} {}{}", events.empty() ? "" : ", ", r.events[i], to_string(kEvents[i]),
+      events += fmt::format("{}{} {}{}", events.empty() ? "" : ", ", r.events[i], to_string(kReportedEvents[i]),
                             r.events[i] == 1 ? "" : "s");
     }
   }

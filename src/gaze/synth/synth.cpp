@@ -6,14 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "core/nan.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/counter_random.hpp"
 #include "gazetrace/gaze_synth.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The purposes for which random numbers are drawn.
 enum Stream : std::uint64_t { kDurations, kTargets, kBlinks, kPursuits, kDrift, kNoise, kLoss };

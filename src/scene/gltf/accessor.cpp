@@ -7,11 +7,10 @@
 #include <limits>
 
 #include "gazetrace/error.hpp"
+#include "scene/gltf/constants.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125;
 
 template <class T>
 T load(const std::uint8_t* from) {

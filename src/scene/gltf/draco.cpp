@@ -13,15 +13,13 @@
 #include "gazetrace/error.hpp"
 #include "scene/gltf/accessor.hpp"
 #include "scene/gltf/compression.hpp"
+#include "scene/gltf/constants.hpp"
 #include "scene/gltf/document.hpp"
 #include "scene/gltf/draco_claims.hpp"
 #include "scene/parallel_errors.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125;
-constexpr int kTriangles = 4;
 
 [[noreturn]] void fail(const std::string& place, const std::string& problem) {
   throw Error(ErrorKind::input, place, problem, "compress the file again");

@@ -11,6 +11,7 @@
 #include "core/memory_limit.hpp"
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
+#include "scene/gltf/constants.hpp"
 #include "scene/gltf/json.hpp"
 
 namespace gazetrace {
@@ -29,7 +30,6 @@ constexpr std::uint64_t kInstanceBytes = 400;  // in the scene and in the tree o
 constexpr std::uint64_t kTreeBytes = 240;
 constexpr std::uint64_t kProgramBytes = std::uint64_t{100} << 20U;
 constexpr std::uint64_t kTriangleBytes = 12;
-constexpr int kTriangles = 4;
 
 // Counts and products that files claim stay below 2^62, so that sums of a few do not wrap.
 std::uint64_t times(std::uint64_t a, std::uint64_t b) {

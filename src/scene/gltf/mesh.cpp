@@ -11,6 +11,7 @@
 
 #include "gazetrace/error.hpp"
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/constants.hpp"
 #include "scene/gltf/material.hpp"
 #include "scene/normals_and_tangents.hpp"
 #include "scene/parallel_errors.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 constexpr double kWeightTolerance = 0.02;  // the rounding error of four weights in 8 bits
-constexpr int kTriangles = 4, kStrip = 5;  // the third mode of triangles is 6, a fan
 
 std::string primitive_place(const GltfDocument& document, std::size_t mesh, std::size_t primitive) {
   return document.path + ": meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
@@ -37,7 +37,7 @@ std::vector<Triangle> assemble(int mode, const std::vector<std::uint32_t>& v) {
     return triangles;
   }
   for (std::size_t i = 0; i + 2 < v.size(); ++i) {
-    if (mode == kStrip) {
+    if (mode == kTriangleStrip) {
       triangles.push_back({v[i], v[i + 1 + i % 2], v[i + 2 - i % 2]});
     } else {
       triangles.push_back({v[i + 1], v[i + 2], v[0]});

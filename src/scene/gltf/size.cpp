@@ -7,6 +7,7 @@
 
 #include "gazetrace/error.hpp"
 #include "scene/gltf/accessor.hpp"
+#include "scene/gltf/constants.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,7 +20,6 @@ constexpr std::uint64_t kMaxMorphZeros = std::uint64_t{1} << 28U;
 // Instances whose attributes are all zeros, so that they lie upon each other.
 constexpr std::uint64_t kMaxZeroInstances = std::uint64_t{1} << 16U;
 constexpr std::uint64_t kMaxInstances = std::uint64_t{1} << 24U;
-constexpr int kTriangles = 4;
 
 class SizeCheck {
  public:

@@ -15,7 +15,7 @@ inline constexpr double kSmallWidth = 400, kSmallHeight = 300;  // of plots that
 inline constexpr double kWideWidth = 900;
 inline constexpr const char* kLeftColor = "#0072b2";
 inline constexpr const char* kRightColor = "#d55e00";
-inline constexpr const char* kGazeColor = "#333333";
+inline constexpr const char* kTraceColor = "#333333";
 
 class Drawing {
  public:
@@ -36,7 +36,7 @@ class Drawing {
 // Values over time, one for each sample; NaN where there is none.
 struct GazeTrace {
   std::string name;
-  const char* color = kGazeColor;
+  const char* color = kTraceColor;
   std::vector<double> values;
 };
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "gaze/inspect/inspect.hpp"
 #include "gazetrace/gaze_event_check.hpp"
 #include "gazetrace/gaze_event_durations.hpp"
@@ -16,8 +16,6 @@
 
 namespace gazetrace {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 EyeEvents events_by(const GazeLog& log, const GazeReportSettings& settings) {
   if (settings.method == "log") {
@@ -50,10 +48,10 @@ Traces traces_of(const GazeLog& log, const GazePlane& plane) {
       list(*to, "left eye", kLeftColor);
       list(*to, "right eye", kRightColor);
     } else {
-      list(*to, "gaze", kGazeColor);
+      list(*to, "gaze", kTraceColor);
     }
   }
-  list(traces.disparity, "horizontal", kGazeColor);
+  list(traces.disparity, "horizontal", kTraceColor);
   list(traces.disparity, "vertical", "#009e73");
   const auto pupil = [](float size) { return size > 0 ? static_cast<double>(size) : kNan; };
   for (std::size_t i = 0; i < count; ++i) {

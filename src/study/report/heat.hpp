@@ -10,6 +10,9 @@
 
 namespace gazetrace {
 
+// Free space around a map, and below it, where its scale stands.
+inline constexpr double kHeatMargin = 10, kBelowHeat = 46;
+
 struct HeatGrid {
   std::size_t columns = 240, rows = 135;
   std::vector<double> values;  // row by row, such as seconds of fixation per square degree

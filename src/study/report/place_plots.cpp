@@ -17,7 +17,6 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kMargin = 10, kBelow = 46;
 constexpr std::size_t kMostNumbers = 60;
 
 // What the plane of the plot is: the display in fractions, or angles around straight ahead.
@@ -54,12 +53,12 @@ double aspect_of(const GazeLog& log) {
 Plane plane_of(const GazeLog& log, const std::vector<const EyeEvent*>& fixations) {
   Plane plane;
   plane.is_screen = log.kind != GazeKind::direction;
-  const double width = kWideWidth - 2 * kMargin;
+  const double width = kWideWidth - 2 * kHeatMargin;
   if (plane.is_screen) {
     const double height = width * aspect_of(log);
-    plane.x = {0, 1, kMargin, kMargin + width};
-    plane.y = {0, 1, kMargin, kMargin + height};
-    plane.height = height + kMargin + kBelow;
+    plane.x = {0, 1, kHeatMargin, kHeatMargin + width};
+    plane.y = {0, 1, kHeatMargin, kHeatMargin + height};
+    plane.height = height + kHeatMargin + kBelowHeat;
     return plane;
   }
   double reach = 5;
@@ -69,9 +68,9 @@ Plane plane_of(const GazeLog& log, const std::vector<const EyeEvent*>& fixations
   }
   reach = std::min(reach * 1.08, 90.0);
   const double height = 0.62 * width;
-  plane.x = {-reach / 0.62, reach / 0.62, kMargin, kMargin + width};
-  plane.y = {reach, -reach, kMargin, kMargin + height};
-  plane.height = height + kMargin + kBelow;
+  plane.x = {-reach / 0.62, reach / 0.62, kHeatMargin, kHeatMargin + width};
+  plane.y = {reach, -reach, kHeatMargin, kHeatMargin + height};
+  plane.height = height + kHeatMargin + kBelowHeat;
   return plane;
 }
 
@@ -79,13 +78,13 @@ void draw_ground(Drawing& svg, const Plane& plane, const std::string& picture, d
   const double width = plane.x.end - plane.x.begin;
   const double height = plane.y.end - plane.y.begin;
   svg.add(fmt::format(R"(<rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" fill="#f2f2ef" stroke="#888888"/>)",
-                      kMargin, width, height));
+                      kHeatMargin, width, height));
   if (!picture.empty() && plane.is_screen) {
     svg.add(fmt::format(
-        R"(<image x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" preserveAspectRatio="none" href="{3}"/>)", kMargin,
-        width, height, picture));
+        R"(<image x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" preserveAspectRatio="none" href="{3}"/>)",
+        kHeatMargin, width, height, picture));
     svg.add(fmt::format(R"(<rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" fill="#000000" fill-opacity="{3}"/>)",
-                        kMargin, width, height, darken));
+                        kHeatMargin, width, height, darken));
   }
 }
 
@@ -135,7 +134,7 @@ GazePlot scanpath_plot(const GazeLog& log, const std::vector<EyeEvent>& events, 
   draw_ground(svg, plane, picture, 0.25);
   svg.add(
       fmt::format(R"(<clipPath id="scanpath-clip"><rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}"/></clipPath>)",
-                  kMargin, plane.x.end - plane.x.begin, plane.y.end - plane.y.begin));
+                  kHeatMargin, plane.x.end - plane.x.begin, plane.y.end - plane.y.begin));
   svg.add(fmt::format(R"-(<g clip-path="url(#scanpath-clip)">)-"));
   const bool on_picture = !picture.empty() && is_screen;
   std::string path;
@@ -166,7 +165,7 @@ GazePlot scanpath_plot(const GazeLog& log, const std::vector<EyeEvent>& events, 
   }
   note += is_screen ? beside_note(fixations, plane)
                     : fmt::format("; {:.0f} degrees from the middle to the upper edge", plane.y.low);
-  svg.text(kMargin, plane.y.end + 24, note);
+  svg.text(kHeatMargin, plane.y.end + 24, note);
   return {"scanpath", "Scanpath", svg.str(), true, note};
 }
 

@@ -15,7 +15,6 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kMargin = 10, kBelow = 46;
 constexpr double kReach = 3;  // standard deviations
 constexpr int kGreys = 12;
 
@@ -194,20 +193,21 @@ std::string scene_heat_svg(PathTracer& tracer, const FramePlan& plan, double fra
     grid.highest = *std::max_element(grid.values.begin(), grid.values.end());
   }
 
-  const double width = kWideWidth - 2 * kMargin;
+  const double width = kWideWidth - 2 * kHeatMargin;
   const double height = width * static_cast<double>(grid.rows) / static_cast<double>(grid.columns);
-  const Axis x_axis{0, 1, kMargin, kMargin + width};
-  const Axis y_axis{0, 1, kMargin, kMargin + height};
-  Drawing svg(kWideWidth, height + kMargin + kBelow, "Heat map: where on the scene the gaze of all frames fell");
+  const Axis x_axis{0, 1, kHeatMargin, kHeatMargin + width};
+  const Axis y_axis{0, 1, kHeatMargin, kHeatMargin + height};
+  Drawing svg(kWideWidth, height + kHeatMargin + kBelowHeat,
+              "Heat map: where on the scene the gaze of all frames fell");
   if (picture.empty()) {
     draw_surfaces(svg, hits, request.camera.pose.position_m, grid.columns, x_axis, y_axis);
   } else {
     svg.add(fmt::format(
-        R"(<image x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" preserveAspectRatio="none" href="{3}"/>)", kMargin,
-        width, height, picture));
+        R"(<image x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" preserveAspectRatio="none" href="{3}"/>)",
+        kHeatMargin, width, height, picture));
     svg.add(
         fmt::format(R"(<rect x="{0}" y="{0}" width="{1:.1f}" height="{2:.1f}" fill="#000000" fill-opacity="0.35"/>)",
-                    kMargin, width, height));
+                    kHeatMargin, width, height));
   }
   if (grid.highest > 0) {
     draw_heat(svg, grid, x_axis, y_axis, "s of gaze per square metre");

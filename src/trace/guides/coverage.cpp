@@ -42,11 +42,6 @@ void check(const Scene& scene, const std::vector<SurfaceIds>& surfaces, const Co
   }
 }
 
-struct Workspace {
-  RayBatch rays;
-  HitBatch hits;
-};
-
 // The identifiers of one pixel, with the number of rays that hit each.
 class PixelCounts {
  public:
@@ -93,7 +88,7 @@ class CoverageTracer {
         height_px_(height_px) {}
 
   // Pixels [x0, x1) of a row, whose rays are one batch.
-  void trace_run(int y, int x0, int x1, Workspace& work, std::vector<PixelCounts>& counts,
+  void trace_run(int y, int x0, int x1, FirstHitBatch& work, std::vector<PixelCounts>& counts,
                  std::vector<Coverage>& out) const {
     std::size_t count = 0;
     for (int x = x0; x < x1; ++x) {
@@ -167,7 +162,7 @@ std::vector<Coverage> trace_coverage(const Scene& scene, const RenderScene& rend
   const int run_px = kBatchSize / settings.rays;
   parallel_for(static_cast<std::size_t>(height_px), threads, [&](std::size_t row) {
     const FlushDenormals flush;
-    const auto work = std::make_unique<Workspace>();
+    const auto work = std::make_unique<FirstHitBatch>();
     std::vector<PixelCounts> counts(surfaces.size());
     for (int x0 = 0; x0 < width_px; x0 += run_px) {
       tracer.trace_run(static_cast<int>(row), x0, std::min(x0 + run_px, width_px), *work, counts, out);

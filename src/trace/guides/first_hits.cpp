@@ -16,12 +16,7 @@ namespace {
 
 constexpr std::uint64_t kFirstHitKey = 0x666972737421ULL;  // keeps alpha hashes apart from those of traced samples
 
-struct Workspace {
-  RayBatch rays;
-  HitBatch hits;
-};
-
-RayHit hit_of(const Scene& scene, const RenderScene& render_scene, const Workspace& work, std::size_t k) {
+RayHit hit_of(const Scene& scene, const RenderScene& render_scene, const FirstHitBatch& work, std::size_t k) {
   const HitBatch& hits = work.hits;
   const HitIdentity identity = identity_of_hit(scene, render_scene, hits, k);
   RayHit hit;
@@ -48,7 +43,7 @@ std::vector<RayHit> trace_first_hits(const Scene& scene, const RenderScene& rend
   const std::size_t batches = (places_px.size() + kBatchSize - 1) / kBatchSize;
   parallel_for(batches, threads, [&](std::size_t batch) {
     const FlushDenormals flush;
-    const auto work = std::make_unique<Workspace>();
+    const auto work = std::make_unique<FirstHitBatch>();
     const std::size_t begin = batch * kBatchSize;
     const std::size_t end = std::min(begin + kBatchSize, places_px.size());
     for (std::size_t i = begin; i < end; ++i) {

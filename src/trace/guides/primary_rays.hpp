@@ -37,4 +37,10 @@ inline void put_camera_ray(const CameraRays::Ray& ray, std::uint32_t alpha_key, 
   rays.alpha_key[k] = alpha_key;
 }
 
+// A thread's rays, and what they hit.
+struct FirstHitBatch {
+  RayBatch rays;
+  HitBatch hits;
+};
+
 }  // namespace gazetrace

@@ -14,7 +14,7 @@ namespace {
 
 // While the shutter is open, a vertex moves on straight lines between at most this many steps; fewer are taken where
 // that keeps vertices within this fraction of the mesh's size from their true positions.
-constexpr int kSteps = 16;
+constexpr int kMostSteps = 16;
 constexpr double kStraightness = 1e-3;
 constexpr std::size_t kBlock = 2048;  // triangles that a thread takes at once
 
@@ -40,7 +40,7 @@ std::vector<MeshPose> poses_of(const Deformation& deformation, const std::option
   }
   const ShutterTimes& times = *at;
   std::vector<MeshPose> poses;
-  const int steps = times.close_ns > times.open_ns ? kSteps : 0;
+  const int steps = times.close_ns > times.open_ns ? kMostSteps : 0;
   for (int i = 0; i <= steps; ++i) {
     poses.push_back(deformation.pose_at(times.open_ns + (times.close_ns - times.open_ns) * i / std::max(steps, 1)));
   }
@@ -80,7 +80,7 @@ std::vector<MeshShape> shapes_of(const Scene& scene, const Mesh& mesh, const std
   }
   std::vector<MeshShape> quarters;
   for (std::size_t i = 0; i <= 4; ++i) {
-    quarters.push_back(at(i * kSteps / 4));
+    quarters.push_back(at(i * kMostSteps / 4));
   }
   const double allowed = kStraightness * size_of(quarters[2]);
   const double whole = std::max({distance_to_line(quarters[0], quarters[1], quarters[4], 0.25),

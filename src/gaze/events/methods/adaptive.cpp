@@ -15,16 +15,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
+#include "core/nan.hpp"
 #include "core/statistics.hpp"
 #include "gaze/angles.hpp"
 #include "gaze/events/event_method.hpp"
 
 namespace gazetrace {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Motion {
   std::vector<double> speed;         // deg/s, NaN where not known
