@@ -82,10 +82,10 @@ std::string aois_as_json(const AoiAnalysis& analysis) {
     fixations.push_back({{"onset_ns", f.event.begin_ns},
                          {"offset_ns", f.event.end_ns},
                          {"duration_ms", milliseconds(f)},
-                         {"u", number_or_null(f.event.u)},
-                         {"v", number_or_null(f.event.v)},
+                         {"u", number_or_null<Json>(f.event.u)},
+                         {"v", number_or_null<Json>(f.event.v)},
                          {"aoi", f.aoi ? Json(analysis.areas[*f.aoi].name) : Json(nullptr)},
-                         {"share", number_or_null(f.share)}});
+                         {"share", number_or_null<Json>(f.share)}});
   }
   Json figures = Json::array();
   for (std::size_t i = 0; i < analysis.figures.size(); ++i) {
@@ -93,11 +93,11 @@ std::string aois_as_json(const AoiAnalysis& analysis) {
     figures.push_back({{"aoi", i < analysis.areas.size() ? Json(analysis.areas[i].name) : Json(nullptr)},
                        {"fixations", f.fixations},
                        {"fixation_ms", f.fixation_ms},
-                       {"fixation_share", number_or_null(part(f.fixation_ms, analysis.fixation_ms))},
+                       {"fixation_share", number_or_null<Json>(part(f.fixation_ms, analysis.fixation_ms))},
                        {"visits", f.visits},
                        {"dwell_ms", f.dwell_ms},
-                       {"first_fixation_at_ms", number_or_null(f.first_fixation_at_ms)},
-                       {"first_fixation_ms", number_or_null(f.first_fixation_ms)}});
+                       {"first_fixation_at_ms", number_or_null<Json>(f.first_fixation_at_ms)},
+                       {"first_fixation_ms", number_or_null<Json>(f.first_fixation_ms)}});
   }
   const Json json{
       {"aois", std::move(figures)}, {"transitions", analysis.transitions}, {"fixations", std::move(fixations)}};

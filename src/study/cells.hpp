@@ -3,19 +3,15 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string>
-
-#include <fmt/format.h>
 
 namespace gazetrace {
 
-inline std::string number_cell(double value) {
-  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "n/a";
-}
+std::string number_cell(double value);
 
-inline nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+template <class Json>
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 }  // namespace gazetrace

@@ -103,9 +103,10 @@ std::string objects_as_json(const GazeObjects& objects) {
     for (const ObjectShare& share : frame.shares) {
       Json one = object_of(share.object);
       one["share"] = share.share;
-      one["distance_m"] = number_or_null(share.distance_m);
-      one["position_m"] = Json::array(
-          {number_or_null(share.position_m.x), number_or_null(share.position_m.y), number_or_null(share.position_m.z)});
+      one["distance_m"] = number_or_null<Json>(share.distance_m);
+      one["position_m"] =
+          Json::array({number_or_null<Json>(share.position_m.x), number_or_null<Json>(share.position_m.y),
+                       number_or_null<Json>(share.position_m.z)});
       item["objects"].push_back(std::move(one));
     }
     item["nearest"] = Json::array();
