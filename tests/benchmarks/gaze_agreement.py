@@ -181,6 +181,7 @@ def i2mc_events(gaze):
                "scrSz": [2 * far * PIXEL_CM] * 2, "disttoscreen": DISTANCE_CM}
     if rate < 500:  # its authors: down-sample less, and without the filter, where there are few samples
         options.update(downsamples=[n for n in (2, 3, 5) if rate % n == 0 and rate / n >= 30], downsampFilter=False)
+    np.random.seed(1)  # its clusters start at random places
     fixations = I2MC.I2MC(data, options, logging=False)
     fixations = fixations[0] if isinstance(fixations, tuple) else fixations
     if not fixations:
