@@ -12,6 +12,7 @@
 #include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_log.hpp"
 #include "gazetrace/gaze_process.hpp"
+#include "gazetrace/gaze_vergence.hpp"
 
 namespace gazetrace {
 
@@ -49,8 +50,9 @@ struct GazeReportSettings {
   std::string picture;        // .png or .jpg of what was seen, behind scanpath and heat map; empty: none
   double heat_sigma_deg = 1;  // standard deviation of the spot that each fixation leaves on the heat map
   bool keep_ids = false;
-  std::vector<GazeStep> steps;  // of processing: events and diagrams are those of the gaze after them, the quality is
-                                // that of the recording
+  double pupil_distance_mm = 0;  // for the vergence; 0: as VergenceSettings
+  std::vector<GazeStep> steps;   // of processing: events and diagrams are those of the gaze after them, the quality is
+                                 // that of the recording
 };
 
 struct GazePlot {
@@ -69,8 +71,10 @@ struct GazeReport {
   EyeEvents events;
   MainSequence main_sequence;
   std::vector<GazePlot> plots;
-  // Tables of events of each eye, and the disparity of the eyes over time (vergence.tsv: t_ns, horizontal_deg: left
-  // minus right, so that converging eyes give more, vertical_deg), for logs of both eyes.
+  VergenceOverTime vergence;
+  // Tables of events of each eye, and for logs of both eyes vergence.tsv: t_ns; horizontal_deg and vertical_deg, the
+  // disparity of the places (left minus right, each seen from the middle between the eyes); vergence_deg and
+  // distance_mm, the angle between the lines of sight and where they meet (gaze_vergence.hpp).
   std::vector<GazeReportTable> tables;
   std::string json;  // all numbers
   std::string html;  // one file that needs nothing else

@@ -99,8 +99,8 @@ const FrequencyGrid& frequency_grid() {
   // Panels of one octave each, down to the lowest band of a picture of any size.
   static const FrequencyGrid kGrid = [] {
     constexpr int kOctaves = 16;
-    constexpr int kNodes = 12;
-    const FrequencyGrid rule = gauss_legendre(kNodes);
+    constexpr int kQuadratureNodes = 12;
+    const FrequencyGrid rule = gauss_legendre(kQuadratureNodes);
     FrequencyGrid grid;
     for (int octave = 0; octave <= kOctaves; ++octave) {
       const double upper = 0.5 * std::exp2(-octave);

@@ -173,6 +173,28 @@ class Study(harness.CliTest):
         self.assertIn("these events are not to be relied on; ", page)
         self.assertNotIn("`", page)
 
+    def test_vergence_of_eyes_that_look_at_a_point_of_the_screen(self):
+        both = [row for i in range(300) for row in (f"{i * 10_000_000},0.5,0.5,ok,left", f"{i * 10_000_000},0.5,0.5,ok,right")]
+        self.write("log.csv", "# gazetrace-gaze 1\n# display_px 1920 1080\n# display_mm 510 287\n# distance_mm 650\n"
+                   "t[ns],u[1],v[1],valid,eye\n" + "\n".join(both) + "\n")
+        report = ["gaze", "report", "log.csv", "-o", "page.html", "--json", "page.json", "--parts", "parts", "--overwrite"]
+        self.run_ok(*report, "--pupil-distance", "63")
+        expected_deg = math.degrees(2 * math.atan(31.5 / 650))
+        rows = table((self.folder / "parts/vergence.tsv").read_text())
+        self.assertEqual(len(rows), 300)
+        for row in rows:
+            self.assertAlmostEqual(float(row["vergence_deg"]), expected_deg, places=3)
+            self.assertAlmostEqual(float(row["distance_mm"]), 650, places=1)
+            self.assertEqual(float(row["horizontal_deg"]), 0)
+        vergence = json.loads((self.folder / "page.json").read_text())["vergence"]
+        self.assertAlmostEqual(vergence["angle_deg_median"], expected_deg, places=9)
+        self.assertEqual([vergence["pupil_distance_mm"], vergence["pupil_distance_is"]], [63, "stated"])
+        self.assertIn("pupils 63.0 mm apart", (self.folder / "page.html").read_text())
+        self.run_ok(*report)
+        self.assertIn("pupil-distance", json.loads((self.folder / "page.json").read_text())["vergence"]["missing"])
+        self.assertEqual({r["vergence_deg"] for r in table((self.folder / "parts/vergence.tsv").read_text())}, {"n/a"})
+        self.assert_refused([*report, "--pupil-distance", "6.3"], ["pupil-distance", "30 to 100 mm"])
+
     def test_a_report_of_processed_gaze_and_its_durations(self):
         self.run_ok("gaze", "synth", "-o", "log.csv", "--duration", "20s", "--noise", "0.05", "--rate", "60")
         for steps in ([], ["--gaze-process", "median:samples=5"]):

@@ -4,7 +4,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr auto read(auto member) {
+constexpr auto camera_read(auto member) {
   return at(&JobSettings::camera_read, member);
 }
 constexpr auto placement(auto member) {
@@ -14,12 +14,12 @@ constexpr auto placement(auto member) {
 constexpr const char* kNeedsPath = "`camera-path` or `camera-from-gaze`";
 
 void add_path_options(JobSchema& schema) {
-  schema.value("--camera-format", read(&CameraReadOptions::format), "NAME", Touch::camera,
+  schema.value("--camera-format", camera_read(&CameraReadOptions::format), "NAME", Touch::camera,
                "Format of --camera-path; default: by its content");
-  schema.value("--camera-axes", read(&CameraReadOptions::axes), choices<CameraAxes>(), Touch::camera,
+  schema.value("--camera-axes", camera_read(&CameraReadOptions::axes), choices<CameraAxes>(), Touch::camera,
                "Axes of the poses: gl looks along -z with y up, cv along +z with y down, unity left-handed along +z; "
                "default: the format's own, gl for CSV, TUM and EuRoC");
-  schema.value("--camera-rotation-order", read(&CameraReadOptions::rotation_order), choices<RotationOrder>(),
+  schema.value("--camera-rotation-order", camera_read(&CameraReadOptions::rotation_order), choices<RotationOrder>(),
                Touch::camera, "The order in which the rotations of a .chan file are applied, the first letter first");
   schema.value("--camera-fps", &JobSettings::camera_fps, "RATE", Touch::camera,
                "Frames a second of paths that count frames (.chan, NeRF, COLMAP); default: --fps");
@@ -39,11 +39,11 @@ void add_path_options(JobSchema& schema) {
       .value("--camera-start", placement(&CameraPlacement::start_m), "X,Y,Z", Touch::camera,
              "Moves a path or a head's poses so that the first one is here, metres")
       .need(kNeedsPath);
-  schema.value("--camera-interpolation", read(&CameraReadOptions::interpolation), choices<PathInterpolation>(),
+  schema.value("--camera-interpolation", camera_read(&CameraReadOptions::interpolation), choices<PathInterpolation>(),
                Touch::camera, "How the camera moves from one pose of the path to the next");
   schema.value("--camera-extrapolation", &JobSettings::camera_extrapolation, choices<CameraExtrapolation>(),
                Touch::camera, "What frames before or after the path get: an error, or its first or last pose");
-  schema.flag("--camera-keep-time", read(&CameraReadOptions::keep_time), Touch::camera,
+  schema.flag("--camera-keep-time", camera_read(&CameraReadOptions::keep_time), Touch::camera,
               "The path's stamps are video times; otherwise its first stamp is video time 0");
 }
 

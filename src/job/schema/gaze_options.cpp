@@ -5,7 +5,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr auto read(auto member) {
+constexpr auto gaze_read(auto member) {
   return at(&GazeFileSettings::read, member);
 }
 constexpr auto column(auto member) {
@@ -154,12 +154,12 @@ void add_trial_options(OptionSchema<GazeFileSettings>& schema) {
 OptionSchema<GazeFileSettings> gaze_file_schema() {
   OptionSchema<GazeFileSettings> schema;
   schema.group("Gaze log");
-  schema.value("--gaze-format", read(&GazeReadOptions::format), "NAME", Touch::gaze,
+  schema.value("--gaze-format", gaze_read(&GazeReadOptions::format), "NAME", Touch::gaze,
                "Format of the log ('gazetrace list gaze-formats'); default: found by its content");
-  schema.value("--gaze-recording", read(&GazeReadOptions::recording), "NUMBER|NAME", Touch::gaze,
+  schema.value("--gaze-recording", gaze_read(&GazeReadOptions::recording), "NUMBER|NAME", Touch::gaze,
                "Which recording, or which block, of a file that holds several: 'gazetrace gaze inspect' lists them");
   schema
-      .value("--gaze-events", read(&GazeReadOptions::events_file), "FILE", Touch::gaze,
+      .value("--gaze-events", gaze_read(&GazeReadOptions::events_file), "FILE", Touch::gaze,
              "A table of fixations, saccades or blinks that another program found in this log: they become its events")
       .decides_by_file();
   add_column_options(schema);
@@ -172,26 +172,26 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
   schema.value("--gaze-axes", column(&GazeColumns::axes), choices<GazeAxes>(), Touch::gaze,
                "Axes of directions: gl looks along -z, unity left-handed along +z, sranipal along +z with x to the "
                "left, cv along +z with y down; default: the format's own");
-  schema.value("--gaze-frame", read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
+  schema.value("--gaze-frame", gaze_read(&GazeReadOptions::frame), choices<GazeFrame>(), Touch::gaze,
                "Which gaze is taken of a log that states several: head, directions from the head; scene-camera, places "
                "on the scene camera's picture");
   schema.value(
-      "--gaze-eye", read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
+      "--gaze-eye", gaze_read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
       "Which gaze is taken of a log of both eyes; auto: its combined gaze, else the mean of both eyes by angle");
-  schema.value("--gaze-dominant", read(&GazeReadOptions::dominant_eye), choices<Eye>(), Touch::gaze,
+  schema.value("--gaze-dominant", gaze_read(&GazeReadOptions::dominant_eye), choices<Eye>(), Touch::gaze,
                "The eye that --gaze-eye dominant takes");
   schema.value("--gaze-min-confidence", &GazeFileSettings::min_confidence, "SHARE", Touch::gaze,
                "Samples of less confidence are not used; default: the format's own, such as 0.6 for Pupil Core");
-  schema.flag("--gaze-zero-missing", read(&GazeReadOptions::zero_is_missing), Touch::gaze,
+  schema.flag("--gaze-zero-missing", gaze_read(&GazeReadOptions::zero_is_missing), Touch::gaze,
               "Takes positions of exactly (0, 0) for missing ones");
-  schema.value("--gaze-missing-value", read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
+  schema.value("--gaze-missing-value", gaze_read(&GazeReadOptions::missing_value), "VALUE", Touch::gaze,
                "The number, such as -1, that the log has where it has no position, in both axes or in one; 0 counts in "
                "both only; -32768, and magnitudes from 1e7 on, always mean that");
-  schema.flag("--gaze-swap-xy", read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
-  schema.flag("--gaze-flip-x", read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
-  schema.flag("--gaze-flip-y", read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
+  schema.flag("--gaze-swap-xy", gaze_read(&GazeReadOptions::swap_xy), Touch::gaze, "Exchanges the two axes");
+  schema.flag("--gaze-flip-x", gaze_read(&GazeReadOptions::flip_x), Touch::gaze, "Exchanges left and right");
+  schema.flag("--gaze-flip-y", gaze_read(&GazeReadOptions::flip_y), Touch::gaze, "Exchanges top and bottom");
   schema.flag(
-      "--gaze-decimal-comma", read(&GazeReadOptions::decimal_comma), Touch::gaze,
+      "--gaze-decimal-comma", gaze_read(&GazeReadOptions::decimal_comma), Touch::gaze,
       "Numbers have decimal commas although commas also separate the columns; not needed with tabs or semicolons");
   add_trial_options(schema);
   return schema;

@@ -33,10 +33,10 @@ bool has_both_eyes(const GazeLog& log) {
 // Places in the unit of the plane, and pupils, of the gaze and of each eye.
 struct Traces {
   std::vector<double> seconds;
-  std::vector<GazeTrace> x, y, pupil, disparity;
+  std::vector<GazeTrace> x, y, pupil, disparity, vergence;
 };
 
-Traces traces_of(const GazeLog& log, const GazePlane& plane) {
+Traces traces_of(const GazeLog& log, const GazePlane& plane, const VergenceOverTime& vergence) {
   Traces traces;
   const bool both = has_both_eyes(log);
   const std::size_t count = log.samples.size();
@@ -53,6 +53,10 @@ Traces traces_of(const GazeLog& log, const GazePlane& plane) {
   }
   list(traces.disparity, "horizontal", kTraceColor);
   list(traces.disparity, "vertical", "#009e73");
+  list(traces.vergence, "vergence", kTraceColor);
+  for (std::size_t i = 0; i < vergence.samples.size(); ++i) {
+    traces.vergence[0].values[i] = vergence.samples[i].horizontal_deg;
+  }
   const auto pupil = [](float size) { return size > 0 ? static_cast<double>(size) : kNan; };
   for (std::size_t i = 0; i < count; ++i) {
     const GazeSample& sample = log.samples[i];
@@ -77,8 +81,32 @@ Traces traces_of(const GazeLog& log, const GazePlane& plane) {
   return traces;
 }
 
+std::string cell(double value) {
+  return std::isnan(value) ? "n/a" : fmt::format("{:.5g}", value);
+}
+
+std::string vergence_table(const GazeLog& log, const GazePlane& plane, const Traces& traces,
+                           const VergenceOverTime& vergence) {
+  const bool is_angle = plane.unit() == "deg";
+  std::string table =
+      fmt::format("t_ns\thorizontal_{0}\tvertical_{0}\tvergence_deg\tdistance_mm\n", is_angle ? "deg" : "share_or_px");
+  for (std::size_t i = 0; i < log.samples.size(); ++i) {
+    const Vergence at = vergence.samples.empty() ? Vergence{kNan, kNan, kNan} : vergence.samples[i];
+    fmt::format_to(std::back_inserter(table), "{}\t{}\t{}\t{}\t{}\n", log.samples[i].t_ns,
+                   cell(traces.disparity[0].values[i]), cell(traces.disparity[1].values[i]), cell(at.horizontal_deg),
+                   cell(at.distance_mm));
+  }
+  return table;
+}
+
+std::string how_vergence(const VergenceOverTime& vergence) {
+  return vergence.pupil_distance_mm == 0 ? "of the directions of the eyes"
+                                         : fmt::format("pupils {:.1f} mm apart, {}", vergence.pupil_distance_mm,
+                                                       vergence.is_distance_stated ? "as stated" : "by the log");
+}
+
 void add_time_plots(const GazeLog& log, const GazePlane& plane, GazeReport& report) {
-  const Traces traces = traces_of(log, plane);
+  const Traces traces = traces_of(log, plane, report.vergence);
   const auto add = [&](const char* name, const std::string& title, const std::string& label,
                        const std::vector<GazeTrace>& lines) {
     if (auto plot = trace_plot(name, title, label, traces.seconds, lines)) {
@@ -88,26 +116,18 @@ void add_time_plots(const GazeLog& log, const GazePlane& plane, GazeReport& repo
   add("x_over_time", "Horizontal position", fmt::format("x [{}], right", plane.unit()), traces.x);
   add("y_over_time", "Vertical position", fmt::format("y [{}], up", plane.unit()), traces.y);
   if (has_both_eyes(log)) {
-    add("disparity_over_time", "Disparity: left eye less right eye (vergence)",
+    add("disparity_over_time", "Disparity: place of the left eye less that of the right",
         fmt::format("disparity [{}]", plane.unit()), traces.disparity);
+    add("vergence_over_time", "Vergence: angle between the lines of sight", "vergence [deg]", traces.vergence);
+    if (!report.vergence.samples.empty() && report.plots.back().name == "vergence_over_time") {
+      report.plots.back().note = how_vergence(report.vergence);
+    }
   }
   const std::string unit = log.pupil_unit.empty() ? "unit not stated" : log.pupil_unit;
   add("pupil_over_time", fmt::format("Pupil size [{}]", unit), fmt::format("pupil [{}]", unit), traces.pupil);
-  if (!has_both_eyes(log)) {
-    return;
+  if (has_both_eyes(log)) {
+    report.tables.push_back({"vergence.tsv", vergence_table(log, plane, traces, report.vergence)});
   }
-  const bool is_angle = plane.unit() == "deg";
-  std::string table = fmt::format("t_ns\thorizontal_{0}\tvertical_{0}\n", is_angle ? "deg" : "share_or_px");
-  for (std::size_t i = 0; i < log.samples.size(); ++i) {
-    const double horizontal = traces.disparity[0].values[i];
-    const double vertical = traces.disparity[1].values[i];
-    if (std::isnan(horizontal) || std::isnan(vertical)) {
-      fmt::format_to(std::back_inserter(table), "{}\tn/a\tn/a\n", log.samples[i].t_ns);
-    } else {
-      fmt::format_to(std::back_inserter(table), "{}\t{:.5g}\t{:.5g}\n", log.samples[i].t_ns, horizontal, vertical);
-    }
-  }
-  report.tables.push_back({"vergence.tsv", std::move(table)});
 }
 
 }  // namespace
@@ -181,6 +201,7 @@ GazeReport gaze_report(const GazeLog& recorded, const GazeReportSettings& settin
     report.plots.push_back(std::move(*heat));
   }
   report.plots.push_back(scanpath_plot(log, events, picture));
+  report.vergence = measure_vergence(log, {settings.pupil_distance_mm});
   add_time_plots(log, GazePlane(log, std::nullopt), report);
   report.json = gaze_report_json(log, report);
   report.html = gaze_page(log, report);

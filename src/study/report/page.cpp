@@ -146,6 +146,35 @@ std::string gaze_page(const GazeLog& log, const GazeReport& report) {
                                         {"program", fmt::format("gazetrace {}", kVersion)}});
 }
 
+namespace {
+
+Json vergence_json(const VergenceOverTime& vergence) {
+  if (!vergence.missing.empty()) {
+    return {{"missing", vergence.missing}};
+  }
+  std::vector<double> angles_deg, distances_mm;
+  for (const Vergence& at : vergence.samples) {
+    if (std::isfinite(at.horizontal_deg)) {
+      angles_deg.push_back(at.horizontal_deg);
+    }
+    if (std::isfinite(at.distance_mm)) {
+      distances_mm.push_back(at.distance_mm);
+    }
+  }
+  const bool is_known = vergence.pupil_distance_mm > 0;
+  return {{"samples", angles_deg.size()},
+          {"pupil_distance_mm", is_known ? Json(vergence.pupil_distance_mm) : Json(nullptr)},
+          {"pupil_distance_is", !is_known                     ? "unknown"
+                                : vergence.is_distance_stated ? "stated"
+                                                              : "of the log"},
+          {"angle_deg_q1", number(quantile(angles_deg, 0.25))},
+          {"angle_deg_median", number(quantile(angles_deg, 0.5))},
+          {"angle_deg_q3", number(quantile(angles_deg, 0.75))},
+          {"distance_mm_median", number(quantile(distances_mm, 0.5))}};
+}
+
+}  // namespace
+
 std::string gaze_report_json(const GazeLog& log, const GazeReport& report) {
   Json quality = Json::array();
   for (const GazeQuality& q : report.quality) {
@@ -185,6 +214,7 @@ std::string gaze_report_json(const GazeLog& log, const GazeReport& report) {
               {"factor", number(m.factor)},
               {"exponent", number(m.exponent)},
               {"correlation", number(m.correlation)}}},
+            {"vergence", vergence_json(report.vergence)},
             {"pupil_unit", log.pupil_unit},
             {"warnings", report.warnings}};
   if (log.trial) {
