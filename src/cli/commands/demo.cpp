@@ -20,6 +20,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
+#include "cli/own_program.hpp"
 #include "cli/progress.hpp"
 #include "gazetrace/error.hpp"
 
@@ -37,12 +38,6 @@ struct DemoArguments {
   bool overwrite = false, without_sweep = false;
   JsonOutput json;
 };
-
-fs::path own_program() {
-  std::error_code failed;
-  const fs::path path = fs::read_symlink("/proc/self/exe", failed);
-  return failed ? fs::path("gazetrace") : path;
-}
 
 // The folder that holds examples/, scenes/ and gazelogs/: share/gazetrace of an installation, the repository of a
 // build.

@@ -16,6 +16,7 @@
 #include "cli/exit_codes.hpp"
 #include "cli/interruption.hpp"
 #include "cli/json_output.hpp"
+#include "cli/own_program.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/farm.hpp"
 
@@ -30,12 +31,6 @@ struct FarmArguments {
   bool submit = false;
   JsonOutput json;
 };
-
-std::string own_program() {
-  std::error_code failed;
-  const auto path = std::filesystem::read_symlink("/proc/self/exe", failed);
-  return failed ? std::string("gazetrace") : path.string();
-}
 
 std::vector<std::size_t> all_chunks(const FarmPlan& plan) {
   std::vector<std::size_t> chunks(plan.chunks.size());
@@ -95,7 +90,7 @@ int run_farm(FarmArguments& arguments) {
     settings.time = time;
   }
   if (settings.program.empty()) {
-    settings.program = own_program();
+    settings.program = own_program().string();
   }
   const FarmPlan plan = plan_farm(settings);
   std::fputs(farm_plan_text(plan).c_str(), stderr);
