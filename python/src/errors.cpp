@@ -40,6 +40,13 @@ std::string with_keywords(const std::string& text) {
   return words;
 }
 
+std::vector<std::string> in_keywords(std::vector<std::string> texts) {
+  for (std::string& text : texts) {
+    text = with_keywords(text);
+  }
+  return texts;
+}
+
 void translate_errors() {
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     if (!thrown) {

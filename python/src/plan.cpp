@@ -29,13 +29,6 @@ struct Planned {
   }
 };
 
-std::vector<std::string> in_keywords(std::vector<std::string> texts) {
-  for (std::string& text : texts) {
-    text = with_keywords(text);
-  }
-  return texts;
-}
-
 }  // namespace
 
 void bind_plan(py::module_& module) {

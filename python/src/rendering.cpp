@@ -14,13 +14,6 @@
 namespace gazetrace::python {
 namespace {
 
-Warnings in_keywords(Warnings texts) {
-  for (std::string& text : texts) {
-    text = with_keywords(text);
-  }
-  return texts;
-}
-
 RunRecord record_in_keywords(RunRecord record) {
   record.warnings = in_keywords(std::move(record.warnings));
   for (auto& [name, text] : record.facts) {
