@@ -15,6 +15,14 @@ except ImportError as problem:
         "docs/python.md lists them"
     ) from problem
 
+import numpy as _numpy
+
+if int(_numpy.__version__.split(".")[0]) >= 2 and not _core.knows_numpy_2:
+    raise ImportError(
+        f"this gazetrace was built with a pybind11 that does not know NumPy {_numpy.__version__}; install a NumPy before 2, "
+        "or build with pybind11 2.12 or newer, as `pip install .` does"
+    )
+
 from . import metrics
 from ._errors import Error, GazetraceWarning
 from .comparison import ComparisonResult, compare

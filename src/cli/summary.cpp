@@ -17,13 +17,14 @@ struct Stage {
   const char* name;
   double TimingRow::*ms;
 };
-constexpr std::array<Stage, 10> kStages{{{"plan", &TimingRow::plan_ms},
+constexpr std::array<Stage, 11> kStages{{{"plan", &TimingRow::plan_ms},
                                          {"pilot", &TimingRow::pilot_ms},
                                          {"trace", &TimingRow::trace_ms},
                                          {"guides", &TimingRow::guides_ms},
                                          {"reconstruct", &TimingRow::reconstruct_ms},
                                          {"temporal", &TimingRow::temporal_ms},
                                          {"exposure", &TimingRow::exposure_ms},
+                                         {"layers", &TimingRow::layers_ms},
                                          {"color", &TimingRow::color_ms},
                                          {"write", &TimingRow::write_ms},
                                          {"total", &TimingRow::total_ms}}};
@@ -31,6 +32,7 @@ constexpr std::array<Stage, 10> kStages{{{"plan", &TimingRow::plan_ms},
 struct Totals {
   std::array<double, kStages.size()> ms{};
   std::uint64_t samples = 0, rays = 0, pixels = 0;
+  double trace_ms = 0;
   double peak_memory_mib = 0;
 };
 
@@ -40,6 +42,7 @@ Totals add_up(const SequenceResult& result) {
     for (std::size_t i = 0; i < kStages.size(); ++i) {
       totals.ms[i] += row.*kStages[i].ms;
     }
+    totals.trace_ms += row.trace_ms;
     totals.samples += row.samples;
     totals.rays += row.rays_primary + row.rays_bounce + row.rays_shadow;
     totals.pixels += row.pixels;
@@ -68,7 +71,7 @@ std::string summary_text(const SequenceResult& result, double wall_s) {
   for (std::size_t i = 0; i < kStages.size(); ++i) {
     text += fmt::format("{} {} {:.1f}", i == 0 ? "" : ",", kStages[i].name, totals.ms[i] / frames);
   }
-  const double trace_s = totals.ms[1] * 1e-3;
+  const double trace_s = totals.trace_ms * 1e-3;
   text += fmt::format(
       "\n{:.3f} samples a pixel, {:.2f} M samples/s and {:.2f} M rays/s while tracing, peak memory {:.0f} MiB\n",
       per(static_cast<double>(totals.samples), static_cast<double>(totals.pixels)),
