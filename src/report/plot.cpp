@@ -11,7 +11,8 @@ namespace gazetrace {
 namespace {
 
 constexpr double kLegendLine = 19;
-constexpr std::size_t kLegendLetters = 46;
+// What fits where letters are as wide as those of DejaVu, the widest of the usual fonts.
+constexpr std::size_t kLegendLetters = 46, kTitleLetters = 62, kSecondTitleLetters = 74;
 
 // Cuts a text between letters, never inside a letter of several bytes.
 std::string shortened(const std::string& words, std::size_t most) {
@@ -169,6 +170,23 @@ void PlotSvg::axes(const PlotScale& x, const PlotScale& y, double left, double t
   text(16, middle, y_label, "middle", fmt::format(" transform=\"rotate(-90 16 {:.1f})\"", middle).c_str());
 }
 
+void PlotSvg::title(const std::string& words) {
+  constexpr double kLeft = 24;
+  if (words.size() <= kTitleLetters) {
+    text(kLeft, 24, words, "start", " font-size=\"15\"");
+    return;
+  }
+  // Before what names the run, or else at a comma.
+  std::size_t end = words.rfind(": ", kTitleLetters);
+  if (end == std::string::npos) {
+    end = words.rfind(", ", kTitleLetters);
+  }
+  const std::size_t first = end == std::string::npos ? 0 : end + 1;
+  text(kLeft, 16, words.substr(0, first), "start", " font-size=\"14\"");
+  text(kLeft, 33, shortened(words.substr(first == 0 ? 0 : first + 1), kSecondTitleLetters), "start",
+       " font-size=\"13\"");
+}
+
 double PlotSvg::legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top) {
   const double column = (kPlotWidth - left) / 2;
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -181,7 +199,7 @@ double PlotSvg::legend(const std::vector<std::pair<ReportRole, std::string>>& en
                     "d=\"M{:.1f} {:.1f}h26\"/>",
                     escaped(role.name), role.color, role.dash.empty() ? "none" : role.dash, x, y));
     mark(role, x + 13, y, 4);
-    text(x + 33, y + 4.5, shortened(words, kLegendLetters), "start", " font-size=\"12\"");
+    text(x + 33, y + 4.5, shortened(words, kLegendLetters), "start", " font-size=\"11\"");
   }
   return top + legend_height(entries.size());
 }

@@ -14,6 +14,7 @@
 namespace gazetrace {
 
 inline constexpr double kPlotWidth = 640;
+inline constexpr double kPlotTop = 44;  // where axes begin: below a title of two lines
 
 // Maps values to picture coordinates on a linear or logarithmic scale.
 class PlotScale {
@@ -47,6 +48,8 @@ class PlotSvg {
   // Draws the frame, ticks and labels of a diagram whose scales end at its borders.
   void axes(const PlotScale& x, const PlotScale& y, double left, double top, double right, double bottom,
             const std::string& x_label, const std::string& y_label, bool with_x_numbers = true);
+  // Above the axes, in two lines where one is too short.
+  void title(const std::string& words);
   // Draws the marks and words of runs in two columns below a diagram; returns where the legend ends.
   double legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top);
   [[nodiscard]] std::string str() const { return text_ + "</svg>\n"; }

@@ -177,6 +177,27 @@ TEST(ReportPlots, IntervalsDoNotMakeTheMeansSmall) {
   EXPECT_NEAR(scale.within(10), 5, 1e-9);
 }
 
+TEST(ReportPlots, ALineSetsBandsApartFromRegions) {
+  // Of three bands two have no pixels, so that the line stands behind the first of three groups of bars: at a third of
+  // the way from 84 to 614.
+  ordered_json one = row("t", "test", score(0.1, 0.09, 0.11));
+  for (const char* const part : {"0-2.6", "fovea", "intermediate"}) {
+    one["scores"]["flip"][part] = one["scores"]["flip"]["whole"];
+  }
+  const std::vector<ReportPlot> plots = report_plots(read(results({one})));
+  const auto bands =
+      std::find_if(plots.begin(), plots.end(), [](const ReportPlot& plot) { return plot.kind == "bands"; });
+  ASSERT_NE(bands, plots.end());
+  EXPECT_THAT(bands->svg, HasSubstr("stroke=\"#8a8a8a\" fill=\"none\" d=\"M260.7 "));
+}
+
+TEST(ReportPlots, LongTitlesTakeTwoLinesAndKeepTheirWords) {
+  PlotSvg svg(100, "");
+  svg.title("flip by eccentricity and region, courtyard, gaze reader: region-samples 32,16,8");
+  EXPECT_THAT(svg.str(), HasSubstr(">flip by eccentricity and region, courtyard, gaze reader:<"));
+  EXPECT_THAT(svg.str(), HasSubstr(">region-samples 32,16,8<"));
+}
+
 TEST(ReportFindings, HigherMayBeBetter) {
   ordered_json json = results({row("t", "test", score(9.1, 9.0, 9.2)), row("u", "equal-time", score(9.5, 9.4, 9.6))});
   json["metrics"][0]["better"] = "higher";

@@ -2,10 +2,22 @@
 // Error in each band of eccentricity and each retinal region: a test row and its baselines side by side.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/plot.hpp"
 #include "results/csv.hpp"
 
 namespace gazetrace {
+namespace {
+
+// The long names of regions, where there is little room below their bars.
+std::string short_name(const std::string& part, double width) {
+  constexpr double kLetter = 7;
+  const bool fits = kLetter * static_cast<double>(part.size()) < width;
+  return fits ? part : part == "intermediate" ? "interm." : part == "periphery" ? "periph." : part;
+}
+
+}  // namespace
 
 std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test, const ResultMetric& metric) {
   const std::vector<std::string> parts = scored_parts(data);
@@ -36,7 +48,7 @@ std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test,
   // Bars begin at 0, which a logarithmic scale does not have. Values of metrics where higher is better lie close to
   // each other and far from 0: they are shown as points without bars.
   const bool bars = metric.is_lower_better && !wants_log(values);
-  constexpr double kLeft = 84, kTop = 34, kBottom = 320;
+  constexpr double kLeft = 84, kTop = kPlotTop, kBottom = 320;
   const double right = kPlotWidth - 26;
   const PlotScale x({0, static_cast<double>(parts.size())}, kLeft, right, false, true);
   const PlotScale y(values, kBottom, kTop, wants_log(values), bars);
@@ -46,19 +58,24 @@ std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test,
     entries.emplace_back(report_role(row->role), row->label);
   }
   PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
-  svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
+  svg.title(plot.title);
   svg.axes(x, y, kLeft, kTop, right, kBottom, "eccentricity [deg]; region",
            metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"), false);
+  const std::vector<std::string> bands = band_names(data.bands_deg);
+  const auto is_band = [&](const std::string& part) {
+    return std::find(bands.begin(), bands.end(), part) != bands.end();
+  };
   const double part_width = (right - kLeft) / static_cast<double>(parts.size());
   const double step = 0.8 * part_width / static_cast<double>(rows.size());
   bool any_unresolved = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const double begin = kLeft + part_width * static_cast<double>(p);
-    if (p == data.bands_deg.size()) {  // a line sets the regions apart, which contain several bands
+    if (p > 0 && is_band(parts[p - 1]) &&
+        !is_band(parts[p])) {  // a line sets the regions apart, which contain several bands
       svg.add(fmt::format("<path class=\"line\" stroke=\"#8a8a8a\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", begin,
                           kTop, kBottom));
     }
-    svg.text(begin + part_width / 2, kBottom + 17, parts[p], "middle", " font-size=\"12\"");
+    svg.text(begin + part_width / 2, kBottom + 17, short_name(parts[p], part_width), "middle", " font-size=\"11\"");
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const ResultScore* const score = find_score(*rows[r], metric.name, parts[p]);
       if (score == nullptr || !score->value) {

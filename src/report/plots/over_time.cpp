@@ -92,7 +92,7 @@ std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, 
   plot.title =
       fmt::format("Speed and {} over time, {}: {}", metric.name, scene_gaze_text({test.scene, test.gaze}), test.label);
 
-  constexpr double kLeft = 84, kTop = 34, kMiddle = 190, kSecond = 214, kBottom = 380, kStrip = 10;
+  constexpr double kLeft = 84, kTop = kPlotTop, kMiddle = 190, kSecond = 214, kBottom = 380, kStrip = 10;
   const double right = kPlotWidth - 26;
   std::vector<std::pair<ReportRole, std::string>> entries;
   entries.reserve(times.size());
@@ -100,7 +100,7 @@ std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, 
     entries.emplace_back(report_role(series.row->role), series.row->label);
   }
   PlotSvg svg(kBottom + 78 + legend_height(entries.size()) + 26, plot.title);
-  svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
+  svg.title(plot.title);
   const PlotScale x(t_s, kLeft, right, false);
   const PlotScale y_time(all_times, kMiddle, kTop, wants_log(all_times), true);
   const PlotScale y_score(all_scores, kBottom, kSecond, wants_log(all_scores), false);

@@ -28,6 +28,54 @@ std::vector<Point> points_of(const Results& data, const SceneGaze& both, const s
   return points;
 }
 
+struct Box {
+  double left, top, right, bottom;
+};
+
+double overlap(const Box& a, const Box& b) {
+  return std::max(0.0, std::min(a.right, b.right) - std::max(a.left, b.left)) *
+         std::max(0.0, std::min(a.bottom, b.bottom) - std::max(a.top, b.top));
+}
+
+// Words beside marks, where they cover marks and other words least.
+class Labels {
+ public:
+  explicit Labels(const Box& plot) : plot_(plot) {}
+
+  void keep_clear(double x, double y) { taken_.push_back({x - 6, y - 6, x + 6, y + 6}); }
+  void put(double x, double y, const std::string& words, PlotSvg& svg) {
+    constexpr double kLetter = 6.6, kHeight = 10;  // at the size of the font below
+    const double width = kLetter * static_cast<double>(words.size());
+    Box best{};
+    bool is_right = true;
+    double least = -1;
+    double preference = 0;  // for the places that come first, which are nearer
+    for (const double rise : {7.0, -15.0, 20.0, -28.0, 33.0, -41.0}) {  // from the mark up to the baseline
+      for (const bool right : {true, false}) {
+        const double left = right ? x + 8 : x - 8 - width;
+        const Box box{left, y - rise - kHeight, left + width, y - rise + 2};
+        double cost = preference + 4 * (width * (kHeight + 2) - overlap(box, plot_));
+        for (const Box& other : taken_) {
+          cost += overlap(box, other);
+        }
+        preference += 1;
+        if (least < 0 || cost < least) {
+          least = cost;
+          best = box;
+          is_right = right;
+        }
+      }
+    }
+    taken_.push_back(best);
+    svg.text(is_right ? best.left : best.right, best.bottom - 2, words, is_right ? "start" : "end",
+             " font-size=\"11\"");
+  }
+
+ private:
+  Box plot_;
+  std::vector<Box> taken_;
+};
+
 // The points of a front that the sweep has found, in the order of time.
 struct Front {
   std::vector<const Point*> points;
@@ -112,7 +160,7 @@ std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both
   }
   const std::vector<double> times = plotted_range(all_times);
   const std::vector<double> scores = plotted_range(all_scores);
-  constexpr double kLeft = 84, kTop = 34, kBottom = 350;
+  constexpr double kLeft = 84, kTop = kPlotTop, kBottom = 350;
   const double right = kPlotWidth - 26;
   const PlotScale x(times, kLeft, right, wants_log(times));
   const PlotScale y(scores, kBottom, kTop, wants_log(scores));
@@ -121,7 +169,7 @@ std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both
     entries.emplace_back(report_role(points[i].row->role), fmt::format("{}  {}", i + 1, points[i].row->label));
   }
   PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
-  svg.text(kLeft, 20, plot.title, "start", " font-size=\"15\"");
+  svg.title(plot.title);
   svg.axes(x, y, kLeft, kTop, right, kBottom, "time of a frame [s]",
            metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
   const std::vector<const ResultReference*> scenes = find_references(data, both);
@@ -156,8 +204,15 @@ std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both
                           y.within(*point.score.high)));
     }
     svg.mark(role, px, py);
-    svg.text(px + 8, py - 7, std::to_string(i + 1) + (point.is_resolved ? "" : " (unresolved)"), "start",
-             " font-size=\"11\"");
+  }
+  Labels labels({kLeft, kTop, right, kBottom});
+  for (const Point& point : points) {
+    labels.keep_clear(x.at(point.time_s.mean), y.at(point.score.mean));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& point = points[i];
+    labels.put(x.at(point.time_s.mean), y.at(point.score.mean),
+               std::to_string(i + 1) + (point.is_resolved ? "" : " (unresolved)"), svg);
   }
   const double end = svg.legend(entries, 24, kBottom + 52);
   svg.text(24, end + 16, front_words(fronts), "start", " font-size=\"11\"");
