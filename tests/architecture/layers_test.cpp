@@ -64,7 +64,7 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"gazelog", {"gaze_conventions", "gaze_log", "gaze_raw", "gaze_raw_rows", "gaze_read", "gaze_write"}},
     {"gaze",
      {"gaze", "gaze_event_check", "gaze_event_durations", "gaze_events", "gaze_inspect", "gaze_privacy", "gaze_process",
-      "gaze_synth", "gaze_trials", "gaze_vergence", "gaze_vergence"}},
+      "gaze_synth", "gaze_trials", "gaze_vergence"}},
     {"scene", {"scene", "scene_contents", "sky", "deformation"}},
     {"plan", {"plan"}},
     {"foveation", {"foveation"}},
