@@ -12,7 +12,8 @@ namespace gazetrace {
 
 // What the eyes do at one sample; NaN where it is not known.
 struct Vergence {
-  // Azimuth of the left eye less that of the right, in degrees: positive for eyes that converge, 0 for parallel ones.
+  // Azimuth of the left eye less that of the right, in degrees, in the plane of the eyes and of what they look at
+  // (Helmholtz): the angle between lines of sight that meet, positive for eyes that converge, 0 for parallel ones.
   double horizontal_deg;
   // Elevation of the left eye less that of the right, in degrees: the error of the tracker, since eyes move up and down
   // together.

@@ -33,12 +33,15 @@ double stated_pupil_distance_mm(const GazeLog& log) {
   return distances.empty() ? 0 : lower_quantile(distances, 0.5);
 }
 
+// Helmholtz's angles: the plane of the eyes and of what they look at turns about the line through both eyes, and each
+// eye turns within it. So eyes that look at one point differ by the angle between their lines of sight, and not in
+// elevation.
 double azimuth_deg(const Vec3d& d) {
-  return std::atan2(d.x, -d.z) * kDegPerRad;
+  return std::atan2(d.x, std::hypot(d.y, d.z)) * kDegPerRad;
 }
 
 double elevation_deg(const Vec3d& d) {
-  return std::atan2(d.y, std::hypot(d.x, d.z)) * kDegPerRad;
+  return std::atan2(d.y, -d.z) * kDegPerRad;
 }
 
 // From the middle between the eyes to the middle of the shortest line between the lines of sight.

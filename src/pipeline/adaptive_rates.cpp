@@ -35,10 +35,6 @@ constexpr double kMostGrowth = 16;    // of the rate from one round to the next
 constexpr double kDefensiveShare = 0.25;
 constexpr double kLeastRate = 1e-3;  // samples a pixel: below, nothing can be extrapolated
 
-double pixels_of(const FrameRequest& request) {
-  return static_cast<double>(request.width_px) * request.height_px;
-}
-
 // Samples a pixel, the pilot's among them.
 double budget_spp_of(const FoveationSettings& foveation, const FrameRequest& request) {
   return foveation.budget_samples ? static_cast<double>(*foveation.budget_samples) / pixels_of(request)

@@ -33,10 +33,6 @@ constexpr double kLate = 1.1;  // over the budget: worth a warning
 // Until the first frame's files are written: milliseconds a megapixel of a common machine.
 constexpr double kExrMs = 60, kDisplayMs = 200;
 
-double pixels_of(const FrameRequest& request) {
-  return static_cast<double>(request.width_px) * request.height_px;
-}
-
 double guessed_output_ms(const OutputSettings& output, double pixels) {
   return 1e-6 * pixels *
          ((output.exr.pattern.empty() ? 0 : kExrMs) + (output.display.pattern.empty() ? 0 : kDisplayMs));

@@ -7,6 +7,10 @@
 
 namespace gazetrace {
 
+inline double pixels_of(const FrameRequest& request) {
+  return static_cast<double>(request.width_px) * request.height_px;
+}
+
 // `From` and `To` are TraceStats or TimingRow, which name these counts alike.
 template <class From, class To>
 void add_counts(const From& from, To& to) {

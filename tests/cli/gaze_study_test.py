@@ -193,6 +193,9 @@ class Study(harness.CliTest):
         self.run_ok(*report)
         self.assertIn("pupil-distance", json.loads((self.folder / "page.json").read_text())["vergence"]["missing"])
         self.assertEqual({r["vergence_deg"] for r in table((self.folder / "parts/vergence.tsv").read_text())}, {"n/a"})
+        self.assertIn("No vergence: the distance between the pupils is not known", (self.folder / "page.html").read_text())
+        self.run_ok(*report, "--pupil-distance", "63", "--gaze-process", "median:samples=3")
+        self.assertIn("processing", json.loads((self.folder / "page.json").read_text())["vergence"]["missing"])
         self.assert_refused([*report, "--pupil-distance", "6.3"], ["pupil-distance", "30 to 100 mm"])
 
     def test_a_report_of_processed_gaze_and_its_durations(self):

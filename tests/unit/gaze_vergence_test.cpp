@@ -64,9 +64,10 @@ TEST(GazeVergence, APointBeforeOrBehindTheScreenIsFoundWhereItIs) {
         log_of(GazeKind::screen, eye_at(on_screen(-kPupilsMm / 2, point)), eye_at(on_screen(kPupilsMm / 2, point)));
     const Vergence at = measure_vergence(log, {kPupilsMm}).samples.at(0);
     EXPECT_NEAR(at.distance_mm, length(point), 1e-6);
-    const double left_deg = std::atan2(point.x + kPupilsMm / 2, -point.z) * kDegPerRad;
-    const double right_deg = std::atan2(point.x - kPupilsMm / 2, -point.z) * kDegPerRad;
-    EXPECT_NEAR(at.horizontal_deg, left_deg - right_deg, 1e-9);
+    const Vec3d left = point - Vec3d{-kPupilsMm / 2, 0, 0};
+    const Vec3d right = point - Vec3d{kPupilsMm / 2, 0, 0};
+    EXPECT_NEAR(at.horizontal_deg, std::atan2(length(cross(left, right)), dot(left, right)) * kDegPerRad, 1e-9);
+    EXPECT_NEAR(at.vertical_deg, 0, 1e-9);
   }
 }
 
@@ -87,7 +88,7 @@ TEST(GazeVergence, LinesThatPassEachOtherMeetInTheMiddleOfTheShortestLineBetween
   const double sum = -8 / (3600 + 4 * 1.0036);
   const double a = 0.5 * 1.0036 * sum;
   EXPECT_NEAR(at.distance_mm, std::hypot(15 * 0.0036 * sum, 1 + a, 500 * (1 + sum / 2)), 1e-9);
-  EXPECT_NEAR(at.vertical_deg, std::atan2(2, std::hypot(30, 500)) * kDegPerRad, 1e-9);
+  EXPECT_NEAR(at.vertical_deg, std::atan2(2, 500) * kDegPerRad, 1e-9);
 }
 
 TEST(GazeVergence, DirectionsNeedNoPupilDistanceForTheAngle) {

@@ -118,6 +118,10 @@ void add_time_plots(const GazeLog& log, const GazePlane& plane, GazeReport& repo
   if (has_both_eyes(log)) {
     add("disparity_over_time", "Disparity: place of the left eye less that of the right",
         fmt::format("disparity [{}]", plane.unit()), traces.disparity);
+    if (!report.vergence.missing.empty() && report.plots.back().name == "disparity_over_time") {
+      std::string& note = report.plots.back().note = "No vergence: " + report.vergence.missing;
+      std::erase(note, '`');
+    }
     add("vergence_over_time", "Vergence: angle between the lines of sight", "vergence [deg]", traces.vergence);
     if (!report.vergence.samples.empty() && report.plots.back().name == "vergence_over_time") {
       report.plots.back().note = how_vergence(report.vergence);
@@ -202,6 +206,9 @@ GazeReport gaze_report(const GazeLog& recorded, const GazeReportSettings& settin
   }
   report.plots.push_back(scanpath_plot(log, events, picture));
   report.vergence = measure_vergence(log, {settings.pupil_distance_mm});
+  if (has_both_eyes(recorded) && !has_both_eyes(log)) {
+    report.vergence.missing = "processing makes one gaze of both eyes: leave it out for the vergence";
+  }
   add_time_plots(log, GazePlane(log, std::nullopt), report);
   report.json = gaze_report_json(log, report);
   report.html = gaze_page(log, report);

@@ -98,9 +98,8 @@ Command add_gaze_report_command(CLI::App& app, const Invocation& /*invocation*/)
       ->type_name("OUT.html")
       ->capture_default_str();
   add_json_option(app, arguments->json, arguments->overwrite);
-  app.add_option(
-         "--parts", arguments->folder,
-         "Writes every diagram as .svg, and as .tsv the events, those of each eye and the vergence of the eyes")
+  app.add_option("--parts", arguments->folder,
+                 "Writes every diagram as .svg, and as .tsv the events, those of each eye and the vergence of the eyes")
       ->type_name("DIR");
   app.add_option("--frame-image", arguments->report.picture,
                  "A .png or .jpg of what was seen, such as a rendered frame, behind scanpath and heat map")
@@ -110,7 +109,8 @@ Command add_gaze_report_command(CLI::App& app, const Invocation& /*invocation*/)
       ->type_name("DEG")
       ->capture_default_str();
   app.add_option("--pupil-distance", arguments->report.pupil_distance_mm,
-                 "Between the pupils, for the vergence of gaze on a screen; without it what the log says of the places "
+                 "Between the pupils, for the vergence of gaze on a screen and where any lines of sight meet; without "
+                 "it what the log says of the places "
                  "of the eyes")
       ->type_name("MM");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
