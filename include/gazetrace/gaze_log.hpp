@@ -187,6 +187,11 @@ struct GazeLog {
   std::size_t recording = 0;  // which of them this log holds, counted from 1; 0: all that the file has
 };
 
+// Whether each sample has its two eyes.
+inline bool has_both_eyes(const GazeLog& log) {
+  return !log.eyes.empty() && log.eyes.size() == log.samples.size();
+}
+
 // Times in the log's own nanoseconds. A gap is a step of more than three median steps, unless the recording was stopped
 // there: then it is a pause.
 struct GazeTiming {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vergence: the angle between the lines of sight of the two eyes, and the distance at which they meet.
+// Vergence: the angle between the lines of sight of the two eyes, and the distance at which they meet, in the
+// coordinates of Helmholtz (Howard & Rogers, Perceiving in Depth, 2012). How far pupils are apart: Dodgson, Variation
+// and extrema of human interpupillary distance, 2004.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,8 +43,7 @@ struct VergenceOverTime {
 // pupil distance out of range.
 VergenceOverTime measure_vergence(const GazeLog& log, const VergenceSettings& settings);
 
-// The eyes that look from `left_mm` and `right_mm` in these directions, which need not be
-// normalised; -z is ahead, +x right, +y up.
+// Of eyes at these places that look in these directions, which need not be normalised; -z is ahead, +x right, +y up.
 Vergence vergence_of(const Vec3d& left_mm, const Vec3d& right_mm, const Vec3d& left_direction,
                      const Vec3d& right_direction);
 

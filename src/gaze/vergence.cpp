@@ -11,7 +11,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kLeastPupilsMm = 30, kMostPupilsMm = 100;  // wider than people of any age
+constexpr double kLeastPupilsMm = 30, kMostPupilsMm = 100;  // from less than small children have to more than anybody
 constexpr Vergence kUnknown{kNan, kNan, kNan};
 
 bool can_be_pupils(double distance_mm) {
@@ -80,10 +80,6 @@ class ScreenPlane {
   double distance_mm_ = 0;
 };
 
-bool has_both_eyes(const GazeLog& log) {
-  return !log.eyes.empty() && log.eyes.size() == log.samples.size();
-}
-
 }  // namespace
 
 Vergence vergence_of(const Vec3d& left_mm, const Vec3d& right_mm, const Vec3d& left_direction,
@@ -95,7 +91,7 @@ Vergence vergence_of(const Vec3d& left_mm, const Vec3d& right_mm, const Vec3d& l
 
 VergenceOverTime measure_vergence(const GazeLog& log, const VergenceSettings& settings) {
   if (settings.pupil_distance_mm != 0 && !can_be_pupils(settings.pupil_distance_mm)) {
-    throw Error(ErrorKind::usage, "`pupil-distance`", "must be 30 to 100 mm", "adults have 54 to 74 mm");
+    throw Error(ErrorKind::usage, "`pupil-distance`", "must be 30 to 100 mm", "most adults have 50 to 75 mm");
   }
   VergenceOverTime result;
   if (!has_both_eyes(log)) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <string_view>
 
 namespace gazetrace {
 namespace {
@@ -176,15 +177,17 @@ void PlotSvg::title(const std::string& words) {
     text(kLeft, 24, words, "start", " font-size=\"15\"");
     return;
   }
-  // Before what names the run, or else at a comma.
-  std::size_t end = words.rfind(": ", kTitleLetters);
-  if (end == std::string::npos) {
-    end = words.rfind(", ", kTitleLetters);
+  // Before what names the run, or else at a comma, or between words.
+  for (const std::string_view mark : {": ", ", ", " "}) {
+    const std::size_t end = words.rfind(mark, kTitleLetters);
+    if (end != std::string::npos && end > 0) {
+      const std::size_t next = end + mark.size();
+      text(kLeft, 16, words.substr(0, next - 1), "start", " font-size=\"14\"");
+      text(kLeft, 33, shortened(words.substr(next), kSecondTitleLetters), "start", " font-size=\"13\"");
+      return;
+    }
   }
-  const std::size_t first = end == std::string::npos ? 0 : end + 1;
-  text(kLeft, 16, words.substr(0, first), "start", " font-size=\"14\"");
-  text(kLeft, 33, shortened(words.substr(first == 0 ? 0 : first + 1), kSecondTitleLetters), "start",
-       " font-size=\"13\"");
+  text(kLeft, 24, shortened(words, kTitleLetters), "start", " font-size=\"15\"");
 }
 
 double PlotSvg::legend(const std::vector<std::pair<ReportRole, std::string>>& entries, double left, double top) {

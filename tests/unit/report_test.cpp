@@ -196,6 +196,13 @@ TEST(ReportPlots, LongTitlesTakeTwoLinesAndKeepTheirWords) {
   svg.title("flip by eccentricity and region, courtyard, gaze reader: region-samples 32,16,8");
   EXPECT_THAT(svg.str(), HasSubstr(">flip by eccentricity and region, courtyard, gaze reader:<"));
   EXPECT_THAT(svg.str(), HasSubstr(">region-samples 32,16,8<"));
+  PlotSvg words(100, "");
+  words.title(std::string(40, 'a') + " " + std::string(40, 'b'));
+  EXPECT_THAT(words.str(), HasSubstr(">" + std::string(40, 'b') + "<"));
+  PlotSvg one(100, "");
+  one.title(std::string(80, 'a'));
+  EXPECT_THAT(one.str(), Not(HasSubstr("></text>")));
+  EXPECT_THAT(one.str(), HasSubstr("aaa…<"));
 }
 
 TEST(ReportFindings, HigherMayBeBetter) {

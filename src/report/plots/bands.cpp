@@ -70,8 +70,8 @@ std::optional<ReportPlot> bands_plot(const Results& data, const ResultRow& test,
   bool any_unresolved = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     const double begin = kLeft + part_width * static_cast<double>(p);
-    if (p > 0 && is_band(parts[p - 1]) &&
-        !is_band(parts[p])) {  // a line sets the regions apart, which contain several bands
+    // A line sets the regions apart, which contain several bands. Bands without a pixel are not among the parts.
+    if (p > 0 && is_band(parts[p - 1]) && !is_band(parts[p])) {
       svg.add(fmt::format("<path class=\"line\" stroke=\"#8a8a8a\" fill=\"none\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", begin,
                           kTop, kBottom));
     }

@@ -26,10 +26,6 @@ EyeEvents events_by(const GazeLog& log, const GazeReportSettings& settings) {
   return detect_events(log, preset, settings.device);
 }
 
-bool has_both_eyes(const GazeLog& log) {
-  return !log.eyes.empty() && log.eyes.size() == log.samples.size();
-}
-
 // Places in the unit of the plane, and pupils, of the gaze and of each eye.
 struct Traces {
   std::vector<double> seconds;
@@ -178,6 +174,10 @@ GazeReport gaze_report(const GazeLog& recorded, const GazeReportSettings& settin
     report.warnings.insert(report.warnings.end(), processed->reports.begin(), processed->reports.end());
   }
   const GazeLog& log = processed ? processed->log : recorded;
+  report.vergence = measure_vergence(log, {settings.pupil_distance_mm});
+  if (has_both_eyes(recorded) && !has_both_eyes(log)) {
+    report.vergence.missing = "processing makes one gaze of both eyes: leave it out for the vergence";
+  }
   report.events = events_by(log, settings);
   if (settings.method != "log") {
     for (std::string& doubt : doubts_in_words(doubt_events(log, report.events), report.events, log)) {
@@ -205,10 +205,6 @@ GazeReport gaze_report(const GazeLog& recorded, const GazeReportSettings& settin
     report.plots.push_back(std::move(*heat));
   }
   report.plots.push_back(scanpath_plot(log, events, picture));
-  report.vergence = measure_vergence(log, {settings.pupil_distance_mm});
-  if (has_both_eyes(recorded) && !has_both_eyes(log)) {
-    report.vergence.missing = "processing makes one gaze of both eyes: leave it out for the vergence";
-  }
   add_time_plots(log, GazePlane(log, std::nullopt), report);
   report.json = gaze_report_json(log, report);
   report.html = gaze_page(log, report);

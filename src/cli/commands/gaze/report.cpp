@@ -108,10 +108,10 @@ Command add_gaze_report_command(CLI::App& app, const Invocation& /*invocation*/)
                  "Size of a fixation's spot on the heat map, its standard deviation")
       ->type_name("DEG")
       ->capture_default_str();
-  app.add_option("--pupil-distance", arguments->report.pupil_distance_mm,
-                 "Between the pupils, for the vergence of gaze on a screen and where any lines of sight meet; without "
-                 "it what the log says of the places "
-                 "of the eyes")
+  app.add_option(
+         "--pupil-distance", arguments->report.pupil_distance_mm,
+         "How far the pupils are apart, for the vergence of gaze on a screen and for where lines of sight meet; "
+         "default: what the log says of the places of the eyes")
       ->type_name("MM");
   app.add_flag("--overwrite", arguments->overwrite, "Replaces files that are there");
   app.add_flag("--keep-ids", arguments->report.keep_ids,
