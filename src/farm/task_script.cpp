@@ -24,7 +24,18 @@ constexpr const char* kBeginning = R"(#!/bin/sh
 constexpr const char* kRunning = R"(
 child=
 ended=0  # asked from outside to end: the task is not put into the queue again
-pass() { [ -z "$child" ] || kill "-$1" "$child" 2>/dev/null; }
+# Of a program, it alone is told of a signal; of a shell's command (command=1), all that it has begun, itself first, so
+# that it begins nothing else. As the kernel lists them; where it does not, the shell alone.
+begun() { echo "$1"; for one in $(cat "/proc/$1/task/$1/children" 2>/dev/null); do begun "$one"; done; }
+command=0
+pass() {
+  [ -z "$child" ] && return
+  if [ "$command" -eq 1 ]; then
+    kill "-$1" $(begun "$child") 2>/dev/null
+  else
+    kill "-$1" "$child" 2>/dev/null
+  fi
+}
 trap 'ended=1; pass TERM' TERM INT
 trap 'pass USR1' USR1 XCPU
 
@@ -127,7 +138,7 @@ case $1 in
 )",
                       chunk_words(plan), finish_words(plan));
   for (std::size_t i = 0; i < plan.then.size(); ++i) {
-    text += fmt::format("  after-{0})\n    run after-{0} sh -c {1}\n    code=$?\n    ;;\n", i + 1,
+    text += fmt::format("  after-{0})\n    command=1\n    run after-{0} sh -c {1}\n    code=$?\n    ;;\n", i + 1,
                         shell_word(plan.then[i]));
   }
   text += R"(  *)

@@ -2,6 +2,7 @@
 // Keeps two runs from making the same files at the same time, on one machine or on several that share a folder.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -199,19 +200,25 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
               "wait for it or end it; where it does not run any more, remove this file");
 }
 
-// Takes the lock away from a run that is dead; false where another run was faster. Two runs may find the same dead one:
-// what was moved away must be what was looked at.
-bool remove_dead(const std::string& path, const Holder& dead, const std::string& own_file) {
-  const std::string aside = own_file + ".dead";
-  if (::rename(path.c_str(), aside.c_str()) != 0) {
+// Takes the lock away from a run that is dead; false where another run was faster. Several runs may find the same dead
+// one, so that its file is removed only by who has locked it, and while it still has its name: whoever comes later has
+// locked a file without a name, and leaves the one that another run has made since alone.
+bool remove_dead(const std::string& path, const Holder& dead) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (file < 0) {
     return false;
   }
-  const bool right = read_lock(aside) == std::optional(dead);
-  // Put back; by a move where the file system has no links and nobody has made a lock since.
-  if (!right && ::link(aside.c_str(), path.c_str()) != 0 && errno != EEXIST && !fs::exists(path)) {
-    static_cast<void>(::rename(aside.c_str(), path.c_str()));
-  }
-  ::unlink(aside.c_str());
+  int locked = 0;
+  do {
+    locked = ::flock(file, LOCK_EX);
+  } while (locked != 0 && errno == EINTR);
+  // Where the file system has no such locks, a moment is left in which two runs could take over at once.
+  struct stat opened {};
+  struct stat named {};
+  const bool right = ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 &&
+                     opened.st_dev == named.st_dev && opened.st_ino == named.st_ino &&
+                     read_lock(path) == std::optional(dead) && ::unlink(path.c_str()) == 0;
+  ::close(file);
   return right;
 }
 
@@ -298,7 +305,7 @@ RunLock::RunLock(const RunRecord& record, const std::string& record_path,
   const OwnFile own(fmt::format("{}.{}.{}", path, self.host, self.process), text_of(self));
   const Looking looking{own.path, self, waiting};
   const auto remove = [&](const std::string& lock, const Holder& holder) {
-    if (remove_dead(lock, holder, own.path)) {
+    if (remove_dead(lock, holder)) {
       taken_over_.push_back(fmt::format("{}: left behind by {}; that run is dead, and its frames are taken up", lock,
                                         words(holder, self.since_s)));
     }

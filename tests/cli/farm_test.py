@@ -11,7 +11,7 @@ import time
 import harness
 from farm_faults_test import JOB_TOML, Farm
 from farm_harm import renderers
-from gliding_job import job_toml
+from gliding_job import job_toml, processes_in
 
 HISTORY = ["--accumulate", "reproject", "--filter", "guided"]
 FRAMES = ["--frames", "1-6"]
@@ -302,6 +302,26 @@ class Engines(Farm):
         (self.folder / "go").touch()
         self.assertEqual(after.wait(timeout=100), 0)
         self.assertTrue(self.status()["is_done"])
+
+    def test_what_follows_ends_as_a_whole(self):
+        """A signal reaches what the shell of `--then` has begun, and the shell begins nothing else."""
+        waits = "sh -c 'trap \"touch told; exit 0\" TERM; touch began; while :; do sleep 0.05; done'"
+        self.farm("--engine", "slurm", "--chunks", "1", "--then", f"{waits}; touch went-on")
+        script = str(self.folder / "out/farm/task.sh")
+        for task in ("1", "finish"):
+            subprocess.run(["sh", script, task], capture_output=True, check=True)
+        after = subprocess.Popen(["sh", script, "after-1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(after.kill)
+        begin = time.monotonic()
+        while not (self.folder / "began").exists() and time.monotonic() - begin < 100:
+            time.sleep(0.02)
+        after.send_signal(signal.SIGTERM)
+        self.assertEqual(after.wait(timeout=100), 128 + signal.SIGTERM)
+        while processes_in(self.folder) and time.monotonic() - begin < 100:
+            time.sleep(0.02)
+        self.assertEqual(processes_in(self.folder), {})
+        self.assertTrue((self.folder / "told").exists())
+        self.assertFalse((self.folder / "went-on").exists())
 
     def test_files_for_slurm(self):
         self.run_ok("render", "--config", "farm.toml", "-o", "whole/f.####.exr", "--quiet")
