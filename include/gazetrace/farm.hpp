@@ -98,9 +98,12 @@ struct FarmStatus {
   std::optional<double> seconds_left;       // at the rate so far, with as many tasks as run now; empty: not known
   [[nodiscard]] bool is_done() const;
 };
-// From records, journals and locks that lie in the folder, on any machine that sees it. A run on another machine counts
-// as ended a minute after it last renewed its lock.
-FarmStatus farm_status(const FarmPlan& plan);
+// How finished files are looked at: their sizes alone, or their content, which reads all of them.
+enum class FileCheck : std::uint8_t { size, content };
+// From records, journals, tables and locks that lie in the folder, on any machine that sees it. A run on another
+// machine counts as ended a minute after it last renewed its lock. A task whose files or rows are not as it left them
+// is not done.
+FarmStatus farm_status(const FarmPlan& plan, FileCheck check = FileCheck::size);
 std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status);
 std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status);
 // The chunks that are neither done nor running, counted from 0.

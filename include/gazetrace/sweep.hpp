@@ -79,6 +79,7 @@ struct SweepPlan {
   NamedValues gazes;  // names and settings in words, for the paragraph on methods
   SweepMeasure measure;
   bool restart = false;         // throws away what an earlier sweep has left in the directory
+  bool trust_files = false;     // does not compare the pictures that are there with what was written
   NamedValues common_settings;  // all options that no row varies
   NamedValues stated_settings;  // those of them that were chosen, or that decide light and sampling
   std::vector<std::string> varied;
@@ -107,6 +108,7 @@ FixedQuality speed_up_at_quality(const std::vector<QualityAtTime>& uniform, cons
 
 struct SweepObserver {
   std::function<void(const std::string& line)> tell;  // a line on what is being done, for a person; may be empty
+  std::function<void(const std::string& line)> warn;  // of files that are damaged, and made again; may be empty
 };
 
 // One of several processes, on any machines, that measure a sweep together, each some of its rows.
@@ -134,8 +136,10 @@ class SweepDirectory {
 
 // Makes and locks the directory; to be called before run_sweep(), or run_sweep_task(). Error(usage) for a plan without
 // tests, Error(input) where the directory cannot be made, or holds work of another build or machine: times and pictures
-// of two builds are never mixed.
-[[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task = std::nullopt);
+// of two builds are never mixed. What is there and is not as it was written, by the digests of records and pictures, is
+// removed with a warning, and will be made again.
+[[nodiscard]] SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task = std::nullopt,
+                                           const SweepObserver& observer = {});
 // Error(usage) where a metric cannot score this test, or no frame of it would be scored. It needs only sizes and rates,
 // so that it can be called before anything is rendered.
 void check_scoring(const SweepMeasure& measure, const SweepTest& test);
@@ -158,8 +162,8 @@ std::vector<SweepShare> divide_sweep(const SweepPlan& plan, std::uint32_t count)
 void run_sweep_task(const SweepPlan& plan, const SweepTask& task, const SweepObserver& observer);
 // The results of all tasks, as run_sweep() would have them but for the times. Nothing is rendered. What lies in
 // `folders` is taken into the plan's directory before, which is made and locked. Error(input) for folders of another
-// build, and where rows or references are not finished.
-Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders);
+// build, and where rows or references are not finished, or were, and are damaged since.
+Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders, const SweepObserver& observer = {});
 
 // The rows that the plan will measure and the camera samples that they take, without rendering. The search for the rate
 // of equal time and the warm-up are not counted. A scene that is seen from one place in several frames is loaded,

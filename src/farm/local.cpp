@@ -216,7 +216,7 @@ int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, cons
   }
   // One of the farms does the rest; the other has nothing to add.
   const FileLock rest((fs::path(plan.folder) / "tasks" / "rest.lock").string(), FileLock::Kind::alone, true);
-  const FarmStatus status = farm_status(plan);
+  const FarmStatus status = farm_status(plan, FileCheck::content);
   if (!chunks_to_retry(status).empty()) {
     return 0;  // another farm's chunk has failed, and that farm tells of it
   }

@@ -14,6 +14,7 @@
 #include "core/file_lock.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
+#include "output/written_file.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/lock_state.hpp"
 
@@ -34,19 +35,27 @@ std::optional<int> exit_code_of(const FarmPlan& plan, const std::string& task) {
   return file >> code ? std::optional(code) : std::nullopt;
 }
 
-// Frames of which all files are there, by the record and the journal of a run.
+// Frames of which all files are as they were written, by the record and the journal of a run.
 std::set<std::int32_t> finished_frames(const std::string& folder, const std::string& record_path,
-                                       std::int32_t files_per_frame) {
+                                       std::int32_t files_per_frame, FileCheck check) {
+  const WrittenFiles files = read_earlier_files(record_path);
+  std::set<std::string> bad;
+  if (check == FileCheck::content) {
+    for (const BadFile& file : find_bad_files(folder, files, {})) {
+      bad.insert(file.path);
+    }
+  }
   std::map<std::int32_t, std::int32_t> count;
-  std::error_code missing;
-  for (const auto& [name, file] : read_earlier_files(record_path)) {
-    if (fs::exists(fs::path(folder) / name, missing)) {
+  for (const auto& [name, file] : files) {
+    std::error_code missing;
+    const std::string path = path_in_record(folder, name);
+    if (fs::file_size(path, missing) == file.bytes && !missing && !bad.contains(path)) {
       ++count[file.frame];
     }
   }
   std::set<std::int32_t> frames;
-  for (const auto& [frame, files] : count) {
-    if (files >= files_per_frame) {
+  for (const auto& [frame, files_of_frame] : count) {
+    if (files_of_frame >= files_per_frame) {
       frames.insert(frame);
     }
   }
@@ -63,43 +72,61 @@ std::string state_in(const std::string& record_path) {
   }
 }
 
-void add_times(const std::string& timing_path, Observed& run) {
+// The frames that have a row; none where there is no table yet, or it is damaged.
+std::set<std::int32_t> add_times(const std::string& timing_path, Observed& run) {
+  std::set<std::int32_t> rows;
   try {
     for (const TimingRow& row : read_timing_csv(timing_path)) {
+      rows.insert(row.frame);
       if (std::isfinite(row.total_ms)) {
         run.made_ms += row.total_ms;
         ++run.timed;
       }
     }
   } catch (const Error&) {
-    // There is no table yet.
+    rows.clear();
   }
+  return rows;
 }
 
-// `name`: of the run in the names of its files, which begins with its frames.
-Observed observe_run(const FarmPlan& plan, const std::string& task, const std::string& frames, const std::string& name,
-                     bool is_part, std::int32_t files_per_frame) {
+// What a run, or a merge, has left in the folder.
+struct Outputs {
+  std::string name;  // of the run in the names of its files, which begins with its frames
+  bool is_part = false;
+  std::int32_t files_per_frame = 1;
+};
+
+// Counts the finished frames; true where these are all, each with its row in the table.
+bool observe_outputs(const FarmPlan& plan, const Outputs& outputs, FileCheck check, Observed& run) {
+  const std::vector<std::int32_t> wanted = parse_frame_list(run.task.frames);
+  const std::string record_path = run_record_file_name(plan.run_folder, outputs.name, outputs.is_part);
+  const std::set<std::int32_t> finished = finished_frames(plan.run_folder, record_path, outputs.files_per_frame, check);
+  const std::set<std::int32_t> rows = add_times(timing_file_name(plan.run_folder, outputs.name, outputs.is_part), run);
+  run.task.all = wanted.size();
+  run.task.done = static_cast<std::size_t>(
+      std::count_if(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return finished.contains(frame); }));
+  return run.task.done == run.task.all &&
+         std::all_of(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return rows.contains(frame); });
+}
+
+Observed observe_run(const FarmPlan& plan, const std::string& task, const std::string& frames, const Outputs& outputs,
+                     FileCheck check) {
   Observed run;
   run.task.name = task;
   run.task.frames = frames;
-  const std::vector<std::int32_t> wanted = parse_frame_list(frames);
-  run.task.all = wanted.size();
   run.task.exit_code = exit_code_of(plan, task);
-  const std::string record_path = run_record_file_name(plan.run_folder, name, is_part);
-  const std::set<std::int32_t> finished = finished_frames(plan.run_folder, record_path, files_per_frame);
-  run.task.done = static_cast<std::size_t>(
-      std::count_if(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return finished.contains(frame); }));
-  add_times(timing_file_name(plan.run_folder, name, is_part), run);
+  const std::string record_path = run_record_file_name(plan.run_folder, outputs.name, outputs.is_part);
+  const bool is_whole = observe_outputs(plan, outputs, check, run);
   std::error_code missing;
   const bool has_record = fs::exists(record_path, missing);
   if (is_locked(record_path)) {
     run.task.state = TaskState::running;
-  } else if (has_record && run.task.done == run.task.all && state_in(record_path) == "done") {
+  } else if (has_record && is_whole && state_in(record_path) == "done") {
     run.task.state = TaskState::done;
   } else if (run.task.exit_code && *run.task.exit_code != 0 && *run.task.exit_code != 4) {
     run.task.state = TaskState::failed;
   } else if (has_record) {
-    // Ended in order, or without a word.
+    // Ended in order, or without a word, or some of its files are damaged since.
     run.task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted : TaskState::failed;
   }
   return run;
@@ -136,7 +163,7 @@ Observed observe_rows(const FarmPlan& plan, std::size_t chunk) {
   return run;
 }
 
-Observed observe_chunk(const FarmPlan& plan, std::size_t chunk) {
+Observed observe_chunk(const FarmPlan& plan, std::size_t chunk, FileCheck check) {
   const std::string task = std::to_string(chunk + 1);
   const std::string& frames = plan.chunks[chunk];
   switch (plan.kind) {
@@ -145,21 +172,44 @@ Observed observe_chunk(const FarmPlan& plan, std::size_t chunk) {
     case FarmKind::samples: {
       SampleRange range;
       parse_value(plan.ranges[chunk], plan.folder, range);
-      return observe_run(plan, task, frames, part_of_samples_name(frames, range), true, 1);
+      return observe_run(plan, task, frames, {part_of_samples_name(frames, range), true, 1}, check);
     }
     case FarmKind::frames:
       break;
   }
-  return observe_run(plan, task, frames, frames, true, plan.traces_first ? 1 : plan.files_per_frame);
+  return observe_run(plan, task, frames, {frames, true, plan.traces_first ? 1 : plan.files_per_frame}, check);
 }
 
 std::string all_frames(const FarmPlan& plan) {
+  if (plan.kind == FarmKind::samples) {
+    return plan.chunks.front();  // each has some samples of all of them
+  }
   std::vector<std::int32_t> frames;
   for (const std::string& chunk : plan.chunks) {
     const std::vector<std::int32_t> list = parse_frame_list(chunk);
     frames.insert(frames.end(), list.begin(), list.end());
   }
   return format_frame_list(frames);
+}
+
+// The run that finishes traced frames leaves a record like any other; a merge, an exit code and what it wrote.
+TaskStatus observe_finish(const FarmPlan& plan, FileCheck check) {
+  if (plan.kind == FarmKind::sweep) {
+    return observe_exit(plan, "finish");
+  }
+  const std::string frames = all_frames(plan);
+  const Outputs whole{frames, false, plan.files_per_frame};
+  if (plan.traces_first) {
+    return observe_run(plan, "finish", frames, whole, check).task;
+  }
+  Observed merged;
+  merged.task.frames = frames;
+  TaskStatus task = observe_exit(plan, "finish");
+  if (task.state == TaskState::done && !observe_outputs(plan, whole, check, merged)) {
+    task.state = TaskState::missing;
+    task.exit_code.reset();
+  }
+  return task;
 }
 
 std::string duration_words(double seconds) {
@@ -212,13 +262,15 @@ bool FarmStatus::is_done() const {
   return std::all_of(tasks.begin(), tasks.end(), [](const TaskStatus& task) { return task.state == TaskState::done; });
 }
 
-FarmStatus farm_status(const FarmPlan& plan) {
+FarmStatus farm_status(const FarmPlan& plan, FileCheck check) {
   FarmStatus status;
   double made_ms = 0;
   std::size_t timed = 0;
   std::size_t running = 0;
+  const TaskStatus finish = observe_finish(plan, check);
+  const bool needs_traced = !plan.traces_first || finish.state != TaskState::done;
   for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
-    const Observed run = observe_chunk(plan, i);
+    const Observed run = observe_chunk(plan, i, needs_traced ? check : FileCheck::size);
     status.frames += run.task.all;
     status.frames_done += run.task.done;
     running += run.task.state == TaskState::running ? 1 : 0;
@@ -231,15 +283,10 @@ FarmStatus farm_status(const FarmPlan& plan) {
     status.seconds_left =
         left * made_ms / 1000 / static_cast<double>(timed) / static_cast<double>(std::max<std::size_t>(running, 1));
   }
-  if (plan.traces_first) {
-    const std::string all = all_frames(plan);
-    status.tasks.push_back(observe_run(plan, "finish", all, all, false, plan.files_per_frame).task);
-    if (status.tasks.back().state == TaskState::done) {
-      count_as_traced(status);
-    }
-  } else {
-    status.tasks.push_back(observe_exit(plan, "finish"));
+  if (!needs_traced) {
+    count_as_traced(status);
   }
+  status.tasks.push_back(finish);
   for (std::size_t i = 1; i <= plan.then.size(); ++i) {
     status.tasks.push_back(observe_exit(plan, fmt::format("after-{}", i)));
   }

@@ -136,17 +136,28 @@ FrameHeader header_of(const FrameRequest& request, double ev) {
   return header;
 }
 
-void write_pictures(const SweepMeasure& measure, const std::string& folder, const FrameRequest& request,
-                    const MetricPicture& picture, double ev) {
+// Into a folder within the sweep's own.
+struct PictureFolder {
+  const std::string& sweep;
+  const std::string& name;
+
+  [[nodiscard]] std::string file(const char* pattern, std::int32_t frame) const {
+    return frame_file_name(name + "/" + pattern, frame);
+  }
+};
+
+void write_pictures(const SweepMeasure& measure, const PictureFolder& folder, const FrameRequest& request,
+                    const MetricPicture& picture, double ev, WrittenFiles& written) {
   const FrameHeader header = header_of(request, ev);
   if (measure.write_png) {
-    write_display_image(frame_file_name(folder + "/frame.####.png", request.frame), display_image_of(picture.code),
-                        header, {});
+    const std::string name = folder.file("frame.####.png", request.frame);
+    written[name] = write_display_image(folder.sweep + "/" + name, display_image_of(picture.code), header, {});
   }
   if (measure.write_exr) {
     Frame frame;
     frame.radiance = picture.light;
-    write_frame_exr(frame_file_name(folder + "/frame.####.exr", request.frame), frame, nullptr, header, {});
+    const std::string name = folder.file("frame.####.exr", request.frame);
+    written[name] = write_frame_exr(folder.sweep + "/" + name, frame, nullptr, header, {}).file;
   }
 }
 
@@ -162,6 +173,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
   }
   give_back_freed_memory();
   RunSum sum;
+  WrittenFiles written;
   std::vector<GazeScorer> scorers;
   std::vector<std::vector<ScoreTable>> frame_scores;
   double upscale_ms = 0;
@@ -195,14 +207,15 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
       frame_scores[s].push_back(scorers[s].scorer.add(reference, test));
     }
     if (write) {
-      const std::string place = directory + "/" + folder;
+      const PictureFolder place{directory, folder};
       const Stopwatch file_watch;
-      write_pictures(measure, place, request, test, ev);
+      write_pictures(measure, place, request, test, ev, written);
       sum.add_output(file_watch.elapsed_ms());
       const ImageGray* const flip = scorers.front().scorer.map_of("flip");
       if (measure.write_png && flip != nullptr) {
-        write_display_image(frame_file_name(place + "/flip.####.png", request.frame), error_map_picture("flip", *flip),
-                            header_of(request, ev), {});
+        const std::string name = place.file("flip.####.png", request.frame);
+        written[name] =
+            write_display_image(directory + "/" + name, error_map_picture("flip", *flip), header_of(request, ev), {});
       }
     }
   };
@@ -216,6 +229,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
 
   StoredRun stored = sum.stored();
   stored.png = write && measure.write_png ? folder + "/frame.####.png" : "";
+  stored.files = std::move(written);
   for (std::size_t s = 0; s < scorers.size(); ++s) {
     SweepRun run = sum.run();
     run.scores = scorers[s].scorer.over_scored_frames();

@@ -48,8 +48,8 @@ void render_scrambling(PathTracer& tracer, const SweepReference& reference, cons
   render_sequence(tracer, only_frames(reference.plan, pictures), color, settings, {});
 }
 
-void write_mean(const std::string& path, const Frame& frame, const FrameRequest& request,
-                const SweepReference& reference) {
+WrittenFile write_mean(const std::string& path, const Frame& frame, const FrameRequest& request,
+                       const SweepReference& reference) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
@@ -58,7 +58,7 @@ void write_mean(const std::string& path, const Frame& frame, const FrameRequest&
   header.settings_digest = reference.digest;
   ExrSettings settings;
   settings.pixels = ExrPixels::float32;
-  write_frame_exr(path, frame, nullptr, header, settings, reference.pipeline.threads);
+  return write_frame_exr(path, frame, nullptr, header, settings, reference.pipeline.threads).file;
 }
 
 // The mean of some scramblings of a frame, summed in double precision.
@@ -91,24 +91,51 @@ ImageRgb mean_of_two(const ImageRgb& a, const ImageRgb& b) {
   return mean;
 }
 
-// Writes the two halves first and the mean last, so that a frame that has its mean is complete. A frame between two
-// pictures shows the earlier one.
+// The record of a frame says that its pictures are there, and its exposure.
+std::string record_path(const CertifiedReference& certified, std::int32_t frame) {
+  return frame_file_name(certified.directory + "/frame.####.json", frame);
+}
+
+// The exposures of frames that are finished. Where frames depend on each other, it is all or none.
+std::map<std::int32_t, double> finished_frames(const CertifiedReference& certified, const SweepReference& reference) {
+  std::map<std::int32_t, double> ev;
+  for (const FrameRequest& request : reference.plan.frames) {
+    if (const auto kept = load_exposure(record_path(certified, request.frame), reference.digest)) {
+      ev[request.frame] = *kept;
+    }
+  }
+  return uses_history(reference.pipeline) && ev.size() != reference.plan.frames.size()
+             ? std::map<std::int32_t, double>()
+             : ev;
+}
+
+// A frame between two pictures shows the earlier one. What is finished already stays.
 void average_frames(const SweepReference& reference, const std::vector<std::int32_t>& pictures,
-                    const ColorPipeline& color, CertifiedReference& certified) {
+                    const ColorPipeline& color, const std::string& sweep_directory, CertifiedReference& certified) {
   TemporalHistory history;
   const std::size_t half = reference.seeds.size() / 2;
   const int threads = reference.pipeline.threads;
   std::array<ImageRgb, 2> halves;
+  certified.ev = finished_frames(certified, reference);
   for (const FrameRequest& request : reference.plan.frames) {
     const std::int32_t frame = request.frame;
+    const bool is_finished = certified.ev.contains(frame);
     const bool is_new = std::find(pictures.begin(), pictures.end(), frame) != pictures.end();
+    WrittenFiles files;
+    const auto name_of = [&](const std::string& path) { return path.substr(sweep_directory.size() + 1); };
     for (std::size_t h = 0; h < halves.size(); ++h) {
       if (is_new) {
         halves[h] = mean_of(certified.directory, h * half, half, frame, threads);
       }
-      Frame picture;
-      picture.radiance = halves[h];
-      write_mean(certified.half_path(static_cast<int>(h), frame), picture, request, reference);
+      if (!is_finished) {
+        Frame picture;
+        picture.radiance = halves[h];
+        const std::string path = certified.half_path(static_cast<int>(h), frame);
+        files[name_of(path)] = write_mean(path, picture, request, reference);
+      }
+    }
+    if (is_finished) {
+      continue;
     }
     Frame mean;
     mean.radiance = mean_of_two(halves[0], halves[1]);
@@ -117,19 +144,24 @@ void average_frames(const SweepReference& reference, const std::vector<std::int3
     FrameHeader header;
     header.frame = frame;
     header.exposure_ev = ev;
-    write_display_image(frame_file_name(certified.directory + "/reference.####.png", frame),
-                        color.apply(mean.radiance, ev, 8, threads), header, {});
-    write_mean(certified.mean_path(frame), mean, request, reference);
+    const std::string shown = frame_file_name(certified.directory + "/reference.####.png", frame);
+    files[name_of(shown)] = write_display_image(shown, color.apply(mean.radiance, ev, 8, threads), header, {});
+    const std::string path = certified.mean_path(frame);
+    files[name_of(path)] = write_mean(path, mean, request, reference);
+    save_exposure(record_path(certified, frame), reference.digest, ev, files);
   }
 }
 
-// Pictures may have been lost since; rendered again they are the same to the bit.
-bool has_pictures(const CertifiedReference& certified, const SweepReference& reference) {
-  return std::all_of(reference.plan.frames.begin(), reference.plan.frames.end(), [&](const FrameRequest& request) {
-    const std::int32_t frame = request.frame;
-    return certified.ev.contains(frame) && fs::is_regular_file(certified.mean_path(frame)) &&
-           fs::is_regular_file(certified.half_path(0, frame)) && fs::is_regular_file(certified.half_path(1, frame));
-  });
+// Of the pictures of a reference, those that frames still lack.
+std::vector<std::int32_t> missing_pictures(const CertifiedReference& certified, const SweepReference& reference,
+                                           const std::vector<std::int32_t>& pictures) {
+  if (pictures.size() != reference.plan.frames.size()) {
+    return pictures;
+  }
+  const std::map<std::int32_t, double> finished = finished_frames(certified, reference);
+  std::vector<std::int32_t> missing = pictures;
+  std::erase_if(missing, [&](std::int32_t frame) { return finished.contains(frame); });
+  return missing;
 }
 
 CertifiedReference described(const SweepReference& reference, const std::string& sweep_directory) {
@@ -140,10 +172,6 @@ CertifiedReference described(const SweepReference& reference, const std::string&
   return certified;
 }
 
-std::string record_path(const CertifiedReference& certified) {
-  return certified.directory + "/reference.json";
-}
-
 void tell(const SweepObserver& observer, const std::string& line) {
   if (observer.tell) {
     observer.tell(line);
@@ -152,9 +180,8 @@ void tell(const SweepObserver& observer, const std::string& line) {
 
 // Of all scramblings, which are not needed after that.
 void certify(const SweepReference& reference, const std::vector<std::int32_t>& pictures, const ColorPipeline& color,
-             CertifiedReference& certified) {
-  average_frames(reference, pictures, color, certified);
-  save_exposures(record_path(certified), reference.digest, certified.ev);
+             const std::string& sweep_directory, CertifiedReference& certified) {
+  average_frames(reference, pictures, color, sweep_directory, certified);
   for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
     fs::remove_all(scrambling_folder(certified.directory, k));
   }
@@ -188,14 +215,6 @@ std::vector<ScramblingPart> parts_of(const ReferenceTask& task) {
   return parts;
 }
 
-bool is_rendered(const ReferenceTask& task, const std::string& directory, const ScramblingPart& part) {
-  const std::string digest = scrambling_digest(task.reference, part.scrambling);
-  return std::all_of(part.pictures.begin(), part.pictures.end(), [&](std::int32_t frame) {
-    const std::string path = frame_file_name(scrambling_pattern(directory, part.scrambling), frame);
-    return fs::is_regular_file(path) && read_frame_stamp(path).settings_digest == digest;
-  });
-}
-
 // First what nobody is at; then, part by part, what others were at, which they have finished or have left. Who finds
 // the reference finished has nothing more to do: its scramblings are removed by then.
 CertifiedReference render_with_others(const ReferenceTask& task) {
@@ -212,19 +231,17 @@ CertifiedReference render_with_others(const ReferenceTask& task) {
       if (const auto finished = finished_reference(task.reference, task.sweep_directory)) {
         return *finished;
       }
-      if (!is_rendered(task, certified.directory, part)) {
-        tell(task.observer, fmt::format("reference {}: scrambling {} of {}, frame {}", task.reference.key,
-                                        part.scrambling + 1, task.reference.seeds.size(), part.pictures.front()));
-        render_scrambling(task.tracer, task.reference, part.pictures, task.color, certified.directory, part.scrambling,
-                          true);
-      }
+      tell(task.observer, fmt::format("reference {}: scrambling {} of {}, frame {}", task.reference.key,
+                                      part.scrambling + 1, task.reference.seeds.size(), part.pictures.front()));
+      render_scrambling(task.tracer, task.reference, part.pictures, task.color, certified.directory, part.scrambling,
+                        true);
     }
   }
   const FileLock lock(locks + "/mean", FileLock::Kind::alone, true);
   if (const auto finished = finished_reference(task.reference, task.sweep_directory)) {
     return *finished;
   }
-  certify(task.reference, task.pictures, task.color, certified);
+  certify(task.reference, task.pictures, task.color, task.sweep_directory, certified);
   return certified;
 }
 
@@ -282,12 +299,8 @@ MetricPicture metric_picture(ImageRgb light, const ColorPipeline& color, double 
 std::optional<CertifiedReference> finished_reference(const SweepReference& reference,
                                                      const std::string& sweep_directory) {
   CertifiedReference certified = described(reference, sweep_directory);
-  const auto kept = load_exposures(record_path(certified), reference.digest);
-  if (!kept) {
-    return std::nullopt;
-  }
-  certified.ev = *kept;
-  return has_pictures(certified, reference) ? std::optional(certified) : std::nullopt;
+  certified.ev = finished_frames(certified, reference);
+  return certified.ev.size() == reference.plan.frames.size() ? std::optional(certified) : std::nullopt;
 }
 
 CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, const SweepReference& reference,
@@ -297,15 +310,16 @@ CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, cons
   std::optional<CertifiedReference> certified = finished_reference(reference, sweep_directory);
   if (!certified) {
     certified = described(reference, sweep_directory);
+    const std::vector<std::int32_t> missing = missing_pictures(*certified, reference, pictures);
     if (with_others) {
-      const ReferenceTask task{tracer, reference, pictures, color, sweep_directory, observer};
+      const ReferenceTask task{tracer, reference, missing, color, sweep_directory, observer};
       certified = render_with_others(task);
     } else {
       for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
         tell(observer, fmt::format("reference {}: scrambling {} of {}", reference.key, k + 1, reference.seeds.size()));
-        render_scrambling(tracer, reference, pictures, color, certified->directory, k, false);
+        render_scrambling(tracer, reference, missing, color, certified->directory, k, false);
       }
-      certify(reference, pictures, color, *certified);
+      certify(reference, missing, color, sweep_directory, *certified);
     }
   }
   certified->pictures = pictures.size();

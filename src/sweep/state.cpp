@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
+#include "sweep/sealed_json.hpp"
 
 namespace gazetrace {
 namespace {
@@ -102,11 +103,11 @@ SweepRun run_of(const Json& json) {
   return run;
 }
 
-// Empty where there is no such file. A file that is there was written by save() of the same build; otherwise it is
-// damaged.
+// Empty where there is no such file. A file that is there was written by the same build, and was whole when the sweep
+// began.
 template <class Read>
 auto load(const std::string& path, const Read& read,
-          const char* remedy = "remove it, and what it held is measured again")
+          const char* remedy = "call again, and what it held is measured again")
     -> std::optional<decltype(read(Json()))> {
   if (!fs::is_regular_file(path)) {
     return std::nullopt;
@@ -116,10 +117,6 @@ auto load(const std::string& path, const Read& read,
   } catch (const Json::exception&) {
     throw Error(ErrorKind::input, path, "is damaged", remedy);
   }
-}
-void save(const std::string& path, const Json& json) {
-  fs::create_directories(fs::path(path).parent_path());
-  write_text_atomically(path, json.dump(1) + "\n");
 }
 
 }  // namespace
@@ -147,7 +144,7 @@ void claim_directory(const std::string& directory, const std::string& machine) {
     for (const auto& [what, value] : mine) {
       json[what] = value;
     }
-    save(path, json);
+    write_text_atomically(path, json.dump(1) + "\n");
     found = read();  // another task may have claimed it at the same moment
   }
   for (std::size_t i = 0; i < mine.size(); ++i) {
@@ -193,40 +190,32 @@ void save_run(const std::string& path, const StoredRun& run) {
   for (const auto& [gaze, one] : run.by_gaze) {
     by_gaze[gaze] = json_of(one);
   }
-  save(path, {{"task", run.task},
-              {"machine", run.machine},
-              {"png", run.png},
-              {"region_cpu_ms", json_of(run.region_cpu_ms)},
-              {"trace_ms", run.trace_ms},
-              {"trace_cpu_ms", run.trace_cpu_ms},
-              {"by_gaze", std::move(by_gaze)}});
+  save_sealed(path,
+              {{"task", run.task},
+               {"machine", run.machine},
+               {"png", run.png},
+               {"region_cpu_ms", json_of(run.region_cpu_ms)},
+               {"trace_ms", run.trace_ms},
+               {"trace_cpu_ms", run.trace_cpu_ms},
+               {"by_gaze", std::move(by_gaze)}},
+              run.files);
 }
 
 std::optional<ScoreTable> load_scores(const std::string& path) {
-  return load(path, [](const Json& json) { return table_of(json); });
+  return load(path, [](const Json& json) { return table_of(json.at("scores")); });
 }
 void save_scores(const std::string& path, const ScoreTable& scores) {
-  save(path, json_of(scores));
+  save_sealed(path, {{"scores", json_of(scores)}}, {});
 }
 
-std::optional<std::map<std::int32_t, double>> load_exposures(const std::string& path, const std::string& digest) {
+std::optional<double> load_exposure(const std::string& path, const std::string& digest) {
   const auto found = load(path, [&](const Json& json) {
-    std::map<std::int32_t, double> ev;
-    if (json.at("digest") == digest) {
-      for (const Json& frame : json.at("exposures")) {
-        ev[frame.at("frame")] = frame.at("ev");
-      }
-    }
-    return ev;
+    return json.at("digest") == digest ? std::optional<double>(json.at("ev").get<double>()) : std::nullopt;
   });
-  return found && found->empty() ? std::nullopt : found;
+  return found.value_or(std::nullopt);
 }
-void save_exposures(const std::string& path, const std::string& digest, const std::map<std::int32_t, double>& ev) {
-  Json exposures = Json::array();
-  for (const auto& [frame, stops] : ev) {
-    exposures.push_back({{"frame", frame}, {"ev", stops}});
-  }
-  save(path, {{"digest", digest}, {"exposures", std::move(exposures)}});
+void save_exposure(const std::string& path, const std::string& digest, double ev, const WrittenFiles& pictures) {
+  save_sealed(path, {{"digest", digest}, {"ev", ev}}, pictures);
 }
 
 std::optional<RateSearch> load_rate(const std::string& path) {
@@ -244,7 +233,7 @@ void save_rate(const std::string& path, const RateSearch& search) {
   for (const auto& [spp, time_s] : search.tried) {
     tried.push_back({{"spp", spp}, {"time_s", time_s}});
   }
-  save(path, {{"spp", search.spp}, {"tried", std::move(tried)}});
+  save_sealed(path, {{"spp", search.spp}, {"tried", std::move(tried)}}, {});
 }
 
 }  // namespace gazetrace

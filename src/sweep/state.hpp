@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a sweep has finished, in files that are there completely or not at all, so that a killed sweep goes on from
-// them. They are the sweep's own: only the build that wrote them reads them. Results for others are in
-// gazetrace/results.hpp.
+// them; see sealed_json.hpp for what is damaged later. They are the sweep's own: only the build that wrote them reads
+// them. Results for others are in gazetrace/results.hpp.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/output.hpp"
 #include "sweep/runs.hpp"
 
 namespace gazetrace {
@@ -30,6 +31,7 @@ void clear_directory(const std::string& directory);
 struct StoredRun {
   std::string task, machine;  // where it was measured: "2/5" and machine_description(); empty: in one process
   std::string png;            // pattern relative to the sweep's folder
+  WrittenFiles files;         // its pictures, by names relative to the sweep's folder
   std::map<std::string, double> region_cpu_ms;
   double trace_ms = 0, trace_cpu_ms = 0;
   std::map<std::string, SweepRun> by_gaze;
@@ -40,9 +42,9 @@ void save_run(const std::string& path, const StoredRun& run);
 std::optional<ScoreTable> load_scores(const std::string& path);
 void save_scores(const std::string& path, const ScoreTable& scores);
 
-// The exposures of a finished reference; empty unless it was stored under this digest.
-std::optional<std::map<std::int32_t, double>> load_exposures(const std::string& path, const std::string& digest);
-void save_exposures(const std::string& path, const std::string& digest, const std::map<std::int32_t, double>& ev);
+// The exposure of a frame of a reference whose pictures are all there; empty unless it was stored under this digest.
+std::optional<double> load_exposure(const std::string& path, const std::string& digest);
+void save_exposure(const std::string& path, const std::string& digest, double ev, const WrittenFiles& pictures);
 
 // The rates that were tried to find equal time, with their times, and the rate that was chosen.
 struct RateSearch {

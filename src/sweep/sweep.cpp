@@ -21,6 +21,7 @@
 #include "sweep/reference.hpp"
 #include "sweep/scene_rows.hpp"
 #include "sweep/scorer.hpp"
+#include "sweep/sealed_json.hpp"
 #include "sweep/shares.hpp"
 #include "sweep/state.hpp"
 #include "sweep/take_in.hpp"
@@ -431,7 +432,8 @@ Results concluded(const SweepPlan& plan, const Measurements& measured) {
   return results;
 }
 
-SweepDirectory open_directory(const SweepPlan& plan, const std::optional<SweepTask>& task, const std::string& machine) {
+SweepDirectory open_directory(const SweepPlan& plan, const std::optional<SweepTask>& task, const std::string& machine,
+                              const SweepObserver& observer) {
   if (plan.tests.empty()) {
     throw Error(ErrorKind::usage, plan.plan_file, "there is nothing to measure", "give a [[setting]] or a [grid]");
   }
@@ -446,6 +448,7 @@ SweepDirectory open_directory(const SweepPlan& plan, const std::optional<SweepTa
     clear_directory(plan.directory);
   }
   claim_directory(plan.directory, machine);
+  drop_damaged(plan.directory, plan.trust_files, observer);
   return directory;
 }
 
@@ -455,12 +458,13 @@ std::string SweepTask::label() const {
   return fmt::format("{}/{}", number, count);
 }
 
-SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task) {
+SweepDirectory prepare_sweep(const SweepPlan& plan, const std::optional<SweepTask>& task,
+                             const SweepObserver& observer) {
   if (task && plan.restart) {
     throw Error(ErrorKind::usage, "`restart`", "would throw away what other chunks have measured",
                 "remove the folder, or leave it out");
   }
-  return open_directory(plan, task, task ? kManyMachines : machine_description());
+  return open_directory(plan, task, task ? kManyMachines : machine_description(), observer);
 }
 
 Results run_sweep(const SweepPlan& plan, const SweepObserver& observer) {
@@ -482,21 +486,24 @@ void run_sweep_task(const SweepPlan& plan, const SweepTask& task, const SweepObs
   measure_scenes(plan, scope, measured, observer);
 }
 
-Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders) {
+Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folders, const SweepObserver& observer) {
   if (folders.empty()) {
     check_chunks_in(plan.directory);
   }
   for (const std::string& folder : folders) {
     check_chunks_in(folder);
   }
-  const SweepDirectory directory = open_directory(plan, std::nullopt, kManyMachines);
+  const SweepDirectory directory = open_directory(plan, std::nullopt, kManyMachines, observer);
   for (const std::string& folder : folders) {
     take_in(folder, plan.directory);
+  }
+  if (!folders.empty()) {
+    drop_damaged(plan.directory, plan.trust_files, observer);
   }
   Scope scope;
   scope.kind = Scope::Kind::merge;
   Measurements measured;
-  measure_scenes(plan, scope, measured, {});
+  measure_scenes(plan, scope, measured, observer);
   if (!scope.missing.empty()) {
     constexpr std::size_t kNamed = 8;
     const std::size_t named = std::min(scope.missing.size(), kNamed);

@@ -30,7 +30,7 @@ void take_file(const fs::path& from, const fs::path& to) {
   }
 }
 
-// Of a reference first the pictures, then the record that says that they are there.
+// First the pictures, then the records that say that they are there.
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
@@ -77,9 +77,7 @@ void take_in(const std::string& folder, const std::string& directory) {
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(references)) {
     const fs::path to = fs::path(directory) / "references" / entry.path().filename();
-    if (fs::exists(entry.path() / "reference.json") && !fs::exists(to / "reference.json")) {
-      take_folder(entry.path(), to);
-    }
+    take_folder(entry.path(), to);
   }
 }
 

@@ -5,14 +5,17 @@
     GAZETRACE=build/bin/gazetrace python3 tests/benchmarks/soak.py --seconds 3600 --seed 1
 
 Every round takes a way to render a short sequence (one run, one with history and checkpoints, chunks, chunks that are
-traced first, parts of the samples, a farm of this machine) and harms it several times: signals at random moments, files that are cut,
-changed, swapped or removed, a folder that is removed, a disk that is full, inputs that change. After every fault each
-file under a final name must be a whole one, unless this script damaged it, and what `merge` accepts must be right. In the
-end the way is gone to its end with --resume, and the pictures must be those of a run that nothing happened to. The seed
-of a round is printed with what went wrong; --seed N --rounds 1 repeats it, apart from the moments of signals."""
+traced first, parts of the samples, a farm of this machine) or to measure a sweep (by one process, and in chunks), and harms it
+several times: signals at random moments, files that are cut, changed, swapped or removed, a folder that is removed, a disk
+that is full, inputs that change. After every fault each file under a final name must be a whole one, unless this script damaged
+it, and what `merge` accepts must be right. In the end the way is gone to its end, by --resume where there is that, and the
+pictures, and a sweep's tables but for the times, must be those of a run that nothing happened to. A sweep's `state.json`, which
+says whose folder it is, is left alone: a damaged one is refused. The seed of a round is printed with what went wrong;
+--seed N --rounds 1 repeats it, apart from the moments of signals."""
 
 import argparse
 import collections
+import csv
 import json
 import random
 import resource
@@ -27,6 +30,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
 import gliding_job  # noqa: E402
 import harness  # noqa: E402
+from farm_test import SWEEP_TOML  # noqa: E402
+from sweep_chunks_test import TIMES  # noqa: E402
 
 FRAMES = 6
 HISTORY = 'accumulate = "reproject"\nfilter = "guided"\n'
@@ -34,17 +39,66 @@ SAMPLES = 'falloff = "uniform"\nspp = 16\nfilter = "linear"\nexr-pixels = "float
 RENDER = ["render", "--config", "job.toml", "--resume", "--quiet", "--grace", "50ms"]
 
 
+SWEEP = SWEEP_TOML.replace("repeats = 1", 'repeats = 1\nbaselines = ["uniform-reference-rate", "equal-samples", "low-resolution"]')
+
+
 class Way:
     """How a sequence is rendered: steps in order, each of which can be done again, and what is added to the job."""
 
-    def __init__(self, name, more, steps, folder="out"):
-        self.name, self.more, self.steps, self.folder = name, more, steps, folder
+    sides = ("run*.json", "timing*.csv", "run*.files", "history", "chunks*.json")  # files beside the pictures
+
+    def __init__(self, name, more, steps):
+        self.name, self.more, self.steps = name, more, steps
+
+    def pictures(self, out):
+        return gliding_job.pictures(out)
+
+    def listed(self, out):
+        """Files that a record or a journal vouches for: what else is damaged cannot be known."""
+        names = set()
+        for path in out.glob("run*"):
+            try:
+                if path.suffix == ".json":
+                    names.update(json.loads(path.read_text()).get("files", {}))
+                elif path.suffix == ".files":
+                    names.update(line.split(" ", 3)[3] for line in path.read_text().splitlines() if line.count(" ") >= 3)
+            except (OSError, ValueError):
+                continue
+        return sorted(name for name in names if (out / name).is_file())
+
+    def table(self, out):
+        """What a table must say besides the pictures."""
+        return len((out / "timing.csv").read_text().splitlines())
+
+
+class SweepWay(Way):
+    """How a sweep is measured."""
+
+    sides = ("runs/*.json", "references/*/*.json", "results.*", "methods.txt", "chunks*.json")
+
+    def pictures(self, out):
+        return {str(path.relative_to(out)): path.read_bytes() for folder in ("frames", "references")
+                for path in sorted((out / folder).rglob("*")) if path.suffix in (".exr", ".png") and "scrambling" not in str(path)}
+
+    def listed(self, out):
+        names = set()
+        for path in out.rglob("*.json"):
+            try:
+                names.update(json.loads(path.read_text()).get("files", {}))
+            except (OSError, ValueError, AttributeError):
+                continue
+        return sorted(name for name in names if (out / name).is_file())
+
+    def table(self, out):
+        with open(out / "results.csv", newline="", encoding="utf-8") as file:
+            return [{key: value for key, value in row.items() if key not in TIMES} for row in csv.DictReader(file)]
 
 
 def ways():
     chunks = [[*RENDER, "--chunk", f"{number}/3"] for number in (1, 2, 3)]
     traced = [[*chunk, "--stage", "trace"] for chunk in chunks]
     samples = [[*RENDER, "--sample-range", part] for part in ("0:6", "6:16")]
+    sweep = ["sweep", "plan.toml", "-o", "out", "--quiet"]
     return [
         Way("one run", "", [RENDER]),
         Way("with history", HISTORY + 'checkpoint = "out/history"\ncheckpoint-every = 2\n', [RENDER]),
@@ -52,6 +106,8 @@ def ways():
         Way("traced first", HISTORY, [*traced, [*RENDER, "--stage", "finish"]]),
         Way("samples", SAMPLES, [*samples, ["merge", "out", "--overwrite"]]),
         Way("local farm", HISTORY, [["farm", "farm.toml", "--chunks", "2", "--processes", "2", "--threads", "1", "--retries", "2"]]),
+        SweepWay("sweep", "", [sweep]),
+        SweepWay("sweep in chunks", "", [[*sweep, "--chunk", "1/2"], [*sweep, "--chunk", "2/2"], ["sweep", "merge", "plan.toml", "-o", "out"]]),
     ]
 
 
@@ -86,6 +142,8 @@ class Soak:
         text = gliding_job.job_toml(self.size, "16, 8, 4", FRAMES, "out", "threads = 1\n" + way.more)
         for name in ("job.toml", "farm.toml"):
             (self.folder / name).write_text(text)
+        (self.folder / "plan.toml").write_text(SWEEP)
+        self.way = way
         shutil.rmtree(self.out, ignore_errors=True)
 
     def reference(self, way):
@@ -95,25 +153,12 @@ class Soak:
                 code, text = self.run(step)
                 if code != 0:
                     raise Trouble(f"without any fault: {step}: {text}")
-            self.references[way.name] = (self.pictures(), time.monotonic() - begin)
+            self.references[way.name] = (self.pictures(), time.monotonic() - begin, way.table(self.out))
             shutil.rmtree(self.out)
         return self.references[way.name]
 
     def pictures(self):
-        return gliding_job.pictures(self.out)
-
-    def listed(self):
-        """Files that a record or a journal vouches for: what else is damaged cannot be known."""
-        names = set()
-        for path in self.out.glob("run*"):
-            try:
-                if path.suffix == ".json":
-                    names.update(json.loads(path.read_text()).get("files", {}))
-                elif path.suffix == ".files":
-                    names.update(line.split(" ", 3)[3] for line in path.read_text().splitlines() if line.count(" ") >= 3)
-            except (OSError, ValueError):
-                continue
-        return sorted(name for name in names if (self.out / name).is_file())
+        return self.way.pictures(self.out)
 
     # ---- Faults. Each returns its name, or None where it cannot be done now.
 
@@ -139,7 +184,7 @@ class Soak:
             time.sleep(0.05)
 
     def damage(self, rng, damaged):
-        names = [name for name in self.listed() if name not in damaged]
+        names = [name for name in self.way.listed(self.out) if name not in damaged]
         if not names:
             return None
         name = rng.choice(names)
@@ -164,7 +209,7 @@ class Soak:
         return f"file {kind}"
 
     def remove_side_file(self, rng):
-        sides = [path for pattern in ("run*.json", "timing*.csv", "run*.files", "history", "chunks*.json") for path in self.out.glob(pattern)]
+        sides = [path for pattern in self.way.sides for path in self.out.glob(pattern)]
         if not sides:
             return None
         path = rng.choice(sorted(sides))
@@ -173,7 +218,7 @@ class Soak:
         else:
             content = path.read_bytes()
             path.write_bytes(content[:rng.randrange(len(content) + 1)])
-        return f"side file {path.name.split('.')[0]}"
+        return f"side file {path.name.split('.')[0].split('-')[0]}"
 
     def fill_disk(self, rng, step):
         limit = rng.choice([200, 1000, 3000, 10000])
@@ -208,10 +253,10 @@ class Soak:
                 raise Trouble(f"after {after}: {name} has {len(content)} bytes and is not the picture")
 
     def check_merge(self, way, reference, after):
-        if way.steps[-1][0] != "merge":
+        if "merge" not in way.steps[-1]:
             return
         code, text = self.run(way.steps[-1])
-        if code == 0 and self.pictures() != reference:
+        if code == 0 and (self.pictures() != reference or way.table(self.out) != self.references[way.name][2]):
             raise Trouble(f"after {after}: merge accepted what is wrong or not whole: {text}")
         self.outcomes[f"merge in between: exit {code}"] += 1
 
@@ -232,15 +277,14 @@ class Soak:
         if self.pictures() != reference:
             wrong = sorted(name for name in set(reference) | set(self.pictures()) if reference.get(name) != self.pictures().get(name))
             raise Trouble(f"the pictures differ from those of an undisturbed run: {wrong}")
-        rows = (self.out / "timing.csv").read_text().splitlines()
-        if len(rows) != FRAMES + 1:
-            raise Trouble(f"timing.csv has {len(rows) - 1} rows")
+        if way.table(self.out) != self.references[way.name][2]:
+            raise Trouble(f"the table differs: {way.table(self.out)}")
 
     def round(self, seed):
         rng = random.Random(seed)
         way = rng.choice(ways())
         self.prepare(way)
-        reference, typical_s = self.reference(way)
+        reference, typical_s, _ = self.reference(way)
         done = []
         damaged = set()
         sides_gone = False

@@ -29,6 +29,8 @@ struct FarmArguments {
   std::string folder;  // of status and retry
   int processes = 1;
   bool submit = false;
+  bool check_files = false;  // of status
+  bool trust_files = false;  // of retry
   JsonOutput json;
 };
 
@@ -99,14 +101,14 @@ int run_farm(FarmArguments& arguments) {
 
 int run_status(const FarmArguments& arguments) {
   const FarmPlan plan = read_farm(arguments.folder);
-  const FarmStatus status = farm_status(plan);
+  const FarmStatus status = farm_status(plan, arguments.check_files ? FileCheck::content : FileCheck::size);
   arguments.json.print(farm_status_text(plan, status), [&] { return farm_status_json(plan, status); });
   return exit_done;
 }
 
 int run_retry(const FarmArguments& arguments) {
   const FarmPlan plan = read_farm(arguments.folder);
-  const FarmStatus status = farm_status(plan);
+  const FarmStatus status = farm_status(plan, arguments.trust_files ? FileCheck::size : FileCheck::content);
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
   }
@@ -186,10 +188,15 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");
   status->footer(kExitCodesHelp);
   status->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
+  status->add_flag(
+      "--check-files", arguments->check_files,
+      "Reads all finished files and compares their content with what was written, and not the sizes alone");
   add_json_option(*status, arguments->json);
   CLI::App* const retry = app.add_subcommand("retry", "Do again what is neither done nor running, and what follows");
   retry->footer(kExitCodesHelp);
   retry->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
+  retry->add_flag("--trust-files", arguments->trust_files,
+                  "Compares the sizes of finished files alone with what was written, and not their content");
   add_hand_over_options(*retry, *arguments);
   app.require_subcommand(0, 1);
 

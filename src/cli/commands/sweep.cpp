@@ -27,7 +27,7 @@ struct SweepArguments {
   std::optional<int> threads;
   std::optional<Chunk> chunk;
   std::vector<std::string> folders;  // of merge
-  bool confine = false, dry_run = false, restart = false, quiet = false;
+  bool confine = false, dry_run = false, restart = false, trust_files = false, quiet = false;
   JsonOutput json, merge_json;
 
   [[nodiscard]] std::optional<SweepTask> task() const {
@@ -90,6 +90,7 @@ SweepPlan load_plan(const SweepArguments& arguments) {
   plan.directory =
       arguments.output.empty() ? std::filesystem::path(arguments.plan).stem().string() + ".sweep" : arguments.output;
   plan.restart = arguments.restart;
+  plan.trust_files = arguments.trust_files;
   if (!arguments.quiet) {
     print_warnings(jobs.warnings);
   }
@@ -101,6 +102,13 @@ void write_results(const SweepPlan& plan, const Results& results, const JsonOutp
   write_text_atomically(plan.directory + "/methods.txt", results_methods(results));
   write_text_atomically(plan.directory + "/results.json", results_json(results));
   json.print(results_table(results), [&] { return results_json(results); });
+}
+
+// Work that is lost and done again is told of in any case.
+SweepObserver warning_observer() {
+  SweepObserver observer;
+  observer.warn = [](const std::string& line) { print_warnings({line}); };
+  return observer;
 }
 
 int run_sweep_command(const SweepArguments& arguments) {
@@ -118,11 +126,11 @@ int run_sweep_command(const SweepArguments& arguments) {
     arguments.json.print(estimate_text(estimate, threads), [&] { return estimate_json(estimate); });
     return exit_done;
   }
-  const SweepDirectory directory = prepare_sweep(plan, arguments.task());
-  SweepObserver observer;
+  SweepObserver observer = warning_observer();
   if (!arguments.quiet) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
+  const SweepDirectory directory = prepare_sweep(plan, arguments.task(), observer);
   keep_freed_memory();
   if (const std::optional<SweepTask> task = arguments.task()) {
     run_sweep_task(plan, *task, observer);
@@ -135,7 +143,7 @@ int run_sweep_command(const SweepArguments& arguments) {
 int run_sweep_merge(const SweepArguments& arguments) {
   const SweepPlan plan = load_plan(arguments);
   arguments.merge_json.check();
-  write_results(plan, merge_sweep(plan, arguments.folders), arguments.merge_json);
+  write_results(plan, merge_sweep(plan, arguments.folders, warning_observer()), arguments.merge_json);
   return exit_done;
 }
 
@@ -153,6 +161,8 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
     schema.value("--frames", &SweepArguments::frames, "LIST", "In place of the plan's");
     schema.flag("--confine", &SweepArguments::confine,
                 "Refuses a plan that names files outside of its folder or data set; for plans of others");
+    schema.flag("--trust-files", &SweepArguments::trust_files,
+                "Does not compare finished pictures in the folder with what was written, which reads them once");
     return schema;
   };
   OptionSchema<SweepArguments> schema = shared_schema();

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files in which a sweep keeps what it has finished. Each carries a digest of its own content, and names with sizes
+// and digests the pictures that belong to it: nothing is taken for finished that is not as it was written.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "gazetrace/output.hpp"
+#include "gazetrace/sweep.hpp"
+
+namespace gazetrace {
+
+// Writes an object under its name when it is complete, and makes the folder. `files`: names relative to the sweep's
+// folder, so that folders of several tasks can be taken into one.
+void save_sealed(const std::string& path, nlohmann::ordered_json content, const WrittenFiles& files);
+
+// Removes what is damaged of what the sweep keeps in its folder, so that it is measured or rendered again, and warns of
+// each: records, and with them the pictures that they name and that are not as they were written. `trust_files`: the
+// records alone are looked at. Processes that share the folder do this one after the other.
+void drop_damaged(const std::string& directory, bool trust_files, const SweepObserver& observer);
+
+}  // namespace gazetrace
