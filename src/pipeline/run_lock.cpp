@@ -13,6 +13,7 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
@@ -46,20 +47,31 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-// When a process began, in the ticks of its machine's clock, which tells it from a later one of the same number; empty
-// where there is no such process. proc(5), field 22, counted behind the name, which may hold anything.
-std::string begin_of_process(std::int64_t process) {
+// Of a process, by proc(5), whose fields are counted behind the name, which may hold anything.
+struct ProcessFacts {
+  std::string began;     // in the ticks of its machine's clock, which tells it from a later one of the same number
+  bool is_dead = false;  // nobody has asked yet how it ended
+};
+
+// Empty where there is no such process.
+std::optional<ProcessFacts> process_facts(std::int64_t process) {
   const std::string line = first_line(fmt::format("/proc/{}/stat", process));
   const std::size_t name_end = line.rfind(')');
   if (name_end == std::string::npos) {
-    return {};
+    return std::nullopt;
   }
   std::istringstream fields(line.substr(name_end + 1));
-  std::string field;
-  for (int i = 3; i <= 22; ++i) {
-    fields >> field;
+  ProcessFacts facts;
+  fields >> facts.began;  // field 3, the state
+  facts.is_dead = facts.began == "Z" || facts.began == "X";
+  for (int i = 4; i <= 22; ++i) {
+    fields >> facts.began;
   }
-  return field;
+  return facts;
+}
+
+std::string begin_of_process(std::int64_t process) {
+  return process_facts(process).value_or(ProcessFacts()).began;
 }
 
 // Who holds a lock.
@@ -67,7 +79,7 @@ struct Holder {
   std::string host;
   std::string machine;  // what one list of processes belongs to: this boot of the kernel, and the container
   std::int64_t process = 0;
-  std::string began;  // begin_of_process()
+  std::string began;  // ProcessFacts::began
   std::int64_t since_s = 0;
   std::string frames, samples;
 
@@ -101,11 +113,19 @@ std::string text_of(const Holder& holder) {
 
 // Empty where there is no such lock any more. One that cannot be read has no host.
 std::optional<Holder> read_lock(const std::string& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(path, failed);
+  if (!fs::exists(status)) {
+    return std::nullopt;
+  }
+  Holder holder;
+  if (!fs::is_regular_file(status)) {  // to open a pipe would take for ever
+    return holder;
+  }
   std::ifstream file(path);
   if (!file) {
     return std::nullopt;
   }
-  Holder holder;
   const Json json = Json::parse(file, nullptr, false);
   if (json.is_object()) {
     try {
@@ -121,7 +141,7 @@ std::optional<Holder> read_lock(const std::string& path) {
 
 // Opened, since file systems that are shared look at the file anew only then.
 std::optional<std::int64_t> time_of(const std::string& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   struct stat state {};
   const bool known = file >= 0 && ::fstat(file, &state) == 0;
   if (file >= 0) {
@@ -137,8 +157,8 @@ std::int64_t folder_time(const std::string& own_file) {
 }
 
 bool process_lives(const Holder& holder) {
-  if (const std::string began = begin_of_process(holder.process); !began.empty() && !holder.began.empty()) {
-    return began == holder.began;
+  if (const std::optional<ProcessFacts> facts = process_facts(holder.process); facts && !holder.began.empty()) {
+    return !facts->is_dead && facts->began == holder.began;
   }
   // Nothing is known of when it began: /proc may hide the processes of others.
   return ::kill(static_cast<pid_t>(holder.process), 0) == 0 || errno == EPERM;
@@ -183,7 +203,7 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
     if (!first || *renewed != *first) {
       return true;
     }
-    if (folder_time(looking.own_file) - *renewed > kSilence.count()) {
+    if (std::abs(folder_time(looking.own_file) - *renewed) > kSilence.count()) {
       return false;
     }
     if (!told && looking.waiting) {
@@ -196,7 +216,7 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
 }
 
 [[noreturn]] void refuse(const std::string& path, const Holder& holder, const Holder& self) {
-  throw Error(ErrorKind::usage, path, "held by " + words(holder, self.since_s),
+  throw Error(ErrorKind::runtime, path, "held by " + words(holder, self.since_s),
               "wait for it or end it; where it does not run any more, remove this file");
 }
 
@@ -220,6 +240,23 @@ bool remove_dead(const std::string& path, const Holder& dead) {
                      read_lock(path) == std::optional(dead) && ::unlink(path.c_str()) == 0;
   ::close(file);
   return right;
+}
+
+// Runs that ended before they had a lock have left the file that was to become one. Those of this machine's processes
+// that are dead are removed.
+void sweep_up(const std::string& lock_path, const Holder& self) {
+  const fs::path lock(lock_path);
+  const std::string begin = fmt::format("{}.{}.", lock.filename().string(), self.host);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(lock.parent_path(), ignored)) {
+    const std::string path = entry.path().string();
+    if (entry.path().filename().string().starts_with(begin)) {
+      const std::optional<Holder> holder = read_lock(path);
+      if (holder && !holder->machine.empty() && holder->machine == self.machine && !process_lives(*holder)) {
+        ::unlink(path.c_str());
+      }
+    }
+  }
 }
 
 bool overlap(const std::string& a, const std::string& b) {
@@ -302,6 +339,7 @@ RunLock::RunLock(const RunRecord& record, const std::string& record_path,
                  const std::function<void(const std::string& text)>& waiting) {
   const std::string path = record_path + ".lock";
   const Holder self = this_run(record);
+  sweep_up(path, self);
   const OwnFile own(fmt::format("{}.{}.{}", path, self.host, self.process), text_of(self));
   const Looking looking{own.path, self, waiting};
   const auto remove = [&](const std::string& lock, const Holder& holder) {
@@ -359,8 +397,17 @@ bool is_locked(const std::string& record_path) {
   if (!holder->host.empty() && holder->machine == this_machine()) {
     return process_lives(*holder);
   }
+  // By the clock of the file system, where a file can be written there.
+  const std::string clock = fmt::format("{}.{}.clock", path, this_host());
+  std::int64_t now_s = std::time(nullptr);
+  if (const int file = ::open(clock.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666); file >= 0) {
+    ::close(file);
+    now_s = folder_time(clock);
+    ::unlink(clock.c_str());
+  }
+  // A time far ahead is none that a living run has renewed.
   const std::optional<std::int64_t> renewed = time_of(path);
-  return renewed && std::time(nullptr) - *renewed <= kSilence.count();
+  return renewed && std::abs(now_s - *renewed) <= kSilence.count();
 }
 
 }  // namespace gazetrace

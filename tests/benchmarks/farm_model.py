@@ -93,8 +93,9 @@ def table():
               f"{exact_s / 3600:.2f} | {one / exact_s:.0f} |", flush=True)
 
 
-def measure(frames):
-    """Local farms on this machine, beside the model with the frame's and the start's time from one run of the job."""
+def measure(frames, size):
+    """Local farms on this machine, beside the model. What a frame costs comes from one run of the job, with as many others at
+    work as the farm has processes; what a task's start and a farm's own work cost, from two farms of a few short tasks."""
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
     import csv
 
@@ -111,30 +112,39 @@ def measure(frames):
                 raise SystemExit(done.stderr)
             return time.monotonic() - begin
 
-        def rows(name):
-            with open(folder / name / "timing.csv", newline="", encoding="utf-8") as file:
-                return [float(row["total_ms"]) / 1000 for row in csv.DictReader(file)]
-
-        def job(name):
-            (folder / f"{name}.toml").write_text(gliding_job.job_toml("192x108", "512, 256, 128", frames, name, "threads = 1\n"))
+        def job(name, count):
+            (folder / f"{name}.toml").write_text(gliding_job.job_toml(size, "512, 256, 128", count, name, "threads = 1\n"))
             return f"{name}.toml"
 
-        # Two at the same time, as the farms below have it: cores share what they do not have twice.
-        job("beside")
-        beside = subprocess.Popen([harness.PROGRAM, "render", "--config", "beside.toml", "--quiet"], cwd=folder)
-        wall_s = run("render", "--config", job("one"), "--quiet")
-        beside.wait()
-        costs = rows("one")
-        print(f"one run: {wall_s:.1f} s, {statistics.mean(costs):.3f} s a frame, spread {statistics.pstdev(costs) / statistics.mean(costs):.0%}")
-        print("| processes | frames in a chunk | measured s | model s | error |\n| --- | --- | --- | --- | --- |")
-        for number, (processes, chunk) in enumerate(((1, frames), (2, frames // 8), (2, frames // 20), (2, frames // 2)), 1):
-            name = f"farm{number}"
-            seconds = run("farm", job(name), "--chunk-frames", chunk, "--processes", processes, "--threads", "1")
-            model = Farm(frames=frames, frame_s=statistics.mean(costs), spread=statistics.pstdev(costs) / statistics.mean(costs),
-                         start_s=wall_s - sum(costs), scene_mb=0, failures_per_node_hour=0, requeue_s=0, merge_s_per_frame=0.001,
-                         nodes=processes)
-            expected = statistics.mean(completion_s(model, chunk, seed) for seed in range(5)) + 0.3  # the last looks at processes
-            print(f"| {processes} | {chunk} | {seconds:.1f} | {expected:.1f} | {expected / seconds - 1:+.0%} |", flush=True)
+        def farm(name, count, chunk, processes):
+            return run("farm", job(name, count), "--chunk-frames", chunk, "--processes", processes, "--threads", "1")
+
+        def costs(processes):
+            """Of each frame, while as many runs are at work: cores share what they do not have twice."""
+            names = [f"cost-{processes}-{number}" for number in range(processes)]
+            runs = [subprocess.Popen([harness.PROGRAM, "render", "--config", job(name, frames), "--quiet"], cwd=folder) for name in names]
+            for one in runs:
+                one.wait()
+            with open(folder / names[0] / "timing.csv", newline="", encoding="utf-8") as file:
+                return [float(row["total_ms"]) / 1000 for row in csv.DictReader(file)]
+
+        print("| processes | frames in a chunk | a frame s | spread | a start s | measured s | model s | error |\n"
+              "| --- | --- | --- | --- | --- | --- | --- | --- |")
+        for processes, chunks in ((1, (frames,)), (2, (frames // 2, frames // 8, frames // 20))):
+            frame_costs = costs(processes)
+            frame_s = statistics.mean(frame_costs)
+            few, many = 2 * processes, 8 * processes
+            few_s, many_s = (statistics.median(farm(f"start-{processes}-{count}-{k}", count, 1, processes) for k in range(3))
+                             for count in (few, many))
+            start_s = (many_s - few_s) / (many - few) * processes - frame_s
+            fixed_s = few_s - few / processes * (start_s + frame_s)
+            for chunk in chunks:
+                seconds = farm(f"farm-{processes}-{chunk}", frames, chunk, processes)
+                model = Farm(frames=frames, frame_s=frame_s, spread=statistics.pstdev(frame_costs) / frame_s, start_s=start_s,
+                             scene_mb=0, failures_per_node_hour=0, requeue_s=0, merge_s_per_frame=0, nodes=processes)
+                expected = statistics.mean(completion_s(model, chunk, seed) for seed in range(5)) + fixed_s
+                print(f"| {processes} | {chunk} | {frame_s:.3f} | {model.spread:.0%} | {start_s:.2f} | {seconds:.1f} | {expected:.1f} | "
+                      f"{expected / seconds - 1:+.0%} |", flush=True)
 
 
 def main():
@@ -142,9 +152,10 @@ def main():
     parser.add_argument("--table", action="store_true")
     parser.add_argument("--measure", action="store_true")
     parser.add_argument("--frames", type=int, default=80)
+    parser.add_argument("--size", default="320x180", help="of the frames that are measured")
     arguments = parser.parse_args()
     if arguments.measure:
-        measure(arguments.frames)
+        measure(arguments.frames, arguments.size)
     if arguments.table or not arguments.measure:
         table()
 

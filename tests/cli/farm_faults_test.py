@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What goes wrong on a farm: files that are lost or changed, inputs that change, side files that are cut, two runs in one
-folder, signals and limits of time."""
+"""What goes wrong on a farm: files that are lost or changed, inputs that change, side files that are cut, signals and
+limits of time."""
 
 import csv
 import json
@@ -405,38 +405,6 @@ class Running(Farm):
         while not condition() and process.poll() is None and time.monotonic() < deadline:
             time.sleep(0.005)
         self.assertTrue(condition())
-
-
-class Locks(Running):
-    def test_two_runs_do_not_share_a_folder(self):
-        first = self.start(*self.SLOW)
-        lock = self.folder / "out/run.json.lock"
-        self.wait_for(lock.exists, first)
-        # From then on it makes no file until its first picture, which takes a while.
-        self.wait_for(lambda: all((self.folder / "out" / name).exists() for name in ("run.json", "run.files", "timing.csv")), first)
-        words = ["run.json.lock", f"process {first.pid}", "frames 1-4", "wait for it"]
-        self.assert_refused(["render", *JOB, *outputs("out"), *self.SLOW, "--resume"], words)
-        # A part whose frames it makes as well; others are free.
-        self.assert_refused(["render", *JOB, *outputs("out"), "--frames", "4-5", "--part", "--resume"], words)
-        self.run_ok("render", *JOB, *outputs("out"), "--frames", "5-6", "--part")
-        first.send_signal(signal.SIGKILL)
-        first.wait()
-        self.assertTrue(lock.exists())
-        after = self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-4", "--resume", "--overwrite")
-        self.assertIn("that run is dead", after.stderr)
-        self.assertFalse(lock.exists())
-
-    def test_a_lock_of_another_machine_that_is_silent(self):
-        self.render("out", "--frames", "1")
-        holder = {"host": "elsewhere", "machine": "other boot", "process": 1, "began": "5", "since_s": 1, "frames": "1", "samples": ""}
-        lock = self.write("out/run.json.lock", json.dumps(holder))
-        os.utime(lock, (time.time() - 3600, time.time() - 3600))
-        self.assertIn("process 1 on elsewhere", self.render("out", "--frames", "1", "--resume").stderr)
-        self.assertFalse(lock.exists())
-        # One that cannot be read is no run either.
-        self.write("out/run.json.lock", "{")
-        os.utime(lock, (time.time() - 3600, time.time() - 3600))
-        self.render("out", "--frames", "1", "--resume")
 
 
 class Signals(Running):

@@ -119,11 +119,11 @@ class CliTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, f"{arguments}\n{result.stdout}\n{result.stderr}")
         return result
 
-    def assert_refused(self, arguments, words, **more):
-        """Exit code 2, one line on stderr with all the words, nothing on stdout, no picture or record left."""
+    def assert_refused(self, arguments, words, code=2, **more):
+        """This exit code, one line on stderr with all the words, nothing on stdout, no picture or record left."""
         before = set(self.files())
         result = self.run_program(*arguments, **more)
-        self.assertEqual(result.returncode, 2, f"{arguments}\n{result.stdout}\n{result.stderr}")
+        self.assertEqual(result.returncode, code, f"{arguments}\n{result.stdout}\n{result.stderr}")
         lines = result.stderr.splitlines()
         self.assertEqual(len(lines), 1, result.stderr)
         self.assertTrue(lines[0].startswith("gazetrace: error: "), lines[0])

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -69,21 +70,48 @@ void warn_of_other_machine(const std::string& record_path, const RunRecord& now,
   }
 }
 
-std::unique_ptr<RunLock> lock_outputs(ResolvedJob& resolved, const std::vector<std::string>& files) {
+// The folder of a pattern's files, or of the folders that it makes for each frame.
+std::filesystem::path folder_of_pattern(const std::string& pattern) {
+  std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
+  while (folder.string().find_first_of("#%") != std::string::npos) {
+    folder = folder.parent_path();
+  }
+  return folder;
+}
+
+// In every folder that the run writes to: where outputs go to several, another run may share any of them.
+std::vector<std::unique_ptr<RunLock>> lock_outputs(ResolvedJob& resolved, const std::vector<std::string>& files) {
   if (files.empty()) {
-    return nullptr;
+    return {};
   }
   RunRecord claim;
   claim.frames = format_frame_list(resolved.frames);
   if (resolved.pipeline.trace.samples) {
     claim.samples = format_value(*resolved.pipeline.trace.samples);
   }
-  auto lock = std::make_unique<RunLock>(claim, files.front(), [](const std::string& text) { print_warnings({text}); });
-  // Said to the person who waits, and not kept in the record, which may be published: it names a host.
-  print_warnings(lock->taken_over());
+  const std::filesystem::path record(files.front());
+  std::vector<std::filesystem::path> folders{record.parent_path()};
+  const OutputSettings& output = resolved.pipeline.output;
+  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
+    const std::filesystem::path folder = folder_of_pattern(pattern);
+    const auto is_folder = [&](const std::filesystem::path& known) {
+      std::error_code ignored;
+      return known == folder || std::filesystem::equivalent(known, folder, ignored);
+    };
+    if (!pattern.empty() && std::none_of(folders.begin(), folders.end(), is_folder)) {
+      folders.push_back(folder);
+    }
+  }
+  std::vector<std::unique_ptr<RunLock>> locks;
+  for (const std::filesystem::path& folder : folders) {
+    locks.push_back(std::make_unique<RunLock>(claim, (folder / record.filename()).string(),
+                                              [](const std::string& text) { print_warnings({text}); }));
+    // Said to the person who waits, and not kept in the record, which may be published: it names a host.
+    print_warnings(locks.back()->taken_over());
+  }
   // Another run may have made frames while this one checked or waited.
   prepare_outputs(resolved);
-  return lock;
+  return locks;
 }
 
 std::string pixel_report(const FrameRequest& request, const Frame& frame, const PixelIndex& pixel) {
@@ -119,7 +147,7 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   ResolvedJob resolved = resolve(arguments.job, resolving);
   prepare_outputs(resolved);
   const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
-  const std::unique_ptr<RunLock> lock = lock_outputs(resolved, files);
+  const std::vector<std::unique_ptr<RunLock>> locks = lock_outputs(resolved, files);
 
   loading->building_tree();
   PathTracer tracer(*resolved.scene, tracer_options(job));
