@@ -36,6 +36,7 @@ struct FarmSettings {
   std::string rate_from;            // the timing.csv of an earlier run of the job; empty: no time is predicted
   std::string container;            // words before the program: "apptainer exec gazetrace.sif"
   std::vector<std::string> then;    // commands of the shell after the sequence is whole: a video, a report
+  bool confine = false;             // the job is by others: it and its tasks keep to its folder or data set
 };
 
 // What the chunks of a farm are of.
@@ -64,20 +65,24 @@ struct FarmPlan {
   std::vector<double> predicted_s;  // of each chunk; empty: not known
   std::uint64_t traced_bytes = 0;   // that a traced frame takes at most, roughly; 0 where none is written
   std::vector<std::string> then;
+  bool confine = false;
+  bool is_moved = false;  // by read_farm(): it does not lie where it was made for, and cannot be run
 };
 
 // Reads job and plan, and predicts memory and, where it can, time. Error(usage, input) as resolve() does, and for a job
 // without outputs. It writes nothing.
 FarmPlan plan_farm(const FarmSettings& settings);
 std::string farm_plan_text(const FarmPlan& plan);  // for people
-// Error(input) for a folder without a farm; `folder` is that of the run or of the farm.
+// Error(input) for a folder without a farm; `folder` is that of the run or of the farm. Where that has been moved, or
+// is another name of it on this machine, the plan's folders are those that were found.
 FarmPlan read_farm(const std::string& folder);
 
 // The names of a plan's tasks: "1" to the number of chunks, "finish", "after-1", ...
 std::vector<std::string> farm_tasks(const FarmPlan& plan);
 // What the engine reads, for these chunks; by names within the farm's folder.
 std::map<std::string, std::string> farm_files(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
-// Writes farm.json, the borders of the chunks, the script of the tasks and the engine's files.
+// Writes farm.json, the borders of the chunks, the script of the tasks and the engine's files. Error(input) where parts
+// of another division of the frames lie in the folder, which no merge could join with these.
 void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks);
 // The command of the shell that hands the farm's files over to the engine; empty: run_local() is what runs it.
 std::string submit_command(const FarmPlan& plan);

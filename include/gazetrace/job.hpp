@@ -67,7 +67,8 @@ std::string option_text(const Job& job, const std::string& option, const JobSche
 void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy = {},
               PathsBegin paths = PathsBegin::beside_settings);
 Job job_from_toml(const std::string& text, const std::string& path);
-Job load_job(const std::string& path);  // also throws Error(input) for a file that cannot be read
+// Also throws Error(input) for a file that cannot be read. `confine`: for settings by others, see JobSettings::confine.
+Job load_job(const std::string& path, bool confine = false);
 std::string read_settings_file(const std::string& path);
 // Every option with its value, as TOML; reading the text gives the same settings. Its first line names `title`.
 std::string job_as_toml(const Job& job, const std::string& title = "gazetrace render",

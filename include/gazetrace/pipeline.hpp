@@ -106,8 +106,9 @@ RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& 
 // is renewed while the run lives. Runs of other parts in the folder hold it up only where their frames overlap.
 class RunLock {
  public:
-  // Error(runtime), since it will pass, where another run lives that writes some of these files. A lock that nobody holds any more is taken
-  // over; `waiting` is told where that takes a while to find out, since the other was on another machine.
+  // Error(runtime), since it will pass, where another run lives that writes some of these files. A lock that nobody
+  // holds any more is taken over; `waiting` is told where that takes a while to find out, since the other was on
+  // another machine.
   RunLock(const RunRecord& record, const std::string& record_path,
           const std::function<void(const std::string& text)>& waiting = {});
   ~RunLock();

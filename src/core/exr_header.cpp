@@ -57,6 +57,20 @@ class Source {
   std::uint64_t size_, at_ = 0;
 };
 
+// Types of attributes whose values have one size. OpenEXR reads that many bytes whatever the size that is stated, and
+// takes what follows for the next attribute.
+struct FixedType {
+  std::string_view name;
+  std::uint32_t bytes;
+};
+constexpr std::array<FixedType, 22> kFixedTypes{
+    {{"box2i", 16},    {"box2f", 16},   {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1},
+     {"double", 8},    {"envmap", 1},   {"float", 4},           {"int", 4},         {"keycode", 28},
+     {"lineOrder", 1}, {"m33f", 36},    {"m33d", 72},           {"m44f", 64},       {"m44d", 128},
+     {"rational", 8},  {"tiledesc", 9}, {"timecode", 8},        {"v2i", 8},         {"v2f", 8},
+     {"v3i", 12},      {"v3f", 12}}};
+constexpr std::uint32_t kChannelBytes = 16;  // of a list of channels, for each beside its name
+
 class HeaderCheck {
  public:
   HeaderCheck(Source source, const std::string& place) : source_(source), place_(place) {}
@@ -110,7 +124,42 @@ class HeaderCheck {
         fail("its attribute '" + bounded(attribute, 40) + "' states " + std::to_string(size) + " bytes, of " +
              std::to_string(source_.left()) + " that are left");
       }
+      const auto* const fixed = std::find_if(kFixedTypes.begin(), kFixedTypes.end(),
+                                             [&](const FixedType& known) { return known.name == type; });
+      if (fixed != kFixedTypes.end() && static_cast<std::uint32_t>(size) != fixed->bytes) {
+        fail_for_size(attribute, size);
+      }
+      const std::uint64_t left = source_.left() - static_cast<std::uint64_t>(size);
       value(type, static_cast<std::uint32_t>(size));
+      if (source_.left() != left) {
+        fail_for_size(attribute, size);
+      }
+    }
+  }
+
+  [[noreturn]] void fail_for_size(const std::string& attribute, std::int32_t size) const {
+    fail("its attribute '" + bounded(attribute, 40) + "' states " + std::to_string(size) +
+         " bytes, and its value has others");
+  }
+
+  // Each with a name, which an empty one ends.
+  void channels() {
+    while (!name().empty()) {
+      if (!source_.skip(kChannelBytes)) {
+        fail("its header is cut");
+      }
+    }
+  }
+
+  // Texts, each behind its length, as many as there is room for.
+  void texts(std::uint32_t size) {
+    const std::uint64_t end = source_.left() - size;
+    while (source_.left() > end) {
+      std::uint32_t length = 0;
+      if (!source_.take(&length, sizeof length) || length > source_.left() || source_.left() - length < end) {
+        fail("a text in its header is longer than its attribute");
+      }
+      source_.skip(length);
     }
   }
 
@@ -130,6 +179,13 @@ class HeaderCheck {
       if (std::min(tile[0], tile[1]) < 1 || std::max(tile[0], tile[1]) > kMostTilePx) {
         fail("tiles of " + std::to_string(tile[0]) + " x " + std::to_string(tile[1]) + " pixels");
       }
+    } else if (type == "chlist") {
+      channels();
+    } else if (type == "stringvector") {
+      texts(size);
+    } else if (std::array<std::uint32_t, 2> preview{};
+               type == "preview" && source_.take(preview.data(), sizeof preview)) {
+      source_.skip(std::uint64_t{4} * preview[0] * preview[1]);  // fails, or is found to be another size
     } else {
       source_.skip(size);
     }

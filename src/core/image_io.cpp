@@ -212,7 +212,7 @@ const char* format_by_content(std::span<const std::uint8_t> bytes) {
     std::string_view start;
     const char* format;  // OpenImageIO's name of it
   };
-  constexpr std::array<Magic, 14> kMagics{{{"\x89PNG\r\n\x1a\n"sv, "png"},
+  constexpr std::array<Magic, 13> kMagics{{{"\x89PNG\r\n\x1a\n"sv, "png"},
                                            {"\xff\xd8\xff"sv, "jpeg"},
                                            {"#?R"sv, "hdr"},
                                            {"\x76\x2f\x31\x01"sv, "openexr"},
@@ -223,7 +223,6 @@ const char* format_by_content(std::span<const std::uint8_t> bytes) {
                                            {"MM\0+"sv, "tiff"},
                                            {"SDPX"sv, "dpx"},
                                            {"XPDS"sv, "dpx"},
-                                           {"GIF8"sv, "gif"},
                                            {"BM"sv, "bmp"},
                                            {"DDS "sv, "dds"}}};
   for (const Magic& magic : kMagics) {

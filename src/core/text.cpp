@@ -363,4 +363,31 @@ std::optional<int> time_exponent(std::string_view unit) {
   return std::nullopt;
 }
 
+// The bytes that a character of several begins and goes on with: The Unicode Standard 15.0, table 3-7.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
+    const unsigned first = byte(i);
+    const std::size_t more = first < 0x80   ? 0
+                             : first < 0xc2 ? 4
+                             : first < 0xe0 ? 1
+                             : first < 0xf0 ? 2
+                             : first < 0xf5 ? 3
+                                            : 4;
+    if (more == 4) {
+      return false;
+    }
+    const unsigned least = first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+    const unsigned most = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+    for (std::size_t k = 1; k <= more; ++k) {
+      const unsigned next = byte(i + k);
+      if (next < (k == 1 ? least : 0x80U) || next > (k == 1 ? most : 0xbfU)) {
+        return false;
+      }
+    }
+    i += more + 1;
+  }
+  return true;
+}
+
 }  // namespace gazetrace

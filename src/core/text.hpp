@@ -18,6 +18,8 @@ std::string read_text_file(const std::string& path);
 // The two steps of read_text_file().
 std::string read_file_bytes(const std::string& path);
 std::string utf8_text(std::string text);
+// Whether JSON can hold it as it is.
+bool is_utf8(std::string_view text);
 // A text whose lines end in \r alone gets \n for each of them.
 std::string with_line_ends(std::string text);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 
@@ -78,6 +79,10 @@ std::string submit_command(const FarmPlan& plan) {
 
 bool can_retry_beside_running(const FarmPlan& plan) {
   return farm_engine(plan.engine).joins_running;
+}
+
+std::int64_t time_after_chunks_s(const FarmPlan& plan) {
+  return plan.time_s * static_cast<std::int64_t>(std::max<std::size_t>(plan.chunks.size(), 1));
 }
 
 std::string task_script_path(const FarmPlan& plan) {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <utility>
 
+#include "core/text.hpp"
 #include "farm/engine.hpp"
 #include "farm/plan.hpp"
 #include "gazetrace/error.hpp"
@@ -123,9 +125,54 @@ void forget_earlier(const FarmPlan& plan) {
   }
 }
 
+std::string record_of_chunk(const FarmPlan& plan, std::size_t chunk) {
+  std::string name = plan.chunks[chunk];
+  if (plan.kind == FarmKind::samples) {
+    SampleRange range;
+    parse_value(plan.ranges[chunk], plan.folder, range);
+    name = part_of_samples_name(name, range);
+  }
+  return run_record_file_name(plan.run_folder, name, true);
+}
+
+// Parts of an earlier division that have begun would be rendered once more, and then stand in the way of the merge.
+void check_same_division(const FarmPlan& plan) {
+  const std::string farm = (fs::path(plan.folder) / "farm.json").string();
+  if (plan.kind == FarmKind::sweep || !fs::exists(farm)) {
+    return;
+  }
+  FarmPlan earlier;
+  try {
+    earlier = read_farm(plan.folder);
+  } catch (const Error&) {
+    return;  // damaged, or of another version: it is replaced
+  }
+  if (earlier.kind == FarmKind::sweep || earlier.is_moved) {
+    return;
+  }
+  std::set<std::string> records;
+  for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
+    records.insert(record_of_chunk(plan, i));
+  }
+  for (std::size_t i = 0; i < earlier.chunks.size(); ++i) {
+    const std::string record = record_of_chunk(earlier, i);
+    if (!records.contains(record) && fs::exists(record)) {
+      throw Error(ErrorKind::input, plan.run_folder,
+                  fmt::format("holds parts of another division, in {} chunks, such as {}", earlier.chunks.size(),
+                              fs::path(record).filename().string()),
+                  "divide it as before, or remove run.*.json, timing.*.csv and the pictures there");
+    }
+  }
+}
+
 }  // namespace
 
 FarmPlan farm_plan_of(const FarmSettings& settings, const std::string& run_folder) {
+  for (const std::string& path : {absolute_path(run_folder), absolute_path(settings.job_file)}) {
+    if (!is_utf8(path)) {
+      throw Error(ErrorKind::input, path, "a farm keeps its names in JSON, and this one is not UTF-8", "rename it");
+    }
+  }
   FarmPlan plan;
   plan.engine = settings.engine;
   plan.program = settings.program.find('/') == std::string::npos ? settings.program : absolute_path(settings.program);
@@ -139,6 +186,7 @@ FarmPlan farm_plan_of(const FarmSettings& settings, const std::string& run_folde
   plan.retries = settings.retries;
   plan.memory_mib = (settings.memory.bytes + 1048575) / 1048576;
   plan.then = settings.then;
+  plan.confine = settings.confine;
   return plan;
 }
 
@@ -156,7 +204,7 @@ FarmPlan plan_farm(const FarmSettings& settings) {
     throw Error(ErrorKind::usage, "`output`", "is where a sweep is measured; a job names its outputs itself",
                 "leave it out");
   }
-  Job job = load_job(settings.job_file);
+  Job job = load_job(settings.job_file, settings.confine);
   check_render_job(settings, job.settings);
   if (settings.sample_ranges > 0) {
     job.settings.trace.samples = SampleRange{0, 1};
@@ -210,6 +258,7 @@ FarmPlan plan_farm(const FarmSettings& settings) {
 }
 
 void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
+  check_same_division(plan);
   std::error_code failed;
   for (const char* folder : {"tasks", "logs"}) {
     fs::create_directories(fs::path(plan.folder) / folder, failed);

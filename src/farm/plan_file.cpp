@@ -44,6 +44,7 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("predicted_s", plan.predicted_s);
   visit("traced_bytes", plan.traced_bytes);
   visit("then", plan.then);
+  visit("confine", plan.confine);
 }
 
 template <class Refuse>
@@ -73,10 +74,10 @@ FarmPlan read_farm(const std::string& folder) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw Error(ErrorKind::input, folder, "there is no farm in it (farm/farm.json)",
-                "give the folder of the outputs of a job that `farm` was called for");
+                "give the folder of the outputs of a job that 'gazetrace farm' was called for");
   }
   const auto refuse = [&](const std::string& what) {
-    return Error(ErrorKind::input, path, what, "call `farm` again, which keeps finished work");
+    return Error(ErrorKind::input, path, what, "call 'gazetrace farm' again, which keeps finished work");
   };
   const Json json = Json::parse(file, nullptr, false);
   if (!json.is_object()) {
@@ -103,6 +104,13 @@ FarmPlan read_farm(const std::string& folder) {
   }
   check_chunks(plan, refuse);
   farm_engine(plan.engine);
+  std::error_code failed;
+  const fs::path found = fs::canonical(path, failed).parent_path();
+  if (!failed && fs::weakly_canonical(plan.folder, failed) != found) {
+    plan.is_moved = true;
+    plan.folder = found.string();
+    plan.run_folder = found.parent_path().string();
+  }
   return plan;
 }
 

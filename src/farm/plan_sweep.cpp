@@ -17,7 +17,7 @@ FarmPlan plan_sweep_farm(const FarmSettings& settings) {
   if (!settings.rate_from.empty()) {
     throw Error(ErrorKind::usage, "`rate-from`", "tells nothing of a sweep, whose rows are timed", "give `time`");
   }
-  SweepPlan sweep = load_sweep_plan(settings.job_file).plan;
+  SweepPlan sweep = load_sweep_plan(settings.job_file, std::nullopt, std::nullopt, job_schema(), settings.confine).plan;
   sweep.directory =
       settings.output.empty() ? std::filesystem::path(settings.job_file).stem().string() + ".sweep" : settings.output;
   FarmPlan plan = farm_plan_of(settings, sweep.directory);

@@ -119,12 +119,14 @@ Observed observe_run(const FarmPlan& plan, const std::string& task, const std::s
   const bool is_whole = observe_outputs(plan, outputs, check, run);
   std::error_code missing;
   const bool has_record = fs::exists(record_path, missing);
+  // A task that was refused for other inputs has left the files of those before it as they were.
+  const bool has_failed = run.task.exit_code && *run.task.exit_code != 0 && *run.task.exit_code != 4;
   if (is_locked(record_path)) {
     run.task.state = TaskState::running;
+  } else if (has_failed) {
+    run.task.state = TaskState::failed;
   } else if (has_record && is_whole && state_in(record_path) == "done") {
     run.task.state = TaskState::done;
-  } else if (run.task.exit_code && *run.task.exit_code != 0 && *run.task.exit_code != 4) {
-    run.task.state = TaskState::failed;
   } else if (has_record) {
     // Ended in order, or without a word, or some of its files are damaged since.
     run.task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted : TaskState::failed;

@@ -75,47 +75,49 @@ std::string program_words(const FarmPlan& plan) {
   return (plan.container.empty() ? std::string() : plan.container + " ") + shell_word(plan.program);
 }
 
-std::string limits(const FarmPlan& plan) {
-  std::string words;
+std::string limits(const FarmPlan& plan, std::int64_t time_s) {
+  std::string words = plan.confine ? " --confine" : "";
   if (plan.threads > 0) {
     words += fmt::format(" --threads {}", plan.threads);
   }
-  if (plan.time_s > 2 * kReserve_s) {
-    words += fmt::format(" --max-time {}s", plan.time_s - kReserve_s);
+  if (time_s > 2 * kReserve_s) {
+    words += fmt::format(" --max-time {}s", time_s - kReserve_s);
   }
   return words + farm_engine(plan.engine).progress;
 }
 
 std::string finish_words(const FarmPlan& plan) {
   if (plan.kind == FarmKind::sweep) {
-    return fmt::format("{} sweep merge {} -o {}", program_words(plan), shell_word(plan.job_file),
-                       shell_word(plan.run_folder));
+    return fmt::format("{} sweep merge {} -o {}{}", program_words(plan), shell_word(plan.job_file),
+                       shell_word(plan.run_folder), plan.confine ? " --confine" : "");
   }
   if (!plan.traces_first) {
     return fmt::format("{} merge {} --overwrite", program_words(plan), shell_word(plan.run_folder));
   }
   return fmt::format("{} render --config {} --stage finish --resume --checkpoint {} --checkpoint-every {}{}",
                      program_words(plan), shell_word(plan.job_file), shell_word(plan.checkpoint), kCheckpointEvery,
-                     limits(plan));
+                     limits(plan, time_after_chunks_s(plan)));
 }
 
 // What runs chunk $1.
 std::string chunk_words(const FarmPlan& plan) {
   if (plan.kind == FarmKind::sweep) {
-    return fmt::format("  run \"$1\" {} sweep {} -o {} --chunk \"$1\"{}{}\n", program_words(plan),
+    return fmt::format("  run \"$1\" {} sweep {} -o {} --chunk \"$1\"{}{}{}\n", program_words(plan),
                        shell_word(plan.job_file), shell_word(plan.run_folder), plan.division,
-                       plan.threads > 0 ? fmt::format(" --threads {}", plan.threads) : "");
+                       plan.threads > 0 ? fmt::format(" --threads {}", plan.threads) : "",
+                       plan.confine ? " --confine" : "");
   }
   const std::string render = fmt::format("{} render --config {}", program_words(plan), shell_word(plan.job_file));
   if (plan.kind == FarmKind::frames) {
     return fmt::format("  run \"$1\" {} --chunk \"$1\"{} --resume{}{}\n", render, plan.division,
-                       plan.traces_first ? " --stage trace" : "", limits(plan));
+                       plan.traces_first ? " --stage trace" : "", limits(plan, plan.time_s));
   }
   std::string text = "  case $1 in\n";
   for (std::size_t i = 0; i < plan.ranges.size(); ++i) {
     text += fmt::format("    {}) samples={} ;;\n", i + 1, plan.ranges[i]);
   }
-  return text + fmt::format("  esac\n  run \"$1\" {} --sample-range \"$samples\" --resume{}\n", render, limits(plan));
+  return text + fmt::format("  esac\n  run \"$1\" {} --sample-range \"$samples\" --resume{}\n", render,
+                            limits(plan, plan.time_s));
 }
 
 }  // namespace

@@ -127,8 +127,11 @@ Job job_from_toml(const std::string& text, const std::string& path) {
   return job;
 }
 
-Job load_job(const std::string& path) {
-  return job_from_toml(read_settings_file(path), path);
+Job load_job(const std::string& path, bool confine) {
+  Job job;
+  job.settings.confine = confine;
+  add_toml(job, read_settings_file(path), path);
+  return job;
 }
 
 std::string job_as_toml(const Job& job, const std::string& title, const JobSchema& schema) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -70,6 +72,61 @@ std::string problem_of(const std::string& path, const WrittenFile& file, const s
                             : fmt::format("has {} bytes in place of {}", size, file.bytes);
 }
 
+// The name that the same file of another frame has: with the other number, of as many digits at least, in place of its
+// own, where that stands last, or wherever it stands.
+std::string name_of_frame(std::string name, std::int32_t frame, std::int32_t other, bool everywhere) {
+  std::size_t end = name.size();
+  while (end > 0) {
+    const std::size_t last = name.find_last_of("0123456789", end - 1);
+    if (last == std::string::npos) {
+      break;
+    }
+    const std::size_t before = name.find_last_not_of("0123456789", last);
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    const std::string digits = name.substr(begin, last + 1 - begin);
+    if (digits.size() < 10 && std::stoi(digits) == frame) {
+      name.replace(begin, digits.size(), fmt::format("{:0{}}", other, digits.size()));
+      if (!everywhere) {
+        break;
+      }
+    }
+    end = begin;
+  }
+  return name;
+}
+
+// Parts that were asked for different outputs do not make one sequence: what a frame lacks that the frame of most files
+// has.
+void add_frames_without_a_file(const std::vector<RunPart>& parts, std::vector<BadFile>& bad) {
+  std::map<std::int32_t, std::set<std::string>> names;
+  for (const RunPart& part : parts) {
+    for (const auto& [name, file] : part.record.files) {
+      names[file.frame].insert(name);
+    }
+  }
+  const auto most = std::max_element(names.begin(), names.end(),
+                                     [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+  for (const RunPart& part : parts) {
+    for (const auto& [frame, row] : part.rows) {
+      const auto found = names.find(frame);
+      if (found == names.end()) {
+        bad.push_back({part.record_path, frame, fmt::format("lists no file of frame {}", frame)});
+        continue;
+      }
+      if (!part.record.samples.empty()) {
+        continue;  // every part has its own
+      }
+      for (const std::string& name : most->second) {
+        const std::string last = name_of_frame(name, most->first, frame, false);
+        if (!found->second.contains(last) && !found->second.contains(name_of_frame(name, most->first, frame, true))) {
+          bad.push_back({part.record_path, frame,
+                         fmt::format("lists no '{}', and frame {} has a file like that", last, most->first)});
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<BadFile> find_bad_files(const std::string& directory, const WrittenFiles& files,
@@ -96,16 +153,8 @@ std::vector<BadFile> find_bad_files(const std::vector<RunPart>& parts, int threa
     const std::string folder = fs::path(part.timing_path).parent_path().string();
     const std::vector<BadFile> found = find_bad_files(folder, part.record.files, part.record.settings_digest, threads);
     bad.insert(bad.end(), found.begin(), found.end());
-    std::set<std::int32_t> listed;
-    for (const auto& [name, file] : part.record.files) {
-      listed.insert(file.frame);
-    }
-    for (const auto& [frame, row] : part.rows) {
-      if (!listed.contains(frame)) {
-        bad.push_back({part.record_path, frame, fmt::format("lists no file of frame {}", frame)});
-      }
-    }
   }
+  add_frames_without_a_file(parts, bad);
   std::stable_sort(bad.begin(), bad.end(), [](const BadFile& a, const BadFile& b) { return a.frame < b.frame; });
   return bad;
 }

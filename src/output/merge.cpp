@@ -22,8 +22,10 @@ std::vector<std::int32_t> frames_of(const FrameOwners& owners) {
   return frames;
 }
 
-// Those of chunks of which no task has begun are known from what the first task wrote down.
-void add_divided_frames(const std::vector<RunPart>& parts, std::set<std::int32_t>& frames) {
+// Those of chunks of which no task has begun are known from what the first task wrote down. Without that, nobody knows
+// whether the last chunks are there.
+void add_divided_frames(const std::vector<RunPart>& parts, bool allow_missing, std::set<std::int32_t>& frames,
+                        Warnings& warnings) {
   std::set<std::string> files;
   for (const RunPart& part : parts) {
     if (!part.record.chunk_file.empty()) {
@@ -34,15 +36,23 @@ void add_divided_frames(const std::vector<RunPart>& parts, std::set<std::int32_t
     if (std::filesystem::exists(path)) {
       const std::vector<std::int32_t> all = parse_frame_list(read_chunk_file(path).frames);
       frames.insert(all.begin(), all.end());
+      continue;
     }
+    const char* const problem = "is gone, which says how the frames were divided; chunks may be missing";
+    if (!allow_missing) {
+      throw Error(ErrorKind::input, path, problem,
+                  "start one of the chunks again with `resume`, which writes it down, or give `allow-missing`");
+    }
+    warnings.push_back(path + ": " + problem);
   }
 }
 
 // Frames that a part lists but did not render, frames of chunks that never began, and gaps between the frames of all
 // parts, where the step of the sequence is the smallest distance between neighbours.
-std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, const FrameOwners& owners) {
+std::vector<std::int32_t> missing_frames(const std::vector<RunPart>& parts, const FrameOwners& owners,
+                                         bool allow_missing, Warnings& warnings) {
   std::set<std::int32_t> missing;
-  add_divided_frames(parts, missing);
+  add_divided_frames(parts, allow_missing, missing, warnings);
   for (const RunPart& part : parts) {
     const std::vector<std::int32_t> listed = parse_frame_list(part.record.frames);
     missing.insert(listed.begin(), listed.end());
@@ -99,7 +109,7 @@ void refuse_traced_parts(const std::vector<RunPart>& parts) {
   for (const RunPart& part : parts) {
     if (!part.record.stage.empty()) {
       throw Error(ErrorKind::usage, part.record_path, "its frames are traced, and there are no pictures to join",
-                  "make them by `render` of the same job with `stage` finish, which needs no merge");
+                  "make them by 'gazetrace render' of the same job with `stage` finish, which needs no merge");
     }
   }
 }
@@ -151,7 +161,7 @@ MergeResult merge_runs(const std::string& directory, const MergeOptions& options
   }
   std::sort(rows.begin(), rows.end(), [](const TimingRow& a, const TimingRow& b) { return a.frame < b.frame; });
 
-  const std::vector<std::int32_t> missing = missing_frames(parts, owners);
+  const std::vector<std::int32_t> missing = missing_frames(parts, owners, options.allow_missing, result.warnings);
   if (!missing.empty()) {
     const std::string problem = "frames are missing: " + format_frame_list(missing);
     if (!options.allow_missing) {

@@ -147,9 +147,13 @@ bool fits_together(const TracedFrame& traced) {
     }
     in_tiles += tile.site_count;
   }
+  // Regions without sites, too: filters ask each for its blocks.
+  if (std::any_of(map.regions.begin(), map.regions.end(),
+                  [](const auto& region) { return region.block_px < 1 || region.block_px > kMostBlockPx; })) {
+    return false;
+  }
   for (const Site& site : map.sites) {
-    if (site.region >= map.regions.size() || map.regions[site.region].block_px < 1 ||
-        map.regions[site.region].block_px > kMostBlockPx ||
+    if (site.region >= map.regions.size() ||
         std::int64_t{site.block_x} * map.regions[site.region].block_px >= map.width_px ||
         std::int64_t{site.block_y} * map.regions[site.region].block_px >= map.height_px) {
       return false;

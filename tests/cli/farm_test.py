@@ -403,6 +403,9 @@ class Engines(Farm):
         self.assertTrue(self.status()["is_done"])
         # Foveated samples: every part takes about as many.
         self.write("foveated.toml", FARM_TOML.replace("[4, 2, 1]", "[64, 16, 4]") + 'filter = "linear"\n')
+        other = self.farm("--engine", "slurm", "--sample-ranges", "3", job="foveated.toml", program=self.run_program)
+        self.assertIn("holds parts of another division", other.stderr)
+        shutil.rmtree(self.folder / "out")
         self.farm("--engine", "slurm", "--sample-ranges", "3", job="foveated.toml")
         plan = json.loads((self.folder / "out/farm/farm.json").read_text())
         self.assertLess(max(plan["samples"]) / min(plan["samples"]), 1.6)

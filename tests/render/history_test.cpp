@@ -161,6 +161,10 @@ TEST(Traced, EveryBitComesBackAndWhatDoesNotFitTogetherIsRefused) {
       [](TracedFrame& frame) { frame.map.tiles.front().x_px = -1; },
       [](TracedFrame& frame) { frame.map.sites.front().pixels = 0; },
       [](TracedFrame& frame) { frame.map.regions.front().block_px = 2'000'000'000; },
+      [](TracedFrame& frame) {
+        frame.map.regions.emplace_back().block_px = 0;  // of no site
+        frame.sparse.stats.regions.emplace_back();
+      },
       [](TracedFrame& frame) { frame.map.region.pixels.front() ^= 1U; },
       [](TracedFrame& frame) { frame.sparse.stats.regions.clear(); },
   };

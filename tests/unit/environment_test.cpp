@@ -60,6 +60,9 @@ TEST(Environment, OnlyPicturesOfKnownKindsAreTried) {
   for (const char* name : {"sky.hdr", "sky.exr", "sky.ppm"}) {
     EXPECT_THAT(error_of(folder.write(name, pixmap)), HasSubstr("no picture of a known kind")) << name;
   }
+  // OpenImageIO makes room for as many pixels as a film's header claims before anybody can ask, or ends the program.
+  const std::string film = std::string("GIF89a\xff\xff\xff\xff\xf7\0\0", 13) + std::string(60, '\x2c');
+  EXPECT_THAT(error_of(folder.write("sky.gif", film)), HasSubstr("no picture of a known kind"));
 }
 
 TEST(Environment, ExposureThatOverflowsIsRefused) {

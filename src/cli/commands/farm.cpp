@@ -108,6 +108,10 @@ int run_status(const FarmArguments& arguments) {
 
 int run_retry(const FarmArguments& arguments) {
   const FarmPlan plan = read_farm(arguments.folder);
+  if (plan.is_moved) {
+    throw Error(ErrorKind::input, plan.folder, "the farm was made for another folder, and its tasks would write there",
+                "call 'gazetrace farm' again for a job whose outputs are here");
+  }
   const FarmStatus status = farm_status(plan, arguments.trust_files ? FileCheck::size : FileCheck::content);
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
@@ -183,6 +187,8 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
                  "A command of the shell for when the sequence is whole, such as 'gazetrace video out/f.####.png "
                  "film.mp4'; each waits for the one before")
       ->type_name("COMMAND");
+  app.add_flag("--confine", settings.confine,
+               "For a job by others: it may name no file outside of its folder or data set, and nor may its tasks");
   add_hand_over_options(app, *arguments);
 
   CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "farm/engine.hpp"
+#include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
@@ -13,12 +14,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kNotice_s = 60;  // between TERM and KILL, for the frame in hand
 
-Json script(const FarmPlan& plan, const std::string& task) {
+Json script(const FarmPlan& plan, const std::string& task, std::int64_t time_s) {
   Json run{{"command", "sh"},
            {"args", {task_script_path(plan), task}},
            {"cancelation", {{"mode", "NOTIFY_THEN_TERMINATE"}, {"notifyPeriodInSeconds", kNotice_s}}}};
-  if (plan.time_s > 0) {
-    run["timeout"] = plan.time_s;
+  if (time_s > 0) {
+    run["timeout"] = time_s;
   }
   return {{"actions", {{"onRun", run}}}};
 }
@@ -34,6 +35,10 @@ Json requirements(const FarmPlan& plan) {
 
 // Chunks of frames are the engine's tasks; it may put several of them into one, and then says so as "3-5".
 std::map<std::string, std::string> files(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
+  if (task_script_path(plan).find("{{") != std::string::npos) {
+    throw Error(ErrorKind::input, plan.run_folder, "'{{' begins an expression in Open Job Description's templates",
+                "choose another output folder");
+  }
   Json steps = Json::array();
   std::string before;
   if (!chunks.empty()) {
@@ -45,11 +50,13 @@ std::map<std::string, std::string> files(const FarmPlan& plan, const std::vector
                                       {"type", "CHUNK[INT]"},
                                       {"range", "{{Param.Chunks}}"},
                                       {"chunks", {{"defaultTaskCount", 1}, {"rangeConstraint", "CONTIGUOUS"}}}}})}}},
-                     {"script", script(plan, "{{Task.Param.Chunk}}")},
+                     {"script", script(plan, "{{Task.Param.Chunk}}", plan.time_s)},
                      {"hostRequirements", requirements(plan)}});
   }
   for (const std::string& task : tasks_after_chunks(plan)) {
-    Json step{{"name", task}, {"script", script(plan, task)}, {"hostRequirements", requirements(plan)}};
+    Json step{{"name", task},
+              {"script", script(plan, task, time_after_chunks_s(plan))},
+              {"hostRequirements", requirements(plan)}};
     if (!before.empty()) {
       step["dependencies"] = Json::array({{{"dependsOn", before}}});
     }

@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::int64_t kNotice_s = 90;  // before the limit of time: USR1, upon which the frame in hand is finished
 
+std::int64_t minutes(std::int64_t time_s) {
+  return std::max<std::int64_t>((time_s + 59) / 60, 1);
+}
+
 std::string batch_script(const FarmPlan& plan) {
   std::string text = fmt::format(
       "#!/bin/sh\n#SBATCH --job-name={}\n#SBATCH --requeue\n#SBATCH --open-mode=append\n#SBATCH "
@@ -26,7 +30,7 @@ std::string batch_script(const FarmPlan& plan) {
     text += fmt::format("#SBATCH --mem={}M\n", plan.memory_mib);
   }
   if (plan.time_s > 0) {
-    text += fmt::format("#SBATCH --time={}\n", std::max<std::int64_t>((plan.time_s + 59) / 60, 1));
+    text += fmt::format("#SBATCH --time={}\n", minutes(plan.time_s));
   }
   return text + fmt::format("exec sh {} \"${{1:-$SLURM_ARRAY_TASK_ID}}\"\n", shell_word(task_script_path(plan)));
 }
@@ -39,6 +43,9 @@ constexpr const char* kBesideEarlier = R"sh(
 queued=
 waited=0
 known() { sed -n "s/^$1 //p" jobs 2>/dev/null; }
+# squeue also fails for a job that it has forgotten, and tells nothing then. Where it cannot say what there is at all, a
+# chunk that runs would be handed over twice.
+squeue -h -o %A > /dev/null || { echo "Slurm does not say what is in its queue: call again once it does" >&2; exit 3; }
 for job in $(known chunks); do
   while [ "$waited" -lt 300 ] && [ -n "$(squeue -h -r -j "$job" -t CG -o %K 2>/dev/null)" ]; do
     sleep 1
@@ -69,7 +76,7 @@ if [ -n "$wanted" ]; then
   after=":$job$after"
 fi
 submit() {
-  job=$(sbatch --parsable ${after:+--dependency=afterok$after} --output="logs/$1.log" task.sbatch "$1")
+  job=$(sbatch --parsable ${after:+--dependency=afterok$after} $time_after --output="logs/$1.log" task.sbatch "$1")
   echo "after $job" >> jobs
   echo "$1: $job"
   after=":$job"
@@ -83,8 +90,9 @@ std::string submit_script(const FarmPlan& plan, const std::vector<std::size_t>& 
   }
   std::string text = fmt::format(
       "#!/bin/sh\n# Hands this farm over to Slurm, and prints the numbers of its jobs.\nset -e\n"
-      "cd {}\nmkdir -p logs\nchunks='{}'{}",
-      shell_word(plan.folder), numbers, kBesideEarlier);
+      "cd {}\nmkdir -p logs\nchunks='{}'\ntime_after={}{}",
+      shell_word(plan.folder), numbers,
+      plan.time_s > 0 ? fmt::format("--time={}", minutes(time_after_chunks_s(plan))) : "", kBesideEarlier);
   for (const std::string& task : tasks_after_chunks(plan)) {
     text += "submit " + task + "\n";
   }
