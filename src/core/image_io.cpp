@@ -269,13 +269,36 @@ void open_png(OpenPicture& picture, std::span<const std::uint8_t> file_bytes, co
   open_memory(picture, picture.bytes, "png", config);
 }
 
+// Of a PNG all bytes are read, so that its size is held against that of its pixels before: those of the largest depth,
+// as if they did not pack at all, and what is written beside them.
+void check_size_of_png(std::span<const std::uint8_t> head, std::uint64_t file_size, const std::string& place) {
+  constexpr std::size_t kWidthAt = 16;  // big-endian, behind the signature and the length and name of IHDR
+  constexpr std::uint64_t kBytesOfAPixel = 16;
+  constexpr std::uint64_t kBeside = std::uint64_t{64} << 20U;
+  const auto number = [&](std::size_t at) {
+    std::uint64_t value = 0;
+    for (std::size_t i = at; i < at + 4 && i < head.size(); ++i) {
+      value = value << 8U | head[i];
+    }
+    return value;
+  };
+  const std::uint64_t width = std::min<std::uint64_t>(number(kWidthAt), kMaxSidePx);
+  const std::uint64_t height = std::min<std::uint64_t>(number(kWidthAt + 4), kMaxSidePx);
+  if (file_size > kBeside + kBytesOfAPixel * width * height) {
+    throw Error(ErrorKind::input, place,
+                "a PNG of " + std::to_string(width) + " x " + std::to_string(height) + " pixels has no use for " +
+                    std::to_string(file_size >> 20U) + " MiB",
+                "export it again");
+  }
+}
+
 // Error(input) where the file begins as PNG does but is broken.
 OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, const std::string& place) {
   OpenPicture picture;
   std::error_code ignored;
   picture.file_size = std::filesystem::file_size(path, ignored);
   std::ifstream stream(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes(8);
+  std::vector<std::uint8_t> bytes(24);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
   const char* const format = format_by_content(bytes);
@@ -285,8 +308,10 @@ OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, co
   }
   check_exr_header(path, place);
   if (is_png(bytes)) {
-    bytes.resize(std::max<std::uint64_t>(picture.file_size, 8));
-    if (stream.read(reinterpret_cast<char*>(bytes.data() + 8), static_cast<std::streamsize>(bytes.size() - 8))) {
+    check_size_of_png(bytes, picture.file_size, place);
+    const std::size_t got = bytes.size();
+    bytes.resize(std::max<std::uint64_t>(picture.file_size, got));
+    if (stream.read(reinterpret_cast<char*>(bytes.data() + got), static_cast<std::streamsize>(bytes.size() - got))) {
       open_png(picture, bytes, config, place);
     }
   } else {

@@ -98,7 +98,13 @@ FarmPlan read_farm(const std::string& folder) {
   if (Json(plan.kind) != json.at("kind")) {
     throw refuse("is damaged: chunks are of frames, samples or sweep");
   }
-  if (plan.samples.size() != plan.chunks.size() ||
+  constexpr std::int64_t kMostTime_s = 10'000'000'000;  // of DurationNs
+  constexpr std::uint64_t kMostMemory_mib = std::uint64_t{1} << 44U;
+  if (plan.time_s < 0 || plan.time_s > kMostTime_s || plan.memory_mib > kMostMemory_mib || plan.threads < 0 ||
+      plan.retries < 0 || plan.files_per_frame < 1) {
+    throw refuse("is damaged: it has limits that no farm can have");
+  }
+  if (plan.chunks.empty() || plan.samples.size() != plan.chunks.size() ||
       (plan.kind == FarmKind::samples && plan.ranges.size() != plan.chunks.size())) {
     throw refuse("is damaged: it does not tell the same of every chunk");
   }

@@ -151,6 +151,12 @@ std::string read_settings_file(const std::string& path) {
   if (!file || std::filesystem::is_directory(path)) {
     throw Error(ErrorKind::input, path, "the settings file cannot be read", "check the path");
   }
+  constexpr std::uint64_t kMostBytes = std::uint64_t{16} << 20U;  // the longest of ours have a few kilobytes
+  std::error_code unknown;
+  if (std::filesystem::file_size(path, unknown) > kMostBytes && !unknown) {
+    throw Error(ErrorKind::input, path, "is larger than a settings file can be, which has 16 MiB at most",
+                "check the path");
+  }
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 

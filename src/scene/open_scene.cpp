@@ -11,6 +11,7 @@ namespace gazetrace {
 
 OpenScene open_scene(const std::string& path, const SceneReadOptions& options) {
   OpenScene scene;
+  check_file_memory(path, options.limits);
   scene.file = read_gltf_file(path);
   if (!options.allow_outside) {
     scene.file.roots = data_roots(path);
@@ -36,9 +37,9 @@ std::vector<std::span<const std::uint8_t>> load_buffers(const GltfFile& file,
     const std::string place = file.path + ": buffers[" + std::to_string(i) + "]";
     std::span<const std::uint8_t> bytes;
     if (!source.uri.empty()) {
-      storage.push_back(is_data_uri(source.uri)
-                            ? decode_data_uri(source.uri, place)
-                            : read_whole_file(resolve_uri(file.path, file.roots, source.uri, place), place));
+      storage.push_back(is_data_uri(source.uri) ? decode_data_uri(source.uri, place)
+                                                : read_bytes(resolve_uri(file.path, file.roots, source.uri, place),
+                                                             place, source.byte_length));
       bytes = storage.back();
     } else if (i == 0 && file.is_binary && !source.fallback) {
       bytes = file.bin_chunk;

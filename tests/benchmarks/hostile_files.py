@@ -278,6 +278,28 @@ def cases():
             inside = "data:image/png;base64," + base64.b64encode(content).decode()
             yield name + ", within the scene", {"scene.gltf": json.dumps(textured(inside))}, scene
     yield from others()
+    large = {name: Sparse(content, 6_000_000_000) for name, content in (("scene.glb", glb(2**32 - 1, 2**32 - 1)), ("scene.gltf", b"{}"),
+                                                                     ("padded.png", png_of_zeros(4, 4)), ("data.bin", b"\0" * 200))}
+    for name in ("scene.glb", "scene.gltf"):
+        yield f"{name[6:]}: a file of 6 GB", {name: large[name]}, ["render", name, *scene[2:]]
+    yield "png: 4 x 4 in a file of 6 GB", {"scene.gltf": json.dumps(textured("padded.png")), "padded.png": large["padded.png"]}, scene
+    buffer_in_file = harness.box_gltf()
+    inside = base64.b64decode(buffer_in_file["buffers"][0]["uri"].split(",")[1])
+    buffer_in_file["buffers"][0]["uri"] = "data.bin"
+    yield "buffer: a file of 6 GB, of which little is used", {"scene.gltf": json.dumps(buffer_in_file),
+                                                             "data.bin": Sparse(inside, 6_000_000_000)}, scene
+    yield "job: a file of 3 GB", {"job.toml": Sparse(b"a = 1\n", 3_000_000_000)}, ["render", "--config", "job.toml", "-o", "out/f.exr"]
+
+
+class Sparse:
+    """A file that begins with these bytes and goes on with zeros, which take no room."""
+
+    def __init__(self, content, size):
+        self.content, self.size = content, size
+
+    def write_to(self, path):
+        path.write_bytes(self.content)
+        os.truncate(path, self.size)
 
 
 def most_memory_mib(process):
@@ -294,7 +316,10 @@ def run(name, files, arguments):
         for file, content in files.items():
             path = Path(folder) / file
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content.encode(errors="surrogateescape") if isinstance(content, str) else content)
+            if isinstance(content, Sparse):
+                content.write_to(path)
+            else:
+                path.write_bytes(content.encode(errors="surrogateescape") if isinstance(content, str) else content)
         begin = time.monotonic()
         with open(Path(folder) / ".said", "wb+") as said:
             process = subprocess.Popen([harness.PROGRAM, *arguments], cwd=folder, stdout=said, stderr=said)

@@ -88,6 +88,25 @@ class MergeLooksAtFiles(Farm):
         (self.folder / "out/timing.4-6.csv").unlink()
         self.assert_refused(["merge", "out"], ["frames are missing: 4-6"])
 
+    def test_parts_of_different_outputs_are_no_sequence(self):
+        self.render("out", "--frames", "1-2", "--part")
+        self.run_ok("render", *JOB, "-o", "out/f.####.exr", "--frames", "3-4", "--part")
+        refused = self.run_program("merge", "out")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("run.3-4.json: lists no 'f.0003.png', and frame 1 has a file like that", refused.stderr)
+        # Numbers that are not the frame's do not matter.
+        self.run_ok("render", *JOB, "-o", "two/f2.####.exr", "--frames", "1-2", "--part")
+        self.run_ok("render", *JOB, "-o", "two/f2.####.exr", "--frames", "3-4", "--part")
+        self.run_ok("merge", "two")
+
+    def test_a_division_that_is_gone(self):
+        self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "1/3")
+        next((self.folder / "out").glob("chunks.*.json")).unlink()
+        refused = self.run_program("merge", "out")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("chunks may be missing", refused.stderr)
+        self.assertIn("chunks may be missing", self.run_ok("merge", "out", "--allow-missing").stderr)
+
     def test_nothing_is_left_to_join(self):
         self.parts("out")
         for path in (self.folder / "out").glob("f.*"):

@@ -188,7 +188,7 @@ controls = false
 HISTORY_TOML = 'accumulate = "reproject"\nfilter = "guided"\n'
 
 
-class Engines(Farm):
+class FarmFiles(Farm):
     def setUp(self):
         super().setUp()
         self.write("farm.toml", FARM_TOML)
@@ -204,6 +204,8 @@ class Engines(Farm):
         self.run_ok("render", "--config", job, "-o", "whole/f.####.exr", "-o", "whole/f.####.png", "--quiet")
         return self.pictures("whole")
 
+
+class Engines(FarmFiles):
     def test_local(self):
         told = self.farm("--chunks", "3", "--processes", "2", "--threads", "1", "--then", "echo made > film.txt")
         self.assertIn("6 of 6 frames are rendered", told.stdout)
@@ -470,32 +472,6 @@ class Engines(Farm):
     def states(self):
         told = self.run_program("farm", "status", "out", "--json")
         return {task["task"]: task["state"] for task in json.loads(told.stdout)["tasks"]} if told.returncode == 0 else {}
-
-    def test_a_damaged_plan_of_a_farm(self):
-        self.farm("--engine", "slurm", "--chunks", "2")
-        path = self.folder / "out/farm/farm.json"
-        plan = json.loads(path.read_text())
-        for text, words in ((path.read_text()[:60], "is damaged: it is no JSON object"), ("[1, 2]", "it is no JSON object"),
-                            (json.dumps({**plan, "threads": "many"}), "'threads' has a value of another kind"),
-                            (json.dumps({**plan, "chunks": ["1-3", "x"]}), "'x' is no list of frames"),
-                            (json.dumps({**plan, "samples": []}), "does not tell the same of every chunk"),
-                            (json.dumps({key: value for key, value in plan.items() if key != "then"}), "does not tell 'then'"),
-                            (json.dumps({**plan, "kind": "stars"}), "chunks are of frames, samples or sweep"),
-                            (json.dumps({**plan, "engine": "condor"}), "condor")):
-            path.write_text(text)
-            for command in ("status", "retry"):
-                told = self.run_program("farm", command, "out")
-                self.assertEqual((told.returncode, told.stderr.count("\n")), (2, 1), told.stderr)
-                self.assertIn(words, told.stderr)
-                self.assertNotIn("json.exception", told.stderr)
-
-    def test_what_is_no_farm(self):
-        for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks, --chunk-frames or --sample-ranges"),
-                                 (["--chunks", "2", "--rate-from", "none.csv"], "none.csv")):
-            refused = self.farm(*arguments, program=self.run_program)
-            self.assertEqual(refused.returncode, 2)
-            self.assertIn(words, refused.stderr)
-        self.assert_refused(["farm", "status", "nowhere"], ["there is no farm in it"])
 
 
 if __name__ == "__main__":

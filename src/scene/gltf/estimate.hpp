@@ -15,6 +15,8 @@ namespace gazetrace {
 
 // All but pictures, from the counts that the JSON states and the sizes of the files.
 SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked, const GltfDocument& document);
+// Error(input) at `path` where the file alone would take more than the limit, before it is read.
+void check_file_memory(const std::string& path, const SceneLimits& limits);
 // Error(input) at `path` where the JSON would take more than the limit while it is parsed, before it is.
 void check_json_memory(const std::string& path, std::uint64_t file_bytes, std::string_view json,
                        const SceneLimits& limits);

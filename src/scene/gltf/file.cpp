@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf/file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <optional>
 
 #include "core/data_root.hpp"
@@ -131,7 +133,7 @@ std::string percent_decoded(std::string_view uri) {
 
 }  // namespace
 
-std::vector<std::uint8_t> read_whole_file(const std::string& path, const std::string& place) {
+std::vector<std::uint8_t> read_bytes(const std::string& path, const std::string& place, std::uint64_t most_bytes) {
   std::error_code error;
   const std::filesystem::path file(path);
   if (std::filesystem::is_directory(file, error)) {
@@ -147,7 +149,7 @@ std::vector<std::uint8_t> read_whole_file(const std::string& path, const std::st
     throw Error(ErrorKind::input, place, "cannot open '" + path + "'", "check the name and the permissions");
   }
   const auto size = std::filesystem::file_size(file, error);
-  std::vector<std::uint8_t> bytes(error ? 0 : size);
+  std::vector<std::uint8_t> bytes(error ? 0 : std::min<std::uint64_t>(size, most_bytes));
   if (error || !stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
     throw Error(ErrorKind::input, place, "cannot read '" + path + "'");
   }
@@ -161,7 +163,7 @@ GltfFile read_gltf_file(const std::string& path) {
   if (!std::filesystem::exists(path, error)) {
     throw Error(ErrorKind::input, path, "there is no such file", "give the path of a .gltf or .glb");
   }
-  file.bytes = read_whole_file(path, path);
+  file.bytes = read_bytes(path, path, std::numeric_limits<std::uint64_t>::max());
   if (file.bytes.empty()) {
     throw Error(ErrorKind::input, path, "the file is empty", "copy or export it again");
   }

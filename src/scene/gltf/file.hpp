@@ -23,7 +23,8 @@ struct GltfFile {
 // A .glb is recognised by its first bytes, not by its name. Error(input) for a missing file and for broken chunks.
 GltfFile read_gltf_file(const std::string& path);
 
-std::vector<std::uint8_t> read_whole_file(const std::string& path, const std::string& place);
+// No more than so many of a file's bytes, since it may be any size. Error(input) for what is no file.
+std::vector<std::uint8_t> read_bytes(const std::string& path, const std::string& place, std::uint64_t most_bytes);
 
 bool is_data_uri(std::string_view uri);
 // Decodes "data:<mime>;base64,<text>". Error(input) that names `place` for anything but well-formed base64.
