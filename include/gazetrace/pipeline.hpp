@@ -126,6 +126,9 @@ class RunLock {
 // Writes the history after a frame, to the bit, with the digest of the settings that it was made under. The file
 // appears under its name only when it is complete. Error(runtime) where it cannot be written.
 void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& settings_digest);
+// Error(input) where save_checkpoint() would replace a file that is neither a checkpoint of these settings nor what is
+// left of one that was cut.
+void check_checkpoint_target(const std::string& path, const std::string& settings_digest);
 // Error(input) for a file that is not a checkpoint, is damaged, or was made under other settings.
 TemporalHistory load_checkpoint(const std::string& path, const std::string& settings_digest);
 

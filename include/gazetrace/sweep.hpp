@@ -109,6 +109,10 @@ FixedQuality speed_up_at_quality(const std::vector<QualityAtTime>& uniform, cons
 struct SweepObserver {
   std::function<void(const std::string& line)> tell;  // a line on what is being done, for a person; may be empty
   std::function<void(const std::string& line)> warn;  // of files that are damaged, and made again; may be empty
+  // As PipelineObserver::stop_before_frame and TraceSettings::stop. The row, or the picture of a reference, that is in
+  // hand is then given up with Error(interrupted); what was finished before stays.
+  std::function<bool(double frame_ms)> stop_before_frame;
+  std::function<bool()> stop_now;
 };
 
 // One of several processes, on any machines, that measure a sweep together, each some of its rows.

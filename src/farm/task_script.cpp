@@ -83,7 +83,7 @@ std::string limits(const FarmPlan& plan, std::int64_t time_s) {
   if (time_s > 2 * kReserve_s) {
     words += fmt::format(" --max-time {}s", time_s - kReserve_s);
   }
-  return words + farm_engine(plan.engine).progress;
+  return plan.kind == FarmKind::sweep ? words : words + farm_engine(plan.engine).progress;
 }
 
 std::string finish_words(const FarmPlan& plan) {
@@ -102,10 +102,9 @@ std::string finish_words(const FarmPlan& plan) {
 // What runs chunk $1.
 std::string chunk_words(const FarmPlan& plan) {
   if (plan.kind == FarmKind::sweep) {
-    return fmt::format("  run \"$1\" {} sweep {} -o {} --chunk \"$1\"{}{}{}\n", program_words(plan),
+    return fmt::format("  run \"$1\" {} sweep {} -o {} --chunk \"$1\"{}{}\n", program_words(plan),
                        shell_word(plan.job_file), shell_word(plan.run_folder), plan.division,
-                       plan.threads > 0 ? fmt::format(" --threads {}", plan.threads) : "",
-                       plan.confine ? " --confine" : "");
+                       limits(plan, plan.time_s));
   }
   const std::string render = fmt::format("{} render --config {}", program_words(plan), shell_word(plan.job_file));
   if (plan.kind == FarmKind::frames) {

@@ -194,6 +194,11 @@ void prepare_outputs(const ResolvedJob& resolved) {
       refuse_to_lose_frames(resolved, files.front());
     }
   }
+  std::error_code ignored;
+  const bool hands_over = fs::equivalent(settings.checkpoint, settings.resume_from, ignored) && !ignored;
+  if (!settings.checkpoint.empty() && !settings.output.overwrite && !hands_over) {
+    check_checkpoint_target(settings.checkpoint, settings.settings_digest);
+  }
   if (!settings.output.overwrite && !settings.output.resume) {
     for (const std::string& path : output_files(settings, frames)) {
       if (fs::exists(path)) {

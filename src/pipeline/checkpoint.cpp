@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The history in a sealed file.
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "gazetrace/pipeline.hpp"
 #include "pipeline/sealed_file.hpp"
@@ -66,6 +70,29 @@ void save_checkpoint(const std::string& path, const TemporalHistory& history, co
   const double ev = history.smoothed_ev.value_or(0);
   each_field(history, has_camera, has_ev, camera, ev, [&](const auto& field) { writer(field); });
   writer.save(path);
+}
+
+void check_checkpoint_target(const std::string& path, const std::string& settings_digest) {
+  std::error_code failed;
+  if (!std::filesystem::exists(path, failed)) {
+    return;
+  }
+  const std::string digest = read_sealed_digest(kCheckpoint, path);
+  if (digest == settings_digest) {
+    return;
+  }
+  if (!digest.empty()) {
+    throw Error(ErrorKind::input, path, "is the checkpoint of another job, or of another history",
+                "give another name, or `overwrite` to replace it");
+  }
+  std::string begin(std::string_view(kCheckpoint.title).size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (!std::string_view(kCheckpoint.title)
+           .starts_with(std::string_view(begin).substr(0, static_cast<std::size_t>(file.gcount())))) {
+    throw Error(ErrorKind::input, path, "is no checkpoint, and would be replaced by one",
+                "give another name, or `overwrite` to replace it");
+  }
 }
 
 TemporalHistory load_checkpoint(const std::string& path, const std::string& settings_digest) {

@@ -232,8 +232,9 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
     }
   }
   // A run that was killed between the last file and its row renders that frame once more, so that its times do not stay
-  // unknown. More rows than one are lost by damage alone, and then their frames are not.
-  if (without_row.size() == 1 && has_rows) {
+  // unknown. More rows than one are lost by damage alone, and then their frames are not; and where a frame depends on
+  // those before it, these may be gone by now.
+  if (without_row.size() == 1 && has_rows && !needs_history(settings)) {
     resume.work[without_row.front()] = FrameWork::render;
     without_row.clear();
   }
@@ -247,7 +248,7 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
                                             : read_frame_stamp(frame_file_name(pattern, frame)).exposure_ev);
   }
   if (!without_row.empty()) {
-    resume.warnings.push_back(std::to_string(without_row.size()) + " complete frames have no row in " + paths.timing +
+    resume.warnings.push_back(std::to_string(without_row.size()) + " of the complete frames have no row in " + paths.timing +
                               "; they are kept, and their rows are made anew without times");
   }
   std::size_t last_to_render = plan.frames.size();

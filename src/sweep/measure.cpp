@@ -163,6 +163,15 @@ void write_pictures(const SweepMeasure& measure, const PictureFolder& folder, co
 
 }  // namespace
 
+void render_or_stop(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color, PipelineSettings settings,
+                    PipelineObserver pipeline, const SweepObserver& observer) {
+  settings.trace.stop = observer.stop_now;
+  pipeline.stop_before_frame = observer.stop_before_frame;
+  if (render_sequence(tracer, plan, color, settings, pipeline).interrupted) {
+    throw Error(ErrorKind::interrupted, "", "asked to end before all was measured", "call again to go on");
+  }
+}
+
 StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const PlannedRow*>& rows, int repeat,
                        const SweepMeasure& measure, const std::string& directory, const std::string& folder) {
   const PlannedRow& first = *rows.front();
@@ -225,7 +234,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
       sum.add_output(row.exposure_ms);
     }
   };
-  render_sequence(scene.tracer, first.plan, scene.color, settings, observer);
+  render_or_stop(scene.tracer, first.plan, scene.color, settings, observer, scene.observer);
 
   StoredRun stored = sum.stored();
   stored.png = write && measure.write_png ? folder + "/frame.####.png" : "";
@@ -242,7 +251,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
 }
 
 StoredRun time_row(PathTracer& tracer, const ColorPipeline& color, const PlannedRow& row, int repeat,
-                   std::size_t frames) {
+                   const SweepObserver& sweep, std::size_t frames) {
   FramePlan plan = row.plan;
   if (frames > 0 && frames < plan.frames.size()) {
     plan.frames.resize(frames);
@@ -250,7 +259,7 @@ StoredRun time_row(PathTracer& tracer, const ColorPipeline& color, const Planned
   RunSum sum;
   PipelineObserver observer;
   observer.frame_done = [&](const TimingRow& timing, bool) { sum.add(timing, 0); };
-  render_sequence(tracer, plan, color, settings_of(row, repeat), observer);
+  render_or_stop(tracer, plan, color, settings_of(row, repeat), observer, sweep);
   StoredRun stored = sum.stored();
   stored.by_gaze[row.row.gaze] = sum.run();
   return stored;

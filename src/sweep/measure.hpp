@@ -16,7 +16,13 @@ struct MeasuredScene {
   PathTracer& tracer;
   const ColorPipeline& color;
   const CertifiedReference& reference;
+  const SweepObserver& observer;
 };
+
+// Renders the frames of a row, or of a reference, as render_sequence() does, until the sweep is asked to stop; then
+// Error(interrupted).
+void render_or_stop(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color, PipelineSettings settings,
+                    PipelineObserver pipeline, const SweepObserver& observer);
 
 // All `rows` show the same pixels; each is scored with its own gaze. Pictures of the first repeat are written to
 // `folder` within the sweep's directory.
@@ -24,7 +30,7 @@ StoredRun measure_rows(const MeasuredScene& scene, const std::vector<const Plann
                        const SweepMeasure& measure, const std::string& directory, const std::string& folder);
 // Measures only time and samples, over at most `frames` frames (0: all).
 StoredRun time_row(PathTracer& tracer, const ColorPipeline& color, const PlannedRow& row, int repeat,
-                   std::size_t frames = 0);
+                   const SweepObserver& observer, std::size_t frames = 0);
 
 // Finds the samples per pixel at which uniform frames take `target_s`, by linear interpolation between the rates that
 // were tried, until one is within kRateTolerance; at most kRateTries further rates are tried. `known` are rates and

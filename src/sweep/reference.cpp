@@ -9,6 +9,7 @@
 
 #include "core/file_lock.hpp"
 #include "core/parallel.hpp"
+#include "sweep/measure.hpp"
 #include "sweep/scorer.hpp"
 #include "sweep/state.hpp"
 
@@ -34,7 +35,8 @@ std::string scrambling_pattern(const std::string& directory, std::size_t scrambl
 
 // `is_part`: these are some of the pictures, and other processes render the others.
 void render_scrambling(PathTracer& tracer, const SweepReference& reference, const std::vector<std::int32_t>& pictures,
-                       const ColorPipeline& color, const std::string& directory, std::size_t scrambling, bool is_part) {
+                       const ColorPipeline& color, const std::string& directory, std::size_t scrambling, bool is_part,
+                       const SweepObserver& observer) {
   PipelineSettings settings = reference.pipeline;
   settings.is_part = is_part;
   settings.trace.seed = reference.seeds[scrambling];
@@ -45,7 +47,7 @@ void render_scrambling(PathTracer& tracer, const SweepReference& reference, cons
   settings.output.resume = true;
   settings.settings_digest = scrambling_digest(reference, scrambling);
   fs::create_directories(settings.output.run_directory);
-  render_sequence(tracer, only_frames(reference.plan, pictures), color, settings, {});
+  render_or_stop(tracer, only_frames(reference.plan, pictures), color, settings, {}, observer);
 }
 
 WrittenFile write_mean(const std::string& path, const Frame& frame, const FrameRequest& request,
@@ -234,7 +236,7 @@ CertifiedReference render_with_others(const ReferenceTask& task) {
       tell(task.observer, fmt::format("reference {}: scrambling {} of {}, frame {}", task.reference.key,
                                       part.scrambling + 1, task.reference.seeds.size(), part.pictures.front()));
       render_scrambling(task.tracer, task.reference, part.pictures, task.color, certified.directory, part.scrambling,
-                        true);
+                        true, task.observer);
     }
   }
   const FileLock lock(locks + "/mean", FileLock::Kind::alone, true);
@@ -317,7 +319,7 @@ CertifiedReference ensure_reference(PathTracer& tracer, const Scene& scene, cons
     } else {
       for (std::size_t k = 0; k < reference.seeds.size(); ++k) {
         tell(observer, fmt::format("reference {}: scrambling {} of {}", reference.key, k + 1, reference.seeds.size()));
-        render_scrambling(tracer, reference, missing, color, certified->directory, k, false);
+        render_scrambling(tracer, reference, missing, color, certified->directory, k, false, observer);
       }
       certify(reference, missing, color, sweep_directory, *certified);
     }

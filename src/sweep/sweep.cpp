@@ -181,7 +181,8 @@ class SceneSweep {
 
   void warm_up(const PlannedRow& row) {
     if (plan_.measure.warm_up > 0 && warm_.insert(row.digest).second) {
-      time_row(*tracer_, colors_.at(row.row.reference), row, 0, static_cast<std::size_t>(plan_.measure.warm_up));
+      time_row(*tracer_, colors_.at(row.row.reference), row, 0, observer_,
+               static_cast<std::size_t>(plan_.measure.warm_up));
     }
   }
 
@@ -190,8 +191,8 @@ class SceneSweep {
                    int repeat) {
     warm_up(row);
     const std::string& reference = row.row.reference;
-    StoredRun stored = measure_rows({*tracer_, colors_.at(reference), certified_.at(reference)}, rows, repeat,
-                                    plan_.measure, plan_.directory, "frames/" + key);
+    StoredRun stored = measure_rows({*tracer_, colors_.at(reference), certified_.at(reference), observer_}, rows,
+                                    repeat, plan_.measure, plan_.directory, "frames/" + key);
     if (scope_.kind == Scope::Kind::task) {
       stored.task = scope_.label;
       stored.machine = machine_description();
@@ -279,7 +280,7 @@ class SceneSweep {
       return;
     }
     if (!stored) {
-      stored = time_row(*tracer_, colors_.at(row->row.reference), *row, 0);
+      stored = time_row(*tracer_, colors_.at(row->row.reference), *row, 0, observer_);
       save_run(path, *stored);
     }
     costs_[test] = *stored;
@@ -317,7 +318,7 @@ class SceneSweep {
     return find_rate(of.row.runs.front().time_s, known, kLeastSpp, 4.0 * plan_.measure.baselines.reference_spp,
                      [&](double spp) {
                        const PlannedRow row = uniform_row(plan_, of, RowRole::equal_time, spp);
-                       const StoredRun run = time_row(*tracer_, colors_.at(row.row.reference), row, 0);
+                       const StoredRun run = time_row(*tracer_, colors_.at(row.row.reference), row, 0, observer_);
                        return run.by_gaze.begin()->second.time_s;
                      });
   }

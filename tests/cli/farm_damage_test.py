@@ -4,6 +4,9 @@
 import csv
 import json
 import shutil
+import signal
+import subprocess
+import time
 
 import harness
 from farm_faults_test import Farm
@@ -106,6 +109,31 @@ class DamagedSweep(harness.CliTest):
         before = kept.stat().st_ino  # a file that is written anew is another one
         self.run_ok("sweep", "plan.toml", "-o", "out", "--quiet")
         self.assertEqual(kept.stat().st_ino, before)
+
+    def test_a_signal_ends_it_in_order(self):
+        """Rows and pictures of a reference that are finished stay, and the same call goes on with the others."""
+        self.write("plan.toml", SWEEP.replace('frames = "1-2"', 'frames = "1-4"').replace("spp = 4", "spp = 400"))
+        words = ["sweep", "plan.toml", "-o", "out", "--quiet", "--threads", "1"]
+        self.run_ok("sweep", "plan.toml", "-o", "whole", "--quiet")
+        ends = []
+        for number in (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT, signal.SIGXCPU):
+            process = subprocess.Popen([harness.PROGRAM, *words], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.PIPE, text=True)
+            before = len(self.files("out")) if (self.folder / "out").exists() else 0
+            while process.poll() is None and len(self.files("out") if (self.folder / "out").exists() else []) < before + 3:
+                time.sleep(0.005)
+            process.send_signal(number)
+            said = process.communicate(timeout=100)[1]
+            ends.append(process.returncode)
+            if process.returncode == 4:
+                self.assertRegex(said, r"^gazetrace: interrupted by signal \w+; what has been measured is kept, and the same call goes on\n$")
+        self.assertLessEqual(set(ends), {0, 4})
+        self.assertIn(4, ends)
+        limited = self.run_program(*words[:2], "-o", "limited", "--quiet", "--max-time", "300ms", "--grace", "0s")
+        self.assertEqual(limited.returncode, 4, limited.stderr)
+        self.assertIn("interrupted by --max-time", limited.stderr)
+        self.run_ok(*words)
+        self.assertEqual(self.table("out"), self.table("whole"))
 
     def test_a_merge_joins_nothing_that_is_damaged(self):
         for chunk in ("1/2", "2/2"):

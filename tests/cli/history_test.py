@@ -160,6 +160,32 @@ class Histories(harness.CliTest):
                 self.assert_refused(["render", *JOB, *SMALL, "-o", "bad/f.####.png", "--frames", "1", "--checkpoint", place], [words])
         self.assertEqual((self.folder / "glide.gltf").read_bytes(), scene)
 
+    def test_a_checkpoint_replaces_its_own_kind_alone(self):
+        words = ["render", *JOB, *SMALL, "-o", "out/f.####.png", "--frames", "1", "--checkpoint", "notes.txt"]
+        self.write("notes.txt", "mine")
+        self.assert_refused(words, ["notes.txt", "is no checkpoint"])
+        self.assertEqual((self.folder / "notes.txt").read_text(), "mine")
+        self.run_ok(*words, "--overwrite")
+        before = (self.folder / "notes.txt").read_bytes()
+        other = [word.replace("out/", "other/") for word in words]
+        self.assert_refused([*other, "--seed", "5"], ["notes.txt", "the checkpoint of another job"])
+        self.assertEqual((self.folder / "notes.txt").read_bytes(), before)
+        self.run_ok(*words, "--resume")
+        # What a fault has left of one is no reason to stop.
+        (self.folder / "notes.txt").write_bytes(before[:7])
+        self.run_ok(*words, "--resume")
+
+    def test_a_lost_row_of_a_chain(self):
+        """The pictures are whole, and the history that the frame began from is gone: its row is made anew without times."""
+        self.render("out", *SMALL, "--frames", "1-3", "--part", "--checkpoint", "history.bin")
+        second = [*SMALL, "--frames", "4-6", "--part", "--resume-from", "history.bin"]
+        whole = self.render("out", *second)
+        table = self.folder / "out/timing.4-6.csv"
+        lines = table.read_text().splitlines()
+        table.write_text("\n".join(lines[:-1]) + "\n")
+        self.assertEqual(self.render("out", *second, "--resume"), whole)
+        self.assertEqual([line.split(",")[0] for line in table.read_text().splitlines()], [line.split(",")[0] for line in lines])
+
     def test_preroll_is_not_written(self):
         pictures = self.render("some", "--frames", "6-7", "--preroll", "3")
         self.assertEqual(sorted(pictures), ["f.0006.png", "f.0007.png"])

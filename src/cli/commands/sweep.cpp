@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/interruption.hpp"
 #include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
@@ -27,6 +29,8 @@ struct SweepArguments {
   std::optional<int> threads;
   std::optional<Chunk> chunk;
   std::vector<std::string> folders;  // of merge
+  DurationNs grace{25'000'000'000};
+  std::optional<DurationNs> max_time;
   bool confine = false, dry_run = false, restart = false, trust_files = false, quiet = false;
   JsonOutput json, merge_json;
 
@@ -112,6 +116,10 @@ SweepObserver warning_observer() {
 }
 
 int run_sweep_command(const SweepArguments& arguments) {
+  Interruption interruption(
+      std::chrono::nanoseconds(arguments.grace.ns),
+      arguments.max_time ? std::optional(std::chrono::nanoseconds(arguments.max_time->ns)) : std::nullopt);
+  interruption.frames_begin();  // what is in hand between frames is soon done
   const SweepPlan plan = load_plan(arguments);
   arguments.json.check();
   if (arguments.dry_run && arguments.chunk) {
@@ -127,16 +135,27 @@ int run_sweep_command(const SweepArguments& arguments) {
     return exit_done;
   }
   SweepObserver observer = warning_observer();
+  observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
+  observer.stop_now = [&] { return interruption.stop_now(); };
   if (!arguments.quiet) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
   const SweepDirectory directory = prepare_sweep(plan, arguments.task(), observer);
   keep_freed_memory();
-  if (const std::optional<SweepTask> task = arguments.task()) {
-    run_sweep_task(plan, *task, observer);
-    return exit_done;
+  try {
+    if (const std::optional<SweepTask> task = arguments.task()) {
+      run_sweep_task(plan, *task, observer);
+    } else {
+      write_results(plan, run_sweep(plan, observer), arguments.json);
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::interrupted) {
+      throw;
+    }
+    std::fprintf(stderr, "gazetrace: interrupted by %s; what has been measured is kept, and the same call goes on\n",
+                 interruption.reason().c_str());
+    return exit_interrupted;
   }
-  write_results(plan, run_sweep(plan, observer), arguments.json);
   return exit_done;
 }
 
@@ -171,6 +190,13 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
                "Measures only the K-th of N parts of the rows, of about equal cost; 'sweep merge' makes the tables");
   schema.flag("--dry-run", &SweepArguments::dry_run,
               "Checks the plan, prints its rows and how much there is to do; with --chunk 1/N, how they are divided");
+  schema.value(
+      "--grace", &SweepArguments::grace, "DURATION",
+      "After a signal to end (TERM, INT, USR1, XCPU), the time to finish the frame in hand; the row that it is "
+      "of is measured again by the next call");
+  schema.value("--max-time", &SweepArguments::max_time, "DURATION",
+               "Ends in time as if by a signal, so that the process is over, --grace included, so long after its "
+               "beginning");
   schema.flag("--restart", &SweepArguments::restart, "Throws away what the folder holds of an earlier sweep");
   schema.flag("--quiet", &SweepArguments::quiet, "Tells nothing but the table");
   const auto options = std::make_shared<CommandOptions<SweepArguments>>(std::move(schema));
