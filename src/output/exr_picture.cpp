@@ -21,6 +21,7 @@
 #include "core/parallel.hpp"
 #include "gazetrace/error.hpp"
 #include "output/exr.hpp"
+#include "output/exr_seal.hpp"
 #include "output/written_file.hpp"
 
 namespace gazetrace {
@@ -66,7 +67,7 @@ class MemoryStream : public Imf::OStream {
   }
   std::uint64_t tellp() override { return at_; }
   void seekp(std::uint64_t position) override { at_ = position; }
-  [[nodiscard]] std::span<const std::byte> bytes() const { return std::as_bytes(std::span(bytes_)); }
+  [[nodiscard]] std::span<std::byte> bytes() { return std::as_writable_bytes(std::span(bytes_)); }
 
  private:
   std::vector<char> bytes_;
@@ -168,7 +169,9 @@ void ExrPicture::add_light(const std::array<std::string, 3>& names, const ImageR
 // All of a part's own, and of the whole file's header all of it in the first part, elsewhere what readers need there.
 Imf::Header ExrPicture::header_of(const Part& part, bool first) const {
   Imf::Header header = first ? header_ : Imf::Header(width_px_, height_px_);
-  if (!first) {
+  if (first) {
+    add_room_for_seal(header);
+  } else {
     header.compression() = header_.compression();
     header.zipCompressionLevel() = settings_.zip_level;
     if (Imf::hasChromaticities(header_)) {
@@ -216,6 +219,7 @@ WrittenFile ExrPicture::write(const std::string& path, std::int32_t frame) {
   } catch (const std::exception& e) {
     throw Error(ErrorKind::runtime, path, std::string("cannot encode the EXR: ") + e.what());
   }
+  seal_exr(stream.bytes());
   return write_frame_file(path, frame, stream.bytes());
 }
 

@@ -12,6 +12,10 @@
 #include <vector>
 
 #include "core/file_digest.hpp"
+#include "core/png_file.hpp"
+#include "core/text.hpp"
+#include "gazetrace/error.hpp"
+#include "output/exr_seal.hpp"
 #include "output/written_file.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/sample_sums_file.hpp"
@@ -24,6 +28,21 @@ namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Whether a picture is as it was written, by what is in it: the seal of an EXR, the checksums of a PNG. Of other kinds
+// nothing tells that.
+bool is_whole_picture(const std::string& path) {
+  if (path.ends_with(".exr")) {
+    return has_whole_seal(path);
+  }
+  try {
+    const std::string bytes = read_file_bytes(path);
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    return !essential_png({first, bytes.size()}, path).empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
 
 // Looks at the files of finished frames.
 class FinishedFrames {
@@ -42,11 +61,11 @@ class FinishedFrames {
     const OutputSettings& output = settings_.output;
     if (settings_.trace.samples) {
       const std::string path = samples_file_name(output.run_directory, frame, *settings_.trace.samples);
-      return is_as_written(path) && read_samples_digest(path) == settings_.settings_digest;
+      return is_as_written(path) && read_samples_digest(path) == settings_.settings_digest && vouches(path, is_sealed);
     }
     if (settings_.stage == SequenceStage::trace) {
       const std::string path = traced_file_name(output.run_directory, frame);
-      return is_as_written(path) && read_traced_digest(path) == settings_.settings_digest;
+      return is_as_written(path) && read_traced_digest(path) == settings_.settings_digest && vouches(path, is_sealed);
     }
     for (const std::string& pattern : {output.exr.pattern, output.display.pattern}) {
       if (!pattern.empty()) {
@@ -56,7 +75,7 @@ class FinishedFrames {
         }
         const FrameStamp stamp = read_frame_stamp(path);
         if (stamp.settings_digest != settings_.settings_digest || stamp.history != history ||
-            stamp.frame.value_or(frame) != frame) {
+            stamp.frame.value_or(frame) != frame || !vouches(path, is_whole_picture)) {
           return false;
         }
       }
@@ -66,7 +85,7 @@ class FinishedFrames {
     }
     // A sampling map says nothing of itself; it appears before the frame's other files and only when complete.
     const std::string map = frame_file_name(output.map_pattern, frame);
-    return fs::exists(map) && is_as_written(map);
+    return fs::exists(map) && is_as_written(map) && vouches(map, is_whole_picture);
   }
 
   // The files of a complete frame. What the run so far does not list is listed as it is now.
@@ -82,6 +101,11 @@ class FinishedFrames {
   [[nodiscard]] std::vector<std::string> files_of(std::int32_t frame) const {
     std::vector<std::string> files = output_files(settings_, {frame});
     return {files.begin() + std::min<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(files.size())), files.end()};
+  }
+  // Of a file that the run so far does not list nobody says that it is whole but itself.
+  [[nodiscard]] bool vouches(const std::string& path, bool (*is_whole)(const std::string&)) const {
+    return settings_.output.trust_files || known_.contains(name_in_record(settings_.output.run_directory, path)) ||
+           is_whole(path);
   }
   [[nodiscard]] bool is_as_written(const std::string& path) const {
     return !bad_.contains(
@@ -248,8 +272,8 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
                                             : read_frame_stamp(frame_file_name(pattern, frame)).exposure_ev);
   }
   if (!without_row.empty()) {
-    resume.warnings.push_back(std::to_string(without_row.size()) + " of the complete frames have no row in " + paths.timing +
-                              "; they are kept, and their rows are made anew without times");
+    resume.warnings.push_back(std::to_string(without_row.size()) + " of the complete frames have no row in " +
+                              paths.timing + "; they are kept, and their rows are made anew without times");
   }
   std::size_t last_to_render = plan.frames.size();
   for (std::size_t i = first_wanted; i < plan.frames.size(); ++i) {

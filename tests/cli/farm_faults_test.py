@@ -208,6 +208,23 @@ class DamagedSideFiles(Farm):
                 self.assertEqual(len(self.record("out/run.json")["files"]), 6)
                 self.assertTrue(all(len(line) < 700 for line in result.stderr.splitlines()), result.stderr)
 
+    def test_pictures_of_a_lost_record_tell_their_own_damage(self):
+        """Without a record, each picture is believed by what is in it, and a damaged one is made again."""
+        self.render("out", "--frames", "1-4", "--part")
+        whole = self.pictures("out")
+        for name in ("f.0002.exr", "f.0003.png"):
+            path = self.folder / "out" / name
+            content = bytearray(path.read_bytes())
+            content[len(content) * 3 // 4] ^= 16
+            path.write_bytes(content)
+        (self.folder / "out/run.1-4.json").write_bytes((self.folder / "out/run.1-4.json").read_bytes()[:500])
+        times = self.times("out")
+        self.render("out", "--frames", "1-4", "--part", "--resume")
+        self.assertEqual(self.pictures("out"), whole)
+        kept = [name for name, time_ns in self.times("out").items() if time_ns == times[name]]
+        self.assertEqual(sorted(kept), ["f.0001.exr", "f.0001.png", "f.0004.exr", "f.0004.png"])
+        self.run_ok("merge", "out")
+
     def test_a_cut_record_of_a_part_is_one_short_line(self):
         self.parts("out")
         record = (self.folder / "out/run.1-3.json").read_bytes()

@@ -137,7 +137,7 @@ class Histories(harness.CliTest):
                 elif damage == "other":
                     self.run_ok("render", *JOB, *SMALL, "-o", "other/f.####.png", "--frames", "1-3", "--bounces", "2",
                                 "--checkpoint", "history.bin")
-                run(*ask)
+                run(*ask, *(["--overwrite"] if damage == "other" else []))
                 self.assertEqual(state(), wanted)
                 self.assertEqual(self.pictures("out"), pictures)
         # What is there is left alone, and the frames are not rendered for it.

@@ -220,7 +220,7 @@ void check_file_memory(const std::string& path, const SceneLimits& limits) {
   const std::uint64_t most = limits.memory_bytes > 0 ? limits.memory_bytes : most_memory_bytes();
   std::error_code unknown;
   const std::uint64_t bytes = fs::is_regular_file(path, unknown) ? fs::file_size(path, unknown) : 0;
-  if (!unknown && bytes > most) {
+  if (!unknown && bytes > std::max(most, kProgramBytes)) {  // smaller ones are read, and what they need is told
     throw Error(ErrorKind::input, path, "is a file of " + mib(bytes) + "; the limit of memory is " + mib(most),
                 "raise `max-memory`");
   }
