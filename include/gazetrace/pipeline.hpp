@@ -109,8 +109,9 @@ class RunLock {
   // Error(runtime), since it will pass, where another run lives that writes some of these files. A lock that nobody
   // holds any more is taken over; `waiting` is told where that takes a while to find out, since the other was on
   // another machine.
+  // `family`: of several kinds of files in one folder, which do not hold each other up; begins the lock's name.
   RunLock(const RunRecord& record, const std::string& record_path,
-          const std::function<void(const std::string& text)>& waiting = {});
+          const std::function<void(const std::string& text)>& waiting = {}, const std::string& family = {});
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
@@ -126,9 +127,9 @@ class RunLock {
 // Writes the history after a frame, to the bit, with the digest of the settings that it was made under. The file
 // appears under its name only when it is complete. Error(runtime) where it cannot be written.
 void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& settings_digest);
-// Error(input) where save_checkpoint() would replace a file that is neither a checkpoint of these settings nor what is
-// left of one that was cut.
-void check_checkpoint_target(const std::string& path, const std::string& settings_digest);
+// Error(input) where save_checkpoint() would replace a whole checkpoint of other settings, or, for a run that does not
+// go on from an earlier one, a file that is none.
+void check_checkpoint_target(const std::string& path, const std::string& settings_digest, bool goes_on);
 // Error(input) for a file that is not a checkpoint, is damaged, or was made under other settings.
 TemporalHistory load_checkpoint(const std::string& path, const std::string& settings_digest);
 

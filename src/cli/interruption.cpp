@@ -109,7 +109,7 @@ void Interruption::watch() {
       over = end_ && now >= *end_;
     }
     if (over && !in_frames_ && !ended_) {
-      std::fprintf(stderr, "gazetrace: interrupted by %s before the first frame; go on with --resume\n",
+      std::fprintf(stderr, "gazetrace: interrupted by %s before the first frame; nothing that was finished before is lost\n",
                    reason().c_str());
       ::_exit(exit_interrupted);
     }

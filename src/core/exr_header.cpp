@@ -63,12 +63,30 @@ struct FixedType {
   std::string_view name;
   std::uint32_t bytes;
 };
-constexpr std::array<FixedType, 22> kFixedTypes{
-    {{"box2i", 16},    {"box2f", 16},   {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1},
-     {"double", 8},    {"envmap", 1},   {"float", 4},           {"int", 4},         {"keycode", 28},
-     {"lineOrder", 1}, {"m33f", 36},    {"m33d", 72},           {"m44f", 64},       {"m44d", 128},
-     {"rational", 8},  {"tiledesc", 9}, {"timecode", 8},        {"v2i", 8},         {"v2f", 8},
-     {"v3i", 12},      {"v3f", 12}}};
+constexpr std::array<FixedType, 24> kFixedTypes{{{"box2i", 16},
+                                                 {"box2f", 16},
+                                                 {"chromaticities", 32},
+                                                 {"compression", 1},
+                                                 {"deepImageState", 1},
+                                                 {"double", 8},
+                                                 {"envmap", 1},
+                                                 {"float", 4},
+                                                 {"int", 4},
+                                                 {"keycode", 28},
+                                                 {"lineOrder", 1},
+                                                 {"m33f", 36},
+                                                 {"m33d", 72},
+                                                 {"m44f", 64},
+                                                 {"m44d", 128},
+                                                 {"rational", 8},
+                                                 {"tiledesc", 9},
+                                                 {"timecode", 8},
+                                                 {"v2i", 8},
+                                                 {"v2f", 8},
+                                                 {"v3i", 12},
+                                                 {"v3f", 12},
+                                                 {"v2d", 16},
+                                                 {"v3d", 24}}};
 constexpr std::uint32_t kChannelBytes = 16;  // of a list of channels, for each beside its name
 
 class HeaderCheck {
@@ -129,6 +147,9 @@ class HeaderCheck {
       if (fixed != kFixedTypes.end() && static_cast<std::uint32_t>(size) != fixed->bytes) {
         fail_for_size(attribute, size);
       }
+      if (type == "floatvector" && size % 4 != 0) {
+        fail_for_size(attribute, size);
+      }
       const std::uint64_t left = source_.left() - static_cast<std::uint64_t>(size);
       value(type, static_cast<std::uint32_t>(size));
       if (source_.left() != left) {
@@ -139,7 +160,7 @@ class HeaderCheck {
 
   [[noreturn]] void fail_for_size(const std::string& attribute, std::int32_t size) const {
     fail("its attribute '" + bounded(attribute, 40) + "' states " + std::to_string(size) +
-         " bytes, and its value has others");
+         " bytes, and a value of its type has others");
   }
 
   // Each with a name, which an empty one ends.

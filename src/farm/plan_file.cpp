@@ -112,7 +112,8 @@ FarmPlan read_farm(const std::string& folder) {
   farm_engine(plan.engine);
   std::error_code failed;
   const fs::path found = fs::canonical(path, failed).parent_path();
-  if (!failed && fs::weakly_canonical(plan.folder, failed) != found) {
+  std::error_code absent;
+  if (!failed && !fs::equivalent(plan.folder, found, absent)) {
     plan.is_moved = true;
     plan.folder = found.string();
     plan.run_folder = found.parent_path().string();

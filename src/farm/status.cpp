@@ -29,8 +29,17 @@ struct Observed {
   std::size_t timed = 0;
 };
 
+fs::path exit_file(const FarmPlan& plan, const std::string& task) {
+  return fs::path(plan.folder) / "tasks" / (task + ".exit");
+}
+
+fs::file_time_type exit_time(const FarmPlan& plan, const std::string& task) {
+  std::error_code unknown;
+  return fs::last_write_time(exit_file(plan, task), unknown);
+}
+
 std::optional<int> exit_code_of(const FarmPlan& plan, const std::string& task) {
-  std::ifstream file(fs::path(plan.folder) / "tasks" / (task + ".exit"));
+  std::ifstream file(exit_file(plan, task));
   int code = 0;
   return file >> code ? std::optional(code) : std::nullopt;
 }
@@ -119,8 +128,11 @@ Observed observe_run(const FarmPlan& plan, const std::string& task, const std::s
   const bool is_whole = observe_outputs(plan, outputs, check, run);
   std::error_code missing;
   const bool has_record = fs::exists(record_path, missing);
-  // A task that was refused for other inputs has left the files of those before it as they were.
-  const bool has_failed = run.task.exit_code && *run.task.exit_code != 0 && *run.task.exit_code != 4;
+  // A task that was refused for other inputs has left the files of those before it as they were; a record that is newer
+  // is of a run that somebody has made since.
+  std::error_code unknown;
+  const bool has_failed = run.task.exit_code && *run.task.exit_code != 0 && *run.task.exit_code != 4 &&
+                          !(fs::last_write_time(record_path, unknown) > exit_time(plan, task) && !unknown);
   if (is_locked(record_path)) {
     run.task.state = TaskState::running;
   } else if (has_failed) {

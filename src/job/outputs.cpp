@@ -197,7 +197,7 @@ void prepare_outputs(const ResolvedJob& resolved) {
   std::error_code ignored;
   const bool hands_over = fs::equivalent(settings.checkpoint, settings.resume_from, ignored) && !ignored;
   if (!settings.checkpoint.empty() && !settings.output.overwrite && !hands_over) {
-    check_checkpoint_target(settings.checkpoint, settings.settings_digest);
+    check_checkpoint_target(settings.checkpoint, settings.settings_digest, settings.output.resume);
   }
   if (!settings.output.overwrite && !settings.output.resume) {
     for (const std::string& path : output_files(settings, frames)) {

@@ -72,27 +72,34 @@ std::string problem_of(const std::string& path, const WrittenFile& file, const s
                             : fmt::format("has {} bytes in place of {}", size, file.bytes);
 }
 
-// The name that the same file of another frame has: with the other number, of as many digits at least, in place of its
-// own, where that stands last, or wherever it stands.
-std::string name_of_frame(std::string name, std::int32_t frame, std::int32_t other, bool everywhere) {
-  std::size_t end = name.size();
-  while (end > 0) {
-    const std::size_t last = name.find_last_of("0123456789", end - 1);
-    if (last == std::string::npos) {
-      break;
+// The names that the same file of another frame may have: with the other number, of as many digits at least, in some or
+// all of the places where its own stands, since a name may hold other numbers that are equal.
+std::vector<std::string> names_of_frame(const std::string& name, std::int32_t frame, std::int32_t other) {
+  constexpr const char* kNumerals = "0123456789";
+  constexpr std::size_t kMostNumerals = 9;
+  constexpr std::size_t kMostPlaces = 6;
+  struct Place {
+    std::size_t begin, count;
+  };
+  std::vector<Place> places;
+  for (std::size_t at = name.find_first_of(kNumerals); at != std::string::npos && places.size() < kMostPlaces;) {
+    const std::size_t end = std::min(name.find_first_not_of(kNumerals, at), name.size());
+    if (end - at <= kMostNumerals && std::stoi(name.substr(at, end - at)) == frame) {
+      places.push_back({at, end - at});
     }
-    const std::size_t before = name.find_last_not_of("0123456789", last);
-    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-    const std::string digits = name.substr(begin, last + 1 - begin);
-    if (digits.size() < 10 && std::stoi(digits) == frame) {
-      name.replace(begin, digits.size(), fmt::format("{:0{}}", other, digits.size()));
-      if (!everywhere) {
-        break;
+    at = name.find_first_of(kNumerals, end);
+  }
+  std::vector<std::string> names;
+  for (unsigned some = 1; some < 1U << places.size(); ++some) {
+    std::string changed = name;
+    for (std::size_t i = places.size(); i-- > 0;) {  // from behind, since a longer number moves what follows
+      if ((some >> i & 1U) != 0) {
+        changed.replace(places[i].begin, places[i].count, fmt::format("{:0{}}", other, places[i].count));
       }
     }
-    end = begin;
+    names.push_back(std::move(changed));
   }
-  return name;
+  return names;
 }
 
 // Parts that were asked for different outputs do not make one sequence: what a frame lacks that the frame of most files
@@ -117,10 +124,15 @@ void add_frames_without_a_file(const std::vector<RunPart>& parts, std::vector<Ba
         continue;  // every part has its own
       }
       for (const std::string& name : most->second) {
-        const std::string last = name_of_frame(name, most->first, frame, false);
-        if (!found->second.contains(last) && !found->second.contains(name_of_frame(name, most->first, frame, true))) {
-          bad.push_back({part.record_path, frame,
-                         fmt::format("lists no '{}', and frame {} has a file like that", last, most->first)});
+        const std::vector<std::string> names_here = names_of_frame(name, most->first, frame);
+        if (names_here.empty()) {
+          continue;  // of one frame alone, without a number
+        }
+        if (std::none_of(names_here.begin(), names_here.end(),
+                         [&](const std::string& one) { return found->second.contains(one); })) {
+          bad.push_back(
+              {part.record_path, frame,
+               fmt::format("lists no '{}', and frame {} has a file like that", names_here.back(), most->first)});
         }
       }
     }

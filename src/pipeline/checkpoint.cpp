@@ -2,10 +2,8 @@
 // The history in a sealed file.
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "gazetrace/pipeline.hpp"
@@ -72,25 +70,22 @@ void save_checkpoint(const std::string& path, const TemporalHistory& history, co
   writer.save(path);
 }
 
-void check_checkpoint_target(const std::string& path, const std::string& settings_digest) {
+void check_checkpoint_target(const std::string& path, const std::string& settings_digest, bool goes_on) {
   std::error_code failed;
-  if (!std::filesystem::exists(path, failed)) {
+  if (!std::filesystem::is_regular_file(path, failed)) {
     return;
   }
   const std::string digest = read_sealed_digest(kCheckpoint, path);
   if (digest == settings_digest) {
     return;
   }
-  if (!digest.empty()) {
-    throw Error(ErrorKind::input, path, "is the checkpoint of another job, or of another history",
+  // Damage may have changed the digest itself, and what a fault has left of a checkpoint is no reason to stop.
+  if (!digest.empty() && is_sealed(path)) {
+    throw Error(ErrorKind::input, path, "is a checkpoint that was made under other settings",
                 "give another name, or `overwrite` to replace it");
   }
-  std::string begin(std::string_view(kCheckpoint.title).size(), '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  if (!std::string_view(kCheckpoint.title)
-           .starts_with(std::string_view(begin).substr(0, static_cast<std::size_t>(file.gcount())))) {
-    throw Error(ErrorKind::input, path, "is no checkpoint, and would be replaced by one",
+  if (!goes_on) {
+    throw Error(ErrorKind::input, path, "is no whole checkpoint, and would be replaced by one",
                 "give another name, or `overwrite` to replace it");
   }
 }

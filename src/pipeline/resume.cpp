@@ -272,8 +272,9 @@ ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, 
                                             : read_frame_stamp(frame_file_name(pattern, frame)).exposure_ev);
   }
   if (!without_row.empty()) {
-    resume.warnings.push_back(std::to_string(without_row.size()) + " of the complete frames have no row in " +
-                              paths.timing + "; they are kept, and their rows are made anew without times");
+    resume.warnings.push_back("complete frames without a row in " + paths.timing + ": " +
+                              std::to_string(without_row.size()) +
+                              "; they are kept, and rows are made anew without times");
   }
   std::size_t last_to_render = plan.frames.size();
   for (std::size_t i = first_wanted; i < plan.frames.size(); ++i) {

@@ -40,6 +40,11 @@ using std::chrono::seconds;
 constexpr seconds kBeat{10};     // how often a living run renews its lock
 constexpr seconds kSilence{60};  // after so long without, a run on another machine counts as dead
 
+fs::path folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
   std::string line;
@@ -193,6 +198,7 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
     return process_lives(holder);
   }
   const std::optional<std::int64_t> first = time_of(path);
+  const auto begin = std::chrono::steady_clock::now();
   bool told = false;
   for (;;) {
     const std::optional<std::int64_t> renewed = time_of(path);
@@ -203,7 +209,9 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
     if (!first || *renewed != *first) {
       return true;
     }
-    if (std::abs(folder_time(looking.own_file) - *renewed) > kSilence.count()) {
+    // A lock whose time lies ahead, by a clock that is fast, is watched for as long.
+    if (folder_time(looking.own_file) - *renewed > kSilence.count() ||
+        std::chrono::steady_clock::now() - begin > kSilence) {
       return false;
     }
     if (!told && looking.waiting) {
@@ -224,7 +232,10 @@ bool holder_lives(const std::string& path, const Holder& holder, const Looking& 
 // one, so that its file is removed only by who has locked it, and while it still has its name: whoever comes later has
 // locked a file without a name, and leaves the one that another run has made since alone.
 bool remove_dead(const std::string& path, const Holder& dead) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);  // NFS locks only what may be written
+  if (file < 0) {
+    file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);  // another user's
+  }
   if (file < 0) {
     return false;
   }
@@ -245,10 +256,9 @@ bool remove_dead(const std::string& path, const Holder& dead) {
 // Runs that ended before they had a lock have left the file that was to become one. Those of this machine's processes
 // that are dead are removed.
 void sweep_up(const std::string& lock_path, const Holder& self) {
-  const fs::path lock(lock_path);
-  const std::string begin = fmt::format("{}.{}.", lock.filename().string(), self.host);
+  const std::string begin = fmt::format("{}.{}.", fs::path(lock_path).filename().string(), self.host);
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(lock.parent_path(), ignored)) {
+  for (const auto& entry : fs::directory_iterator(folder_of(lock_path), ignored)) {
     const std::string path = entry.path().string();
     if (entry.path().filename().string().starts_with(begin)) {
       const std::optional<Holder> holder = read_lock(path);
@@ -336,8 +346,9 @@ struct RunLock::Heart {
 };
 
 RunLock::RunLock(const RunRecord& record, const std::string& record_path,
-                 const std::function<void(const std::string& text)>& waiting) {
-  const std::string path = record_path + ".lock";
+                 const std::function<void(const std::string& text)>& waiting, const std::string& family) {
+  const fs::path folder = folder_of(record_path);
+  const std::string path = (folder / (family + fs::path(record_path).filename().string() + ".lock")).string();
   const Holder self = this_run(record);
   sweep_up(path, self);
   const OwnFile own(fmt::format("{}.{}.{}", path, self.host, self.process), text_of(self));
@@ -370,9 +381,10 @@ RunLock::RunLock(const RunRecord& record, const std::string& record_path,
     return;
   }
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(fs::path(path).parent_path(), ignored)) {
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     const std::string other = entry.path().string();
-    if (!other.ends_with(".json.lock") || entry.path().filename() == fs::path(path).filename()) {
+    if (!entry.path().filename().string().starts_with(family + "run.") || !other.ends_with(".json.lock") ||
+        entry.path().filename() == fs::path(path).filename()) {
       continue;
     }
     const std::optional<Holder> holder = read_lock(other);
@@ -405,7 +417,7 @@ bool is_locked(const std::string& record_path) {
     now_s = folder_time(clock);
     ::unlink(clock.c_str());
   }
-  // A time far ahead is none that a living run has renewed.
+  // One whose time lies far ahead is left to a run that begins, which watches it.
   const std::optional<std::int64_t> renewed = time_of(path);
   return renewed && std::abs(now_s - *renewed) <= kSilence.count();
 }

@@ -161,6 +161,10 @@ void write_pictures(const SweepMeasure& measure, const PictureFolder& folder, co
   }
 }
 
+[[noreturn]] void interrupted() {
+  throw Error(ErrorKind::interrupted, "", "asked to end before all was measured", "call again to go on");
+}
+
 }  // namespace
 
 void render_or_stop(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color, PipelineSettings settings,
@@ -168,7 +172,13 @@ void render_or_stop(PathTracer& tracer, const FramePlan& plan, const ColorPipeli
   settings.trace.stop = observer.stop_now;
   pipeline.stop_before_frame = observer.stop_before_frame;
   if (render_sequence(tracer, plan, color, settings, pipeline).interrupted) {
-    throw Error(ErrorKind::interrupted, "", "asked to end before all was measured", "call again to go on");
+    interrupted();
+  }
+}
+
+void stop_if_asked(const SweepObserver& observer) {
+  if (observer.stop_before_frame && observer.stop_before_frame(0)) {
+    interrupted();
   }
 }
 

@@ -19,6 +19,8 @@ struct MeasuredScene {
   const SweepObserver& observer;
 };
 
+// Error(interrupted) where the sweep is asked to stop.
+void stop_if_asked(const SweepObserver& observer);
 // Renders the frames of a row, or of a reference, as render_sequence() does, until the sweep is asked to stop; then
 // Error(interrupted).
 void render_or_stop(PathTracer& tracer, const FramePlan& plan, const ColorPipeline& color, PipelineSettings settings,

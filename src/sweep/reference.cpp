@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "core/file_lock.hpp"
 #include "core/parallel.hpp"
@@ -217,6 +219,18 @@ std::vector<ScramblingPart> parts_of(const ReferenceTask& task) {
   return parts;
 }
 
+// Waits until nobody else holds the lock, or the sweep is asked to stop.
+FileLock wait_for(const std::string& path, const SweepObserver& observer) {
+  for (;;) {
+    FileLock lock(path, FileLock::Kind::alone, false);
+    if (lock.is_held()) {
+      return lock;
+    }
+    stop_if_asked(observer);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
 // First what nobody is at; then, part by part, what others were at, which they have finished or have left. Who finds
 // the reference finished has nothing more to do: its scramblings are removed by then.
 CertifiedReference render_with_others(const ReferenceTask& task) {
@@ -225,8 +239,8 @@ CertifiedReference render_with_others(const ReferenceTask& task) {
   fs::create_directories(locks);
   for (const bool waits : {false, true}) {
     for (const ScramblingPart& part : parts_of(task)) {
-      const FileLock lock(fmt::format("{}/{}-{}", locks, part.scrambling + 1, part.pictures.front()),
-                          FileLock::Kind::alone, waits);
+      const std::string path = fmt::format("{}/{}-{}", locks, part.scrambling + 1, part.pictures.front());
+      const FileLock lock = waits ? wait_for(path, task.observer) : FileLock(path, FileLock::Kind::alone, false);
       if (!lock.is_held()) {
         continue;
       }
@@ -239,7 +253,7 @@ CertifiedReference render_with_others(const ReferenceTask& task) {
                         true, task.observer);
     }
   }
-  const FileLock lock(locks + "/mean", FileLock::Kind::alone, true);
+  const FileLock lock = wait_for(locks + "/mean", task.observer);
   if (const auto finished = finished_reference(task.reference, task.sweep_directory)) {
     return *finished;
   }

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -39,8 +39,45 @@ bool is_of_the_sweep(const std::string& name) {
          fs::path(name).lexically_normal().string() == name;
 }
 
-// Empty where it is damaged.
-std::optional<WrittenFiles> read_sealed(const std::string& path) {
+bool is_as_written(const std::string& path, const WrittenFile& file) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed) || fs::file_size(path, failed) != file.bytes || failed) {
+    return false;
+  }
+  try {
+    return digest_file(path) == file.digest;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// Why a record does not count, and the pictures that it names and that are not as they were written.
+struct Damage {
+  std::string problem;  // empty: none
+  std::vector<std::string> pictures;
+};
+
+Damage damage_of(const std::string& directory, const std::string& record, bool trust_files) {
+  const std::optional<WrittenFiles> files = files_of_record(record);
+  if (!files) {
+    return {"is damaged", {}};
+  }
+  Damage damage;
+  for (const auto& [name, file] : trust_files ? WrittenFiles() : *files) {
+    if (!is_as_written(directory + "/" + name, file)) {
+      damage.pictures.push_back(name);
+    }
+  }
+  if (!damage.pictures.empty()) {
+    damage.problem =
+        fmt::format("names '{}', which is missing or not as it was written", bounded(damage.pictures.front(), 120));
+  }
+  return damage;
+}
+
+}  // namespace
+
+std::optional<WrittenFiles> files_of_record(const std::string& path) {
   try {
     Json json = Json::parse(read_text_file(path));
     const std::string seal = json.at(kSeal);
@@ -63,33 +100,25 @@ std::optional<WrittenFiles> read_sealed(const std::string& path) {
   }
 }
 
-bool is_as_written(const std::string& path, const WrittenFile& file) {
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed) || fs::file_size(path, failed) != file.bytes || failed) {
-    return false;
-  }
-  try {
-    return digest_file(path) == file.digest;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-std::vector<std::string> records_below(const std::string& directory) {
+// Other tasks make and remove folders meanwhile: none of that is an error here.
+std::vector<std::string> sealed_records(const std::string& directory) {
   std::set<std::string> paths;
   for (const char* name : {"runs", "references"}) {
-    std::error_code ignored;
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(directory) / name, ignored)) {
-      const bool is_scrambling = entry.path().parent_path().filename().string().starts_with("scrambling-");
-      if (entry.path().extension() == ".json" && !is_scrambling && entry.is_regular_file(ignored)) {
-        paths.insert(entry.path().string());
+    std::error_code failed;
+    fs::recursive_directory_iterator at(fs::path(directory) / name, failed);
+    while (!failed && at != fs::recursive_directory_iterator()) {
+      const std::string entry = at->path().filename().string();
+      std::error_code gone;
+      if (entry.starts_with("scrambling-") || entry == "locks") {
+        at.disable_recursion_pending();
+      } else if (at->path().extension() == ".json" && at->is_regular_file(gone)) {
+        paths.insert(at->path().string());
       }
+      at.increment(failed);
     }
   }
   return {paths.begin(), paths.end()};
 }
-
-}  // namespace
 
 void save_sealed(const std::string& path, Json content, const WrittenFiles& files) {
   Json& list = content[kFiles] = Json::object();
@@ -101,52 +130,31 @@ void save_sealed(const std::string& path, Json content, const WrittenFiles& file
   write_text_atomically(path, content.dump(1) + "\n");
 }
 
-void drop_damaged(const std::string& directory, bool trust_files, const SweepObserver& observer) {
-  const FileLock alone(directory + "/lock.check", FileLock::Kind::alone, true);
-  const std::vector<std::string> records = records_below(directory);
-  std::vector<std::optional<WrittenFiles>> contents(records.size());
-  parallel_for(records.size(), 0, [&](std::size_t i) { contents[i] = read_sealed(records[i]); });
-
-  // Several records may name the same picture.
-  std::map<std::pair<std::string, std::string>, bool> pictures;  // name and digest -> whether it is as it was written
-  std::vector<std::pair<std::string, WrittenFile>> to_check;
-  for (const auto& files : contents) {
-    for (const auto& [name, file] : files && !trust_files ? *files : WrittenFiles()) {
-      if (pictures.emplace(std::pair(name, file.digest), true).second) {
-        to_check.emplace_back(name, file);
-      }
-    }
-  }
-  std::vector<char> good(to_check.size());
-  parallel_for(to_check.size(), 0, [&](std::size_t i) {
-    good[i] = is_as_written(directory + "/" + to_check[i].first, to_check[i].second) ? 1 : 0;
+void drop_damaged(const std::string& directory, bool trust_files, int threads, const SweepObserver& observer) {
+  const std::vector<std::string> records = sealed_records(directory);
+  std::vector<char> is_bad(records.size());
+  parallel_for(records.size(), threads, [&](std::size_t i) {
+    is_bad[i] = damage_of(directory, records[i], trust_files).problem.empty() ? 0 : 1;
   });
-  for (std::size_t i = 0; i < to_check.size(); ++i) {
-    pictures[{to_check[i].first, to_check[i].second.digest}] = good[i] != 0;
+  if (std::find(is_bad.begin(), is_bad.end(), 1) == is_bad.end()) {
+    return;
   }
-
-  const auto drop = [&](const std::string& path, const std::string& what) {
-    std::error_code ignored;
-    fs::remove(path, ignored);
-    if (observer.warn) {
-      observer.warn(fmt::format("{}: {}; what it held is made again", path, what));
-    }
-  };
+  // Meanwhile another task may have removed it and measured again: alone, what is damaged is looked at once more.
+  const FileLock alone(directory + "/lock.check", FileLock::Kind::alone, true);
   for (std::size_t i = 0; i < records.size(); ++i) {
-    if (!contents[i]) {
-      drop(records[i], "is damaged");
+    std::error_code ignored;
+    if (is_bad[i] == 0 || !fs::exists(records[i], ignored)) {
       continue;
     }
-    std::string first_bad;
-    for (const auto& [name, file] : trust_files ? WrittenFiles() : *contents[i]) {
-      if (!pictures.at({name, file.digest})) {
-        first_bad = first_bad.empty() ? name : first_bad;
-        std::error_code ignored;
-        fs::remove(fs::path(directory) / name, ignored);
-      }
+    const Damage damage = damage_of(directory, records[i], trust_files);
+    for (const std::string& name : damage.pictures) {
+      fs::remove(fs::path(directory) / name, ignored);
     }
-    if (!first_bad.empty()) {
-      drop(records[i], fmt::format("names '{}', which is missing or not as it was written", bounded(first_bad, 120)));
+    if (!damage.problem.empty()) {
+      fs::remove(records[i], ignored);
+      if (observer.warn) {
+        observer.warn(fmt::format("{}: {}; what it held does not count as finished", records[i], damage.problem));
+      }
     }
   }
 }

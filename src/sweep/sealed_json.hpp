@@ -4,7 +4,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "gazetrace/output.hpp"
 #include "gazetrace/sweep.hpp"
@@ -15,9 +17,14 @@ namespace gazetrace {
 // folder, so that folders of several tasks can be taken into one.
 void save_sealed(const std::string& path, nlohmann::ordered_json content, const WrittenFiles& files);
 
-// Removes what is damaged of what the sweep keeps in its folder, so that it is measured or rendered again, and warns of
+// The records below these folders of a sweep's own, in order; not those of what is being rendered.
+std::vector<std::string> sealed_records(const std::string& directory);
+// The files that a record names. Empty where it is damaged, or not there.
+std::optional<WrittenFiles> files_of_record(const std::string& path);
+
+// Removes what is damaged of what the sweep keeps in its folder, so that it does not count as finished, and warns of
 // each: records, and with them the pictures that they name and that are not as they were written. `trust_files`: the
-// records alone are looked at. Processes that share the folder do this one after the other.
-void drop_damaged(const std::string& directory, bool trust_files, const SweepObserver& observer);
+// records alone are looked at. Of processes that share the folder one at a time removes.
+void drop_damaged(const std::string& directory, bool trust_files, int threads, const SweepObserver& observer);
 
 }  // namespace gazetrace

@@ -38,7 +38,7 @@ SweepDirectory open_directory(const SweepPlan& plan, const std::optional<SweepTa
     clear_directory(plan.directory);
   }
   claim_directory(plan.directory, machine);
-  drop_damaged(plan.directory, plan.trust_files, observer);
+  drop_damaged(plan.directory, plan.trust_files, plan.tests.front().pipeline.threads, observer);
   return directory;
 }
 
@@ -88,7 +88,7 @@ Results merge_sweep(const SweepPlan& plan, const std::vector<std::string>& folde
     take_in(folder, plan.directory);
   }
   if (!folders.empty()) {
-    drop_damaged(plan.directory, plan.trust_files, observer);
+    drop_damaged(plan.directory, plan.trust_files, plan.tests.front().pipeline.threads, observer);
   }
   Scope scope;
   scope.kind = Scope::Kind::merge;

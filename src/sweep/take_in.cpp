@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/take_in.hpp"
 
-#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
-#include <vector>
 
 #include "core/file_lock.hpp"
 #include "gazetrace/error.hpp"
+#include "sweep/sealed_json.hpp"
 #include "sweep/state.hpp"
 
 namespace gazetrace {
@@ -17,37 +17,15 @@ namespace fs = std::filesystem;
 
 // Where both lie on one disk nothing is copied: no file of a sweep is ever written into, only replaced.
 void take_file(const fs::path& from, const fs::path& to) {
-  if (fs::exists(to)) {
-    return;
-  }
   fs::create_directories(to.parent_path());
+  const fs::path part = to.parent_path() / ("." + to.filename().string() + ".part");
   std::error_code failed;
-  fs::create_hard_link(from, to, failed);
+  fs::remove(part, failed);
+  fs::create_hard_link(from, part, failed);
   if (failed) {
-    const fs::path part = to.parent_path() / ("." + to.filename().string() + ".part");
     fs::copy_file(from, part, fs::copy_options::overwrite_existing);
-    fs::rename(part, to);
   }
-}
-
-// First the pictures, then the records that say that they are there.
-std::vector<fs::path> files_below(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) {
-      files.push_back(entry.path());
-    }
-  }
-  std::stable_partition(files.begin(), files.end(), [](const fs::path& path) { return path.extension() != ".json"; });
-  return files;
-}
-
-void take_folder(const fs::path& from, const fs::path& to) {
-  if (fs::is_directory(from)) {
-    for (const fs::path& file : files_below(from)) {
-      take_file(file, to / file.lexically_relative(from));
-    }
-  }
+  fs::rename(part, to);
 }
 
 }  // namespace
@@ -68,16 +46,19 @@ void take_in(const std::string& folder, const std::string& directory) {
   if (!lock.is_held()) {
     throw Error(ErrorKind::input, folder, "another sweep is at work there", "wait for it");
   }
-  for (const char* name : {"runs", "frames"}) {
-    take_folder(fs::path(folder) / name, fs::path(directory) / name);
-  }
-  const fs::path references = fs::path(folder) / "references";
-  if (!fs::is_directory(references)) {
-    return;
-  }
-  for (const fs::directory_entry& entry : fs::directory_iterator(references)) {
-    const fs::path to = fs::path(directory) / "references" / entry.path().filename();
-    take_folder(entry.path(), to);
+  for (const std::string& record : sealed_records(folder)) {
+    const std::string name = fs::path(record).lexically_relative(folder).string();
+    const std::optional<WrittenFiles> pictures = files_of_record(record);
+    if (!pictures || fs::exists(fs::path(directory) / name)) {
+      continue;
+    }
+    // First the pictures, then the record that says that they are there. Those of other rows may be among them.
+    for (const auto& [picture, file] : *pictures) {
+      if (fs::exists(fs::path(folder) / picture)) {
+        take_file(fs::path(folder) / picture, fs::path(directory) / picture);
+      }
+    }
+    take_file(record, fs::path(directory) / name);
   }
 }
 

@@ -100,7 +100,7 @@ class DamagedSweep(harness.CliTest):
                     self.assertEqual(self.table("out"), table)
                     self.assertEqual(self.pictures_of("out"), pictures)
                     if not (name.endswith(".json") and harm is remove):  # nothing says that it was ever there
-                        self.assertRegex(again.stderr, r"^gazetrace: warning: \S+: .*made again\n$")
+                        self.assertRegex(again.stderr, r"^gazetrace: warning: \S+: .*does not count as finished\n$")
 
     def test_of_a_reference_that_frame_alone_is_rendered_again(self):
         self.run_ok("sweep", "plan.toml", "-o", "out", "--quiet")

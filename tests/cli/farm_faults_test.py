@@ -93,9 +93,10 @@ class MergeLooksAtFiles(Farm):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("run.3-4.json: lists no 'f.0003.png', and frame 1 has a file like that", refused.stderr)
         # Numbers that are not the frame's do not matter.
-        self.run_ok("render", *JOB, "-o", "two/f2.####.exr", "--frames", "1-2", "--part")
-        self.run_ok("render", *JOB, "-o", "two/f2.####.exr", "--frames", "3-4", "--part")
-        self.run_ok("merge", "two")
+        for folder, name in (("two", "f2.####.exr"), ("one", "f.####.v001.exr"), ("both", "p2.####_s2.png"), ("each", "%04d/f1.%04d.exr")):
+            for frames in ("1-2", "3-4"):
+                self.run_ok("render", *JOB, "-o", f"{folder}/{name}", "--frames", frames, "--part")
+            self.run_ok("merge", folder)
 
     def test_a_division_that_is_gone(self):
         self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "1/3")

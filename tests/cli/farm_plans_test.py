@@ -75,19 +75,19 @@ class Plans(FarmFiles):
         (self.folder / "link").symlink_to("out")
         self.assertIn("nothing to do", self.run_ok("farm", "retry", "link").stderr)
 
-    def test_what_follows_has_the_time_of_all_chunks(self):
-        time = ("--chunks", "3", "--time", "10min", "--then", "true")
-        for job, finish in (("farm.toml", "merge"), ("history.toml", "--max-time 1740s")):
+    def test_what_follows_has_a_limit_of_its_own(self):
+        time = ("--chunks", "3", "--time", "100min", "--then", "true")
+        for job, finish, minutes in (("farm.toml", "merge", 100), ("history.toml", "--max-time 17940s", 300)):
             with self.subTest(job):
-                self.farm("--engine", "slurm", *time, job=job)
+                self.farm("--engine", "slurm", *time, "--retries", "0", job=job)
                 script = (self.folder / "out/farm/task.sh").read_text()
-                self.assertIn("--max-time 540s", script)
+                self.assertIn("--max-time 5940s", script)
                 self.assertIn(finish, script)
-                self.assertIn("#SBATCH --time=10\n", (self.folder / "out/farm/task.sbatch").read_text())
-                self.assertIn("time_after=--time=30\n", (self.folder / "out/farm/submit.sh").read_text())
+                self.assertIn("#SBATCH --time=100\n", (self.folder / "out/farm/task.sbatch").read_text())
+                self.assertIn(f"time_after=--time={minutes}\n", (self.folder / "out/farm/submit.sh").read_text())
         self.farm("--engine", "openjd", *time)
         steps = json.loads((self.folder / "out/farm/template.json").read_text())["steps"]
-        self.assertEqual([step["script"]["actions"]["onRun"]["timeout"] for step in steps], [600, 1800, 1800])
+        self.assertEqual([step["script"]["actions"]["onRun"]["timeout"] for step in steps], [6000, 6000, 6000])
 
     def test_a_queue_that_does_not_answer_gets_nothing(self):
         self.farm("--engine", "slurm", "--chunks", "2")

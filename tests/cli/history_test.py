@@ -163,17 +163,19 @@ class Histories(harness.CliTest):
     def test_a_checkpoint_replaces_its_own_kind_alone(self):
         words = ["render", *JOB, *SMALL, "-o", "out/f.####.png", "--frames", "1", "--checkpoint", "notes.txt"]
         self.write("notes.txt", "mine")
-        self.assert_refused(words, ["notes.txt", "is no checkpoint"])
+        self.assert_refused(words, ["notes.txt", "is no whole checkpoint"])
         self.assertEqual((self.folder / "notes.txt").read_text(), "mine")
         self.run_ok(*words, "--overwrite")
         before = (self.folder / "notes.txt").read_bytes()
         other = [word.replace("out/", "other/") for word in words]
-        self.assert_refused([*other, "--seed", "5"], ["notes.txt", "the checkpoint of another job"])
+        self.assert_refused([*other, "--seed", "5"], ["notes.txt", "a checkpoint that was made under other settings"])
         self.assertEqual((self.folder / "notes.txt").read_bytes(), before)
         self.run_ok(*words, "--resume")
         # What a fault has left of one is no reason to stop.
-        (self.folder / "notes.txt").write_bytes(before[:7])
-        self.run_ok(*words, "--resume")
+        digit = before.index(b"\n") - 1  # of the settings' digest, in the first line
+        for left in (before[:7], before[:digit] + b"x" + before[digit + 1:], b"\0" * 100, b""):
+            (self.folder / "notes.txt").write_bytes(left)
+            self.run_ok(*words, "--resume")
 
     def test_a_lost_row_of_a_chain(self):
         """The pictures are whole, and the history that the frame began from is gone: its row is made anew without times."""

@@ -58,10 +58,20 @@ class Locks(Running):
 
     def test_every_folder_of_a_run_is_its_own(self):
         first = self.start_into(["-o", "a/f.####.exr", "-o", "b/f.####.png"], *self.SLOW)
-        self.wait_for(lambda: all((self.folder / name).exists() for name in ("b/run.json.lock", "a/run.files", "a/timing.csv")), first)
-        self.assert_refused(["render", *JOB, "-o", "b/g.####.png", "--frames", "3"], ["b/run.json.lock", f"process {first.pid}"], 3)
+        self.wait_for(lambda: all((self.folder / name).exists() for name in ("b", "a/run.files", "a/timing.csv")), first)
+        self.wait_for(lambda: list((self.folder / "b").glob("pictures.*.run.json.lock")), first)
+        self.assert_refused(["render", *JOB, "-o", "b/f.####.png", "--frames", "3"], ["b/pictures.", f"process {first.pid}"], 3)
+        # Other pictures in that folder, and other frames of these, hold nobody up.
+        self.run_ok("render", *JOB, "-o", "c/f.####.exr", "-o", "b/g.####.png", "--frames", "3")
+        self.run_ok("render", *JOB, "-o", "b/f.####.png", "--frames", "6", "--part")
         first.send_signal(signal.SIGTERM)
         first.wait()
+        self.assertEqual([path for path in self.files() if "lock" in path], [])
+
+    def test_folders_of_any_name(self):
+        self.run_ok("render", *JOB, "-o", "f.####.exr", "-o", "./g.####.png", "--frames", "1")
+        self.run_ok("render", *JOB, "-o", "take#1/f.####.exr", "-o", "take%1/f.####.png", "--frames", "1")
+        self.run_ok("render", *JOB, "-o", "each/%04d/f.%04d.exr", "--frames", "1-2")
         self.assertEqual([path for path in self.files() if "lock" in path], [])
 
     def test_what_is_no_lock_and_what_was_to_become_one(self):

@@ -71,6 +71,8 @@ TEST(ExrHeader, AValueOfAnotherSizeThanIsStatedIsRefused) {
   EXPECT_THAT(problem(attribute("channels", "chlist", kChannels, -5)), HasSubstr("'channels' states"));
   EXPECT_THAT(problem(attribute("expTime", "float", bytes_of(0.5F) + tail)), HasSubstr("'expTime' states 44 bytes"));
   EXPECT_THAT(problem(attribute("dataWindow", "box2i", box(640, 360) + tail)), HasSubstr("'dataWindow' states"));
+  EXPECT_THAT(problem(attribute("aim", "v2d", bytes_of(1.0) + bytes_of(2.0) + tail)), HasSubstr("'aim' states"));
+  EXPECT_THAT(problem(attribute("curve", "floatvector", bytes_of(1.0F) + "ab")), HasSubstr("'curve' states"));
   EXPECT_THAT(problem(attribute("views", "stringvector", bytes_of(std::uint32_t{0x7fffffff}) + "left")),
               HasSubstr("longer than its attribute"));
   EXPECT_THAT(

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -72,14 +71,17 @@ void warn_of_other_machine(const std::string& record_path, const RunRecord& now,
 
 // The folder of a pattern's files, or of the folders that it makes for each frame.
 std::filesystem::path folder_of_pattern(const std::string& pattern) {
-  std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
-  while (folder.string().find_first_of("#%") != std::string::npos) {
-    folder = folder.parent_path();
+  std::filesystem::path one = std::filesystem::path(frame_file_name(pattern, 1)).parent_path();
+  std::filesystem::path other = std::filesystem::path(frame_file_name(pattern, 2)).parent_path();
+  while (one != other) {
+    one = one.parent_path();
+    other = other.parent_path();
   }
-  return folder;
+  return one;
 }
 
-// In every folder that the run writes to: where outputs go to several, another run may share any of them.
+// Of the record, and of the pictures where they go: another run may write pictures of the same names beside a record
+// that lies elsewhere.
 std::vector<std::unique_ptr<RunLock>> lock_outputs(ResolvedJob& resolved, const std::vector<std::string>& files) {
   if (files.empty()) {
     return {};
@@ -89,25 +91,24 @@ std::vector<std::unique_ptr<RunLock>> lock_outputs(ResolvedJob& resolved, const 
   if (resolved.pipeline.trace.samples) {
     claim.samples = format_value(*resolved.pipeline.trace.samples);
   }
-  const std::filesystem::path record(files.front());
-  std::vector<std::filesystem::path> folders{record.parent_path()};
+  const auto tell = [](const std::string& text) { print_warnings({text}); };
+  std::vector<std::unique_ptr<RunLock>> locks;
+  locks.push_back(std::make_unique<RunLock>(claim, files.front(), tell));
+  const std::string record_name = std::filesystem::path(files.front()).filename().string();
   const OutputSettings& output = resolved.pipeline.output;
   for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
-    const std::filesystem::path folder = folder_of_pattern(pattern);
-    const auto is_folder = [&](const std::filesystem::path& known) {
-      std::error_code ignored;
-      return known == folder || std::filesystem::equivalent(known, folder, ignored);
-    };
-    if (!pattern.empty() && std::none_of(folders.begin(), folders.end(), is_folder)) {
-      folders.push_back(folder);
+    const bool has_pictures = claim.samples.empty() && resolved.pipeline.stage != SequenceStage::trace;
+    if (!pattern.empty() && has_pictures) {
+      const std::filesystem::path folder = folder_of_pattern(pattern);
+      const std::string name =
+          std::filesystem::path(pattern).lexically_relative(folder.empty() ? "." : folder).string();
+      const std::string family = "pictures." + digest_settings({{"pattern", name}}).substr(0, 8) + ".";
+      locks.push_back(std::make_unique<RunLock>(claim, (folder / record_name).string(), tell, family));
     }
   }
-  std::vector<std::unique_ptr<RunLock>> locks;
-  for (const std::filesystem::path& folder : folders) {
-    locks.push_back(std::make_unique<RunLock>(claim, (folder / record.filename()).string(),
-                                              [](const std::string& text) { print_warnings({text}); }));
+  for (const std::unique_ptr<RunLock>& lock : locks) {
     // Said to the person who waits, and not kept in the record, which may be published: it names a host.
-    print_warnings(locks.back()->taken_over());
+    print_warnings(lock->taken_over());
   }
   // Another run may have made frames while this one checked or waited.
   prepare_outputs(resolved);

@@ -119,7 +119,6 @@ int run_sweep_command(const SweepArguments& arguments) {
   Interruption interruption(
       std::chrono::nanoseconds(arguments.grace.ns),
       arguments.max_time ? std::optional(std::chrono::nanoseconds(arguments.max_time->ns)) : std::nullopt);
-  interruption.frames_begin();  // what is in hand between frames is soon done
   const SweepPlan plan = load_plan(arguments);
   arguments.json.check();
   if (arguments.dry_run && arguments.chunk) {
@@ -141,6 +140,7 @@ int run_sweep_command(const SweepArguments& arguments) {
     observer.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
   }
   const SweepDirectory directory = prepare_sweep(plan, arguments.task(), observer);
+  interruption.frames_begin();
   keep_freed_memory();
   try {
     if (const std::optional<SweepTask> task = arguments.task()) {
@@ -195,8 +195,8 @@ Command add_sweep_command(CLI::App& app, const Invocation& /*invocation*/) {
       "After a signal to end (TERM, INT, USR1, XCPU), the time to finish the frame in hand; the row that it is "
       "of is measured again by the next call");
   schema.value("--max-time", &SweepArguments::max_time, "DURATION",
-               "Ends in time as if by a signal, so that the process is over, --grace included, so long after its "
-               "beginning");
+               "Ends as if by a signal so long after its beginning, --grace included; scenes that are loaded and "
+               "pictures that are scored then are finished before");
   schema.flag("--restart", &SweepArguments::restart, "Throws away what the folder holds of an earlier sweep");
   schema.flag("--quiet", &SweepArguments::quiet, "Tells nothing but the table");
   const auto options = std::make_shared<CommandOptions<SweepArguments>>(std::move(schema));
