@@ -231,8 +231,8 @@ class Soak:
     def change_input(self, step, reference):
         """Another gaze log: finished frames must not be rendered over."""
         before = self.pictures()
-        if step != RENDER or not any(reference.get(name) == content for name, content in before.items()):
-            return None  # a run over other frames than those that are finished may well render
+        if not any(reference.get(name) == content for name, content in before.items()):
+            return None
         log = self.folder / "log.csv"
         text = log.read_text()
         log.write_text(text.replace("0.2000,0.5", "0.2500,0.5", 1))
@@ -303,8 +303,9 @@ class Soak:
                 sides_gone = sides_gone or name is not None
             elif kind == "disk":
                 name = self.fill_disk(rng, step)
-            elif kind == "input" and not damaged and not sides_gone:
-                name = self.change_input(step, reference)
+            elif kind == "input" and not damaged and not sides_gone and RENDER in way.steps:
+                self.run(RENDER)  # so that there are finished frames
+                name = self.change_input(RENDER, reference)
             elif kind == "folder":
                 shutil.rmtree(self.out, ignore_errors=True)
                 damaged, sides_gone, name = set(), False, "folder removed"
