@@ -311,7 +311,9 @@ OpenPicture open_file(const std::string& path, const OIIO::ImageSpec& config, co
     check_size_of_png(bytes, picture.file_size, place);
     const std::size_t got = bytes.size();
     bytes.resize(std::max<std::uint64_t>(picture.file_size, got));
-    if (stream.read(reinterpret_cast<char*>(bytes.data() + got), static_cast<std::streamsize>(bytes.size() - got))) {
+    stream.clear();  // a file may end within its head
+    if (got == bytes.size() ||
+        stream.read(reinterpret_cast<char*>(bytes.data() + got), static_cast<std::streamsize>(bytes.size() - got))) {
       open_png(picture, bytes, config, place);
     }
   } else {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <span>
@@ -120,7 +121,8 @@ std::vector<std::string> sealed_records(const std::string& directory) {
   return {paths.begin(), paths.end()};
 }
 
-void save_sealed(const std::string& path, Json content, const WrittenFiles& files) {
+void save_sealed(const std::string& path, const std::string& object, const WrittenFiles& files) {
+  Json content = Json::parse(object);
   Json& list = content[kFiles] = Json::object();
   for (const auto& [name, file] : files) {
     list[name] = {{"bytes", file.bytes}, {"digest", file.digest}};

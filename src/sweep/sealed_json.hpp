@@ -3,7 +3,6 @@
 // and digests the pictures that belong to it: nothing is taken for finished that is not as it was written.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,9 +12,9 @@
 
 namespace gazetrace {
 
-// Writes an object under its name when it is complete, and makes the folder. `files`: names relative to the sweep's
-// folder, so that folders of several tasks can be taken into one.
-void save_sealed(const std::string& path, nlohmann::ordered_json content, const WrittenFiles& files);
+// Writes a JSON object, given as text, under its name when it is complete, and makes the folder. `files`: names
+// relative to the sweep's folder, so that folders of several tasks can be taken into one.
+void save_sealed(const std::string& path, const std::string& object, const WrittenFiles& files);
 
 // The records below these folders of a sweep's own, in order; not those of what is being rendered.
 std::vector<std::string> sealed_records(const std::string& directory);

@@ -191,13 +191,14 @@ void save_run(const std::string& path, const StoredRun& run) {
     by_gaze[gaze] = json_of(one);
   }
   save_sealed(path,
-              {{"task", run.task},
-               {"machine", run.machine},
-               {"png", run.png},
-               {"region_cpu_ms", json_of(run.region_cpu_ms)},
-               {"trace_ms", run.trace_ms},
-               {"trace_cpu_ms", run.trace_cpu_ms},
-               {"by_gaze", std::move(by_gaze)}},
+              Json({{"task", run.task},
+                    {"machine", run.machine},
+                    {"png", run.png},
+                    {"region_cpu_ms", json_of(run.region_cpu_ms)},
+                    {"trace_ms", run.trace_ms},
+                    {"trace_cpu_ms", run.trace_cpu_ms},
+                    {"by_gaze", std::move(by_gaze)}})
+                  .dump(),
               run.files);
 }
 
@@ -205,7 +206,7 @@ std::optional<ScoreTable> load_scores(const std::string& path) {
   return load(path, [](const Json& json) { return table_of(json.at("scores")); });
 }
 void save_scores(const std::string& path, const ScoreTable& scores) {
-  save_sealed(path, {{"scores", json_of(scores)}}, {});
+  save_sealed(path, Json({{"scores", json_of(scores)}}).dump(), {});
 }
 
 std::optional<double> load_exposure(const std::string& path, const std::string& digest) {
@@ -215,7 +216,7 @@ std::optional<double> load_exposure(const std::string& path, const std::string& 
   return found.value_or(std::nullopt);
 }
 void save_exposure(const std::string& path, const std::string& digest, double ev, const WrittenFiles& pictures) {
-  save_sealed(path, {{"digest", digest}, {"ev", ev}}, pictures);
+  save_sealed(path, Json({{"digest", digest}, {"ev", ev}}).dump(), pictures);
 }
 
 std::optional<RateSearch> load_rate(const std::string& path) {
@@ -233,7 +234,7 @@ void save_rate(const std::string& path, const RateSearch& search) {
   for (const auto& [spp, time_s] : search.tried) {
     tried.push_back({{"spp", spp}, {"time_s", time_s}});
   }
-  save_sealed(path, {{"spp", search.spp}, {"tried", std::move(tried)}}, {});
+  save_sealed(path, Json({{"spp", search.spp}, {"tried", std::move(tried)}}).dump(), {});
 }
 
 }  // namespace gazetrace
