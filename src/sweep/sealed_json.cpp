@@ -65,7 +65,7 @@ Damage damage_of(const std::string& directory, const std::string& record, bool t
   }
   Damage damage;
   for (const auto& [name, file] : trust_files ? WrittenFiles() : *files) {
-    if (!is_as_written(directory + "/" + name, file)) {
+    if (!is_as_written((fs::path(directory) / name).string(), file)) {
       damage.pictures.push_back(name);
     }
   }
