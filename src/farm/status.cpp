@@ -206,7 +206,8 @@ std::string all_frames(const FarmPlan& plan) {
   return format_frame_list(frames);
 }
 
-// The run that finishes traced frames leaves a record like any other; a merge, an exit code and what it wrote.
+// The run that finishes traced frames leaves a record, as every run does. Of a merge there are its exit code and what
+// it has written.
 TaskStatus observe_finish(const FarmPlan& plan, FileCheck check) {
   if (plan.kind == FarmKind::sweep) {
     return observe_exit(plan, "finish");

@@ -102,8 +102,8 @@ std::vector<std::string> names_of_frame(const std::string& name, std::int32_t fr
   return names;
 }
 
-// Parts that were asked for different outputs do not make one sequence: what a frame lacks that the frame of most files
-// has.
+// Parts that were asked for different outputs do not make one sequence. Adds each file that a frame lacks and that the
+// frame with the most files has.
 void add_frames_without_a_file(const std::vector<RunPart>& parts, std::vector<BadFile>& bad) {
   std::map<std::int32_t, std::set<std::string>> names;
   for (const RunPart& part : parts) {

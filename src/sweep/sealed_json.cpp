@@ -34,7 +34,7 @@ std::string seal_of(const Json& content) {
   return digest_bytes(std::as_bytes(std::span(text)));
 }
 
-// Of pictures that are not as they were written some are removed, so that no record may lead out of the folder.
+// Pictures that are not as they were written are removed, so that no record may name a file outside of the folder.
 bool is_of_the_sweep(const std::string& name) {
   return (name.starts_with("frames/") || name.starts_with("references/")) &&
          fs::path(name).lexically_normal().string() == name;
@@ -141,7 +141,8 @@ void drop_damaged(const std::string& directory, bool trust_files, int threads, c
   if (std::find(is_bad.begin(), is_bad.end(), 1) == is_bad.end()) {
     return;
   }
-  // Meanwhile another task may have removed it and measured again: alone, what is damaged is looked at once more.
+  // Another task may have removed a record meanwhile, and measured again what it held. So each is looked at once more,
+  // now that no other task removes anything.
   const FileLock alone(directory + "/lock.check", FileLock::Kind::alone, true);
   for (std::size_t i = 0; i < records.size(); ++i) {
     std::error_code ignored;

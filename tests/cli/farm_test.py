@@ -290,16 +290,21 @@ class Engines(FarmFiles):
         self.assertEqual(seen - {"missing"}, {"running"})
         self.assertEqual(self.status()["tasks"][0]["state"], "interrupted")
 
-    def test_what_follows_is_seen_while_it_runs(self):
-        self.farm("--engine", "slurm", "--chunks", "2", "--then", "touch began; timeout 100 sh -c 'until [ -e go ]; do sleep 0.05; done'")
+    def what_follows_begun(self, chunks):
+        """Runs the chunks and `finish`, and gives the process of what follows them, once it has made the file `began`."""
         script = str(self.folder / "out/farm/task.sh")
-        for task in ("1-2", "finish"):
+        for task in (chunks, "finish"):
             subprocess.run(["sh", script, task], capture_output=True, check=True)
         after = subprocess.Popen(["sh", script, "after-1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(after.kill)
         begin = time.monotonic()
         while not (self.folder / "began").exists() and time.monotonic() - begin < 100:
             time.sleep(0.02)
+        return after
+
+    def test_what_follows_is_seen_while_it_runs(self):
+        self.farm("--engine", "slurm", "--chunks", "2", "--then", "touch began; timeout 100 sh -c 'until [ -e go ]; do sleep 0.05; done'")
+        after = self.what_follows_begun("1-2")
         self.assertEqual([task["state"] for task in self.status()["tasks"]], ["done", "done", "done", "running"])
         (self.folder / "go").touch()
         self.assertEqual(after.wait(timeout=100), 0)
@@ -309,14 +314,8 @@ class Engines(FarmFiles):
         """A signal reaches what the shell of `--then` has begun, and the shell begins nothing else."""
         waits = "sh -c 'trap \"touch told; exit 0\" TERM; touch began; while :; do sleep 0.05; done'"
         self.farm("--engine", "slurm", "--chunks", "1", "--then", f"{waits}; touch went-on")
-        script = str(self.folder / "out/farm/task.sh")
-        for task in ("1", "finish"):
-            subprocess.run(["sh", script, task], capture_output=True, check=True)
-        after = subprocess.Popen(["sh", script, "after-1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(after.kill)
+        after = self.what_follows_begun("1")
         begin = time.monotonic()
-        while not (self.folder / "began").exists() and time.monotonic() - begin < 100:
-            time.sleep(0.02)
         after.send_signal(signal.SIGTERM)
         self.assertEqual(after.wait(timeout=100), 128 + signal.SIGTERM)
         while processes_in(self.folder) and time.monotonic() - begin < 100:
