@@ -109,7 +109,8 @@ void Interruption::watch() {
       over = end_ && now >= *end_;
     }
     if (over && !in_frames_ && !ended_) {
-      std::fprintf(stderr, "gazetrace: interrupted by %s before the first frame; nothing that was finished before is lost\n",
+      std::fprintf(stderr,
+                   "gazetrace: interrupted by %s before the first frame; nothing that was finished before is lost\n",
                    reason().c_str());
       ::_exit(exit_interrupted);
     }
