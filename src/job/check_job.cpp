@@ -114,16 +114,28 @@ void check_target(const JobSettings& job) {
                 "give the `screen`, or `screen-px` and `screen-ppd`");
   }
   const std::string filter = filter_of(job).name;
-  if (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear")) {
-    throw Error(ErrorKind::usage, option,
-                fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see",
-                            job.foveation.falloff, filter),
-                "give `falloff` uniform and `filter` none, or a budget");
+  const std::string& falloff = job.foveation.falloff;
+  if ((falloff != "uniform" && falloff != "visible") || (filter != "none" && filter != "linear")) {
+    throw Error(
+        ErrorKind::usage, option,
+        fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see", falloff, filter),
+        "give `falloff` uniform or visible and `filter` none, or a budget");
   }
-  if (job.accumulate.mode != AccumulateMode::off) {
-    throw Error(ErrorKind::usage, option,
-                "frames that are accumulated have more frames before them than a pilot looks at",
-                "leave `accumulate` out, or give a budget");
+  if (falloff == "visible" && !job.gaze.path.empty()) {
+    throw Error(
+        ErrorKind::usage, option,
+        "with a gaze that moves the rates of `falloff` visible differ from frame to frame, and one pilot does not "
+        "stand for all",
+        "give `gaze-at`, `falloff` uniform, or a budget");
+  }
+  const AccumulateSettings& accumulate = job.accumulate;
+  const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&
+                       !accumulate.reset_at_saccades && !accumulate.reset_at_blinks;
+  if (accumulate.mode != AccumulateMode::off && !adds_up) {
+    throw Error(
+        ErrorKind::usage, option,
+        "only what `accumulate` two-sided adds up at rest is known beforehand, without `accumulate-blend` and resets",
+        "give `accumulate` two-sided, leave it out, or give a budget");
   }
 }
 

@@ -17,7 +17,7 @@ std::vector<std::int32_t> run_of(std::int32_t first, std::int32_t count) {
 
 }  // namespace
 
-JudgedNumbers judged_numbers(std::int32_t frames, bool moves, const FrameRate& fps) {
+JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps) {
   JudgedNumbers judged;
   judged.sequence_frames = frames;
   if (frames == 1) {
@@ -28,13 +28,17 @@ JudgedNumbers judged_numbers(std::int32_t frames, bool moves, const FrameRate& f
   const auto taps = static_cast<std::int32_t>(temporal_filters(rate).sustained.size());
   const std::int32_t first = std::min(frames, taps + 2);
   judged.runs.push_back(run_of(1, first));
-  if (!moves) {
-    return judged;
-  }
   // A run tells of its last frame or two: those before them are what the metric has in view.
   const std::int32_t length = taps + 1;
   const std::int32_t last = frames - length + 1;
-  for (const std::int32_t begin : {(1 + last) / 2, last}) {
+  std::vector<std::int32_t> begins;
+  if (later != LaterFrames::as_early_ones) {
+    begins.push_back((1 + last) / 2);
+  }
+  if (later == LaterFrames::all_differ) {
+    begins.push_back(last);
+  }
+  for (const std::int32_t begin : begins) {
     const std::int32_t after = judged.runs.back().back() + 1;
     if (begin >= after) {
       judged.runs.push_back(run_of(begin, length));

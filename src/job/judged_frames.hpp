@@ -15,10 +15,13 @@ struct JudgedNumbers {
   std::int32_t sequence_frames = 0;
 };
 
+// What later frames of a sequence look like, beside its early ones.
+enum class LaterFrames : std::uint8_t { as_early_ones, as_the_middle, all_differ };
+
 // FovVideoVDP sees 250 ms at a time, and takes a sequence to have stood still before its first frame. So the first run
-// begins the sequence, and is two frames longer than that time: its last frames show what later ones look like, as far
-// as the gaze does not move. Where it does, further runs look at the middle and at the end. `frames` is the length of
-// the whole sequence. A single frame is judged as a still, by four of its kind.
-JudgedNumbers judged_numbers(std::int32_t frames, bool moves, const FrameRate& fps);
+// begins the sequence, and is two frames longer than that time: its last frames show what later ones look like, unless
+// these differ. Then a further run looks at the middle, or two look at the middle and at the end. `frames` is the
+// length of the whole sequence. A single frame is judged as a still, by four of its kind.
+JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps);
 
 }  // namespace gazetrace

@@ -161,7 +161,11 @@ void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::in
     length = static_cast<std::int32_t>(
         std::max(1.0, std::round(static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator))));
   }
-  const JudgedNumbers judged = judged_numbers(length, gaze_moves, job.fps);
+  // What is added up from both sides grows until a window is full.
+  const LaterFrames later = gaze_moves                                         ? LaterFrames::all_differ
+                            : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
+                                                                               : LaterFrames::as_early_ones;
+  const JudgedNumbers judged = judged_numbers(length, later, job.fps);
   PlanSettings settings = resolved.plan_settings;
   settings.frames.clear();
   for (const std::vector<std::int32_t>& run : judged.runs) {

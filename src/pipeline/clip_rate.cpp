@@ -10,6 +10,7 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
+#include "pipeline/adaptive_rates.hpp"
 #include "pipeline/replica_clip.hpp"
 #include "pipeline/replica_noise.hpp"
 #include "pipeline/trace_counts.hpp"
@@ -18,16 +19,25 @@ namespace gazetrace {
 namespace {
 
 constexpr double kFirstSpp = 1;
-constexpr double kLeastSpp = 0.25;
-// The last pilot has a quarter of the rate that it asks for, since the four renderings of a replica are then as many
-// samples as a frame has, or between these parts of it. At less the prediction drifts, since samples of a sequence are
-// better than independent ones.
-constexpr double kPilotPart = 1.0 / 4, kLeastPart = 1.0 / 7, kMostPart = 1.0 / 2.5;
 constexpr int kMostClipRounds = 4;
-// What stands for the reference goes through `guided`: with half of the samples of a frame, or this many, it has less
-// noise than the frames.
-constexpr double kBasePart = 0.5, kLeastBaseSpp = 16;
 constexpr double kLeastShare = 1e-6, kMostShare = 64;  // of the pilot's squared error, between which is searched
+
+// What is looked at before a rate is chosen, in parts of the rate.
+struct PilotParts {
+  // The last pilot has `best` of the rate that it asks for, or between `least` and `most` of it. A replica takes four
+  // renderings. At less the prediction drifts, since samples of a sequence are better than independent ones.
+  double least = 0, best = 0, most = 0;
+  // What stands for the reference goes through `guided`: with so much of the rate, or so many samples a pixel, it has
+  // less noise than the frames.
+  double base = 0, least_base_spp = 0;
+};
+
+// Frames that are added up are many for each that is shown, so that more can be looked at. They also need it: their
+// error is one, and does not become even over time.
+PilotParts pilot_parts(const AccumulateSettings& accumulate) {
+  return accumulate.mode == AccumulateMode::two_sided ? PilotParts{1.0 / 5, 1.0 / 3, 1.0 / 1.5, 0.5, 8}
+                                                      : PilotParts{1.0 / 7, 1.0 / 4, 1.0 / 2.5, 0.5, 16};
+}
 
 // What is seen of an error, and how much of it may be: Q of FovVideoVDP, or FLIP.
 struct Judge {
@@ -44,26 +54,46 @@ Judge judge_of(const QualityTarget& target, const ReplicaClip& clip) {
   return {*target.flip, 0.4, [&clip](const ReplicaNoise& noise, double share) { return clip.flip_at(noise, share); }};
 }
 
-// The share of the pilot's squared error that leaves what is wanted, within a factor of about 1 + `tolerance` of that:
-// by secants in the logarithms of both, since what is seen is about a power of the error.
-double share_for(const Judge& judge, const ReplicaNoise& noise, double tolerance) {
+// Frames that are added up have a sample in every pixel, since the replicas are those of pixels. The pilots of the
+// fall-off `visible` must leave samples for the renderings of a replica.
+double least_spp(const FrameSettings& settings, const FrameRequest& request) {
+  constexpr double kLeast = 0.25;
+  const double by_sums = settings.accumulate.mode == AccumulateMode::two_sided ? 1 : kLeast;
+  return settings.foveation.falloff == "visible" ? std::max(by_sums, 2 * least_pilot_spp(request)) : by_sums;
+}
+
+// As a whole number, no more than are worth their time.
+int divisions(double ratio_of_samples) {
+  constexpr double kMost = 32;
+  return static_cast<int>(std::clamp(ratio_of_samples, 1.0, kMost));
+}
+
+// What was seen of an error, and how it grows near that: both in logarithms, of what is seen over the squared error's
+// share of the pilot's.
+struct Seen {
+  double share = 0, seen = 0;  // logarithms
+  double slope = 0;
+
+  [[nodiscard]] double at(double log_share) const { return seen + slope * (log_share - share); }
+  [[nodiscard]] double share_of(double wanted) const { return share + (wanted - seen) / slope; }
+};
+
+// Near the share that leaves what is wanted, within a factor of about 1 + `tolerance` of that: by secants, since what
+// is seen is about a power of the error. `guess` is a share to begin with.
+Seen look_near(const Judge& judge, const ReplicaNoise& noise, double guess, double tolerance) {
   constexpr int kMostSteps = 8;
   const double wanted = std::log(judge.wanted);
   const auto seen_at = [&](double x) { return std::log(std::max(judge.seen(noise, std::exp(x)), 1e-12)); };
-  double x = 0;
-  double y = seen_at(0);
-  double slope = judge.typical_slope;
-  for (int step = 0; step < kMostSteps && std::abs(y - wanted) > tolerance; ++step) {
-    const double next = std::clamp(x + (wanted - y) / slope, std::log(kLeastShare), std::log(kMostShare));
-    if (next == x) {
+  Seen seen{std::log(guess), seen_at(std::log(guess)), judge.typical_slope};
+  for (int step = 0; step < kMostSteps && std::abs(seen.seen - wanted) > tolerance; ++step) {
+    const double next = std::clamp(seen.share_of(wanted), std::log(kLeastShare), std::log(kMostShare));
+    if (next == seen.share) {
       break;
     }
-    const double y_next = seen_at(next);
-    slope = std::clamp((y_next - y) / (next - x), 0.1, 3.0);
-    x = next;
-    y = y_next;
+    const double seen_next = seen_at(next);
+    seen = {next, seen_next, std::clamp((seen_next - seen.seen) / (next - seen.share), 0.1, 3.0)};
   }
-  return std::exp(x + (wanted - y) / slope);
+  return seen;
 }
 
 }  // namespace
@@ -81,22 +111,29 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
   constexpr double kRoughly = 0.1, kClosely = 0.01;
   const QualityTarget& target = settings.foveation.target;
   const double most = settings.foveation.max_spp;
+  const PilotParts parts = pilot_parts(settings.accumulate);
+  const FrameRequest& first = judged.runs.front().front();
+  const double least = least_spp(settings, first);
   ReplicaClip clip(tracer, judged, settings, color);
   const Judge judge = judge_of(target, clip);
   ClipRate result;
   double pilot_spp = kFirstSpp;
-  for (bool near = false; !near; pilot_spp = std::max(kLeastSpp, kPilotPart * result.spp)) {
+  for (bool near = false; !near; pilot_spp = std::max(least, parts.best * result.spp)) {
     const auto round = static_cast<std::uint64_t>(result.rounds);
-    clip.look(std::max(kLeastBaseSpp, kBasePart * result.spp), round);
-    const ReplicaNoise noise(tracer, judged.runs.front().front(), settings, pilot_spp, round);
+    clip.look(std::max(parts.least_base_spp, parts.base * result.spp), round);
+    ReplicaNoise noise(tracer, first, settings, pilot_spp, round);
+    const double guess = result.rounds == 0 ? 1 : pilot_spp / result.spp;
+    noise.divide(divisions(clip.most_summed() / (ReplicaNoise::kRenderings * guess)));
     ++result.rounds;
     result.frames += ReplicaNoise::kRenderings;
     add_traces(noise.stats(), result.pilot);
     // The first pilot is far from the rate, and only has to lead to the next one.
-    const double share = share_for(judge, noise, result.rounds == 1 ? kRoughly : kClosely);
-    result.spp = std::max(kLeastSpp, pilot_spp / share);
+    const bool is_first = result.rounds == 1;
+    const Seen seen = look_near(judge, noise, guess, is_first ? kRoughly : kClosely);
+    const double share = std::exp(seen.share_of(std::log(judge.wanted)));
+    result.spp = std::max(least, pilot_spp / share);
     const double part = pilot_spp / result.spp;
-    near = result.rounds == kMostClipRounds || pilot_spp == kLeastSpp || (part >= kLeastPart && part <= kMostPart);
+    near = result.rounds == kMostClipRounds || pilot_spp == least || (part >= parts.least && part <= parts.most);
     // A first guess may be too high.
     if (!(result.spp <= (near ? 1 : 2) * most)) {
       throw Error(ErrorKind::usage, target.jod ? "`target-jod`" : "`target-flip`",
@@ -106,11 +143,11 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
                   "ask for less, or raise `max-spp`");
     }
     if (near) {
-      const double seen = judge.seen(noise, part);
+      const double expected = std::exp(seen.at(std::log(part)));
       if (target.jod) {
-        result.predicted_jod = fovvideovdp_jod(seen);
+        result.predicted_jod = fovvideovdp_jod(expected);
       } else {
-        result.predicted_flip = seen;
+        result.predicted_flip = expected;
       }
     }
   }

@@ -67,6 +67,23 @@ ImageRgb ReplicaClip::code_of(const ImageRgb& radiance) const {
   return code;
 }
 
+SummedFrames ReplicaClip::summed_in(std::int32_t frame) const {
+  const AccumulateSettings& accumulate = settings_.accumulate;
+  const std::int32_t reach = accumulate.mode == AccumulateMode::two_sided ? accumulate.window : 0;
+  const std::int32_t first = std::max(1, frame - reach);
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(frame + reach + 1 - first)};
+}
+
+// A still is the sequence's first frame, which has none before it. Frames of a sequence have them on both sides.
+SummedFrames ReplicaClip::summed_in_still(std::size_t n) const {
+  const SummedFrames one = summed_in(judged_.sequence_frames == 1 ? 1 : settings_.accumulate.window + 1);
+  return {one.first + n * one.count, one.count};
+}
+
+double ReplicaClip::most_summed() const {
+  return static_cast<double>(summed_in_still(0).count);
+}
+
 double ReplicaClip::q_at(const ReplicaNoise& noise, double share) const {
   const bool is_still = judged_.sequence_frames == 1;
   const PlanarView& view = judged_.runs.front().front().view;
@@ -75,6 +92,7 @@ double ReplicaClip::q_at(const ReplicaNoise& noise, double share) const {
   metric_settings.frames_per_second = is_still ? 0 : settings_.frames_per_second;
   metric_settings.threads = settings_.threads;
   // The first frames of the sequence stand for themselves, those that have all before them in view for all the others.
+  // What is added up at rest grows until a window has filled: the runs in the middle and at the end show that.
   double early = 0;
   double late = 0;
   double early_frames = 0;
@@ -83,7 +101,8 @@ double ReplicaClip::q_at(const ReplicaNoise& noise, double share) const {
   for (const std::vector<FrameRequest>& run : judged_.runs) {
     FovVideoVdp metric(metric_settings, view.width_px, view.height_px);
     for (std::size_t i = 0; i < run.size(); ++i, ++index) {
-      const ImageGray seen = display_luminance(code_of(noise.noisy(base_, share, index)), {}, settings_.threads);
+      const SummedFrames summed = is_still ? summed_in_still(index) : summed_in(run[i].frame);
+      const ImageGray seen = display_luminance(code_of(noise.noisy(base_, share, summed)), {}, settings_.threads);
       const std::optional<Vec2d> gaze = gaze_px(run[i]);
       const bool is_late = i + 1 >= static_cast<std::size_t>(metric.taps());
       if (!gaze || (!is_late && &run != &judged_.runs.front())) {
@@ -111,7 +130,7 @@ double ReplicaClip::flip_at(const ReplicaNoise& noise, double share) const {
   metric.threads = settings_.threads;
   double sum = 0;
   for (std::size_t i = 0; i < kStills; ++i) {
-    sum += measure("flip", {{}, code_}, {{}, code_of(noise.noisy(base_, share, i))}, metric).mean;
+    sum += measure("flip", {{}, code_}, {{}, code_of(noise.noisy(base_, share, summed_in_still(i)))}, metric).mean;
   }
   return sum / static_cast<double>(kStills);
 }

@@ -27,14 +27,19 @@ class ReplicaClip {
   [[nodiscard]] const TraceStats& stats() const { return stats_; }
   [[nodiscard]] int looks() const { return looks_; }
 
-  // Q of the whole sequence (fovvideovdp_jod()), if the squared error of frames were `share` times that of one
-  // rendering of `noise`. Error(input) where no judged frame has a gaze.
+  // How many frames at most are added up for one.
+  [[nodiscard]] double most_summed() const;
+  // Q of the whole sequence (fovvideovdp_jod()), if the squared error of frames, before any are added up, were `share`
+  // times that of one rendering of `noise`. Error(input) where no judged frame has a gaze.
   [[nodiscard]] double q_at(const ReplicaNoise& noise, double share) const;
   // Mean FLIP of its frames as stills, at the view's pixels per degree.
   [[nodiscard]] double flip_at(const ReplicaNoise& noise, double share) const;
 
  private:
   [[nodiscard]] ImageRgb code_of(const ImageRgb& radiance) const;  // of a display, 0..1 in 8 bits
+  // Of a frame of the sequence, and of the n-th example of a still.
+  [[nodiscard]] SummedFrames summed_in(std::int32_t frame) const;
+  [[nodiscard]] SummedFrames summed_in_still(std::size_t n) const;
 
   PathTracer& tracer_;
   const JudgedFrames& judged_;

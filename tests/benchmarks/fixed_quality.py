@@ -17,9 +17,10 @@ stands for itself. A margin around each belongs to what FovVideoVDP sees and has
 (`compare --pooling-weights`). Outside of the windows test and reference show the same picture. `--whole` traces and scores
 whole frames instead, to see what the windows change.
 
-Raw samples are rendered once, at 16 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
-clip whose differences from the reference are divided by the root of N / 16; the line `scaling` shows how well that holds, by a
-clip that was rendered at 64.
+Raw samples are rendered once, at 64 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
+clip whose differences from the reference are divided by the root of N / 64; the line `scaling` shows how well that holds, by a
+clip that was rendered at 16. Rare light is cut off by the display less the more samples there are, and samples of a sequence are
+better than independent ones, so that raw samples are a little better than they are scaled to be.
 
 Costs are processor seconds a frame, without loading: the difference between a run of all frames and one of its first, over the
 frames between. Those of raw frames follow from whole frames at 2 and 10 samples a pixel. The tool renders whole frames:
@@ -51,7 +52,7 @@ import OpenEXR
 
 DISPLAYS = {"desktop": (1708, 961, 28), "hmd": (1131, 1209, 13)}
 FRAMES_PER_SECOND = 24
-RAW_SPP = 16
+RAW_SPP = 64
 OUTSIDE_SPP = 1 / 256
 METRICS = ("fovvideovdp", "flicker")
 
@@ -186,7 +187,7 @@ class Scene:
                     (work / f"r.{frame:04d}.exr").symlink_to("r.0001.exr")
                 picture = numpy.where(traced, numpy.maximum(picture_of_frame(frame), 0), self.fill)
                 write_picture(work / f"t.{frame:04d}.exr", picture)
-            metrics = METRICS if self.asked.frames >= FRAMES_PER_SECOND else METRICS[:1]
+            metrics = METRICS if self.asked.whole and self.asked.frames >= FRAMES_PER_SECOND else METRICS[:1]
             run(self.asked.program, "compare", work / "r.####.exr", work / "t.####.exr", "--metrics", ",".join(metrics), "--fps",
                 FRAMES_PER_SECOND, "--frames", f"1-{self.asked.frames}", "--anyway", *self.bench.screen, "--gaze-at", gaze,
                 "--exposure", self.exposure, "--pooling-weights", work / "weights.exr", "--json", record)
@@ -254,10 +255,10 @@ class Scene:
 
     def raw_curve(self, gaze):
         """(cost, scores, rate) by rate."""
-        clip = self.in_windows("raw", f"1-{self.asked.frames}", RAW_SPP, 11)
+        clip = self.in_windows("raw-rendered-64", f"1-{self.asked.frames}", RAW_SPP, 12)
         if self.asked.tool_in_windows:
             pixels = self.bench.windows.is_traced.size
-            return self.raw_scores(gaze, clip, self.beside_samples("raw", self.asked.frames), pixels * self.seconds_of_sample())
+            return self.raw_scores(gaze, clip, self.beside_samples("raw-rendered-64", self.asked.frames), pixels * self.seconds_of_sample())
         for spp in (2, 10):
             for frames in ("1", "1-3"):
                 name = f"cost-{spp}-{frames}"
@@ -280,10 +281,10 @@ class Scene:
         return curve
 
     def check_scaling(self, gaze):
-        clip = self.in_windows("raw-rendered-64", f"1-{self.asked.frames}", 64, 12)
-        rendered = self.score("raw-rendered-64", gaze, lambda frame: read_exr(clip / f"f.{frame:04d}.exr"))["fovvideovdp"]
-        scaled = self.score("raw-64", gaze, None)["fovvideovdp"]
-        print(f"scaling: raw 64 samples a pixel score {rendered:.3f} JOD as rendered, {scaled:.3f} as scaled from {RAW_SPP}", flush=True)
+        clip = self.in_windows("raw", f"1-{self.asked.frames}", 16, 11)
+        rendered = self.score("raw-rendered-16", gaze, lambda frame: read_exr(clip / f"f.{frame:04d}.exr"))["fovvideovdp"]
+        scaled = self.score("raw-16", gaze, None)["fovvideovdp"]
+        print(f"scaling: raw 16 samples a pixel score {rendered:.3f} JOD as rendered, {scaled:.3f} as scaled from {RAW_SPP}", flush=True)
 
     def tool_curve(self, gaze, looks_at):
         """(cost, scores, rate) by budget. `looks_at`: the gaze that the tool is told; None: none."""
@@ -345,7 +346,7 @@ class Bench:
         scene.prepare()
         for k, gaze in enumerate(self.gazes):
             raw = scene.raw_curve(gaze)
-            if k == 0 and 64 in self.asked.raw_rates:
+            if k == 0 and 16 in self.asked.raw_rates:
                 scene.check_scaling(gaze)
             curves = {"raw": raw, "no gaze": scene.tool_curve(gaze, None), "gaze": scene.tool_curve(gaze, gaze)}
             for which, curve in curves.items():

@@ -4,18 +4,24 @@
 
   stated_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--metric jod|flip] [--targets 8.5,9]
                     [--filters none] [--falloffs uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28]
-                    [--frames 24] [--reference-spp 4096] [--seed 1]
+                    [--frames 24] [--reference-spp 4096] [--seed 1] [--with "--accumulate two-sided --accumulate-window 11"]
+                    [--pyfvvdp]
 
 OPTIONS are those of `gazetrace render`. Views are at rest, so that one reference stands for all frames; it is rendered in
 two halves of other seeds, and what the halves score against each other, as a still, is printed. Every line is a pair of clip and
 target: JOD or mean FLIP stated, predicted and measured by `gazetrace compare`, by how much that is off (FLIP: in parts of what was
 stated), the rate, and the share of the pilot in the time of all frames. Pictures that OUT_FOLDER holds already are used again; a line is printed as soon as it is measured.
 The last lines count the pairs within 0.1 and 0.2 JOD, or within 5 and 10 % of FLIP. It needs the Python packages numpy and OpenEXR.
+
+`--with` is for further options of all renderings but the reference. `--pyfvvdp` lets the authors' program judge (the Python package
+pyfvvdp, with a PyTorch for the CPU): what is counted is then its score, and that of `gazetrace compare` stands beside it. Both see
+the view sRGB, in 8 bits.
 """
 
 import argparse
 import csv
 import json
+import math
 import pathlib
 import re
 import shlex
@@ -50,6 +56,9 @@ class Bench:
             (folder / "done").touch()
         return folder
 
+    def view(self):
+        return ["--view", "sRGB"] if self.asked.pyfvvdp else []
+
     def reference(self, name, scene):
         folder = self.out / name / "reference"
         half = str(self.asked.reference_spp // 2)
@@ -66,8 +75,8 @@ class Bench:
     def score(self, reference, test, gaze, frames, exposure):
         scores = self.out / "scores.json"
         run(self.asked.program, "compare", reference / "f.####.exr", test / "f.####.exr", "--metrics", METRICS[self.asked.metric], "--fps",
-            "24", "--frames", frames, "--anyway", *self.screen, "--gaze-at", gaze, "--exposure", exposure, "--overwrite",
-            "--json", scores)
+            "24", "--frames", frames, "--anyway", *self.screen, "--gaze-at", gaze, "--exposure", exposure, *self.view(),
+            "--overwrite", "--json", scores)
         return json.loads(scores.read_text())["sequence"][0]["scores"][0]["value"]
 
 
@@ -87,6 +96,31 @@ def mean_of_exr(a, b, to):
         file.write(str(to))
 
 
+def codes(folder, frame, exposure):
+    """As the view sRGB shows a frame, in 8 bits."""
+    import numpy
+    light = numpy.clip(read_exr(folder / f"f.{frame:04d}.exr").astype(numpy.float64) * 2.0 ** float(exposure), 0, 1)
+    return numpy.rint(255 * numpy.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)).astype(numpy.uint8)
+
+
+def their_jod(reference, test, gaze, frames, exposure, ppd):
+    import numpy
+    import pyfvvdp
+    import torch
+    clips = [numpy.stack([codes(folder, frame, exposure) for frame in range(1, frames + 1)], -1) for folder in (test, reference)]
+    height, width = clips[0].shape[:2]
+    # The foot of the perpendicular has this many pixels a degree.
+    fov_deg = math.degrees(2 * math.atan(width / 2 * math.tan(math.radians(1 / ppd))))
+    geometry = pyfvvdp.fvvdp_display_geometry((width, height), distance_m=1, fov_horizontal=fov_deg)
+    metric = pyfvvdp.fvvdp(display_geometry=geometry, display_name="standard_4k", foveated=True, heatmap=None,
+                           device=torch.device("cpu"))
+    u, v = (float(number) for number in gaze.split(","))
+    # It takes pixels' middles for whole numbers.
+    looks_at = torch.tensor([[u * width - 0.5, v * height - 0.5]] * frames, dtype=torch.float32)
+    jod, _ = metric.predict(*clips, dim_order="HWCF", frames_per_second=24, fixation_point=looks_at)
+    return float(jod)
+
+
 def exposure_of(scene):
     return scene[scene.index("--exposure") + 1] if "--exposure" in scene else "0"
 
@@ -95,15 +129,17 @@ def judge(bench, name, scene, gaze, falloff, filter_name, target):
     asked = bench.asked
     folder = bench.out / name / f"{asked.metric}-{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
     bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--falloff", falloff, "--filter", filter_name,
-                 f"--target-{asked.metric}", target, "--seed", str(asked.seed))
+                 f"--target-{asked.metric}", target, "--seed", str(asked.seed), *shlex.split(asked.options), *bench.view())
     with open(folder / "timing.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     rate = json.loads((folder / "run.json").read_text())["facts"]["rate"]
     predicted = float(re.search(r"expected to reach (?:a mean FLIP of )?([\d.e-]+)", rate)[1])
     whole = sum(float(row["total_ms"]) for row in rows)
     pilot = sum(float(row["pilot_ms"]) for row in rows)
-    measured = bench.score(bench.reference(name, scene), folder, gaze, f"1-{asked.frames}", exposure_of(scene))
-    return predicted, measured, float(re.match(r"[\d.e+]+", rate)[0]), pilot / whole
+    reference = bench.reference(name, scene)
+    measured = bench.score(reference, folder, gaze, f"1-{asked.frames}", exposure_of(scene))
+    theirs = their_jod(reference, folder, gaze, asked.frames, exposure_of(scene), float(asked.ppd)) if asked.pyfvvdp else None
+    return predicted, measured, theirs, float(re.match(r"[\d.e+]+", rate)[0]), pilot / whole
 
 
 def main():
@@ -121,10 +157,12 @@ def main():
     parser.add_argument("--frames", type=int, default=24)
     parser.add_argument("--reference-spp", type=int, default=4096)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--with", dest="options", default="")
+    parser.add_argument("--pyfvvdp", action="store_true")
     asked = parser.parse_args()
     bench = Bench(asked)
     print(f"{'scene':<14}{'gaze':>10} {'falloff':<9}{'filter':<8}{'stated':>7}{'predicted':>10}{'measured':>9}{'off':>7}"
-          f"{'spp':>9}{'pilot':>7}")
+          f"{'spp':>9}{'pilot':>7}{'pyfvvdp':>9}")
     off = {}
     pilots = []
     for text in asked.scene:
@@ -138,14 +176,16 @@ def main():
                     for target in asked.targets.split(","):
                         place = f"{name:<14}{gaze:>10} {falloff:<9}{filter_name:<8}{float(target):7.4g}"
                         try:
-                            predicted, measured, spp, pilot = judge(bench, name, scene, gaze, falloff, filter_name, target)
+                            predicted, measured, theirs, spp, pilot = judge(bench, name, scene, gaze, falloff, filter_name, target)
                         except RuntimeError as problem:
                             print(f"{place} {problem}", flush=True)
                             continue
-                        error = measured - float(target) if asked.metric == "jod" else measured / float(target) - 1
+                        judged = measured if theirs is None else theirs
+                        error = judged - float(target) if asked.metric == "jod" else judged / float(target) - 1
                         off.setdefault(filter_name, []).append(error)
                         pilots.append(pilot)
-                        print(f"{place}{predicted:10.4g}{measured:9.4g}{error:+7.3f}{spp:9.2f}{pilot:7.1%}", flush=True)
+                        print(f"{place}{predicted:10.4g}{measured:9.4g}{error:+7.3f}{spp:9.2f}{pilot:7.1%}"
+                              + ("" if theirs is None else f"{theirs:9.4g}"), flush=True)
     for filter_name, values in off.items():
         bounds = (0.1, 0.2) if asked.metric == "jod" else (0.05, 0.1)
         near = [sum(abs(v) <= most for v in values) for most in bounds]

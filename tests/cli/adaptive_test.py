@@ -104,6 +104,33 @@ class Adaptive(harness.CliTest):
         clip("9", "9", "--resume")
         self.assertEqual(rate, self.record("9")["facts"]["rate"])
 
+    def test_a_stated_quality_of_frames_that_are_added_up(self):
+        def clip(folder, frames, *more):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", frames, "--target-jod", "9", *more, "-o",
+                        f"{folder}/f.####.exr")
+
+        def samples(folder):
+            return int(self.rows(folder)[0]["samples"])
+
+        both = ["--accumulate", "two-sided", "--accumulate-window", "4"]
+        clip("whole", "1-6", *both)
+        clip("alone", "1-6")
+        # Each frame shares in the samples of four more, or of eight.
+        self.assertLess(samples("whole"), 0.5 * samples("alone"))
+        whole = self.pictures("whole")
+        clip("threads", "1-6", *both, "--threads", "1")
+        self.assertEqual(whole, self.pictures("threads"))
+        for part in ("1-2", "3-6"):
+            clip("parts", part, *both, "--part")
+        self.run_ok("merge", "parts")
+        self.assertEqual(whole, self.pictures("parts"))
+        (self.folder / "whole/f.0003.exr").unlink()
+        clip("whole", "1-6", *both, "--resume")
+        self.assertEqual(whole, self.pictures("whole"))
+        self.run_ok("render", "box.gltf", *VIEW, "--falloff", "visible", "--filter", "none", "--frames", "1-3", "--target-jod", "8",
+                    *both, "-o", "visible/f.####.exr")
+        self.assertAlmostEqual(float(self.rows("visible")[0]["predicted_jod"]), 8, delta=0.02)
+
     def test_a_stated_flip(self):
         def still(folder, target, *more, ppd="12"):
             self.run_ok("render", "box.gltf", *VIEW[:-2], "--screen-px", "64,40", "--screen-ppd", ppd, "--falloff",
@@ -167,6 +194,8 @@ class Adaptive(harness.CliTest):
             (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
             (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
             (["--sample-range", "pilot"], *RAW, "--target-jod", "9", "--sample-range", "0:2"),
+            (["--target-jod", "resets"], *RAW, "--target-jod", "9", "--accumulate", "two-sided",
+             "--accumulate-reset-saccades"),
             (["--target-flip", "screen"], "--falloff", "uniform", "--filter", "none", "--target-flip", "0.05"),
             (["--target-flip", "bias"], *GAZE, "--falloff", "uniform", "--filter", "guided", "--target-flip", "0.05"),
             (["--target-flip", "0.03"], *RAW, "--target-flip", "1"),

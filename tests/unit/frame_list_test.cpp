@@ -109,17 +109,19 @@ TEST(FrameList, RefusesWhatIsNone) {
 // At 24 frames a second FovVideoVDP has six frames in view.
 TEST(JudgedFrames, AreRunsThatTheMetricCanSeeWhole) {
   const FrameRate film{24, 1};
-  EXPECT_EQ(judged_numbers(1, false, film).runs, (std::vector<Frames>{{1}, {2}, {3}, {4}}));
-  EXPECT_EQ(judged_numbers(24, false, film).runs, (std::vector<Frames>{{1, 2, 3, 4, 5, 6, 7, 8}}));
-  EXPECT_EQ(judged_numbers(5, true, film).runs, (std::vector<Frames>{{1, 2, 3, 4, 5}}));
-  const JudgedNumbers moving = judged_numbers(101, true, film);
+  EXPECT_EQ(judged_numbers(1, LaterFrames::as_early_ones, film).runs, (std::vector<Frames>{{1}, {2}, {3}, {4}}));
+  EXPECT_EQ(judged_numbers(24, LaterFrames::as_early_ones, film).runs, (std::vector<Frames>{{1, 2, 3, 4, 5, 6, 7, 8}}));
+  EXPECT_EQ(judged_numbers(5, LaterFrames::all_differ, film).runs, (std::vector<Frames>{{1, 2, 3, 4, 5}}));
+  const JudgedNumbers moving = judged_numbers(101, LaterFrames::all_differ, film);
   EXPECT_EQ(moving.sequence_frames, 101);
   EXPECT_EQ(moving.runs, (std::vector<Frames>{
                              {1, 2, 3, 4, 5, 6, 7, 8}, {48, 49, 50, 51, 52, 53, 54}, {95, 96, 97, 98, 99, 100, 101}}));
-  // Where runs would meet there are fewer.
-  EXPECT_EQ(judged_numbers(15, true, film).runs,
+  EXPECT_EQ(judged_numbers(24, LaterFrames::as_the_middle, film).runs,
             (std::vector<Frames>{{1, 2, 3, 4, 5, 6, 7, 8}, {9, 10, 11, 12, 13, 14, 15}}));
-  EXPECT_EQ(judged_numbers(30, true, {30, 1}).runs.front().size(), 10U);
+  // Where runs would meet there are fewer.
+  EXPECT_EQ(judged_numbers(15, LaterFrames::all_differ, film).runs,
+            (std::vector<Frames>{{1, 2, 3, 4, 5, 6, 7, 8}, {9, 10, 11, 12, 13, 14, 15}}));
+  EXPECT_EQ(judged_numbers(30, LaterFrames::all_differ, {30, 1}).runs.front().size(), 10U);
 }
 
 }  // namespace

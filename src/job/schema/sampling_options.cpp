@@ -208,10 +208,10 @@ void add_target_options(JobSchema& schema) {
   schema
       .value(
           "--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
-          "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until the "
-          "sequence scores so much by FovVideoVDP, as 'gazetrace compare' measures it")
+          "Frames without a filter, of a view at rest: as many samples as a pilot expects it to take until the sequence "
+          "scores so much by FovVideoVDP, as 'gazetrace compare' measures it; with `accumulate` two-sided many times fewer")
       .within(0, 10)
-      .need("gaze, `falloff` uniform and `filter` none");
+      .need("gaze, `falloff` uniform or visible, and `filter` none");
   schema
       .value("--target-flip", at(&JobSettings::foveation, &F::target, &QualityTarget::flip), "ERROR", Touch::sampling,
              "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "
