@@ -117,7 +117,7 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
   ReplicaClip clip(tracer, judged, settings, color);
   const Judge judge = judge_of(target, clip);
   ClipRate result;
-  double pilot_spp = kFirstSpp;
+  double pilot_spp = std::max(kFirstSpp, least);
   for (bool near = false; !near; pilot_spp = std::max(least, parts.best * result.spp)) {
     const auto round = static_cast<std::uint64_t>(result.rounds);
     clip.look(std::max(parts.least_base_spp, parts.base * result.spp), round);
@@ -133,7 +133,7 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
     const double share = std::exp(seen.share_of(std::log(judge.wanted)));
     result.spp = std::max(least, pilot_spp / share);
     const double part = pilot_spp / result.spp;
-    near = result.rounds == kMostClipRounds || pilot_spp == least || (part >= parts.least && part <= parts.most);
+    near = result.rounds == kMostClipRounds || (part >= parts.least && (part <= parts.most || pilot_spp == least));
     // A first guess may be too high.
     if (!(result.spp <= (near ? 1 : 2) * most)) {
       throw Error(ErrorKind::usage, target.jod ? "`target-jod`" : "`target-flip`",

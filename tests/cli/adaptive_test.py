@@ -127,7 +127,7 @@ class Adaptive(harness.CliTest):
         (self.folder / "whole/f.0003.exr").unlink()
         clip("whole", "1-6", *both, "--resume")
         self.assertEqual(whole, self.pictures("whole"))
-        self.run_ok("render", "box.gltf", *VIEW, "--falloff", "visible", "--filter", "none", "--frames", "1-3", "--target-jod", "8",
+        self.run_ok("render", "box.gltf", *VIEW, *GAZE, "--filter", "none", "--frames", "1-3", "--target-jod", "8",
                     *both, "-o", "visible/f.####.exr")
         self.assertAlmostEqual(float(self.rows("visible")[0]["predicted_jod"]), 8, delta=0.02)
 
