@@ -78,6 +78,10 @@ class Bench:
                 continue
             parts = (a.var(ddof=1) / a.size, u.var(ddof=1) / u.size)
             error = math.sqrt(sum(parts)) / u.mean()
+            if error == 0:  # pixels of a light that is everywhere the same
+                equal = a.mean() == u.mean()
+                yield {"name": name, "label": label, "difference": a.mean() / u.mean() - 1, "half": 0, "p": 0 if equal else 1}
+                continue
             freedom = sum(parts)**2 / sum(part**2 / (len(a) - 1) for part in parts)
             difference = a.mean() / u.mean() - 1
             p = stats.t.sf((self.asked.margin / 100 - abs(difference)) / error, freedom)
