@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
@@ -19,7 +20,10 @@ namespace gazetrace {
 namespace {
 
 constexpr double kFirstSpp = 1;
-constexpr int kMostClipRounds = 4;
+constexpr int kMostClipRounds = 6;
+// From one round to the next the rate grows no further: what is brighter than a display in a pilot says little of
+// pictures with many more samples.
+constexpr double kGrowthOfRound = 32;
 constexpr double kLeastShare = 1e-6, kMostShare = 64;  // of the pilot's squared error, between which is searched
 
 // What is looked at before a rate is chosen, in parts of the rate.
@@ -131,7 +135,9 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
     const bool is_first = result.rounds == 1;
     const Seen seen = look_near(judge, noise, guess, is_first ? kRoughly : kClosely);
     const double share = std::exp(seen.share_of(std::log(judge.wanted)));
-    result.spp = std::max(least, pilot_spp / share);
+    const double reach =
+        result.rounds < kMostClipRounds ? kGrowthOfRound * pilot_spp : std::numeric_limits<double>::max();
+    result.spp = std::clamp(pilot_spp / share, least, std::max(least, reach));
     const double part = pilot_spp / result.spp;
     near = result.rounds == kMostClipRounds || (part >= parts.least && (part <= parts.most || pilot_spp == least));
     // A first guess may be too high.
