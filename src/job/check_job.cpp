@@ -114,19 +114,11 @@ void check_target(const JobSettings& job) {
                 "give the `screen`, or `screen-px` and `screen-ppd`");
   }
   const std::string filter = filter_of(job).name;
-  const std::string& falloff = job.foveation.falloff;
-  if ((falloff != "uniform" && falloff != "visible") || (filter != "none" && filter != "linear")) {
-    throw Error(
-        ErrorKind::usage, option,
-        fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see", falloff, filter),
-        "give `falloff` uniform or visible and `filter` none, or a budget");
-  }
-  if (falloff == "visible" && !job.gaze.path.empty()) {
-    throw Error(
-        ErrorKind::usage, option,
-        "with a gaze that moves the rates of `falloff` visible differ from frame to frame, and one pilot does not "
-        "stand for all",
-        "give `gaze-at`, `falloff` uniform, or a budget");
+  if (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear")) {
+    throw Error(ErrorKind::usage, option,
+                fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see",
+                            job.foveation.falloff, filter),
+                "give `falloff` uniform and `filter` none, or a budget");
   }
   const AccumulateSettings& accumulate = job.accumulate;
   const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&

@@ -11,7 +11,6 @@
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
-#include "pipeline/adaptive_rates.hpp"
 #include "pipeline/replica_clip.hpp"
 #include "pipeline/replica_noise.hpp"
 #include "pipeline/trace_counts.hpp"
@@ -21,8 +20,8 @@ namespace {
 
 constexpr double kFirstSpp = 1;
 constexpr int kMostClipRounds = 6;
-// From one round to the next the rate grows no further: what is brighter than a display in a pilot says little of
-// pictures with many more samples.
+// From one round to the next the rate grows by no more than this factor: what is brighter than a display in a pilot
+// says little of pictures with many more samples.
 constexpr double kGrowthOfRound = 32;
 constexpr double kLeastShare = 1e-6, kMostShare = 64;  // of the pilot's squared error, between which is searched
 
@@ -31,13 +30,14 @@ struct PilotParts {
   // The last pilot has `best` of the rate that it asks for, or between `least` and `most` of it. A replica takes four
   // renderings. At less the prediction drifts, since samples of a sequence are better than independent ones.
   double least = 0, best = 0, most = 0;
-  // What stands for the reference goes through `guided`: with so much of the rate, or so many samples a pixel, it has
-  // less noise than the frames.
+  // What stands for the reference goes through `guided`, with so much of the rate, or so many samples a pixel. Without
+  // accumulation it then has less noise than the frames. Beside frames that are added up it may have more, which makes
+  // the replica a little harder to see.
   double base = 0, least_base_spp = 0;
 };
 
-// Frames that are added up are many for each that is shown, so that more can be looked at. They also need it: their
-// error is one, and does not become even over time.
+// Where frames are added up, a pilot of one frame is small beside all that are traced, and may look closer. It must:
+// the error of such a picture stands still, so that no mean over time makes up for what a pilot has missed.
 PilotParts pilot_parts(const AccumulateSettings& accumulate) {
   return accumulate.mode == AccumulateMode::two_sided ? PilotParts{1.0 / 5, 1.0 / 3, 1.0 / 1.5, 0.5, 8}
                                                       : PilotParts{1.0 / 7, 1.0 / 4, 1.0 / 2.5, 0.5, 16};
@@ -58,12 +58,13 @@ Judge judge_of(const QualityTarget& target, const ReplicaClip& clip) {
   return {*target.flip, 0.4, [&clip](const ReplicaNoise& noise, double share) { return clip.flip_at(noise, share); }};
 }
 
-// Frames that are added up have a sample in every pixel, since the replicas are those of pixels. The pilots of the
-// fall-off `visible` must leave samples for the renderings of a replica.
-double least_spp(const FrameSettings& settings, const FrameRequest& request) {
-  constexpr double kLeast = 0.25;
-  const double by_sums = settings.accumulate.mode == AccumulateMode::two_sided ? 1 : kLeast;
-  return settings.foveation.falloff == "visible" ? std::max(by_sums, 2 * least_pilot_spp(request)) : by_sums;
+// Frames that are added up have a sample in every pixel, since the replica is one of single pixels.
+double least_spp(const FrameSettings& settings) {
+  return settings.accumulate.mode == AccumulateMode::two_sided ? 1 : 0.25;
+}
+
+std::string counted(int number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
 
 // As a whole number, no more than are worth their time.
@@ -103,11 +104,12 @@ Seen look_near(const Judge& judge, const ReplicaNoise& noise, double guess, doub
 }  // namespace
 
 std::string ClipRate::text() const {
-  return fmt::format("{:.6g} samples a pixel, expected to reach {}: by {} pilots, {} renderings of frames in all", spp,
+  return fmt::format("{:.6g} samples a pixel{}, expected to reach {}: by {}, {} of frames in all", spp,
+                     is_least ? ", the least there is" : "",
                      predicted_jod    ? fmt::format("{:.3f} JOD", *predicted_jod)
                      : predicted_flip ? fmt::format("a mean FLIP of {:.4g}", *predicted_flip)
                                       : "nothing",
-                     rounds, frames);
+                     counted(rounds, "pilot"), counted(frames, "rendering"));
 }
 
 ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
@@ -117,7 +119,7 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
   const double most = settings.foveation.max_spp;
   const PilotParts parts = pilot_parts(settings.accumulate);
   const FrameRequest& first = judged.runs.front().front();
-  const double least = least_spp(settings, first);
+  const double least = least_spp(settings);
   ReplicaClip clip(tracer, judged, settings, color);
   const Judge judge = judge_of(target, clip);
   ClipRate result;
@@ -135,18 +137,20 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
     const bool is_first = result.rounds == 1;
     const Seen seen = look_near(judge, noise, guess, is_first ? kRoughly : kClosely);
     const double share = std::exp(seen.share_of(std::log(judge.wanted)));
-    const double reach =
-        result.rounds < kMostClipRounds ? kGrowthOfRound * pilot_spp : std::numeric_limits<double>::max();
+    const bool is_last = result.rounds == kMostClipRounds;
+    const double reach = is_last ? std::numeric_limits<double>::max() : kGrowthOfRound * pilot_spp;
     result.spp = std::clamp(pilot_spp / share, least, std::max(least, reach));
     const double part = pilot_spp / result.spp;
-    near = result.rounds == kMostClipRounds || (part >= parts.least && (part <= parts.most || pilot_spp == least));
+    result.settled = part >= parts.least && (part <= parts.most || pilot_spp == least);
+    near = result.settled || is_last;
     // A first guess may be too high.
     if (!(result.spp <= (near ? 1 : 2) * most)) {
       throw Error(ErrorKind::usage, target.jod ? "`target-jod`" : "`target-flip`",
-                  fmt::format("{}{} would take {:.3g} samples a pixel, by {} rounds of pilots; `max-spp` is {:g}",
-                              target.jod ? *target.jod : *target.flip, target.jod ? " JOD" : "", result.spp,
-                              result.rounds, most),
-                  "ask for less, or raise `max-spp`");
+                  fmt::format("{}{} would take {}{:.3g} samples a pixel, by what {} of pilots saw; `max-spp` is {:g}",
+                              target.jod ? *target.jod : *target.flip, target.jod ? " JOD" : "",
+                              pilot_spp / share > result.spp ? "more than " : "", result.spp,
+                              counted(result.rounds, "round"), most),
+                  result.spp > least ? "ask for less, or raise `max-spp`" : "raise `max-spp`: fewer are not possible");
     }
     if (near) {
       const double expected = std::exp(seen.at(std::log(part)));
@@ -157,7 +161,9 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
       }
     }
   }
-  result.frames += static_cast<std::size_t>(clip.looks());
+  result.is_least = result.spp == least;
+  result.summed_frames = clip.most_summed();
+  result.frames += clip.looks();
   add_traces(clip.stats(), result.pilot);
   return result;
 }

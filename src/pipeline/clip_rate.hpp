@@ -17,7 +17,10 @@ struct ClipRate {
   std::optional<double> predicted_jod, predicted_flip;  // of the sequence, at this rate: what was asked for
   TraceStats pilot;                                     // samples that were discarded
   int rounds = 0;
-  std::size_t frames = 0;  // renderings of judged frames
+  int frames = 0;            // renderings of judged frames
+  bool is_least = false;     // fewer samples are not possible
+  bool settled = true;       // the last pilot was near enough to the rate; else the prediction is extrapolated far
+  double summed_frames = 1;  // how many frames at most are added up for one
 
   [[nodiscard]] std::string text() const;  // for the run record
 };

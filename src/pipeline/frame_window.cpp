@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/frame_window.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "pipeline/frame_stages.hpp"
@@ -23,10 +24,14 @@ FrameWindow::FrameWindow(const FrameRenderer& renderer, const FramePlan& plan, s
 FrameWindow::Run FrameWindow::window_around(std::int32_t frame) const {
   const std::int32_t reach = renderer_->settings().accumulate.window;
   Run window{frame, frame};
-  while (window.first > frame - reach && requests_.contains(window.first - 1)) {
+  // The largest number of a frame has none after it.
+  const auto is_there = [&](std::int64_t other) {
+    return other <= std::numeric_limits<std::int32_t>::max() && requests_.contains(static_cast<std::int32_t>(other));
+  };
+  while (window.first > frame - reach && is_there(window.first - 1)) {
     --window.first;
   }
-  while (window.last < frame + reach && requests_.contains(window.last + 1)) {
+  while (window.last - frame < reach && is_there(std::int64_t{window.last} + 1)) {
     ++window.last;
   }
   return window;

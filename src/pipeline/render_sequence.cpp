@@ -195,7 +195,13 @@ class JudgedRate {
   // Of pixels of a few samples, what FLIP sees was off by up to 28 % of what was stated; from 30 samples on by 5 %.
   void warn(Warnings& warnings) const {
     constexpr double kKnownToHold = 16;
-    if (rate_->predicted_flip && rate_->spp < kKnownToHold) {
+    if (!rate_->settled) {
+      warnings.push_back(
+          fmt::format("the rate for a stated quality did not settle in {} rounds of pilots: at {:.3g} samples a pixel "
+                      "the sequence may be worse or better than stated",
+                      rate_->rounds, rate_->spp));
+    }
+    if (rate_->predicted_flip && rate_->spp * rate_->summed_frames < kKnownToHold) {
       warnings.push_back(fmt::format(
           "`target-flip`: at {:.3g} samples a pixel the prediction may be off by a third of it", rate_->spp));
     }

@@ -67,21 +67,22 @@ ImageRgb ReplicaClip::code_of(const ImageRgb& radiance) const {
   return code;
 }
 
-SummedFrames ReplicaClip::summed_in(std::int32_t frame) const {
-  const AccumulateSettings& accumulate = settings_.accumulate;
-  const std::int32_t reach = accumulate.mode == AccumulateMode::two_sided ? accumulate.window : 0;
-  const std::int32_t first = std::max(1, frame - reach);
-  return {static_cast<std::size_t>(first), static_cast<std::size_t>(frame + reach + 1 - first)};
+std::int64_t ReplicaClip::reach() const {
+  return settings_.accumulate.mode == AccumulateMode::two_sided ? settings_.accumulate.window : 0;
 }
 
-// A still is the sequence's first frame, which has none before it. Frames of a sequence have them on both sides.
-SummedFrames ReplicaClip::summed_in_still(std::size_t n) const {
-  const SummedFrames one = summed_in(judged_.sequence_frames == 1 ? 1 : settings_.accumulate.window + 1);
+SummedFrames ReplicaClip::summed_in(std::int64_t frame) const {
+  const std::int64_t first = std::max<std::int64_t>(1, frame - reach());
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(frame + reach() + 1 - first)};
+}
+
+SummedFrames ReplicaClip::example_of(std::int64_t frame, std::size_t n) const {
+  const SummedFrames one = summed_in(frame);
   return {one.first + n * one.count, one.count};
 }
 
 double ReplicaClip::most_summed() const {
-  return static_cast<double>(summed_in_still(0).count);
+  return static_cast<double>(summed_in(judged_.sequence_frames).count);
 }
 
 double ReplicaClip::q_at(const ReplicaNoise& noise, double share) const {
@@ -101,10 +102,13 @@ double ReplicaClip::q_at(const ReplicaNoise& noise, double share) const {
   for (const std::vector<FrameRequest>& run : judged_.runs) {
     FovVideoVdp metric(metric_settings, view.width_px, view.height_px);
     for (std::size_t i = 0; i < run.size(); ++i, ++index) {
-      const SummedFrames summed = is_still ? summed_in_still(index) : summed_in(run[i].frame);
-      const ImageGray seen = display_luminance(code_of(noise.noisy(base_, share, summed)), {}, settings_.threads);
+      const ImageGray seen = display_luminance(
+          code_of(noise.noisy(base_, share, is_still ? example_of(1, index) : summed_in(run[i].frame))), {},
+          settings_.threads);
       const std::optional<Vec2d> gaze = gaze_px(run[i]);
-      const bool is_late = i + 1 >= static_cast<std::size_t>(metric.taps());
+      // Where a window still fills, the first run stands for itself alone.
+      const bool fills = reach() > 0 && judged_.runs.size() > 1 && &run == &judged_.runs.front();
+      const bool is_late = !fills && i + 1 >= static_cast<std::size_t>(metric.taps());
       if (!gaze || (!is_late && &run != &judged_.runs.front())) {
         metric.prime(luminance_, seen);
         continue;
@@ -128,11 +132,20 @@ double ReplicaClip::flip_at(const ReplicaNoise& noise, double share) const {
   MetricSettings metric;
   metric.pixels_per_degree = 1 / (judged_.runs.front().front().view.step_x * kDegPerRad);
   metric.threads = settings_.threads;
-  double sum = 0;
-  for (std::size_t i = 0; i < kStills; ++i) {
-    sum += measure("flip", {{}, code_}, {{}, code_of(noise.noisy(base_, share, summed_in_still(i)))}, metric).mean;
-  }
-  return sum / static_cast<double>(kStills);
+  const auto flip_of = [&](std::int64_t frame) {
+    double sum = 0;
+    for (std::size_t i = 0; i < kStills; ++i) {
+      sum += measure("flip", {{}, code_}, {{}, code_of(noise.noisy(base_, share, example_of(frame, i)))}, metric).mean;
+    }
+    return sum / static_cast<double>(kStills);
+  };
+  // The first frames are judged by the first of them and by the first whose window is full.
+  const std::int64_t frames = judged_.sequence_frames;
+  const std::int64_t filling = std::min(frames, reach() + 1);
+  const double full = flip_of(filling);
+  const double early = filling > 1 ? 0.5 * (flip_of(1) + full) : full;
+  return (static_cast<double>(filling) * early + static_cast<double>(frames - filling) * full) /
+         static_cast<double>(frames);
 }
 
 }  // namespace gazetrace

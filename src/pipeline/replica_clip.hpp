@@ -37,9 +37,10 @@ class ReplicaClip {
 
  private:
   [[nodiscard]] ImageRgb code_of(const ImageRgb& radiance) const;  // of a display, 0..1 in 8 bits
-  // Of a frame of the sequence, and of the n-th example of a still.
-  [[nodiscard]] SummedFrames summed_in(std::int32_t frame) const;
-  [[nodiscard]] SummedFrames summed_in_still(std::size_t n) const;
+  [[nodiscard]] std::int64_t reach() const;                        // how many frames after a frame are added to it
+  // What is added up in a frame of the sequence, and another example of as many, with other samples.
+  [[nodiscard]] SummedFrames summed_in(std::int64_t frame) const;
+  [[nodiscard]] SummedFrames example_of(std::int64_t frame, std::size_t n) const;
 
   PathTracer& tracer_;
   const JudgedFrames& judged_;

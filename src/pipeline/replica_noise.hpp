@@ -7,7 +7,8 @@
 // as a mean of four renderings has, which is what it mostly stands for: the error of a frame of four times the samples.
 // In the frames of a clip the three take turns and are moved by a few pixels, so that the noise is new in every frame
 // without being rendered anew. Where the samples of several frames are added up (AccumulateMode::two_sided of a view at
-// rest), so are their replicas. What all renderings have in common, such as the bias of a filter, is not in them.
+// rest), the replica has the power of their mean, and changes from frame to frame as that does. What all renderings
+// have in common, such as the bias of a filter, is not in them.
 #pragma once
 
 #include <array>

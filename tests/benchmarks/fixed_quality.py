@@ -190,7 +190,8 @@ class Scene:
             metrics = METRICS if self.asked.whole and self.asked.frames >= FRAMES_PER_SECOND else METRICS[:1]
             run(self.asked.program, "compare", work / "r.####.exr", work / "t.####.exr", "--metrics", ",".join(metrics), "--fps",
                 FRAMES_PER_SECOND, "--frames", f"1-{self.asked.frames}", "--anyway", *self.bench.screen, "--gaze-at", gaze,
-                "--exposure", self.exposure, "--pooling-weights", work / "weights.exr", "--json", record)
+                "--exposure", self.exposure, *([] if self.asked.whole else ["--pooling-weights", work / "weights.exr"]),
+                "--json", record)
             shutil.rmtree(work)
         return {s["metric"]: s["value"] for s in json.loads(record.read_text())["sequence"][0]["scores"]}
 

@@ -3,6 +3,7 @@
 
 import csv
 import json
+import shutil
 
 import harness
 
@@ -127,9 +128,27 @@ class Adaptive(harness.CliTest):
         (self.folder / "whole/f.0003.exr").unlink()
         clip("whole", "1-6", *both, "--resume")
         self.assertEqual(whole, self.pictures("whole"))
-        self.run_ok("render", "box.gltf", *VIEW, *GAZE, "--filter", "none", "--frames", "1-3", "--target-jod", "9.3",
-                    *both, "-o", "visible/f.####.exr")
-        self.assertAlmostEqual(float(self.rows("visible")[0]["predicted_jod"]), 9.3, delta=0.02)
+
+    def test_a_flip_of_frames_that_are_added_up(self):
+        def clip(folder, *more):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--target-flip", "0.03", "--accumulate", "two-sided", *more, "-o",
+                        f"{folder}/f.####.exr")
+
+        clip("clip", "--frames", "1-24")
+        self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", "1", "--spp", "4096", "--seed", "9", "-o", "reference/f.0001.exr")
+        for frame in range(2, 25):
+            shutil.copy(self.folder / "reference/f.0001.exr", self.folder / f"reference/f.{frame:04d}.exr")
+        self.run_ok("compare", "reference/f.####.exr", "clip/f.####.exr", "--frames", "1-24", "--metrics", "flip", "--anyway",
+                    *GAZE, "--json", "scores.json")
+        measured = json.loads((self.folder / "scores.json").read_text())["sequence"][0]["scores"][0]["value"]
+        # As far as FLIP was off at 30 samples a pixel and more in the manual's table, and the reference's own error.
+        self.assertAlmostEqual(measured, 0.03, delta=0.004)
+        # A still has no window before it, and another rate: its frame is none of a sequence's.
+        clip("still", "--part")
+        result = self.run_program("render", "box.gltf", *VIEW[:-2], *RAW, "--target-flip", "0.03", "--accumulate", "two-sided",
+                                  "--frames", "1-2", "--part", "--resume", "-o", "still/f.####.exr")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("--resume", result.stderr)
 
     def test_a_stated_flip(self):
         def still(folder, target, *more, ppd="12"):
@@ -194,6 +213,8 @@ class Adaptive(harness.CliTest):
             (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
             (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
             (["--sample-range", "pilot"], *RAW, "--target-jod", "9", "--sample-range", "0:2"),
+            (["--target-jod", "'visible'"], *GAZE, "--falloff", "visible", "--filter", "none", "--target-jod", "9"),
+            (["--target-jod", "more than"], *RAW, "--target-jod", "9.99", "--max-spp", "10"),
             (["--target-jod", "resets"], *RAW, "--target-jod", "9", "--accumulate", "two-sided",
              "--accumulate-reset-saccades"),
             (["--target-flip", "screen"], "--falloff", "uniform", "--filter", "none", "--target-flip", "0.05"),
