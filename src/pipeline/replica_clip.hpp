@@ -17,7 +17,7 @@ namespace gazetrace {
 
 class ReplicaClip {
  public:
-  // Keeps references to all but the tracer. `settings` accumulate nothing.
+  // Keeps references to all, which must outlive it. `settings` accumulate nothing, or AccumulateMode::two_sided.
   ReplicaClip(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
               const ColorPipeline& color);
 

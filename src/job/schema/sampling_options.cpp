@@ -207,16 +207,15 @@ void add_target_options(JobSchema& schema) {
   using F = FoveationSettings;
   schema
       .value("--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
-             "Frames without a filter, of a view at rest: as many samples as a pilot expects it to take until the "
-             "sequence "
-             "scores so much by FovVideoVDP, as 'gazetrace compare' measures it; with --accumulate two-sided many "
-             "times fewer")
+             "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "
+             "the sequence scores so much by FovVideoVDP, as 'gazetrace compare' measures it; with --accumulate "
+             "two-sided many times fewer")
       .within(0, 10)
       .need("gaze, `falloff` uniform and `filter` none");
   schema
       .value("--target-flip", at(&JobSettings::foveation, &F::target, &QualityTarget::flip), "ERROR", Touch::sampling,
-             "Frames without a filter, of a view at rest: as many samples as a pilot expects it to take until the mean "
-             "FLIP of a frame is no more, as 'gazetrace compare' measures it")
+             "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "
+             "the mean FLIP of a frame is no more, as 'gazetrace compare' measures it")
       .within(0, 1)
       .need("`screen`, `falloff` uniform and `filter` none");
   add_time_budget(schema);
