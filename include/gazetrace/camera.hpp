@@ -54,6 +54,8 @@ struct Camera {
   CameraPose pose;  // in the middle of the frame's time
   Projection projection;
   Lens lens;
+  // How far the frame's middle is right of and below the view axis, in its pixels: not 0 in windows of a larger frame.
+  Vec2d middle_px;
   // Poses at equal steps of time from the opening to the closing of the shutter, both included. Between two of them the
   // position is interpolated linearly and the orientation by slerp. Empty: the camera stands still while the shutter is
   // open.

@@ -34,9 +34,10 @@ struct GuideCamera {
   bool perspective = true;
   Vec3f forward;              // unit, along the view axis
   Vec3f right_step, up_step;  // one pixel to the right and up: at depth 1 m (perspective) or at any depth, in m
+  Vec2f middle_px;            // the frame's middle from the view axis, x right and y down (Camera::middle_px)
   // The point (m, relative to the camera) at continuous pixel coordinates from the frame's centre, x right and y down.
   [[nodiscard]] Vec3f place(float x, float y, float depth_m) const {
-    const Vec3f across = right_step * x - up_step * y;
+    const Vec3f across = right_step * (x + middle_px.x) - up_step * (y + middle_px.y);
     return perspective ? (forward + across) * depth_m : forward * depth_m + across;
   }
 };

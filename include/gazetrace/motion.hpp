@@ -52,7 +52,7 @@ class PixelProjection {
  private:
   bool perspective_ = true;
   Vec3d origin_, right_, up_, forward_;
-  Vec2d center_px_;
+  Vec2d center_px_;  // where the view axis meets the frame
   double step_ = 1;  // size of a pixel: as a tangent (perspective) or in metres
 };
 

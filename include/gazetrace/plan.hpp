@@ -120,7 +120,9 @@ struct GazeAges {
 struct JudgedFrames {
   // Each run is of consecutive frames; the first one begins the sequence. Empty: nothing is to be judged.
   std::vector<std::vector<FrameRequest>> runs;
+  std::vector<FrameRequest> around;  // further frames that those read, as FramePlan::around
   std::int32_t sequence_frames = 0;  // how many frames the whole sequence has; 1: a still
+  bool view_moves = false;           // camera or scene
 };
 
 struct FramePlan {

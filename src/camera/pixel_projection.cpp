@@ -17,7 +17,7 @@ PixelProjection::PixelProjection(const Camera& camera, int width_px, int height_
       right_(rotate(camera.pose.orientation, {1, 0, 0})),
       up_(rotate(camera.pose.orientation, {0, 1, 0})),
       forward_(rotate(camera.pose.orientation, {0, 0, -1})),
-      center_px_{width_px / 2.0, height_px / 2.0} {
+      center_px_{width_px / 2.0 - camera.middle_px.x, height_px / 2.0 - camera.middle_px.y} {
   const double half_height = perspective_ ? std::tan(camera.projection.yfov_rad / 2) : camera.projection.ymag_m;
   step_ = 2 * half_height / height_px;
 }

@@ -114,11 +114,19 @@ void check_target(const JobSettings& job) {
                 "give the `screen`, or `screen-px` and `screen-ppd`");
   }
   const std::string filter = filter_of(job).name;
-  if (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear")) {
+  if (target.flip && (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear"))) {
     throw Error(ErrorKind::usage, option,
-                fmt::format("fall-off '{}' and filter '{}' may leave a bias, which a pilot does not see",
+                fmt::format("fall-off '{}' and filter '{}' may leave a bias, which its pilot does not see",
                             job.foveation.falloff, filter),
                 "give `falloff` uniform and `filter` none, or a budget");
+  }
+  if (job.foveation.falloff == "regions") {
+    throw Error(ErrorKind::usage, option, "the rates and blocks of `falloff` regions are not chosen by quality",
+                "give `falloff` visible or another model, or a budget");
+  }
+  if (job.foveation.contrast_strength > 0) {
+    throw Error(ErrorKind::usage, option, "`contrast-strength` looks at frames by itself",
+                "leave it out, or give a budget");
   }
   const AccumulateSettings& accumulate = job.accumulate;
   const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&

@@ -147,37 +147,51 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
 // still or, if there are `frames`, a second of rest.
 void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, const Scene* scene,
                        ResolvedJob& resolved) {
-  if (!camera.is_static || (scene != nullptr && moves(*scene))) {
-    throw Error(ErrorKind::usage, job.foveation.target.jod ? "`target-jod`" : "`target-flip`",
-                "the view moves, and is only judged at rest", "give a budget, or hold camera and scene still");
+  const bool view_moves = !camera.is_static || (scene != nullptr && moves(*scene));
+  if (view_moves && job.foveation.target.flip) {
+    throw Error(ErrorKind::usage, "`target-flip`", "the view moves, and is only judged at rest",
+                "give a budget, or hold camera and scene still");
   }
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   JobSettings whole = job;
   whole.frames.reset();
   std::string decision;
   auto length = static_cast<std::int32_t>(choose_frames(whole, camera, log, taken_off_ns, scene, decision).size());
-  const bool gaze_moves = length > 1;
-  if (!gaze_moves && job.frames) {
+  const bool differs = length > 1;  // in view or gaze
+  if (!differs && job.frames) {
     length = static_cast<std::int32_t>(
         std::max(1.0, std::round(static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator))));
   }
   // What is added up from both sides grows until a window is full.
-  const LaterFrames later = gaze_moves                                         ? LaterFrames::all_differ
+  const LaterFrames later = differs                                            ? LaterFrames::all_differ
                             : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
                                                                                : LaterFrames::as_early_ones;
   const JudgedNumbers judged = judged_numbers(length, later, job.fps);
+  const std::int32_t reach = job.accumulate.mode == AccumulateMode::two_sided ? job.accumulate.window : 0;
   PlanSettings settings = resolved.plan_settings;
-  settings.frames.clear();
+  std::set<std::int32_t> all;
   for (const std::vector<std::int32_t>& run : judged.runs) {
-    settings.frames.insert(settings.frames.end(), run.begin(), run.end());
+    for (const std::int32_t frame : run) {
+      for (std::int32_t apart = -reach; apart <= reach; ++apart) {
+        if (apart == 0 || has_frame(camera, settings, std::int64_t{frame} + apart)) {
+          all.insert(frame + apart);
+        }
+      }
+    }
   }
+  settings.frames.assign(all.begin(), all.end());
   FramePlan plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
-  resolved.plan.judged.sequence_frames = judged.sequence_frames;
-  auto next = plan.frames.begin();
-  for (const std::vector<std::int32_t>& run : judged.runs) {
-    const auto end = next + static_cast<std::ptrdiff_t>(run.size());
-    resolved.plan.judged.runs.emplace_back(std::make_move_iterator(next), std::make_move_iterator(end));
-    next = end;
+  JudgedFrames& frames = resolved.plan.judged;
+  frames.sequence_frames = judged.sequence_frames;
+  frames.view_moves = view_moves;
+  frames.runs.resize(judged.runs.size());
+  for (FrameRequest& request : plan.frames) {
+    std::vector<FrameRequest>* to = &frames.around;
+    for (std::size_t k = 0; k < judged.runs.size(); ++k) {
+      const std::vector<std::int32_t>& run = judged.runs[k];
+      to = std::find(run.begin(), run.end(), request.frame) != run.end() ? &frames.runs[k] : to;
+    }
+    to->push_back(std::move(request));
   }
 }
 

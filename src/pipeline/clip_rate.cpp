@@ -103,13 +103,18 @@ Seen look_near(const Judge& judge, const ReplicaNoise& noise, double guess, doub
 
 }  // namespace
 
+bool is_noise_alone(const FrameSettings& settings) {
+  const std::string& filter = settings.reconstruction.filter;
+  return settings.foveation.falloff == "uniform" && (filter == "none" || filter == "linear");
+}
+
 std::string ClipRate::text() const {
-  return fmt::format("{:.6g} samples a pixel{}, expected to reach {}: by {}, {} of frames in all", spp,
+  return fmt::format("{:.6g} samples a pixel{}, expected to reach {}: by {}", spp,
                      is_least ? ", the least there is" : "",
                      predicted_jod    ? fmt::format("{:.3f} JOD", *predicted_jod)
                      : predicted_flip ? fmt::format("a mean FLIP of {:.4g}", *predicted_flip)
                                       : "nothing",
-                     counted(rounds, "pilot"), counted(frames, "rendering"));
+                     how);
 }
 
 ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
@@ -164,6 +169,7 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
   result.is_least = result.spp == least;
   result.summed_frames = clip.most_summed();
   result.frames += clip.looks();
+  result.how = fmt::format("{}, {} of frames in all", counted(result.rounds, "pilot"), counted(result.frames, "rendering"));
   add_traces(clip.stats(), result.pilot);
   return result;
 }

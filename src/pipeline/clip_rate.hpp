@@ -8,6 +8,7 @@
 
 #include "gazetrace/color.hpp"
 #include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/image.hpp"
 #include "gazetrace/plan.hpp"
 
 namespace gazetrace {
@@ -21,14 +22,24 @@ struct ClipRate {
   bool is_least = false;     // fewer samples are not possible
   bool settled = true;       // the last pilot was near enough to the rate; else the prediction is extrapolated far
   double summed_frames = 1;  // how many frames at most are added up for one
+  std::string how;           // what was looked at
+  // Samples a pixel of every frame for the fall-off `map`, of any size; empty: what the settings say.
+  ImageGray rates;
 
   [[nodiscard]] std::string text() const;  // for the run record
 };
 
-// By pilots (replica_clip.hpp) at lower rates. Each says what would be seen if its squared error were smaller, and that
+// Whether the error of frames is in a replica of their noise: single pixels of uniform frames that nothing smooths.
+bool is_noise_alone(const FrameSettings& settings);
+
+// For frames whose error is noise alone, by pilots (replica_clip.hpp) at lower rates. Each says what would be seen if its squared error were smaller, and that
 // falls as one over the rate. A function of the judged frames, settings and seed alone. Error(usage) where the target
 // would take more than FoveationSettings::max_spp.
 ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
                    const ColorPipeline& color);
+
+// For all others, measured in windows (window_clip.hpp). Only for QualityTarget::jod. Error(usage) as above.
+ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
+                       const ColorPipeline& color);
 
 }  // namespace gazetrace

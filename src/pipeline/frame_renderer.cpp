@@ -33,7 +33,9 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   ImageGray contrast;
   ImageGray density;
   if (foveation.falloff == "map") {
-    density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
+    density = timed(times.plan_ms, [&] {
+      return settings_.density_of ? settings_.density_of(request) : read_density_map(foveation, request.frame);
+    });
     context.density = &density;
   }
   if (foveation.falloff == "visible") {

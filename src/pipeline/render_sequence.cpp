@@ -187,9 +187,17 @@ bool checkpoint_is_due(const PipelineSettings& settings, std::size_t done, std::
 class JudgedRate {
  public:
   void choose(PathTracer& tracer, const JudgedFrames& judged, const ColorPipeline& color, FrameSettings& settings) {
-    rate_ = timed(ms_, [&] { return clip_rate(tracer, judged, settings, color); });
+    rate_ = timed(ms_, [&] {
+      return is_noise_alone(settings) && !judged.view_moves ? clip_rate(tracer, judged, settings, color)
+                                      : measured_rate(tracer, judged, settings, color);
+    });
     settings.foveation.target = {};
     settings.foveation.budget_spp = rate_->spp;
+    if (!rate_->rates.empty()) {
+      settings.foveation.falloff = "map";
+      settings.foveation.budget_spp.reset();
+      settings.density_of = [rates = rate_->rates](const FrameRequest&) { return rates; };
+    }
   }
   [[nodiscard]] std::string text() const { return rate_->text(); }
   // Of pixels of a few samples, what FLIP sees was off by up to 28 % of what was stated; from 30 samples on by 5 %.

@@ -36,7 +36,6 @@ class ReplicaClip {
   [[nodiscard]] double flip_at(const ReplicaNoise& noise, double share) const;
 
  private:
-  [[nodiscard]] ImageRgb code_of(const ImageRgb& radiance) const;  // of a display, 0..1 in 8 bits
   [[nodiscard]] std::int64_t reach() const;                        // how many frames after a frame are added to it
   // What is added up in a frame of the sequence, and another example of as many, with other samples.
   [[nodiscard]] SummedFrames summed_in(std::int64_t frame) const;

@@ -29,6 +29,29 @@ float shown_by_site(const SamplingMap& map, std::uint32_t site, const SiteResidu
   return sum / static_cast<float>(map.sites[site].pixels);
 }
 
+// What is left of a residual far beyond its own samples' standard error is wrong with the picture, whatever is around
+// it: dark blocks beside bright ones are hidden by the noise of those. A rare bright sample is not taken for that: it
+// makes the two alike, and m of them make the square m times the other. Samples that have seen none know nothing of it,
+// so that less light than the picture has must be beyond what is seen near as well.
+void keep_what_is_sure(const SiteResidual& residual, float own_variance, float noise_near, float samples,
+                       KeptResidual& kept) {
+  constexpr float kSure = 6, kMany = 16;
+  const Vec3f left = residual.radiance - kept.radiance;
+  const float light = luminance(left);
+  const float variance = light > 0 ? own_variance : std::max(own_variance, noise_near);
+  const float least = kSure * (1 + kMany / std::max(samples, 1.0F)) * variance;
+  const float square = light * light;
+  if (samples < kMany || !(square > least) || !(square <= kMostLight * kMostLight)) {
+    return;
+  }
+  const float share = 1 - least / square;
+  const float rest = 1 - share;
+  kept.radiance += share * left;
+  kept.rest *= rest;
+  kept.variance = rest * rest * kept.variance + (1 - rest * rest) * variance;
+  kept.error = rest * rest * kept.error + (1 - rest * rest) * variance;
+}
+
 void add(float weight, const KeptResidual& kept, KeptResidual& sum) {
   sum.radiance += weight * kept.radiance;
   sum.rest += weight * kept.rest;
@@ -59,6 +82,7 @@ RegionResiduals::RegionResiduals(const FilterInput& input, const SmoothingSettin
       finer_(window.width, window.height),
       light_(window.width, window.height),
       doubt_(static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height)),
+      noise_(doubt_.size()),
       kept_(static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height)) {
   const std::vector<std::uint32_t> sites = sites_of_blocks(input, window, site_of_pixel);
   for_each_row(window.height, threads_, [&](int y) {
@@ -74,6 +98,13 @@ RegionResiduals::RegionResiduals(const FilterInput& input, const SmoothingSettin
     }
   });
   keep_bands();
+  for_each_row(window.height, threads_, [&](int y) {
+    for (int x = 0; x < window_.width; ++x) {
+      const std::uint32_t site = sites[index(x, y)];
+      keep_what_is_sure(of_site[site], input.values.value(site).variance, noise_[index(x, y)],
+                        static_cast<float>(input.values.count(site)), kept_[index(x, y)]);
+    }
+  });
 }
 
 // One over the mean square of the picture around each block. Squares are taken in relation to it, so that a bright
@@ -157,6 +188,7 @@ void RegionResiduals::keep_band(int band, const Plane& scales, const Residuals* 
       const float noise = std::min(kMost, p.noise / scale);  // kMost also for what is no number
       const float bias = std::min(kMost, std::max(0.0F, p.residual - p.noise) / scale);
       kept.rest = band == 0 ? rest : kept.rest;
+      noise_[index(x, y)] += noise;
       kept.variance += share * share * noise;
       kept.error += share * share * noise + rest * rest * bias;
     }

@@ -59,6 +59,7 @@ class RegionResiduals {
   Residuals finer_;
   Plane light_;               // mean luminance of the picture
   std::vector<float> doubt_;  // of each block's residual
+  std::vector<float> noise_;  // mean square near the block, in all bands
   std::vector<KeptResidual> kept_;
 };
 

@@ -48,7 +48,7 @@ GAZETRACE_CLONES void locate_lanes(const GuideCamera& camera, float x_px, float 
     const float x = pixels.x_px[i];
     const float y = pixels.y_px[i];
     const float depth = pixels.depth_m[i];
-    const Vec3f across = camera.right_step * x - camera.up_step * y;
+    const Vec3f across = camera.right_step * (x + camera.middle_px.x) - camera.up_step * (y + camera.middle_px.y);
     const Vec3f ahead = camera.forward + across;
     const Vec3f level = camera.forward * depth + across;
     pixels.place_x[i] = camera.perspective ? ahead.x * depth : level.x;

@@ -7,7 +7,8 @@
 namespace gazetrace {
 
 inline bool same_camera(const Camera& a, const Camera& b) {
-  return a.pose == b.pose && a.projection == b.projection && a.lens == b.lens && a.shutter_poses == b.shutter_poses;
+  return a.pose == b.pose && a.projection == b.projection && a.lens == b.lens && a.middle_px == b.middle_px &&
+         a.shutter_poses == b.shutter_poses;
 }
 
 }  // namespace gazetrace

@@ -347,8 +347,15 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   if (settings.only_pixel) {
     ranges.push_back(site_of_pixel(map, *settings.only_pixel));
   } else {
+    // A frame of few tiles keeps all cores busy in parts of them.
+    constexpr std::uint32_t kLeastRanges = 16, kLeastSites = 64;
+    const auto tiles = static_cast<std::uint32_t>(map.tiles.size());
+    const std::uint32_t parts = tiles == 0 ? 1 : (kLeastRanges + tiles - 1) / tiles;
     for (const MapTile& tile : map.tiles) {
-      ranges.push_back({tile.first_site, tile.site_count});
+      const std::uint32_t step = std::max(kLeastSites, (tile.site_count + parts - 1) / parts);
+      for (std::uint32_t begin = 0; begin < tile.site_count; begin += step) {
+        ranges.push_back({tile.first_site + begin, std::min(step, tile.site_count - begin)});
+      }
     }
   }
   std::vector<TileResult> results(ranges.size());

@@ -33,6 +33,9 @@ the clip is traced with these rates in the windows only. What it would have cost
 took, for all samples of all frames that the clip reads (those after its end as well), and from what the clip took beside its
 samples, which it takes for the whole frame: first hits, sums, filter, files. The same price of a sample is that of raw frames.
 Everything is processor time, so that other work on the machine matters less.
+
+Beside each score stand two judges that nothing was optimised for: `cortical`, the relative squared error weighted by cortical
+magnification, and `change`, by how much the relative error changes from one frame to the next.
 """
 
 import argparse
@@ -122,6 +125,41 @@ class Windows:
         return weights
 
 
+class OtherJudges:
+    """What nothing was optimised for: the relative squared error weighted by cortical magnification, and how much the relative
+    error changes from frame to frame (root mean square)."""
+
+    def __init__(self, truth, weights, gaze_px, pixels_per_degree):
+        height, width = weights.shape
+        step = math.tan(math.radians(1 / pixels_per_degree))
+        x, y = numpy.meshgrid((numpy.arange(width) + 0.5 - width / 2) * step, (numpy.arange(height) + 0.5 - height / 2) * step)
+        at = [(gaze_px[0] - width / 2) * step, (gaze_px[1] - height / 2) * step]
+        across = numpy.hypot(numpy.hypot(x * at[1] - y * at[0], x - at[0]), y - at[1])
+        eccentricity_deg = numpy.degrees(numpy.arctan2(across, 1 + x * at[0] + y * at[1]))
+        # Square millimetres of cortex a square degree (Horton and Hoyt 1991), times a constant.
+        self.cortex = weights / (eccentricity_deg + 0.75)**2
+        self.weights = weights
+        self.truth = self.luminance(truth)
+        self.scale = 1 / numpy.sqrt(self.truth**2 + 0.01)
+        self.before = None
+        self.squares, self.changes, self.frames = 0.0, 0.0, 0
+
+    @staticmethod
+    def luminance(rgb):
+        return rgb.astype(numpy.float64) @ numpy.array([0.2126, 0.7152, 0.0722])
+
+    def add(self, picture):
+        error = (self.luminance(picture) - self.truth) * self.scale
+        self.squares += float((self.cortex * error**2).sum() / self.cortex.sum())
+        if self.before is not None:
+            self.changes += float((self.weights * (error - self.before)**2).sum() / self.weights.sum())
+        self.before = error
+        self.frames += 1
+
+    def found(self):
+        return {"cortical": self.squares / self.frames, "change": math.sqrt(self.changes / max(self.frames - 1, 1))}
+
+
 class Scene:
     def __init__(self, bench, name, options):
         self.bench = bench
@@ -182,18 +220,23 @@ class Scene:
             traced = self.bench.windows.is_traced[..., None]
             write_picture(work / "weights.exr", numpy.repeat(self.bench.windows.weights(gaze)[..., None], 3, axis=2))
             write_picture(work / "r.0001.exr", numpy.where(traced, self.truth, self.fill))
+            judges = OtherJudges(numpy.where(traced, self.truth, self.fill), self.bench.windows.weights(gaze),
+                                 self.bench.windows.gaze_px[gaze], self.bench.pixels_per_degree)
             for frame in range(1, self.asked.frames + 1):
                 if frame > 1:
                     (work / f"r.{frame:04d}.exr").symlink_to("r.0001.exr")
                 picture = numpy.where(traced, numpy.maximum(picture_of_frame(frame), 0), self.fill)
                 write_picture(work / f"t.{frame:04d}.exr", picture)
+                judges.add(picture)
             metrics = METRICS if self.asked.whole and self.asked.frames >= FRAMES_PER_SECOND else METRICS[:1]
             run(self.asked.program, "compare", work / "r.####.exr", work / "t.####.exr", "--metrics", ",".join(metrics), "--fps",
                 FRAMES_PER_SECOND, "--frames", f"1-{self.asked.frames}", "--anyway", *self.bench.screen, "--gaze-at", gaze,
                 "--exposure", self.exposure, *([] if self.asked.whole else ["--pooling-weights", work / "weights.exr"]),
                 "--json", record)
             shutil.rmtree(work)
-        return {s["metric"]: s["value"] for s in json.loads(record.read_text())["sequence"][0]["scores"]}
+            record.with_suffix(".others").write_text(json.dumps(judges.found()))
+        others = record.with_suffix(".others")
+        return (json.loads(others.read_text()) if others.exists() else {}) | {s["metric"]: s["value"] for s in json.loads(record.read_text())["sequence"][0]["scores"]}
 
     def traced(self, name):
         """Samples and processor seconds of tracing, of all rows."""
@@ -336,6 +379,7 @@ class Bench:
         self.gazes = asked.gazes.split()
         width, height, ppd = DISPLAYS.get(asked.display) or (int(n) for n in re.fullmatch(r"(\d+)x(\d+)@(\d+)", asked.display).groups())
         self.size = f"{width}x{height}"
+        self.pixels_per_degree = ppd
         self.screen = ["--screen-px", f"{width},{height}", "--screen-ppd", str(ppd)]
         self.out = pathlib.Path(asked.out) / (asked.display + ("-whole" if asked.whole else ""))
         self.windows = Windows(asked, width, height, self.gazes)
@@ -352,8 +396,8 @@ class Bench:
             curves = {"raw": raw, "no gaze": scene.tool_curve(gaze, None), "gaze": scene.tool_curve(gaze, gaze)}
             for which, curve in curves.items():
                 for cost, scores, rate in curve:
-                    flicker = f", flicker {scores['flicker']:.3g}" if "flicker" in scores else ""
-                    print(f"  {name} {gaze} {which:<8} {rate:8g} spp {cost:9.2f} s a frame {scores['fovvideovdp']:6.2f} JOD{flicker}",
+                    others = "".join(f", {judge} {value:.3g}" for judge, value in scores.items() if judge != "fovvideovdp")
+                    print(f"  {name} {gaze} {which:<8} {rate:8g} spp {cost:9.2f} s a frame {scores['fovvideovdp']:6.2f} JOD{others}",
                           flush=True)
             if self.asked.wrong_budget:
                 self.wrong_gaze(scene, gaze)

@@ -190,12 +190,54 @@ class Adaptive(harness.CliTest):
         self.assertEqual(kept, (self.folder / "bound/f.0001.exr").read_bytes())
         self.assertTrue((self.folder / "bound/f.0002.exr").exists())
 
-    def test_a_moving_view_is_not_judged(self):
+    def measured_jod(self, reference, test, frames):
+        self.run_ok("compare", f"{reference}/f.####.exr", f"{test}/f.####.exr", "--frames", frames, "--metrics", "fovvideovdp", "--fps",
+                    "24", "--anyway", *GAZE, "--overwrite", "--json", "scores.json")
+        return json.loads((self.folder / "scores.json").read_text())["sequence"][0]["scores"][0]["value"]
+
+    def test_a_stated_quality_through_a_filter(self):
+        tool = [*VIEW[:-2], *GAZE, "--falloff", "visible", "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
+                "--accumulate-window", "4"]
+
+        def clip(folder, frames, *more):
+            self.run_ok("render", "box.gltf", *tool, "--frames", frames, *more, "-o", f"{folder}/f.####.exr")
+
+        self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", "1", "--spp", "4096", "--seed", "9", "-o", "reference/f.0001.exr")
+        for frame in range(2, 25):
+            shutil.copy(self.folder / "reference/f.0001.exr", self.folder / f"reference/f.{frame:04d}.exr")
+        samples = {}
+        for target in ("8.5", "9.2"):
+            clip(target, "1-24", "--target-jod", target)
+            self.assertAlmostEqual(self.measured_jod("reference", target, "1-24"), float(target), delta=0.1)
+            rows = self.rows(target)
+            self.assertAlmostEqual(float(rows[0]["predicted_jod"]), float(target), delta=0.05)
+            self.assertGreater(int(rows[0]["pilot_samples"]), 0)
+            self.assertEqual([int(row["pilot_samples"]) for row in rows[1:]], [0] * 23)  # frames share their rates
+            samples[target] = int(rows[1]["samples"])
+        self.assertGreater(samples["9.2"], 1.5 * samples["8.5"])
+        whole = self.pictures("8.5")
+        clip("threads", "1-24", "--target-jod", "8.5", "--threads", "1")
+        self.assertEqual(whole, self.pictures("threads"))
+        for part in ("1-9", "10-24"):
+            clip("parts", part, "--target-jod", "8.5", "--part")
+        self.run_ok("merge", "parts")
+        self.assertEqual(whole, self.pictures("parts"))
+        (self.folder / "8.5/f.0007.exr").unlink()
+        clip("8.5", "1-24", "--target-jod", "8.5", "--resume")
+        self.assertEqual(whole, self.pictures("8.5"))
+
+    def test_a_stated_quality_of_a_view_that_moves(self):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
-        result = self.run_program("render", "glide.gltf", "--size", "64x40", *RAW, "--target-jod", "9", "--quiet", "-o",
-                                  "x/x.####.exr")
-        self.assertEqual(result.returncode, 2, result.stderr)
-        self.assertIn("moves", result.stderr)
+        view = ["render", "glide.gltf", "--size", "64x40", *GAZE, "--fps", "24", "--quiet"]
+        self.run_ok(*view, "--falloff", "uniform", "--filter", "none", "--spp", "1024", "--seed", "9", "-o", "reference/f.####.exr")
+        frames = len(self.pictures("reference"))
+        for falloff, filter_name in (("uniform", "none"), ("visible", "guided")):
+            folder = f"{falloff}-{filter_name}"
+            self.run_ok(*view, "--falloff", falloff, "--filter", filter_name, "--target-jod", "8.5", "-o", f"{folder}/f.####.exr")
+            self.assertAlmostEqual(self.measured_jod("reference", folder, f"1-{frames}"), 8.5, delta=0.15)
+        flip = self.run_program(*view, "--falloff", "uniform", "--filter", "none", "--target-flip", "0.05", "-o", "x/x.####.exr")
+        self.assertEqual(flip.returncode, 2, flip.stderr)
+        self.assertIn("moves", flip.stderr)
 
     def test_what_is_refused(self):
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet", "--overwrite"]
@@ -208,12 +250,13 @@ class Adaptive(harness.CliTest):
             (["--sample-range", "pilot"], "--falloff", "visible", "--sample-range", "0:2", "--filter", "none"),
             (["--budget-spp", "pilot"], "--falloff", "visible", "--budget-spp", "0.01"),
             (["--target-jod", "eye"], "--target-jod", "9"),
-            (["--target-jod", "bias"], *GAZE, "--falloff", "uniform", "--filter", "guided", "--target-jod", "9"),
+            (["--target-jod", "regions"], *GAZE, "--target-jod", "9"),
+            (["--target-jod", "contrast"], *GAZE, "--falloff", "cortical", "--contrast-strength", "1", "--target-jod", "9"),
             (["--target-jod", "9.5"], *RAW, "--target-jod", "10"),
             (["--target-jod", "budget"], *RAW, "--target-jod", "9", "--budget-spp", "3"),
             (["--target-jod", "accumulate"], *RAW, "--target-jod", "9", "--accumulate", "running"),
             (["--sample-range", "pilot"], *RAW, "--target-jod", "9", "--sample-range", "0:2"),
-            (["--target-jod", "'visible'"], *GAZE, "--falloff", "visible", "--filter", "none", "--target-jod", "9"),
+            (["--target-jod", "max-spp"], *GAZE, "--falloff", "visible", "--target-jod", "9.99", "--max-spp", "4"),
             (["--target-jod", "more than"], *RAW, "--target-jod", "9.99", "--max-spp", "10"),
             (["--target-jod", "resets"], *RAW, "--target-jod", "9", "--accumulate", "two-sided",
              "--accumulate-reset-saccades"),

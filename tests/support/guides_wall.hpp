@@ -17,7 +17,7 @@ inline constexpr int kGuidesWallPx = 64;  // width and height
 // A grey wall 10 m ahead, seen by parallel rays at one millimetre per pixel.
 inline Guides wall() {
   Guides guides;
-  guides.camera = {false, {0, 0, -1}, {0.001F, 0, 0}, {0, 0.001F, 0}};
+  guides.camera = {false, {0, 0, -1}, {0.001F, 0, 0}, {0, 0.001F, 0}, {}};
   guides.albedo = ImageRgb(kGuidesWallPx, kGuidesWallPx, {0.5F, 0.5F, 0.5F});
   guides.normal = ImageRgb(kGuidesWallPx, kGuidesWallPx, {0, 0, 1});
   guides.depth_m = ImageGray(kGuidesWallPx, kGuidesWallPx, 10);

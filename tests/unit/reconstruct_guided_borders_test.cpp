@@ -53,7 +53,7 @@ SparseFrame trace_planted(const SamplingMap& map, const Guides& guides, const Li
     }
     sparse.sum.push_back(reflected);
     sparse.count.push_back(site.samples);
-    sparse.sum_square_luminance.push_back(0);
+    sparse.sum_square_luminance.push_back(1e12F * static_cast<float>(site.samples));  // as planted_noise()
     sparse.half_difference.push_back(noise);
   }
   sparse.first_surface.push_back(static_cast<std::uint32_t>(sparse.surfaces.size()));

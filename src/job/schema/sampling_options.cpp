@@ -207,11 +207,11 @@ void add_target_options(JobSchema& schema) {
   using F = FoveationSettings;
   schema
       .value("--target-jod", at(&JobSettings::foveation, &F::target, &QualityTarget::jod), "JOD", Touch::sampling,
-             "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "
-             "the sequence scores so much by FovVideoVDP, as 'gazetrace compare' measures it; with --accumulate "
-             "two-sided many times fewer")
+             "As many samples as it takes until the sequence scores so much by FovVideoVDP, as 'gazetrace compare' "
+             "measures it. Any --falloff but 'regions', any --filter; with --accumulate two-sided at rest many times "
+             "fewer samples")
       .within(0, 10)
-      .need("gaze, `falloff` uniform and `filter` none");
+      .need("gaze and another `falloff` than regions");
   schema
       .value("--target-flip", at(&JobSettings::foveation, &F::target, &QualityTarget::flip), "ERROR", Touch::sampling,
              "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "

@@ -153,7 +153,8 @@ Guides trace_guides(const RenderScene& scene, const LightSampler& lights, const 
   check_guides(settings);
   Guides out;
   const CameraRays::Placement& placement = camera.placement();
-  out.camera = {camera.is_perspective(), placement.forward, placement.right_step, placement.up_step};
+  out.camera = {camera.is_perspective(), placement.forward, placement.right_step, placement.up_step,
+                camera.middle_px()};
   out.albedo = ImageRgb(width_px, height_px);
   out.normal = ImageRgb(width_px, height_px);
   out.depth_m = ImageGray(width_px, height_px, std::numeric_limits<float>::infinity());

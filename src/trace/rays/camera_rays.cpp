@@ -20,6 +20,7 @@ Vec2f concentric_disk(const Vec2f& u) {
 
 CameraRays::CameraRays(const Camera& camera, int height_px)
     : perspective_(camera.projection.kind == ProjectionKind::perspective),
+      middle_px_{static_cast<float>(camera.middle_px.x), static_cast<float>(camera.middle_px.y)},
       lens_radius_(static_cast<float>(camera.lens.radius_m)),
       focus_distance_(static_cast<float>(camera.lens.focus_distance_m)),
       keys_(camera.shutter_poses) {

@@ -33,6 +33,8 @@ class CameraRays {
 
   // x right, y down, in pixels from the frame's centre.
   [[nodiscard]] Ray ray(float x, float y) const { return ray(placement_, x, y); }
+  // The frame's middle from the view axis, in the same way.
+  [[nodiscard]] const Vec2f& middle_px() const { return middle_px_; }
   // `lens` is a point of the unit disc. `time` is 0 when the shutter opens and 1 when it closes.
   [[nodiscard]] Ray ray(float x, float y, const Vec2f& lens, float time) const;
 
@@ -46,7 +48,7 @@ class CameraRays {
     const float step2 = static_cast<float>(step_ * step_);
     const float depth = perspective_ ? dot(way, placement_.forward) : 1.0F;
     const float scale = 1.0F / (step2 * (depth > 0 ? depth : 0.0F));
-    return {dot(way, placement_.right_step) * scale, -dot(way, placement_.up_step) * scale};
+    return {dot(way, placement_.right_step) * scale - middle_px_.x, -dot(way, placement_.up_step) * scale - middle_px_.y};
   }
 
   [[nodiscard]] float cone_width() const { return width_; }  // at the origin, m
@@ -57,7 +59,9 @@ class CameraRays {
 
  private:
   [[nodiscard]] Placement place(const CameraPose& pose) const;
-  [[nodiscard]] Ray ray(const Placement& at, float x, float y) const {
+  [[nodiscard]] Ray ray(const Placement& at, float x_px, float y_px) const {
+    const float x = x_px + middle_px_.x;
+    const float y = y_px + middle_px_.y;
     if (perspective_) {
       const Vec3f d = at.forward + at.right_step * x - at.up_step * y;
       const float inverse = 1.0F / std::sqrt(dot(d, d));  // the cosine of the angle to the view axis
@@ -68,6 +72,7 @@ class CameraRays {
 
   bool perspective_ = true;
   Placement placement_;
+  Vec2f middle_px_;
   double step_ = 0;  // size of a pixel: as a tangent (perspective) or in metres
   float near_ = 0, far_ = std::numeric_limits<float>::infinity();
   float spread_ = 0, width_ = 0;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/judged_windows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/hash.hpp"
+#include "gazetrace/foveation.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr double kSideDeg = 3.5, kMovingSideDeg = 5.25;
+constexpr int kLeastSidePx = 64, kMostSidePx = 256;
+constexpr double kLeastWindows = 12;
+constexpr double kShare = 0.05;
+constexpr double kMostShare = 0.4;  // beyond, the whole frame is traced
+constexpr std::uint64_t kWindowTag = 0x57494e444f57ULL;  // "WINDOW"
+
+int on_grid(double px) {
+  return kDefaultMaxBlockPx * static_cast<int>(std::lround(px / kDefaultMaxBlockPx));
+}
+
+// Of this side, as near to the middle as the grid of blocks and the frame allow.
+JudgedWindow window_at(const Vec2d& middle_px, int side_px, int margin_px, const PlanarView& view) {
+  const auto begin = [&](double middle, int size) {
+    return std::clamp(on_grid(middle - 0.5 * side_px), 0, (size - side_px) / kDefaultMaxBlockPx * kDefaultMaxBlockPx);
+  };
+  const PixelRect traced{begin(middle_px.x, view.width_px), begin(middle_px.y, view.height_px), side_px, side_px};
+  return {traced, {traced.x_px + margin_px, traced.y_px + margin_px, side_px - 2 * margin_px, side_px - 2 * margin_px}};
+}
+
+bool holds(const PixelRect& rect, const Vec2d& px) {
+  return px.x >= rect.x_px && px.x < rect.right_px() && px.y >= rect.y_px && px.y < rect.bottom_px();
+}
+
+// 0..1
+double jitter(std::uint64_t n) {
+  return 0x1p-53 * static_cast<double>(hash_combine(kWindowTag, n) >> 11U);
+}
+
+void fill(ImageGray& image, const PixelRect& rect, float value) {
+  for (int y = rect.y_px; y < rect.bottom_px(); ++y) {
+    for (int x = rect.x_px; x < rect.right_px(); ++x) {
+      image(x, y) = value;
+    }
+  }
+}
+
+JudgedWindows whole_frame(const PlanarView& view) {
+  const PixelRect all{0, 0, view.width_px, view.height_px};
+  return {{{all, all}}, {}};
+}
+
+}  // namespace
+
+double JudgedWindows::share_of(const PlanarView& view) const {
+  double pixels = 0;
+  for (const JudgedWindow& window : windows) {
+    pixels += static_cast<double>(window.traced.width_px) * window.traced.height_px;
+  }
+  return pixels / (static_cast<double>(view.width_px) * view.height_px);
+}
+
+JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& gazes_px, bool view_moves) {
+  const double area = static_cast<double>(view.width_px) * view.height_px;
+  const double pixels_per_degree = 1 / (view.step_x * kDegPerRad);
+  const int side_px = std::clamp(on_grid((view_moves ? kMovingSideDeg : kSideDeg) * pixels_per_degree), kLeastSidePx, kMostSidePx);
+  const int margin_px = side_px / (view_moves ? 3 : 4);
+  const double of_window = static_cast<double>(side_px) * side_px;
+  const double wanted = std::max(kLeastWindows, kShare * area / of_window);
+  if (std::min(view.width_px, view.height_px) < side_px || wanted * of_window > kMostShare * area) {
+    return whole_frame(view);
+  }
+  std::vector<JudgedWindow> foveae;
+  for (const Vec2d& gaze : gazes_px) {
+    const PixelRect frame{0, 0, view.width_px, view.height_px};
+    const auto has_it = [&](const JudgedWindow& window) { return holds(window.counted, gaze); };
+    if (holds(frame, gaze) && std::none_of(foveae.begin(), foveae.end(), has_it)) {
+      foveae.push_back(window_at(gaze, side_px, margin_px, view));
+    }
+  }
+  const int rows = std::max(1, static_cast<int>(std::lround(std::sqrt(wanted * view.height_px / view.width_px))));
+  const int columns = static_cast<int>(std::ceil(wanted / rows));
+  std::vector<JudgedWindow> others;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto n = static_cast<std::uint64_t>(row * columns + column);
+      const Vec2d middle{(column + jitter(2 * n)) * view.width_px / columns,
+                         (row + jitter(2 * n + 1)) * view.height_px / rows};
+      const JudgedWindow window = window_at(middle, side_px, margin_px, view);
+      const auto meets = [&](const JudgedWindow& other) { return window.traced.overlaps(other.traced); };
+      if (std::none_of(foveae.begin(), foveae.end(), meets) && std::none_of(others.begin(), others.end(), meets)) {
+        others.push_back(window);
+      }
+    }
+  }
+  if (others.empty()) {
+    return whole_frame(view);
+  }
+  JudgedWindows chosen;
+  chosen.weights = ImageGray(view.width_px, view.height_px, 0);
+  for (const JudgedWindow& window : foveae) {
+    fill(chosen.weights, window.counted, 1);
+  }
+  double foveal = 0;
+  for (const float weight : chosen.weights.pixels) {
+    foveal += static_cast<double>(weight);
+  }
+  const double counted = static_cast<double>(others.front().counted.width_px) * others.front().counted.height_px *
+                         static_cast<double>(others.size());
+  for (const JudgedWindow& window : others) {
+    fill(chosen.weights, window.counted, static_cast<float>((area - foveal) / counted));
+  }
+  chosen.windows = std::move(foveae);
+  chosen.windows.insert(chosen.windows.end(), others.begin(), others.end());
+  return chosen;
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/window_clip.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/hash.hpp"
+#include "foveation/sites.hpp"
+#include "gazetrace/fovvideovdp.hpp"
+#include "pipeline/adaptive_rates.hpp"
+#include "pipeline/clip_score.hpp"
+#include "pipeline/frame_window.hpp"
+#include "pipeline/trace_counts.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::uint64_t kLookTag = 0x4c4f4f4bULL;       // "LOOK"
+constexpr std::uint64_t kHalfTag = 0x48414c46ULL;       // "HALF"
+constexpr std::uint64_t kRatesTag = 0x5241544553ULL;     // "RATES"
+constexpr std::uint64_t kAroundTag = 0x41524f554e44ULL;  // "AROUND"
+constexpr double kAroundSpp = 1;
+// What is seen of an error is about this power of its mean square, so that squares can be taken off each other.
+constexpr double kPowerOfSquare = 0.9;
+// Of a picture alone: examples of it that are judged.
+constexpr std::size_t kStillRuns = 2;
+constexpr std::uint64_t kPilots = 4;  // whose rates are averaged, where all frames share them
+
+FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
+  FrameSettings own = settings;
+  own.foveation.target = {};
+  own.foveation.budget_samples.reset();
+  own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kLookTag), tag);
+  own.trace.guides = false;
+  own.trace.only_pixel.reset();
+  own.exposure = {};
+  own.layers = {};
+  return own;
+}
+
+FrameSettings uniform(FrameSettings settings, double spp, const char* filter) {
+  settings.foveation = {};
+  settings.foveation.falloff = "uniform";
+  settings.foveation.budget_spp = spp;
+  settings.accumulate = {};
+  settings.reconstruction = {filter, {}};
+  settings.enhance_contrast = 0;
+  return settings;
+}
+
+ImageRgb weighted_mean(const ImageRgb& a, double weight_a, const ImageRgb& b, double weight_b) {
+  ImageRgb mean = a;
+  const auto share = static_cast<float>(weight_b / (weight_a + weight_b));
+  for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+    mean.pixels[i] += (b.pixels[i] - a.pixels[i]) * share;
+  }
+  return mean;
+}
+
+ImageGray cut_out(const ImageGray& image, const PixelRect& rect) {
+  ImageGray part(rect.width_px, rect.height_px);
+  for (int y = 0; y < rect.height_px; ++y) {
+    for (int x = 0; x < rect.width_px; ++x) {
+      part(x, y) = image(rect.x_px + x, rect.y_px + y);
+    }
+  }
+  return part;
+}
+
+template <class T>
+void paste(const Image<T>& part, const PixelRect& rect, Image<T>& image) {
+  for (int y = 0; y < rect.height_px; ++y) {
+    for (int x = 0; x < rect.width_px; ++x) {
+      image(rect.x_px + x, rect.y_px + y) = part(x, y);
+    }
+  }
+}
+
+double mean_rate(const ImageGray& image) {
+  double sum = 0;
+  for (const float value : image.pixels) {
+    sum += static_cast<double>(value);
+  }
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+std::vector<Vec2d> looked_at(const JudgedFrames& judged) {
+  std::vector<Vec2d> gazes;
+  for (const std::vector<FrameRequest>& run : judged.runs) {
+    for (const FrameRequest& request : run) {
+      if (const std::optional<Vec2d> gaze = looked_at_px(request)) {
+        gazes.push_back(*gaze);
+      }
+    }
+  }
+  return gazes;
+}
+
+}  // namespace
+
+WindowClip::WindowClip(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
+                       const ColorPipeline& color)
+    : tracer_(tracer),
+      judged_(judged),
+      settings_(settings),
+      color_(color),
+      windows_(judged_windows(first().view, looked_at(judged), judged.view_moves)) {
+  for (const std::vector<FrameRequest>& run : judged_.runs) {
+    for (const FrameRequest& request : run) {
+      if (judged_.view_moves || views_.empty()) {
+        views_.push_back(&request);
+      }
+    }
+  }
+  render_around();
+}
+
+void WindowClip::render_around() {
+  const FrameSettings around = uniform(discarded(settings_, kAroundTag), kAroundSpp, "guided");
+  for (const std::vector<FrameRequest>& run : judged_.runs) {
+    if (!around_.empty() && !judged_.view_moves) {
+      break;
+    }
+    around_.emplace_back();
+    if (windows_.is_whole_frame()) {
+      around_.back().radiance = ImageRgb(first().width_px, first().height_px);
+      continue;
+    }
+    TemporalHistory none;
+    RenderedFrame rendered = FrameRenderer(tracer_, around).render(run.front(), none);
+    add_traces(rendered.samples, stats_);
+    around_.back().radiance = std::move(rendered.frame.radiance);
+  }
+}
+
+std::size_t WindowClip::around_of(std::size_t index) const {
+  std::size_t run = 0;
+  while (judged_.view_moves && index >= judged_.runs[run].size()) {
+    index -= judged_.runs[run].size();
+    ++run;
+  }
+  return run;
+}
+
+double WindowClip::share_of_frame() const {
+  return windows_.share_of(first().view);
+}
+
+bool WindowClip::is_steady() const {
+  const auto same = [&](const FrameRequest& request) {
+    return request.gaze_direction_render == first().gaze_direction_render &&
+           request.gaze_uncertainty_deg == first().gaze_uncertainty_deg &&
+           request.eye_speed_deg_s == first().eye_speed_deg_s && request.eye_in_saccade == first().eye_in_saccade;
+  };
+  const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
+  // Of `map` each frame may have a file.
+  return settings_.foveation.falloff != "map" &&
+         std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
+}
+
+FrameSettings WindowClip::settings_in_window(std::size_t window, std::uint64_t tag) const {
+  return discarded(settings_, hash_combine(tag, window));
+}
+
+void WindowClip::add_samples(double spp, std::size_t half) {
+  // Further samples are those of another seed.
+  const std::uint64_t tag =
+      hash_combine(hash_combine(kHalfTag, half), static_cast<std::uint64_t>(std::llround(reference_spp_)));
+  WindowPictures& pictures = halves_.at(half);
+  pictures.resize(views_.size());
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    pictures[v].resize(windows_.windows.size());
+    for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
+      const FrameRenderer renderer(tracer_, uniform(settings_in_window(w, tag), spp, "none"));
+      TemporalHistory none;
+      RenderedFrame rendered = renderer.render(part_of(*views_[v], windows_.windows[w].traced), none);
+      add_traces(rendered.samples, stats_);
+      ImageRgb& mean = pictures[v][w];
+      mean = mean.empty() ? std::move(rendered.frame.radiance)
+                          : weighted_mean(mean, 0.5 * reference_spp_, rendered.frame.radiance, spp);
+    }
+  }
+}
+
+// The reference is pasted in first: what it shows decides the exposure.
+void WindowClip::show_around() {
+  for (Around& around : around_) {
+    TemporalHistory none;
+    around.exposure_ev = choose_exposure_ev(around.radiance, 0, settings_.exposure, none);
+    const ImageRgb code = shown_code(around.radiance, color_, around.exposure_ev, settings_.threads);
+    around.shown = display_luminance(code, {}, settings_.threads);
+  }
+}
+
+void WindowClip::refine(double spp) {
+  for (std::size_t half = 0; half < halves_.size(); ++half) {
+    add_samples(0.5 * (spp - reference_spp_), half);
+  }
+  reference_spp_ = spp;
+  reference_.assign(views_.size(), {});
+  WindowPictures off(views_.size());  // by as much as the reference is, on average
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
+      const ImageRgb& a = halves_[0][v][w];
+      const ImageRgb& b = halves_[1][v][w];
+      reference_[v].push_back(weighted_mean(a, 1, b, 1));
+      paste(reference_[v].back(), windows_.windows[w].traced, around_[around_of(v)].radiance);
+      off[v].push_back(reference_[v].back());
+      for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        off[v].back().pixels[i] += (a.pixels[i] - b.pixels[i]) * 0.5F;
+      }
+    }
+  }
+  show_around();
+  reference_shown_.clear();
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    reference_shown_.push_back(shown(reference_[v], v));
+  }
+  // What stands still shows in one frame what it does in all.
+  const JudgedFrames one{{{first()}}, {}, judged_.sequence_frames, false};
+  reference_q_ = measured_q(judged_.view_moves ? judged_ : one, off);
+}
+
+ImageGray WindowClip::shown(const std::vector<ImageRgb>& windows, std::size_t index) const {
+  const Around& around = around_[around_of(index)];
+  ImageGray luminance = around.shown;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const ImageRgb code = shown_code(windows[w], color_, around.exposure_ev, settings_.threads);
+    paste(display_luminance(code, {}, settings_.threads), windows_.windows[w].traced, luminance);
+  }
+  return luminance;
+}
+
+double WindowClip::measured_q(const JudgedFrames& judged, const WindowPictures& pictures) const {
+  const auto reference = [&](std::size_t index) -> const ImageGray& { return reference_shown_[reference_of(index)]; };
+  const auto frame = [&](const FrameRequest&, std::size_t index) {
+    return shown(pictures[index % pictures.size()], index);
+  };
+  const bool fills = settings_.accumulate.mode == AccumulateMode::two_sided && settings_.accumulate.window > 0;
+  return clip_q(judged, reference, frame, {settings_.frames_per_second, fills, windows_.weights, settings_.threads});
+}
+
+double WindowClip::q_of(const WindowPictures& pictures) const {
+  const double q = measured_q(judged_, pictures);
+  // Errors of picture and reference have nothing in common: their squares add up.
+  const auto square = [](double seen) { return std::pow(seen, 1 / kPowerOfSquare); };
+  constexpr double kLeastShare = 0.1;
+  return std::pow(std::max(square(q) - square(reference_q_), kLeastShare * square(q)), kPowerOfSquare);
+}
+
+ImageGray WindowClip::pilot_rates(const FrameRequest& request, const FrameSettings& settings) {
+  AdaptiveRates adaptive =
+      adaptive_rates(tracer_.at({request.shutter_open_ns, request.shutter_close_ns}), request, settings);
+  add_traces(adaptive.pilot, stats_);
+  return std::move(adaptive.rates);
+}
+
+// Blocks share what they expect, as in the frame.
+ImageGray WindowClip::expected_spp(const FrameRequest& request, double spp, std::uint64_t round) {
+  FrameSettings own = discarded(settings_, hash_combine(kRatesTag, round));
+  own.foveation.budget_spp = spp;
+  SamplingMap map;
+  if (own.foveation.falloff == "visible") {
+    ImageGray rates;
+    if (is_steady()) {
+      // Of a pilot that may be larger than such a frame; what it says of the rates is brought to their mean.
+      own.foveation.budget_spp = std::max(spp, 16 * least_pilot_spp(request));
+      for (std::uint64_t k = 0; k < kPilots; ++k) {
+        own.trace.seed = hash_combine(own.trace.seed, k);
+        const ImageGray one = pilot_rates(request, own);
+        if (rates.empty()) {
+          rates = one;
+          continue;
+        }
+        for (std::size_t i = 0; i < rates.pixels.size(); ++i) {
+          rates.pixels[i] += one.pixels[i];
+        }
+      }
+      const auto scale = static_cast<float>(spp / mean_rate(rates));
+      for (float& rate : rates.pixels) {
+        rate *= scale;
+      }
+      shared_rates_ = rates;
+    } else {
+      rates = pilot_rates(request, own);
+    }
+    own.foveation.falloff = "map";
+    own.foveation.budget_spp.reset();
+    MapContext context = map_context(request, own.trace.seed, settings_.threads);
+    context.density = &rates;
+    map = make_sampling_map(own.foveation, request.view, request.gaze_direction_render, context);
+  } else {
+    map = planned_sampling_map(own.foveation, request, own.trace.seed, settings_.threads);
+  }
+  ImageGray expected(map.width_px, map.height_px);
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const auto value = static_cast<float>(map.expected(i) / map.sites[i].pixels);
+    for_each_pixel(map, map.sites[i], [&](int x, int y) { expected(x, y) = value; });
+  }
+  return expected;
+}
+
+std::vector<ImageRgb> WindowClip::look_at(std::size_t window, const FrameSettings& settings) {
+  const PixelRect& rect = windows_.windows[window].traced;
+  const bool is_still = judged_.sequence_frames == 1;
+  std::vector<ImageRgb> pictures;
+  for (std::size_t example = 0; example < (is_still ? kStillRuns : 1); ++example) {
+    FrameSettings own = settings;
+    own.trace.seed = hash_combine(settings.trace.seed, example);
+    const FrameRenderer renderer(tracer_, own);
+    FramePlan plan;
+    std::set<std::int32_t> numbers;
+    for (const std::vector<FrameRequest>& run : judged_.runs) {
+      for (const FrameRequest& request : run) {
+        // Of a still the others are examples of it, or read by it.
+        const bool is_shown = !is_still || request.frame == first().frame;
+        (is_shown ? plan.frames : plan.around).push_back(part_of(request, rect));
+        if (is_shown) {
+          numbers.insert(request.frame);
+        }
+      }
+    }
+    for (const FrameRequest& request : judged_.around) {
+      plan.around.push_back(part_of(request, rect));
+    }
+    std::optional<FrameWindow> joined;
+    if (own.accumulate.mode == AccumulateMode::two_sided) {
+      joined.emplace(renderer, plan, numbers);
+    }
+    TemporalHistory history;
+    for (const FrameRequest& request : plan.frames) {
+      RenderedFrame rendered = joined ? joined->render(request, history) : renderer.render(request, history);
+      add_traces(rendered.samples, stats_);
+      add_traces(rendered.others, stats_);
+      pictures.push_back(std::move(rendered.frame.radiance));
+    }
+  }
+  return pictures;
+}
+
+WindowPictures WindowClip::look(double spp, std::uint64_t round) {
+  const bool is_uniform = settings_.foveation.falloff == "uniform";
+  // Of each window by the number of the frame, or once for all of them.
+  std::map<std::int32_t, std::vector<ImageGray>> rates;
+  const bool is_same = is_steady();
+  const auto number = [&](const FrameRequest& request) { return is_same ? 0 : request.frame; };
+  const auto find_rates = [&](const std::vector<FrameRequest>& requests) {
+    for (const FrameRequest& request : requests) {
+      if (is_uniform || rates.contains(number(request))) {
+        continue;
+      }
+      const ImageGray expected = expected_spp(request, spp, round);
+      for (const JudgedWindow& window : windows_.windows) {
+        rates[number(request)].push_back(cut_out(expected, window.traced));
+      }
+    }
+  };
+  for (const std::vector<FrameRequest>& run : judged_.runs) {
+    find_rates(run);
+  }
+  find_rates(judged_.around);
+  WindowPictures pictures;
+  for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
+    FrameSettings own = settings_in_window(w, hash_combine(kLookTag, round));
+    if (is_uniform) {
+      own.foveation.budget_spp = spp;
+    } else {
+      own.foveation.falloff = "map";
+      own.foveation.budget_spp.reset();
+      own.density_of = [&](const FrameRequest& request) { return rates.at(number(request))[w]; };
+    }
+    std::vector<ImageRgb> of_window = look_at(w, own);
+    pictures.resize(of_window.size());
+    for (std::size_t frame = 0; frame < of_window.size(); ++frame) {
+      pictures[frame].push_back(std::move(of_window[frame]));
+    }
+  }
+  return pictures;
+}
+
+ImageGray WindowClip::shared_rates(double spp) const {
+  ImageGray rates = shared_rates_;
+  if (!rates.empty()) {
+    const auto scale = static_cast<float>(spp / mean_rate(rates));
+    for (float& rate : rates.pixels) {
+      rate *= scale;
+    }
+  }
+  return rates;
+}
+
+}  // namespace gazetrace

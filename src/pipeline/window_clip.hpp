@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is seen of the error of a sequence, measured in windows of some of its frames before it is rendered.
+//
+// In a few windows (judged_windows.hpp) what the sequence would show there is rendered, with samples that are discarded,
+// beside a reference of many raw samples: all that a filter does wrong is in the difference, its bias as well. Around the
+// windows both show the same picture, and FovVideoVDP counts the windows for the areas that they stand for. Where the view
+// rests, one reference serves all frames. Where it moves, each judged frame has its own, which is dear.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gazetrace/color.hpp"
+#include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/plan.hpp"
+#include "pipeline/judged_windows.hpp"
+
+namespace gazetrace {
+
+// Of frames one after the other, those of all runs: what each shows in every window, linear.
+using WindowPictures = std::vector<std::vector<ImageRgb>>;
+
+class WindowClip {
+ public:
+  // Keeps references to all, which must outlive it. `settings` accumulate nothing, or AccumulateMode::two_sided.
+  WindowClip(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings, const ColorPipeline& color);
+
+  // The frames as they would be with `spp` samples a pixel on average. `round` chooses the samples.
+  WindowPictures look(double spp, std::uint64_t round);
+  // Q of the whole sequence (fovvideovdp_jod()) with these pictures; the reference's own error is taken off.
+  [[nodiscard]] double q_of(const WindowPictures& pictures) const;
+
+  // More samples for the reference: so many a pixel in all.
+  void refine(double spp);
+  [[nodiscard]] double reference_spp() const { return reference_spp_; }
+  [[nodiscard]] double reference_q() const { return reference_q_; }  // Q of its own error
+
+  // The rates of the fall-off `visible` by the last look, for this mean, where all frames are looked at alike: they can
+  // share them. Empty for other fall-offs and for a gaze that moves.
+  [[nodiscard]] ImageGray shared_rates(double spp) const;
+  // Whether the sampling of all frames follows from the same view and gaze.
+  [[nodiscard]] bool is_steady() const;
+  [[nodiscard]] const JudgedWindows& windows() const { return windows_; }
+  [[nodiscard]] double share_of_frame() const;
+  [[nodiscard]] const TraceStats& stats() const { return stats_; }
+
+ private:
+  [[nodiscard]] const FrameRequest& first() const { return judged_.runs.front().front(); }
+  // Samples a pixel that every pixel of a frame expects.
+  [[nodiscard]] ImageGray expected_spp(const FrameRequest& request, double spp, std::uint64_t round);
+  [[nodiscard]] ImageGray pilot_rates(const FrameRequest& request, const FrameSettings& settings);
+  [[nodiscard]] FrameSettings settings_in_window(std::size_t window, std::uint64_t tag) const;
+  // One picture a judged frame.
+  [[nodiscard]] std::vector<ImageRgb> look_at(std::size_t window, const FrameSettings& settings);
+  void render_around();
+  void add_samples(double spp, std::size_t half);
+  void show_around();
+  // The frame with these windows, as it is shown, cd/m2. `index` counts the judged frames.
+  [[nodiscard]] ImageGray shown(const std::vector<ImageRgb>& windows, std::size_t index) const;
+  [[nodiscard]] double measured_q(const JudgedFrames& judged, const WindowPictures& pictures) const;
+  // Of a judged frame: which of the references is its own, and which of the pictures around the windows.
+  [[nodiscard]] std::size_t reference_of(std::size_t index) const { return judged_.view_moves ? index : 0; }
+  [[nodiscard]] std::size_t around_of(std::size_t index) const;
+
+  PathTracer& tracer_;
+  const JudgedFrames& judged_;
+  const FrameSettings& settings_;
+  const ColorPipeline& color_;
+  TraceStats stats_;
+  JudgedWindows windows_;
+  std::vector<const FrameRequest*> views_;  // that have a reference: the first frame, or every judged one
+  // What lies around the windows: of the first frame of each run or, at rest, of the first.
+  struct Around {
+    ImageRgb radiance;  // linear
+    double exposure_ev = 0;
+    ImageGray shown;  // cd/m2
+  };
+  std::vector<Around> around_;
+  // Means of samples with nothing in common, of each view.
+  std::array<WindowPictures, 2> halves_;
+  WindowPictures reference_;  // their mean
+  std::vector<ImageGray> reference_shown_;
+  double reference_spp_ = 0, reference_q_ = 0;
+  ImageGray shared_rates_;
+};
+
+}  // namespace gazetrace
