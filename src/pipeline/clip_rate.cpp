@@ -169,7 +169,8 @@ ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSe
   result.is_least = result.spp == least;
   result.summed_frames = clip.most_summed();
   result.frames += clip.looks();
-  result.how = fmt::format("{}, {} of frames in all", counted(result.rounds, "pilot"), counted(result.frames, "rendering"));
+  result.how =
+      fmt::format("{}, {} of frames in all", counted(result.rounds, "pilot"), counted(result.frames, "rendering"));
   add_traces(clip.stats(), result.pilot);
   return result;
 }

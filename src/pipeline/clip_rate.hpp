@@ -32,9 +32,9 @@ struct ClipRate {
 // Whether the error of frames is in a replica of their noise: single pixels of uniform frames that nothing smooths.
 bool is_noise_alone(const FrameSettings& settings);
 
-// For frames whose error is noise alone, by pilots (replica_clip.hpp) at lower rates. Each says what would be seen if its squared error were smaller, and that
-// falls as one over the rate. A function of the judged frames, settings and seed alone. Error(usage) where the target
-// would take more than FoveationSettings::max_spp.
+// For frames whose error is noise alone, by pilots (replica_clip.hpp) at lower rates. Each says what would be seen if
+// its squared error were smaller, and that falls as one over the rate. A function of the judged frames, settings and
+// seed alone. Error(usage) where the target would take more than FoveationSettings::max_spp.
 ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
                    const ColorPipeline& color);
 

@@ -15,7 +15,7 @@ constexpr double kSideDeg = 3.5, kMovingSideDeg = 5.25;
 constexpr int kLeastSidePx = 64, kMostSidePx = 256;
 constexpr double kLeastWindows = 12;
 constexpr double kShare = 0.05;
-constexpr double kMostShare = 0.4;  // beyond, the whole frame is traced
+constexpr double kMostShare = 0.4;                       // beyond, the whole frame is traced
 constexpr std::uint64_t kWindowTag = 0x57494e444f57ULL;  // "WINDOW"
 
 int on_grid(double px) {
@@ -66,7 +66,8 @@ double JudgedWindows::share_of(const PlanarView& view) const {
 JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& gazes_px, bool view_moves) {
   const double area = static_cast<double>(view.width_px) * view.height_px;
   const double pixels_per_degree = 1 / (view.step_x * kDegPerRad);
-  const int side_px = std::clamp(on_grid((view_moves ? kMovingSideDeg : kSideDeg) * pixels_per_degree), kLeastSidePx, kMostSidePx);
+  const int side_px =
+      std::clamp(on_grid((view_moves ? kMovingSideDeg : kSideDeg) * pixels_per_degree), kLeastSidePx, kMostSidePx);
   const int margin_px = side_px / (view_moves ? 3 : 4);
   const double of_window = static_cast<double>(side_px) * side_px;
   const double wanted = std::max(kLeastWindows, kShare * area / of_window);

@@ -25,11 +25,12 @@ struct JudgedWindows {
   [[nodiscard]] double share_of(const PlanarView& view) const;
 };
 
-// Windows on a jittered grid, which share what the frame has, and one at each gaze (in pixels), which stands for itself:
-// the fovea is small, and worst errors there decide. A side is about three and a half degrees long. Together they are
-// about a twentieth of the frame, and at least a dozen; where that would be most of the frame, it is the whole of it. A
-// function of its arguments alone. Corners lie at multiples of the largest block, so that blocks are those of the frame.
-// The margin is a quarter of the side, or, of a view that moves, so that more of what comes in was seen before, a third.
+// Windows on a jittered grid, which share what the frame has, and one at each gaze (in pixels), which stands for
+// itself: the fovea is small, and worst errors there decide. A side is about three and a half degrees long. Together
+// they are about a twentieth of the frame, and at least a dozen; where that would be most of the frame, it is the whole
+// of it. A function of its arguments alone. Corners lie at multiples of the largest block, so that blocks are those of
+// the frame. The margin is a quarter of the side, or, of a view that moves, so that more of what comes in was seen
+// before, a third.
 JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& gazes_px, bool view_moves = false);
 
 }  // namespace gazetrace

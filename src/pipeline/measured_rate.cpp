@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
@@ -17,14 +18,17 @@ namespace gazetrace {
 namespace {
 
 constexpr double kFirstSpp = 1, kLeastSpp = 0.25;
-constexpr int kMostLooks = 6;
-constexpr double kGrowth = 16;    // of the rate from one look to the next
-constexpr double kNear = 1.3;     // a change of the rate that needs no further look
-constexpr double kSlope = -0.6;   // of the logarithm of what is seen over that of the rate, until two looks show it
+constexpr int kMostLooks = 8;
+constexpr double kGrowth = 16;  // of the rate from one look to the next
+constexpr double kNear = 1.3;   // a change of the rate that needs no further look
+constexpr double kSlope =
+    -0.6;  // of the logarithm of what is seen over that of the rate, until looks that lie apart show it
+constexpr double kTogether = 1.6;     // looks whose rates differ by no more tell of the same rate
+constexpr double kLeastSpread = 0.2;  // of logarithms of rates: a sum of squares
 constexpr double kSteepest = -1.2, kFlattest = -0.2;
-constexpr double kFirstReferenceSpp = 32, kMostReferenceSpp = 16384;
+constexpr double kFirstReferenceSpp = 128, kMostReferenceSpp = 16384;
 // What may be seen of the reference's own error beside that of the frames. It is taken off.
-constexpr double kMostOfReference = 0.5;
+constexpr double kMostOfReference = 0.35;
 
 // Frames that do not share their rates have a pilot each.
 double least_rate(const WindowClip& clip, const FrameSettings& settings, const FrameRequest& request) {
@@ -38,8 +42,53 @@ struct Look {
   double rate = 0, seen = 0;
 };
 
-double slope_between(const Look& a, const Look& b) {
-  return a.rate == b.rate ? kSlope : std::clamp((b.seen - a.seen) / (b.rate - a.rate), kSteepest, kFlattest);
+class Looks {
+ public:
+  void add(const Look& look) { looks_.push_back(look); }
+  [[nodiscard]] int count() const { return static_cast<int>(looks_.size()); }
+  [[nodiscard]] const Look& last() const { return looks_.back(); }
+  [[nodiscard]] int near(double rate) const {
+    return static_cast<int>(
+        std::count_if(looks_.begin(), looks_.end(), [&](const Look& l) { return is_near(l, rate); }));
+  }
+
+  // By all looks near the last one, which the rate is carried to along the slope: few pixels say little each time.
+  [[nodiscard]] double seen_at(double rate) const {
+    double sum = 0;
+    for (const Look& look : looks_) {
+      sum += is_near(look, last().rate) ? look.seen + slope() * (rate - look.rate) : 0;
+    }
+    return sum / near(last().rate);
+  }
+  [[nodiscard]] double rate_of(double seen) const { return last().rate + (seen - seen_at(last().rate)) / slope(); }
+
+ private:
+  static bool is_near(const Look& look, double rate) { return std::abs(look.rate - rate) < std::log(kTogether); }
+
+  // Least squares, where the looks lie apart.
+  [[nodiscard]] double slope() const {
+    Look mean;
+    for (const Look& look : looks_) {
+      mean.rate += look.rate / static_cast<double>(looks_.size());
+      mean.seen += look.seen / static_cast<double>(looks_.size());
+    }
+    double square = 0;
+    double product = 0;
+    for (const Look& look : looks_) {
+      square += (look.rate - mean.rate) * (look.rate - mean.rate);
+      product += (look.rate - mean.rate) * (look.seen - mean.seen);
+    }
+    return square < kLeastSpread ? kSlope : std::clamp(product / square, kSteepest, kFlattest);
+  }
+
+  std::vector<Look> looks_;
+};
+
+// How many looks near the rate it takes to know it: what is seen in few pixels differs from time to time.
+int wanted_looks(const WindowClip& clip) {
+  constexpr double kFew = 40000, kMany = 160000;
+  const double pixels = clip.counted_px();
+  return pixels < kFew ? 4 : pixels < kMany ? 2 : 1;
 }
 
 // As many samples as are likely to make the reference's own error small enough beside what is seen now.
@@ -59,8 +108,7 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
   const double least = least_rate(clip, settings, judged.runs.front().front());
   clip.refine(kFirstReferenceSpp);
   ClipRate result;
-  Look last;
-  double slope = kSlope;
+  Looks looks;
   for (double spp = std::max(kFirstSpp, least);; spp = result.spp) {
     const WindowPictures pictures = clip.look(spp, static_cast<std::uint64_t>(result.rounds));
     double q = clip.q_of(pictures);
@@ -68,14 +116,13 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
       clip.refine(wanted_reference(clip, q));
       q = clip.q_of(pictures);
     }
-    const Look look{std::log(spp), std::log(std::max(q, 1e-12))};
-    slope = result.rounds == 0 ? kSlope : slope_between(last, look);
-    last = look;
+    looks.add({std::log(spp), std::log(std::max(q, 1e-12))});
     ++result.rounds;
     const double reach = std::log(kGrowth);
-    const double change = std::clamp((wanted - look.seen) / slope, -reach, reach);
+    const double change = std::clamp(looks.rate_of(wanted) - std::log(spp), -reach, reach);
     result.spp = std::max(least, spp * std::exp(change));
-    result.settled = std::abs(change) < std::log(kNear) || (spp == least && result.spp == least);
+    const bool is_near = std::abs(change) < std::log(kNear) || (spp == least && result.spp == least);
+    result.settled = is_near && looks.near(std::log(spp)) >= wanted_looks(clip);
     if (result.spp > 2 * most || (result.settled && result.spp > most)) {
       throw Error(ErrorKind::usage, "`target-jod`",
                   fmt::format("{} JOD would take about {:.3g} samples a pixel, by {} looks at windows of the frames; "
@@ -84,8 +131,8 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
                   "ask for less, or raise `max-spp`");
     }
     if (result.settled || result.rounds == kMostLooks) {
-      const double at = std::log(result.spp) - look.rate;
-      result.predicted_jod = fovvideovdp_jod(std::exp(look.seen + slope * at));
+      result.settled = is_near;
+      result.predicted_jod = fovvideovdp_jod(std::exp(looks.seen_at(std::log(result.spp))));
       break;
     }
   }

@@ -189,7 +189,7 @@ class JudgedRate {
   void choose(PathTracer& tracer, const JudgedFrames& judged, const ColorPipeline& color, FrameSettings& settings) {
     rate_ = timed(ms_, [&] {
       return is_noise_alone(settings) && !judged.view_moves ? clip_rate(tracer, judged, settings, color)
-                                      : measured_rate(tracer, judged, settings, color);
+                                                            : measured_rate(tracer, judged, settings, color);
     });
     settings.foveation.target = {};
     settings.foveation.budget_spp = rate_->spp;

@@ -80,7 +80,12 @@ double ReplicaClip::flip_at(const ReplicaNoise& noise, double share) const {
   const auto flip_of = [&](std::int64_t frame) {
     double sum = 0;
     for (std::size_t i = 0; i < kStills; ++i) {
-      sum += measure("flip", {{}, code_}, {{}, shown_code(noise.noisy(base_, share, example_of(frame, i)), color_, exposure_ev_, settings_.threads)}, metric).mean;
+      sum += measure(
+                 "flip", {{}, code_},
+                 {{},
+                  shown_code(noise.noisy(base_, share, example_of(frame, i)), color_, exposure_ev_, settings_.threads)},
+                 metric)
+                 .mean;
     }
     return sum / static_cast<double>(kStills);
   };

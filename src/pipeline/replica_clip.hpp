@@ -36,7 +36,7 @@ class ReplicaClip {
   [[nodiscard]] double flip_at(const ReplicaNoise& noise, double share) const;
 
  private:
-  [[nodiscard]] std::int64_t reach() const;                        // how many frames after a frame are added to it
+  [[nodiscard]] std::int64_t reach() const;  // how many frames after a frame are added to it
   // What is added up in a frame of the sequence, and another example of as many, with other samples.
   [[nodiscard]] SummedFrames summed_in(std::int64_t frame) const;
   [[nodiscard]] SummedFrames example_of(std::int64_t frame, std::size_t n) const;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/hash.hpp"
+#include "core/luminance.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/fovvideovdp.hpp"
 #include "pipeline/adaptive_rates.hpp"
@@ -20,8 +21,8 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::uint64_t kLookTag = 0x4c4f4f4bULL;       // "LOOK"
-constexpr std::uint64_t kHalfTag = 0x48414c46ULL;       // "HALF"
+constexpr std::uint64_t kLookTag = 0x4c4f4f4bULL;        // "LOOK"
+constexpr std::uint64_t kHalfTag = 0x48414c46ULL;        // "HALF"
 constexpr std::uint64_t kRatesTag = 0x5241544553ULL;     // "RATES"
 constexpr std::uint64_t kAroundTag = 0x41524f554e44ULL;  // "AROUND"
 constexpr double kAroundSpp = 1;
@@ -60,6 +61,20 @@ ImageRgb weighted_mean(const ImageRgb& a, double weight_a, const ImageRgb& b, do
     mean.pixels[i] += (b.pixels[i] - a.pixels[i]) * share;
   }
   return mean;
+}
+
+// A picture that is as far from the mean of two halves as that is from the truth. Of a bright speck that one half alone
+// has, the mean has half: the picture without it differs as the truth does, where a display shows no more than that.
+ImageRgb as_far_off(const ImageRgb& mean, const ImageRgb& a, const ImageRgb& b) {
+  constexpr float kSpeck = 0.5F;  // of the mean's light
+  ImageRgb picture = mean;
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const Vec3f off = (a.pixels[i] - b.pixels[i]) * 0.5F;
+    const float light = luminance(off);
+    const bool is_speck = std::abs(light) > kSpeck * luminance(mean.pixels[i]);
+    picture.pixels[i] += is_speck && light > 0 ? off * -1.0F : off;
+  }
+  return picture;
 }
 
 ImageGray cut_out(const ImageGray& image, const PixelRect& rect) {
@@ -151,6 +166,14 @@ double WindowClip::share_of_frame() const {
   return windows_.share_of(first().view);
 }
 
+double WindowClip::counted_px() const {
+  double pixels = 0;
+  for (const JudgedWindow& window : windows_.windows) {
+    pixels += static_cast<double>(window.counted.width_px) * window.counted.height_px;
+  }
+  return pixels;
+}
+
 bool WindowClip::is_steady() const {
   const auto same = [&](const FrameRequest& request) {
     return request.gaze_direction_render == first().gaze_direction_render &&
@@ -159,8 +182,8 @@ bool WindowClip::is_steady() const {
   };
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
   // Of `map` each frame may have a file.
-  return settings_.foveation.falloff != "map" &&
-         std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
+  return settings_.foveation.falloff != "map" && std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) &&
+         all_same(judged_.around);
 }
 
 FrameSettings WindowClip::settings_in_window(std::size_t window, std::uint64_t tag) const {
@@ -210,10 +233,7 @@ void WindowClip::refine(double spp) {
       const ImageRgb& b = halves_[1][v][w];
       reference_[v].push_back(weighted_mean(a, 1, b, 1));
       paste(reference_[v].back(), windows_.windows[w].traced, around_[around_of(v)].radiance);
-      off[v].push_back(reference_[v].back());
-      for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        off[v].back().pixels[i] += (a.pixels[i] - b.pixels[i]) * 0.5F;
-      }
+      off[v].push_back(as_far_off(reference_[v].back(), a, b));
     }
   }
   show_around();

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is seen of the error of a sequence, measured in windows of some of its frames before it is rendered.
 //
-// In a few windows (judged_windows.hpp) what the sequence would show there is rendered, with samples that are discarded,
-// beside a reference of many raw samples: all that a filter does wrong is in the difference, its bias as well. Around the
-// windows both show the same picture, and FovVideoVDP counts the windows for the areas that they stand for. Where the view
-// rests, one reference serves all frames. Where it moves, each judged frame has its own, which is dear.
+// In a few windows (judged_windows.hpp) what the sequence would show there is rendered, with samples that are
+// discarded, beside a reference of many raw samples: all that a filter does wrong is in the difference, its bias as
+// well. Around the windows both show the same picture, and FovVideoVDP counts the windows for the areas that they stand
+// for. Where the view rests, one reference serves all frames. Where it moves, each judged frame has its own, which is
+// dear.
 #pragma once
 
 #include <array>
@@ -44,6 +45,7 @@ class WindowClip {
   [[nodiscard]] bool is_steady() const;
   [[nodiscard]] const JudgedWindows& windows() const { return windows_; }
   [[nodiscard]] double share_of_frame() const;
+  [[nodiscard]] double counted_px() const;  // of a frame
   [[nodiscard]] const TraceStats& stats() const { return stats_; }
 
  private:

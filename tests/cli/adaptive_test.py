@@ -190,51 +190,57 @@ class Adaptive(harness.CliTest):
         self.assertEqual(kept, (self.folder / "bound/f.0001.exr").read_bytes())
         self.assertTrue((self.folder / "bound/f.0002.exr").exists())
 
-    def measured_jod(self, reference, test, frames):
+    def measured_jod(self, reference, test, frames, gaze):
         self.run_ok("compare", f"{reference}/f.####.exr", f"{test}/f.####.exr", "--frames", frames, "--metrics", "fovvideovdp", "--fps",
-                    "24", "--anyway", *GAZE, "--overwrite", "--json", "scores.json")
+                    "24", "--anyway", *gaze, "--overwrite", "--json", "scores.json")
         return json.loads((self.folder / "scores.json").read_text())["sequence"][0]["scores"][0]["value"]
 
     def test_a_stated_quality_through_a_filter(self):
-        tool = [*VIEW[:-2], *GAZE, "--falloff", "visible", "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
+        # What is seen of an error that stands still in a small picture differs from seed to seed: 0.06 JOD in its standard
+        # deviation, by twelve of these clips.
+        gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "160,100", "--screen-ppd", "12"]
+        view = ["--size", "160x100", *VIEW[2:-2], *gaze]
+        tool = [*view, "--falloff", "visible", "--max-block", "1", "--filter", "guided", "--accumulate", "two-sided",
                 "--accumulate-window", "4"]
 
         def clip(folder, frames, *more):
             self.run_ok("render", "box.gltf", *tool, "--frames", frames, *more, "-o", f"{folder}/f.####.exr")
 
-        self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", "1", "--spp", "4096", "--seed", "9", "-o", "reference/f.0001.exr")
+        self.run_ok("render", "box.gltf", *view, "--falloff", "uniform", "--filter", "none", "--frames", "1", "--spp", "4096", "--seed", "9",
+                    "-o", "reference/f.0001.exr")
         for frame in range(2, 25):
             shutil.copy(self.folder / "reference/f.0001.exr", self.folder / f"reference/f.{frame:04d}.exr")
         samples = {}
-        for target in ("8.5", "9.2"):
+        for target in ("9.2", "9.6"):
             clip(target, "1-24", "--target-jod", target)
-            self.assertAlmostEqual(self.measured_jod("reference", target, "1-24"), float(target), delta=0.1)
+            self.assertAlmostEqual(self.measured_jod("reference", target, "1-24", gaze), float(target), delta=0.18)
             rows = self.rows(target)
             self.assertAlmostEqual(float(rows[0]["predicted_jod"]), float(target), delta=0.05)
             self.assertGreater(int(rows[0]["pilot_samples"]), 0)
             self.assertEqual([int(row["pilot_samples"]) for row in rows[1:]], [0] * 23)  # frames share their rates
             samples[target] = int(rows[1]["samples"])
-        self.assertGreater(samples["9.2"], 1.5 * samples["8.5"])
-        whole = self.pictures("8.5")
-        clip("threads", "1-24", "--target-jod", "8.5", "--threads", "1")
+        self.assertGreater(samples["9.6"], 1.5 * samples["9.2"])
+        whole = self.pictures("9.2")
+        clip("threads", "1-24", "--target-jod", "9.2", "--threads", "1")
         self.assertEqual(whole, self.pictures("threads"))
         for part in ("1-9", "10-24"):
-            clip("parts", part, "--target-jod", "8.5", "--part")
+            clip("parts", part, "--target-jod", "9.2", "--part")
         self.run_ok("merge", "parts")
         self.assertEqual(whole, self.pictures("parts"))
-        (self.folder / "8.5/f.0007.exr").unlink()
-        clip("8.5", "1-24", "--target-jod", "8.5", "--resume")
-        self.assertEqual(whole, self.pictures("8.5"))
+        (self.folder / "9.2/f.0007.exr").unlink()
+        clip("9.2", "1-24", "--target-jod", "9.2", "--resume")
+        self.assertEqual(whole, self.pictures("9.2"))
 
     def test_a_stated_quality_of_a_view_that_moves(self):
         self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
-        view = ["render", "glide.gltf", "--size", "64x40", *GAZE, "--fps", "24", "--quiet"]
+        gaze = ["--gaze-at", "0.5,0.5", "--screen-px", "96,60", "--screen-ppd", "12"]
+        view = ["render", "glide.gltf", "--size", "96x60", *gaze, "--fps", "24", "--quiet"]
         self.run_ok(*view, "--falloff", "uniform", "--filter", "none", "--spp", "1024", "--seed", "9", "-o", "reference/f.####.exr")
         frames = len(self.pictures("reference"))
         for falloff, filter_name in (("uniform", "none"), ("visible", "guided")):
             folder = f"{falloff}-{filter_name}"
             self.run_ok(*view, "--falloff", falloff, "--filter", filter_name, "--target-jod", "8.5", "-o", f"{folder}/f.####.exr")
-            self.assertAlmostEqual(self.measured_jod("reference", folder, f"1-{frames}"), 8.5, delta=0.15)
+            self.assertAlmostEqual(self.measured_jod("reference", folder, f"1-{frames}", gaze), 8.5, delta=0.15)
         flip = self.run_program(*view, "--falloff", "uniform", "--filter", "none", "--target-flip", "0.05", "-o", "x/x.####.exr")
         self.assertEqual(flip.returncode, 2, flip.stderr)
         self.assertIn("moves", flip.stderr)

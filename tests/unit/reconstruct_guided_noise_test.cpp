@@ -105,8 +105,8 @@ TEST(ReconstructGuidedNoise, ItIsNeverWorseThanTheMeanOfTheSamples) {
   }
 }
 
-// The noise around hides that the smoothing is wrong there, by 1. With 16 samples and a variance v of their mean, 12 v of
-// it is left: beside their own error of 0.01 that is little. Albedo halves both, and they are squared.
+// The noise around hides that the smoothing is wrong there, by 1. With 16 samples and a variance v of their mean, 12 v
+// of it is left: beside their own error of 0.01 that is little. Albedo halves both, and they are squared.
 TEST(ReconstructGuidedNoise, WhatAPixelIsSureOfIsNotHiddenByNoiseAroundIt) {
   const Errors errors = errors_at(1, quiet_lights, {0.01, true});
   EXPECT_LT(errors.filtered, 4 * 0.25e-4);

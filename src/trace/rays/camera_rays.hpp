@@ -48,7 +48,8 @@ class CameraRays {
     const float step2 = static_cast<float>(step_ * step_);
     const float depth = perspective_ ? dot(way, placement_.forward) : 1.0F;
     const float scale = 1.0F / (step2 * (depth > 0 ? depth : 0.0F));
-    return {dot(way, placement_.right_step) * scale - middle_px_.x, -dot(way, placement_.up_step) * scale - middle_px_.y};
+    return {dot(way, placement_.right_step) * scale - middle_px_.x,
+            -dot(way, placement_.up_step) * scale - middle_px_.y};
   }
 
   [[nodiscard]] float cone_width() const { return width_; }  // at the origin, m
