@@ -130,6 +130,9 @@ struct MapContext {
   // What models that follow a picture follow: samples a pixel, or relative rates where there is a budget. Of any size,
   // stretched over the frame; see check_density_picture().
   const ImageGray* density = nullptr;
+  // Where `density` shows a part of a frame only: the largest value in all of it, so that blocks and the least density
+  // are those of the frame. 0: that of `density`.
+  double full_rate_spp = 0;
   int threads = 0;  // 0: all cores; the map is the same for any number
 };
 

@@ -22,6 +22,12 @@
 
 namespace gazetrace {
 
+// As MapContext::density and ::full_rate_spp.
+struct FrameRates {
+  ImageGray spp;
+  double full_rate_spp = 0;
+};
+
 struct FrameSettings {
   FoveationSettings foveation;
   TraceSettings trace;                    // what the filter needs is added to it: `surfaces`, `pass_through_samples`
@@ -30,8 +36,8 @@ struct FrameSettings {
   ExposureSettings exposure;
   // What the fall-off `visible` must know of how frames are watched: with the frame's view, what its noise looks like.
   double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
-  // Where it is given: what the fall-off `map` follows, in place of its file (MapContext::density).
-  std::function<ImageGray(const FrameRequest& request)> density_of;
+  // Where it is given: the rates of a frame, in place of the file of the fall-off `map` and of the pilot of `visible`.
+  std::function<FrameRates(const FrameRequest& request)> rates_of;
   // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
   std::function<DisplayCurve(double exposure_ev)> display_curve;
   LayerSettings layers;

@@ -63,7 +63,7 @@ DensityField::DensityField(const FoveationSettings& settings, const PlanarView& 
     velocity_ = retinal_velocity_factor(context.gaze_speed_deg_s);
   }
   if (picture_ != nullptr) {
-    per_picture_value_ = 1 / largest_value(*picture_);
+    per_picture_value_ = 1 / full_rate_of_picture(context);
   }
   if (context.in_saccade) {
     flight_ = settings.saccade_density;

@@ -51,4 +51,8 @@ double largest_value(const ImageGray& picture) {
   return static_cast<double>(*std::max_element(picture.pixels.begin(), picture.pixels.end()));
 }
 
+double full_rate_of_picture(const MapContext& context) {
+  return context.full_rate_spp > 0 ? context.full_rate_spp : largest_value(*context.density);
+}
+
 }  // namespace gazetrace

@@ -3,6 +3,7 @@
 // themselves. u and v are fractions of the frame.
 #pragma once
 
+#include "gazetrace/foveation.hpp"
 #include "gazetrace/image.hpp"
 
 namespace gazetrace {
@@ -17,5 +18,7 @@ struct PictureRange {
 PictureRange picture_within(const ImageGray& picture, double u0, double v0, double u1, double v1);
 
 double largest_value(const ImageGray& picture);  // of a picture that is not empty
+// Of MapContext::density, which must be there.
+double full_rate_of_picture(const MapContext& context);
 
 }  // namespace gazetrace

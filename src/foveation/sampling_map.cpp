@@ -81,7 +81,7 @@ SamplingMap map_of_density(DensityModel model, const FoveationSettings& asked, c
                            const MapContext& context) {
   require_picture(model, asked, context);
   if (model.from_picture) {
-    model.full_rate_spp = largest_value(*context.density);
+    model.full_rate_spp = full_rate_of_picture(context);
   }
   double rate = model.full_rate_spp.value_or(asked.uniform_spp);
   const FoveationSettings settings = with_limits_of(model, asked);

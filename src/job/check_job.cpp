@@ -124,6 +124,15 @@ void check_target(const JobSettings& job) {
     throw Error(ErrorKind::usage, option, "the rates and blocks of `falloff` regions are not chosen by quality",
                 "give `falloff` visible or another model, or a budget");
   }
+  if (job.foveation.falloff == "map" &&
+      frame_file_name(job.foveation.density_map, 1) != frame_file_name(job.foveation.density_map, 2)) {
+    throw Error(ErrorKind::usage, option, "the frames that are judged may have no picture in `density-map`",
+                "give one picture for all frames, or a budget");
+  }
+  if (job.only_pixel) {
+    throw Error(ErrorKind::usage, option, "with `only-pixel` a single pixel is traced, and no quality is chosen",
+                "give `budget-spp` as `rate` in run.json says");
+  }
   if (job.foveation.contrast_strength > 0) {
     throw Error(ErrorKind::usage, option, "`contrast-strength` looks at frames by itself",
                 "leave it out, or give a budget");

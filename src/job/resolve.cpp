@@ -180,10 +180,11 @@ void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::in
     }
   }
   settings.frames.assign(all.begin(), all.end());
+  settings.most_frames_without_gaze = 0;  // they are chosen by their number, and may lie behind the log's end
   FramePlan plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
   JudgedFrames& frames = resolved.plan.judged;
   frames.sequence_frames = judged.sequence_frames;
-  frames.view_moves = view_moves;
+  frames.view_moves = view_moves && judged.sequence_frames > 1;
   frames.runs.resize(judged.runs.size());
   for (FrameRequest& request : plan.frames) {
     std::vector<FrameRequest>* to = &frames.around;

@@ -23,7 +23,7 @@ struct ClipRate {
   bool settled = true;       // the last pilot was near enough to the rate; else the prediction is extrapolated far
   double summed_frames = 1;  // how many frames at most are added up for one
   std::string how;           // what was looked at
-  // Samples a pixel of every frame for the fall-off `map`, of any size; empty: what the settings say.
+  // FrameRates::spp of every frame; empty: each has a pilot, or none.
   ImageGray rates;
 
   [[nodiscard]] std::string text() const;  // for the run record

@@ -32,13 +32,15 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   FoveationSettings foveation = settings_.foveation;
   ImageGray contrast;
   ImageGray density;
-  if (foveation.falloff == "map") {
-    density = timed(times.plan_ms, [&] {
-      return settings_.density_of ? settings_.density_of(request) : read_density_map(foveation, request.frame);
-    });
+  if (settings_.rates_of) {
+    FrameRates rates = timed(times.plan_ms, [&] { return settings_.rates_of(request); });
+    density = std::move(rates.spp);
     context.density = &density;
-  }
-  if (foveation.falloff == "visible") {
+    context.full_rate_spp = rates.full_rate_spp;
+  } else if (foveation.falloff == "map") {
+    density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
+    context.density = &density;
+  } else if (foveation.falloff == "visible") {
     AdaptiveRates adaptive = timed(times.pilot_ms, [&] { return adaptive_rates(scene, request, settings_); });
     foveation.target = {};
     foveation.budget_samples.reset();

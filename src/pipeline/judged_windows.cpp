@@ -15,6 +15,7 @@ constexpr double kSideDeg = 3.5, kMovingSideDeg = 5.25;
 constexpr int kLeastSidePx = 64, kMostSidePx = 256;
 constexpr double kLeastWindows = 12;
 constexpr double kShare = 0.05;
+constexpr std::size_t kMostFoveae = 12;                  // of a gaze that moves
 constexpr double kMostShare = 0.4;                       // beyond, the whole frame is traced
 constexpr std::uint64_t kWindowTag = 0x57494e444f57ULL;  // "WINDOW"
 
@@ -24,11 +25,25 @@ int on_grid(double px) {
 
 // Of this side, as near to the middle as the grid of blocks and the frame allow.
 JudgedWindow window_at(const Vec2d& middle_px, int side_px, int margin_px, const PlanarView& view) {
-  const auto begin = [&](double middle, int size) {
-    return std::clamp(on_grid(middle - 0.5 * side_px), 0, (size - side_px) / kDefaultMaxBlockPx * kDefaultMaxBlockPx);
+  struct Span {
+    int begin, end, counted_begin, counted_end;
   };
-  const PixelRect traced{begin(middle_px.x, view.width_px), begin(middle_px.y, view.height_px), side_px, side_px};
-  return {traced, {traced.x_px + margin_px, traced.y_px + margin_px, side_px - 2 * margin_px, side_px - 2 * margin_px}};
+  const auto span = [&](double middle, int size) {
+    Span of{};
+    of.begin =
+        std::clamp(on_grid(middle - 0.5 * side_px), 0, (size - side_px) / kDefaultMaxBlockPx * kDefaultMaxBlockPx);
+    of.end = of.begin + side_px;
+    // The rest of a frame that is no multiple of the grid belongs to its last window.
+    of.end = size - of.end < kDefaultMaxBlockPx ? size : of.end;
+    // Beyond the frame's border there is nothing to see.
+    of.counted_begin = of.begin == 0 ? 0 : of.begin + margin_px;
+    of.counted_end = of.end == size ? size : of.end - margin_px;
+    return of;
+  };
+  const Span x = span(middle_px.x, view.width_px);
+  const Span y = span(middle_px.y, view.height_px);
+  return {{x.begin, y.begin, x.end - x.begin, y.end - y.begin},
+          {x.counted_begin, y.counted_begin, x.counted_end - x.counted_begin, y.counted_end - y.counted_begin}};
 }
 
 bool holds(const PixelRect& rect, const Vec2d& px) {
@@ -78,7 +93,7 @@ JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& g
   for (const Vec2d& gaze : gazes_px) {
     const PixelRect frame{0, 0, view.width_px, view.height_px};
     const auto has_it = [&](const JudgedWindow& window) { return holds(window.counted, gaze); };
-    if (holds(frame, gaze) && std::none_of(foveae.begin(), foveae.end(), has_it)) {
+    if (foveae.size() < kMostFoveae && holds(frame, gaze) && std::none_of(foveae.begin(), foveae.end(), has_it)) {
       foveae.push_back(window_at(gaze, side_px, margin_px, view));
     }
   }
@@ -109,8 +124,10 @@ JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& g
   for (const float weight : chosen.weights.pixels) {
     foveal += static_cast<double>(weight);
   }
-  const double counted = static_cast<double>(others.front().counted.width_px) * others.front().counted.height_px *
-                         static_cast<double>(others.size());
+  double counted = 0;
+  for (const JudgedWindow& window : others) {
+    counted += static_cast<double>(window.counted.width_px) * window.counted.height_px;
+  }
   for (const JudgedWindow& window : others) {
     fill(chosen.weights, window.counted, static_cast<float>((area - foveal) / counted));
   }

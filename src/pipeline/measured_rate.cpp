@@ -123,14 +123,17 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
     result.spp = std::max(least, spp * std::exp(change));
     const bool is_near = std::abs(change) < std::log(kNear) || (spp == least && result.spp == least);
     result.settled = is_near && looks.near(std::log(spp)) >= wanted_looks(clip);
-    if (result.spp > 2 * most || (result.settled && result.spp > most)) {
+    const bool is_last = result.settled || result.rounds == kMostLooks;
+    if (result.rounds == 1 && !is_last) {  // one look says little of what it will take
+      result.spp = std::min(result.spp, std::max(most, least));
+    }
+    if (result.spp > (is_last ? 1 : 2) * most) {
       throw Error(ErrorKind::usage, "`target-jod`",
-                  fmt::format("{} JOD would take about {:.3g} samples a pixel, by {} looks at windows of the frames; "
-                              "`max-spp` is {:g}",
-                              target, result.spp, result.rounds, most),
+                  fmt::format("{} JOD would take about {:.3g} samples a pixel, by what {} {} saw; `max-spp` is {:g}",
+                              target, result.spp, result.rounds, result.rounds == 1 ? "look" : "looks", most),
                   "ask for less, or raise `max-spp`");
     }
-    if (result.settled || result.rounds == kMostLooks) {
+    if (is_last) {
       result.settled = is_near;
       result.predicted_jod = fovvideovdp_jod(std::exp(looks.seen_at(std::log(result.spp))));
       break;

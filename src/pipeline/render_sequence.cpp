@@ -194,9 +194,7 @@ class JudgedRate {
     settings.foveation.target = {};
     settings.foveation.budget_spp = rate_->spp;
     if (!rate_->rates.empty()) {
-      settings.foveation.falloff = "map";
-      settings.foveation.budget_spp.reset();
-      settings.density_of = [rates = rate_->rates](const FrameRequest&) { return rates; };
+      settings.rates_of = [rates = rate_->rates](const FrameRequest&) { return FrameRates{rates, 0}; };
     }
   }
   [[nodiscard]] std::string text() const { return rate_->text(); }
@@ -205,7 +203,7 @@ class JudgedRate {
     constexpr double kKnownToHold = 16;
     if (!rate_->settled) {
       warnings.push_back(
-          fmt::format("the rate for a stated quality did not settle in {} rounds of pilots: at {:.3g} samples a pixel "
+          fmt::format("the rate for a stated quality did not settle in {} rounds: at {:.3g} samples a pixel "
                       "the sequence may be worse or better than stated",
                       rate_->rounds, rate_->spp));
     }

@@ -39,7 +39,7 @@ FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
   own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kLookTag), tag);
   own.trace.guides = false;
   own.trace.only_pixel.reset();
-  own.exposure = {};
+  own.exposure.smoothing_s = 0;
   own.layers = {};
   return own;
 }
@@ -51,6 +51,7 @@ FrameSettings uniform(FrameSettings settings, double spp, const char* filter) {
   settings.accumulate = {};
   settings.reconstruction = {filter, {}};
   settings.enhance_contrast = 0;
+  settings.trace.clamp_indirect = 0;
   return settings;
 }
 
@@ -162,6 +163,17 @@ std::size_t WindowClip::around_of(std::size_t index) const {
   return run;
 }
 
+const FrameRequest& WindowClip::first_looked_at() const {
+  for (const std::vector<FrameRequest>& run : judged_.runs) {
+    for (const FrameRequest& request : run) {
+      if (looked_at_px(request)) {
+        return request;
+      }
+    }
+  }
+  return first();
+}
+
 double WindowClip::share_of_frame() const {
   return windows_.share_of(first().view);
 }
@@ -182,8 +194,9 @@ bool WindowClip::is_steady() const {
   };
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
   // Of `map` each frame may have a file.
-  return settings_.foveation.falloff != "map" && std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) &&
-         all_same(judged_.around);
+  const std::string& falloff = settings_.foveation.falloff;
+  return falloff != "map" && !(falloff == "visible" && judged_.view_moves) &&
+         std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
 }
 
 FrameSettings WindowClip::settings_in_window(std::size_t window, std::uint64_t tag) const {
@@ -242,16 +255,25 @@ void WindowClip::refine(double spp) {
     reference_shown_.push_back(shown(reference_[v], v));
   }
   // What stands still shows in one frame what it does in all.
-  const JudgedFrames one{{{first()}}, {}, judged_.sequence_frames, false};
+  const JudgedFrames one{{{first_looked_at()}}, {}, judged_.sequence_frames, false};
   reference_q_ = measured_q(judged_.view_moves ? judged_ : one, off);
 }
 
 ImageGray WindowClip::shown(const std::vector<ImageRgb>& windows, std::size_t index) const {
   const Around& around = around_[around_of(index)];
   ImageGray luminance = around.shown;
+  std::vector<ImageGray> parts;
   for (std::size_t w = 0; w < windows.size(); ++w) {
     const ImageRgb code = shown_code(windows[w], color_, around.exposure_ev, settings_.threads);
-    paste(display_luminance(code, {}, settings_.threads), windows_.windows[w].traced, luminance);
+    parts.push_back(display_luminance(code, {}, settings_.threads));
+    paste(parts.back(), windows_.windows[w].traced, luminance);
+  }
+  // Where foveae overlap, what counts is never the margin of another.
+  for (std::size_t w = 0; w < parts.size(); ++w) {
+    const JudgedWindow& window = windows_.windows[w];
+    const PixelRect inner{window.counted.x_px - window.traced.x_px, window.counted.y_px - window.traced.y_px,
+                          window.counted.width_px, window.counted.height_px};
+    paste(cut_out(parts[w], inner), window.counted, luminance);
   }
   return luminance;
 }
@@ -301,16 +323,12 @@ ImageGray WindowClip::expected_spp(const FrameRequest& request, double spp, std:
           rates.pixels[i] += one.pixels[i];
         }
       }
-      const auto scale = static_cast<float>(spp / mean_rate(rates));
-      for (float& rate : rates.pixels) {
-        rate *= scale;
-      }
+      rates = rates_between(rates, spp, own.foveation.min_spp, own.foveation.max_spp);
       shared_rates_ = rates;
     } else {
       rates = pilot_rates(request, own);
     }
-    own.foveation.falloff = "map";
-    own.foveation.budget_spp.reset();
+    own.foveation.budget_spp = mean_rate(rates);
     MapContext context = map_context(request, own.trace.seed, settings_.threads);
     context.density = &rates;
     map = make_sampling_map(own.foveation, request.view, request.gaze_direction_render, context);
@@ -366,7 +384,7 @@ std::vector<ImageRgb> WindowClip::look_at(std::size_t window, const FrameSetting
 WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   const bool is_uniform = settings_.foveation.falloff == "uniform";
   // Of each window by the number of the frame, or once for all of them.
-  std::map<std::int32_t, std::vector<ImageGray>> rates;
+  std::map<std::int32_t, std::vector<FrameRates>> rates;
   const bool is_same = is_steady();
   const auto number = [&](const FrameRequest& request) { return is_same ? 0 : request.frame; };
   const auto find_rates = [&](const std::vector<FrameRequest>& requests) {
@@ -375,8 +393,9 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
         continue;
       }
       const ImageGray expected = expected_spp(request, spp, round);
+      const double full = static_cast<double>(*std::max_element(expected.pixels.begin(), expected.pixels.end()));
       for (const JudgedWindow& window : windows_.windows) {
-        rates[number(request)].push_back(cut_out(expected, window.traced));
+        rates[number(request)].push_back({cut_out(expected, window.traced), full});
       }
     }
   };
@@ -390,9 +409,12 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
     if (is_uniform) {
       own.foveation.budget_spp = spp;
     } else {
-      own.foveation.falloff = "map";
+      // All that the fall-off thinks of eye and picture is in the rates.
+      own.foveation.falloff = own.foveation.falloff == "visible" ? "visible" : "map";
       own.foveation.budget_spp.reset();
-      own.density_of = [&](const FrameRequest& request) { return rates.at(number(request))[w]; };
+      own.foveation.retinal_velocity = false;
+      own.foveation.saccade_density = 1;
+      own.rates_of = [&](const FrameRequest& request) { return rates.at(number(request))[w]; };
     }
     std::vector<ImageRgb> of_window = look_at(w, own);
     pictures.resize(of_window.size());
@@ -404,14 +426,8 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
 }
 
 ImageGray WindowClip::shared_rates(double spp) const {
-  ImageGray rates = shared_rates_;
-  if (!rates.empty()) {
-    const auto scale = static_cast<float>(spp / mean_rate(rates));
-    for (float& rate : rates.pixels) {
-      rate *= scale;
-    }
-  }
-  return rates;
+  const FoveationSettings& limits = settings_.foveation;
+  return shared_rates_.empty() ? ImageGray() : rates_between(shared_rates_, spp, limits.min_spp, limits.max_spp);
 }
 
 }  // namespace gazetrace

@@ -49,6 +49,7 @@ class WindowClip {
   [[nodiscard]] const TraceStats& stats() const { return stats_; }
 
  private:
+  [[nodiscard]] const FrameRequest& first_looked_at() const;
   [[nodiscard]] const FrameRequest& first() const { return judged_.runs.front().front(); }
   // Samples a pixel that every pixel of a frame expects.
   [[nodiscard]] ImageGray expected_spp(const FrameRequest& request, double spp, std::uint64_t round);

@@ -62,11 +62,21 @@ TEST(JudgedWindows, LieInTheFrameApartAndOnTheGridOfBlocks) {
     EXPECT_GE(window.traced.y_px, 0);
     EXPECT_LE(window.traced.right_px(), kHeadset.width_px);
     EXPECT_LE(window.traced.bottom_px(), kHeadset.height_px);
-    EXPECT_LT(window.traced.x_px, window.counted.x_px);
-    EXPECT_GT(window.traced.bottom_px(), window.counted.bottom_px());
+    // A margin on every side but at the frame's border.
+    EXPECT_EQ(window.traced.x_px == window.counted.x_px, window.traced.x_px == 0);
+    EXPECT_EQ(window.traced.bottom_px() == window.counted.bottom_px(), window.traced.bottom_px() == kHeadset.height_px);
     for (std::size_t other = 0; other < k; ++other) {
       EXPECT_FALSE(window.traced.overlaps(chosen.windows[other].traced));
     }
+  }
+}
+
+TEST(JudgedWindows, AGazeAtTheBorderHasOneWindowThatCounts) {
+  for (const Vec2d& gaze : {Vec2d{0.5, 0.5}, Vec2d{1130.5, 1208.5}, Vec2d{1.5, 600}, Vec2d{600, 1207}}) {
+    const JudgedWindows chosen = judged_windows(kHeadset, {gaze, gaze, gaze});
+    EXPECT_EQ(chosen.weights(static_cast<int>(gaze.x), static_cast<int>(gaze.y)), 1.0F);
+    EXPECT_TRUE(chosen.windows[1].counted.x_px != chosen.windows[0].counted.x_px ||
+                chosen.windows[1].counted.y_px != chosen.windows[0].counted.y_px);
   }
 }
 
