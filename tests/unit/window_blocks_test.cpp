@@ -58,7 +58,8 @@ TEST(WindowBlocks, AreThoseOfTheFrame) {
       }
     }
     EXPECT_GT(block_at(frame, kSide - 1, kY), 1);
-    // Where blocks just have as many samples as they must, the mean of one may be beneath that: a column of eight pixels.
+    // Where blocks just have as many samples as they must, the mean of one may be beneath that: a column of eight
+    // pixels.
     EXPECT_GE(alike, (kWindow - 8) * kWindow) << falloff;
   }
 }
