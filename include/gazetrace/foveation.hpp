@@ -56,8 +56,8 @@ struct FalloffParameters {
 
 // A quality, or a time, from which the number of samples follows. At most one of the members is given; it takes the
 // place of a budget. `relmse` is for the fall-off `visible`, whose pilot predicts it. From the others render_sequence()
-// makes a budget: from `jod` and `flip` one for all frames, which are uniform, from `time_s` one for each frame of any
-// fall-off. A FrameRenderer alone does not see them.
+// makes a budget: from `jod` one for all frames, of any fall-off but `regions`; from `flip` one for all frames, which
+// are uniform; from `time_s` one for each frame of any fall-off. A FrameRenderer alone does not see them.
 struct QualityTarget {
   std::optional<double> relmse;  // mean over the frame of squared error over (squared luminance + 0.01)
   std::optional<double> jod;     // of the whole sequence by FovVideoVDP, up to 10

@@ -21,8 +21,8 @@ constexpr double kFirstSpp = 1, kLeastSpp = 0.25;
 constexpr int kMostLooks = 8;
 constexpr double kGrowth = 16;  // of the rate from one look to the next
 constexpr double kNear = 1.3;   // a change of the rate that needs no further look
-constexpr double kSlope =
-    -0.6;  // of the logarithm of what is seen over that of the rate, until looks that lie apart show it
+// The slope of the logarithm of what is seen over that of the rate, until looks that lie apart show it.
+constexpr double kSlope = -0.6;
 constexpr double kTogether = 1.6;     // looks whose rates differ by no more tell of the same rate
 constexpr double kLeastSpread = 0.2;  // of logarithms of rates: a sum of squares
 constexpr double kSteepest = -1.2, kFlattest = -0.2;
@@ -45,7 +45,6 @@ struct Look {
 class Looks {
  public:
   void add(const Look& look) { looks_.push_back(look); }
-  [[nodiscard]] int count() const { return static_cast<int>(looks_.size()); }
   [[nodiscard]] const Look& last() const { return looks_.back(); }
   [[nodiscard]] int near(double rate) const {
     return static_cast<int>(
