@@ -5,11 +5,12 @@
   fixed_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--display desktop|hmd|WxH@PPD] [--frames 24]
                    [--gazes "0.5,0.5 0.25,0.6 0.75,0.35"] [--targets 8.5,9,9.5] [--budgets 0.5,1,2,4,8,16]
                    [--accumulate "two-sided --accumulate-window 8"]
-                   [--wrong-budget 4] [--reference-spp 4096] [--raw-rates 1,4,16,...,65536] [--inner 96] [--margin 32] [--stride 480] [--whole] [--paper]
-                   [--tool-in-windows]
+                   [--wrong-budget 4] [--wrong-seeds 4] [--moving] [--reference-spp 4096]
+                   [--raw-rates 1,4,16,...,65536] [--inner 96] [--margin 32] [--stride 480] [--whole] [--paper] [--tool-in-windows]
 
 OPTIONS are those of `gazetrace render`. `desktop` is 61 degrees wide at 28 pixels a degree, `hmd` 87 x 93 degrees at 13.
-Clips are views at rest at 24 frames a second; one reference stands for all frames.
+Clips have 24 frames a second. Views are at rest, and one reference stands for all frames; with `--moving`, for a camera or a
+scene that moves, each frame has its own, of `--reference-spp` samples a pixel.
 
 Rates as high as a reference needs are dear on whole frames, so references and raw samples are traced in windows only: a grid
 of squares of `--inner` pixels, `--stride` apart, each of which stands for the area around it, and one at each gaze, which
@@ -22,11 +23,12 @@ clip whose differences from the reference are divided by the root of N / 64; the
 clip that was rendered at 16. Rare light is cut off by the display less the more samples there are, and samples of a sequence are
 better than independent ones, so that raw samples are a little better than they are scaled to be.
 
-Costs are processor seconds a frame, without loading: the difference between a run of all frames and one of its first, over the
-frames between. Those of raw frames follow from whole frames at 2 and 10 samples a pixel. The tool renders whole frames:
-`--falloff visible --filter guided --accumulate ...` at each budget, with the gaze, without any, and (`--wrong-budget`) with the
-gaze where it was not. Costs at a target are interpolated in their logarithm between the two budgets around it, and never beyond
-the smallest and the largest one. `--paper`: what the preset `paper` costs and scores, and what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are used again. Needs numpy and OpenEXR.
+Costs are processor seconds a frame, without loading; those of the tool contain the frames that it traces before and after the
+clip for it. Those of raw frames follow from whole frames at 2 and 10 samples a pixel. The tool renders whole frames:
+`--falloff visible --filter guided --accumulate ...` at each budget, with the gaze, without any, and with the gaze where it was
+not (at `--wrong-budget`, by `--wrong-seeds` seeds). Costs at a target are interpolated in their logarithm between the two
+budgets around it, and never beyond the smallest and the largest one. `--paper`: what the preset `paper` costs and scores, and
+what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are used again. Needs numpy, scipy and OpenEXR.
 
 `--tool-in-windows`, where whole frames are too dear: the tool chooses its rates for one whole frame (`--falloff visible`), and
 the clip is traced with these rates in the windows only. What it would have cost follows from what a sample of that whole frame
@@ -52,27 +54,14 @@ import sys
 
 import numpy
 import OpenEXR
+from scipy.stats import t as student_t
+from scored_windows import OtherJudges, Windows, read_exr, write_exr, write_picture
 
 DISPLAYS = {"desktop": (1708, 961, 28), "hmd": (1131, 1209, 13)}
 FRAMES_PER_SECOND = 24
 RAW_SPP = 64
 OUTSIDE_SPP = 1 / 256
 METRICS = ("fovvideovdp", "flicker")
-
-
-def read_exr(path):
-    with OpenEXR.File(str(path), separate_channels=True) as file:
-        return numpy.stack([file.channels()[c].pixels for c in "RGB"], -1).astype(numpy.float32)
-
-
-def write_exr(path, channels):
-    planes = {name: numpy.ascontiguousarray(plane, dtype=numpy.float32) for name, plane in channels.items()}
-    with OpenEXR.File({"type": OpenEXR.scanlineimage}, planes) as file:
-        file.write(str(path))
-
-
-def write_picture(path, rgb):
-    write_exr(path, {c: rgb[..., i] for i, c in enumerate("RGB")})
 
 
 def run(*arguments):
@@ -85,79 +74,16 @@ def run(*arguments):
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-class Windows:
-    """Which pixels are traced at high rates, and how much each counts at each gaze."""
-
-    def __init__(self, asked, width, height, gazes):
-        self.shape = (height, width)
-        self.is_traced = numpy.zeros(self.shape, dtype=bool)
-        self.inner = numpy.zeros(self.shape, dtype=bool)
-        self.gaze_px = {gaze: [float(v) * n for v, n in zip(gaze.split(","), (width, height))] for gaze in gazes}
-        self.asked = asked
-        if asked.whole:
-            self.is_traced[:] = True
-            return
-        columns = max(round(width / asked.stride), 1)
-        rows = max(round(height / asked.stride), 1)
-        for row in range(rows):
-            for column in range(columns):
-                at = ((column + 0.5) * width / columns, (row + 0.5) * height / rows)
-                self.inner[self.square(at, asked.inner / 2)] = True
-                self.is_traced[self.square(at, asked.inner / 2 + asked.margin)] = True
-        for at in self.gaze_px.values():
-            self.is_traced[self.square(at, asked.inner / 2 + asked.margin)] = True
-
-    def square(self, at, half):
-        height, width = self.shape
-        x, y = at
-        return (slice(max(round(y - half), 0), min(round(y + half), height)),
-                slice(max(round(x - half), 0), min(round(x + half), width)))
-
-    def weights(self, gaze):
-        """Of each pixel: the fovea's window counts as it is, the others for all that is not in it."""
-        if self.asked.whole:
-            return numpy.ones(self.shape)
-        fovea = numpy.zeros(self.shape, dtype=bool)
-        fovea[self.square(self.gaze_px[gaze], self.asked.inner / 2)] = True
-        others = self.inner & ~fovea
-        weights = fovea.astype(float)
-        weights[others] = (fovea.size - fovea.sum()) / others.sum()
-        return weights
+def told(looks_at):
+    return "nowhere" if looks_at is None else looks_at.replace(",", "_")
 
 
-class OtherJudges:
-    """What nothing was optimised for: the relative squared error weighted by cortical magnification, and how much the relative
-    error changes from frame to frame (root mean square)."""
+def of_seed(seed):
+    return f"-seed{seed}" if seed else ""
 
-    def __init__(self, truth, weights, gaze_px, pixels_per_degree):
-        height, width = weights.shape
-        step = math.tan(math.radians(1 / pixels_per_degree))
-        x, y = numpy.meshgrid((numpy.arange(width) + 0.5 - width / 2) * step, (numpy.arange(height) + 0.5 - height / 2) * step)
-        at = [(gaze_px[0] - width / 2) * step, (gaze_px[1] - height / 2) * step]
-        across = numpy.hypot(numpy.hypot(x * at[1] - y * at[0], x - at[0]), y - at[1])
-        eccentricity_deg = numpy.degrees(numpy.arctan2(across, 1 + x * at[0] + y * at[1]))
-        # Square millimetres of cortex a square degree (Horton and Hoyt 1991), times a constant.
-        self.cortex = weights / (eccentricity_deg + 0.75)**2
-        self.weights = weights
-        self.truth = self.luminance(truth)
-        self.scale = 1 / numpy.sqrt(self.truth**2 + 0.01)
-        self.before = None
-        self.squares, self.changes, self.frames = 0.0, 0.0, 0
 
-    @staticmethod
-    def luminance(rgb):
-        return rgb.astype(numpy.float64) @ numpy.array([0.2126, 0.7152, 0.0722])
-
-    def add(self, picture):
-        error = (self.luminance(picture) - self.truth) * self.scale
-        self.squares += float((self.cortex * error**2).sum() / self.cortex.sum())
-        if self.before is not None:
-            self.changes += float((self.weights * (error - self.before)**2).sum() / self.weights.sum())
-        self.before = error
-        self.frames += 1
-
-    def found(self):
-        return {"cortical": self.squares / self.frames, "change": math.sqrt(self.changes / max(self.frames - 1, 1))}
+def seed_options(seed):
+    return ["--seed", str(seed)] if seed else []
 
 
 class Scene:
@@ -170,6 +96,7 @@ class Scene:
         self.folder.mkdir(parents=True, exist_ok=True)
         self.costs_path = self.folder / "costs.json"
         self.costs = json.loads(self.costs_path.read_text()) if self.costs_path.exists() else {}
+        self.still_halves, self.fills = None, {}
 
     def render(self, name, frames, *options):
         """The folder of the frames."""
@@ -192,21 +119,37 @@ class Scene:
         write_exr(rates, {"Y": numpy.where(self.bench.windows.is_traced, spp, OUTSIDE_SPP)})
         return self.render(name, frames, "--falloff", "map", "--density-map", rates, "--filter", "none", "--seed", seed)
 
-    def reference(self):
-        """Mean of two halves, in memory, each of four frames, and what one half scores against the other at the first gaze."""
-        halves = []
-        for k in range(2):
-            folder = self.in_windows(f"reference-{k}", "1-4", self.asked.reference_spp // 8, 700001 + k)
-            halves.append(sum(read_exr(folder / f"f.{f:04d}.exr") for f in range(1, 5)) / 4)
-        return 0.5 * (halves[0] + halves[1]), halves
+    def halves(self, frame):
+        """Two independent references of a frame. At rest each is the mean of four frames."""
+        if self.asked.moving:
+            folders = [self.in_windows(f"reference-{k}", f"1-{self.asked.frames}", self.asked.reference_spp // 2, 700001 + k)
+                       for k in range(2)]
+            return [read_exr(folder / f"f.{frame:04d}.exr") for folder in folders]
+        if self.still_halves is None:
+            folders = [self.in_windows(f"reference-{k}", "1-4", self.asked.reference_spp // 8, 700001 + k) for k in range(2)]
+            self.still_halves = [sum(read_exr(folder / f"f.{f:04d}.exr") for f in range(1, 5)) / 4 for folder in folders]
+        return self.still_halves
+
+    def truth(self, frame):
+        return 0.5 * sum(self.halves(frame))
+
+    def around(self, picture, frame):
+        """The picture in the windows, and outside of them what test and reference both show."""
+        key = frame if self.asked.moving else 1
+        if key not in self.fills:
+            last = self.asked.frames if self.asked.moving else 1
+            folder = self.render("fill", f"1-{last}" if last > 1 else "1", "--falloff", "uniform", "--filter", "guided", "--spp", "4")
+            self.fills = {key: read_exr(folder / f"f.{key:04d}.exr")}
+        return numpy.where(self.bench.windows.is_traced[..., None], numpy.maximum(picture, 0), self.fills[key])
 
     def prepare(self):
-        fill = self.render("fill", "1", "--falloff", "uniform", "--filter", "guided", "--spp", "4")
-        self.fill = read_exr(fill / "f.0001.exr")
-        self.truth, halves = self.reference()
-        # A half differs from the other by twice what their mean is off in one of them: by sqrt(2) times a half's error, and
-        # the mean's error is a half's over sqrt(2).
-        floor = self.score("floor", self.bench.gazes[0], lambda frame: self.truth + 0.5 * (halves[0] - halves[1]))
+        def with_its_error(frame):
+            # A half differs from the other by twice what their mean is off in one of them: by sqrt(2) times a half's error, and
+            # the mean's error is a half's over sqrt(2).
+            first, second = self.halves(frame)
+            return 0.5 * (first + second) + 0.5 * (first - second)
+
+        floor = self.score("floor", self.bench.gazes[0], with_its_error)
         print(f"{self.folder.name}: the reference's own error scores {floor['fovvideovdp']:.2f} JOD at {self.bench.gazes[0]}", flush=True)
 
     def score(self, name, gaze, picture_of_frame):
@@ -217,17 +160,18 @@ class Scene:
             shutil.rmtree(work, ignore_errors=True)
             work.mkdir(parents=True)
             record.parent.mkdir(exist_ok=True)
-            traced = self.bench.windows.is_traced[..., None]
             write_picture(work / "weights.exr", numpy.repeat(self.bench.windows.weights(gaze)[..., None], 3, axis=2))
-            write_picture(work / "r.0001.exr", numpy.where(traced, self.truth, self.fill))
-            judges = OtherJudges(numpy.where(traced, self.truth, self.fill), self.bench.windows.weights(gaze),
-                                 self.bench.windows.gaze_px[gaze], self.bench.pixels_per_degree)
+            judges = OtherJudges(self.bench.windows.weights(gaze), self.bench.windows.gaze_px[gaze], self.bench.pixels_per_degree)
+            expected = None
             for frame in range(1, self.asked.frames + 1):
-                if frame > 1:
+                if expected is None or self.asked.moving:
+                    expected = self.around(self.truth(frame), frame)
+                    write_picture(work / f"r.{frame:04d}.exr", expected)
+                else:
                     (work / f"r.{frame:04d}.exr").symlink_to("r.0001.exr")
-                picture = numpy.where(traced, numpy.maximum(picture_of_frame(frame), 0), self.fill)
+                picture = self.around(picture_of_frame(frame), frame)
                 write_picture(work / f"t.{frame:04d}.exr", picture)
-                judges.add(picture)
+                judges.add(picture, expected)
             metrics = METRICS if self.asked.whole and self.asked.frames >= FRAMES_PER_SECOND else METRICS[:1]
             run(self.asked.program, "compare", work / "r.####.exr", work / "t.####.exr", "--metrics", ",".join(metrics), "--fps",
                 FRAMES_PER_SECOND, "--frames", f"1-{self.asked.frames}", "--anyway", *self.bench.screen, "--gaze-at", gaze,
@@ -262,25 +206,25 @@ class Scene:
         """Processor seconds a frame that the clip took for all but its samples."""
         return max(self.costs[name] - self.traced(name)[1] - self.loading(), 0) / frames
 
-    def rates(self, budget, looks_at):
+    def rates(self, budget, looks_at, seed=0):
         """The rates that the tool chooses for a whole frame."""
-        name = f"rates-of-{'nowhere' if looks_at is None else looks_at.replace(',', '_')}-{budget:g}"
+        name = f"rates-of-{told(looks_at)}-{budget:g}{of_seed(seed)}"
         folder = self.render(name, "1", "--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided", "--max-block", "1",
                              "--map", self.folder / f"{name}.exr", "--overwrite",
-                             *(["--gaze-at", looks_at] if looks_at is not None else []))
+                             *(["--gaze-at", looks_at] if looks_at is not None else []), *seed_options(seed))
         assert folder.exists()
         with OpenEXR.File(str(self.folder / f"{name}.exr"), separate_channels=True) as file:
             return file.channels()["samples_per_pixel"].pixels.astype(numpy.float32), self.traced(name)[0]
 
-    def tool_in_windows(self, gaze, looks_at, budget):
-        told = "nowhere" if looks_at is None else looks_at.replace(",", "_")
-        name = f"in-windows-{self.asked.accumulate.replace(' ', '')}-{told}-{budget:g}"
-        rates, samples_of_frame = self.rates(budget, looks_at)
+    def tool_in_windows(self, gaze, looks_at, budget, seed=0):
+        name = f"in-windows-{self.asked.accumulate.replace(' ', '')}-{told(looks_at)}-{budget:g}{of_seed(seed)}"
+        rates, samples_of_frame = self.rates(budget, looks_at, seed)
         path = self.folder / f"{name}.exr"
         write_exr(path, {"Y": numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP)})
         frames = self.asked.frames
         folder = self.render(name, f"1-{frames}", "--falloff", "map", "--density-map", path, "--max-block", "1", "--filter", "guided",
-                             *(["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []))
+                             *(["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []),
+                             *seed_options(seed))
         # How many frames were traced for those that are shown.
         in_windows = float(numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP).sum())
         traced_frames = self.traced(name)[0] / in_windows
@@ -290,12 +234,9 @@ class Scene:
         return cost, self.score(name, gaze, lambda frame: read_exr(folder / f"f.{frame:04d}.exr")), budget
 
     def frame_cost(self, name, *options):
-        """Processor seconds of one of the clip's frames, and the folder."""
+        """Processor seconds of one of the clip's frames, and the folder. What is traced before and after the clip for it counts."""
         folder = self.render(name, f"1-{self.asked.frames}", *options)
-        first = f"{name}-first"
-        if first not in self.costs:
-            shutil.rmtree(self.render(first, "1", *options))
-        return (self.costs[name] - self.costs[first]) / (self.asked.frames - 1), folder
+        return (self.costs[name] - self.loading()) / self.asked.frames, folder
 
     def raw_curve(self, gaze):
         """(cost, scores, rate) by rate."""
@@ -318,11 +259,15 @@ class Scene:
         for rate in self.asked.raw_rates:
             scale = math.sqrt(RAW_SPP / rate)
             scores = self.score(f"raw-{rate:g}", gaze,
-                                lambda frame, s=scale: self.truth + s * (read_exr(clip / f"f.{frame:04d}.exr") - self.truth))
+                                lambda frame, s=scale: self.scaled(clip, frame, s))
             curve.append((fixed + rate * of_sample, scores, rate))
             if scores["fovvideovdp"] > self.asked.targets[-1] + 0.1:
                 break
         return curve
+
+    def scaled(self, clip, frame, by):
+        truth = self.truth(frame)
+        return truth + by * (read_exr(clip / f"f.{frame:04d}.exr") - truth)
 
     def check_scaling(self, gaze):
         clip = self.in_windows("raw", f"1-{self.asked.frames}", 16, 11)
@@ -339,12 +284,11 @@ class Scene:
                 break
         return curve
 
-    def tool(self, gaze, looks_at, budget):
+    def tool(self, gaze, looks_at, budget, seed=0):
         if self.asked.tool_in_windows:
-            return self.tool_in_windows(gaze, looks_at, budget)
-        told = "nowhere" if looks_at is None else looks_at.replace(",", "_")
-        name = f"tool-{self.asked.accumulate.replace(' ', '')}-{told}-{budget:g}"
-        options = ["--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided"]
+            return self.tool_in_windows(gaze, looks_at, budget, seed)
+        name = f"tool-{self.asked.accumulate.replace(' ', '')}-{told(looks_at)}-{budget:g}{of_seed(seed)}"
+        options = ["--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided", "--max-block", "1", *seed_options(seed)]
         options += ["--accumulate", *self.asked.accumulate.split()] if self.asked.accumulate != "off" else []
         options += ["--gaze-at", looks_at] if looks_at is not None else []
         cost, folder = self.frame_cost(name, *options)
@@ -407,13 +351,23 @@ class Bench:
                 self.row(name, gaze, target, curves)
 
     def wrong_gaze(self, scene, gaze):
-        budget = self.asked.wrong_budget
-        right = scene.tool(gaze, gaze, budget)
+        """Differences of the same seed, and their 95 % interval where there are several."""
+        budget, seeds = self.asked.wrong_budget, range(self.asked.wrong_seeds)
+        right = [scene.tool(gaze, gaze, budget, seed)[1]["fovvideovdp"] for seed in seeds]
         for other in self.gazes:
-            if other != gaze:
-                wrong = scene.tool(gaze, other, budget)
-                print(f"  wrong gaze: {other} for {gaze}, {budget:g} spp: {wrong[1]['fovvideovdp'] - right[1]['fovvideovdp']:+.3f} JOD",
-                      flush=True)
+            if other == gaze:
+                continue
+            lost = numpy.array([scene.tool(gaze, other, budget, seed)[1]["fovvideovdp"] for seed in seeds]) - right
+            print(f"  wrong gaze: {other} for {gaze}, {budget:g} spp: {lost.mean():+.3f} JOD{self.interval(lost)}", flush=True)
+
+    @staticmethod
+    def interval(differences):
+        count = len(differences)
+        if count < 2:
+            return ", unresolved by one seed"
+        half = student_t.ppf(0.975, count - 1) * differences.std(ddof=1) / math.sqrt(count)
+        which = "loses" if differences.mean() + half < 0 else "wins" if differences.mean() - half > 0 else "unresolved"
+        return f" +- {half:.3f} of {count} seeds: {which}"
 
     @staticmethod
     def paper(scene, gaze, tool):
@@ -447,6 +401,8 @@ def main():
     parser.add_argument("--budgets", default="0.5,1,2,4,8,16")
     parser.add_argument("--accumulate", default="two-sided --accumulate-window 8")
     parser.add_argument("--wrong-budget", type=float, default=0)
+    parser.add_argument("--wrong-seeds", type=int, default=1)
+    parser.add_argument("--moving", action="store_true")
     parser.add_argument("--reference-spp", type=int, default=4096)
     parser.add_argument("--raw-rates", default=",".join(str(4**k) for k in range(9)))
     parser.add_argument("--tool-in-windows", action="store_true")
@@ -456,6 +412,8 @@ def main():
     parser.add_argument("--whole", action="store_true")
     parser.add_argument("--paper", action="store_true")
     asked = parser.parse_args()
+    if asked.moving and asked.tool_in_windows:
+        parser.error("--tool-in-windows takes the rates of one frame for all, which --moving does not allow")
     asked.targets = sorted(float(t) for t in asked.targets.split(","))
     asked.budgets = sorted(float(b) for b in asked.budgets.split(","))
     asked.raw_rates = sorted(float(r) for r in asked.raw_rates.split(","))
