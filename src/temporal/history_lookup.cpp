@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/luminance.hpp"
+
 namespace gazetrace {
 namespace {
 
@@ -157,6 +159,7 @@ PastSums look_up(const TemporalHistory& history, const PixelProjection& earlier_
   past.resampled = fx > 0 || fy > 0;
   if (past.resampled) {
     if (const auto between = sharp_mean(history, surface, x0, y0, fx, fy)) {
+      past.between_ways = luminance(between->mean - past.radiance / past.count);
       past.radiance = between->mean * past.count;
       past.residual = between->residual;
     }

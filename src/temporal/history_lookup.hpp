@@ -16,6 +16,9 @@ struct PastSums {
   double footprint_px = 0;
   double residual = 0;     // as HistorySurfaces, of the frame before
   bool resampled = false;  // it was looked up between pixels
+  // By how much two ways to look it up between pixels differ, in luminance: about as far as each is off where what lies
+  // between the pixels is finer than they are. 0 where only one was possible.
+  double between_ways = 0;
 };
 
 // On a flat surface without noise, relative differences below this come from rounding and from bilinear weights.

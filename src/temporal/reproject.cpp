@@ -12,6 +12,7 @@
 #include "gazetrace/temporal.hpp"
 #include "temporal/clip.hpp"
 #include "temporal/history_lookup.hpp"
+#include "temporal/resampling_error.hpp"
 #include "temporal/residuals.hpp"
 #include "temporal/worth.hpp"
 
@@ -76,6 +77,7 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
   next.variance_weight_sum = Image<double>(width, height);
   next.surfaces = {motion.depth_m, motion.normal, motion.object, footprint, ImageGray(width, height)};
   ImageGray before(width, height);
+  ImageGray kept_between(width, height, 1.0F);
   if (!alone) {
     parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t row) {
       const auto across = static_cast<std::size_t>(width);
@@ -85,6 +87,10 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
           continue;
         }
         scale_worth(past, kept / ratio_of_areas(past, static_cast<double>(footprint.pixels[i])));
+        if (footprint.pixels[i] < kFullRatePx) {
+          kept_between.pixels[i] =
+              static_cast<float>(share_kept_between_pixels(past, frame, history.surfaces, motion, i));
+        }
         if (past.resampled && footprint.pixels[i] < kFullRatePx && frame.sample_count.pixels[i] >= kKnowsNoise) {
           const double seen = luminance(to_double(frame.radiance.pixels[i]));
           const double difference = luminance(past.radiance / past.count) - seen;
@@ -111,9 +117,11 @@ Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion
       double variance = count * count * static_cast<double>(frame.variance.pixels[i]);
       PastSums past = past_at(next, i);
       if (past.count > 0) {
-        if (residuals.before.pixels[i] != 0) {
-          scale_worth(past, residuals.share_kept(motion, count, past.count, x, y));
-        }
+        // Both judge the past as it was found. Were one to judge what the other left of it, it would expect more noise
+        // of it, and see less.
+        const double lasting =
+            residuals.before.pixels[i] != 0 ? residuals.share_kept(motion, count, past.count, x, y) : 1;
+        scale_worth(past, std::min(lasting, static_cast<double>(kept_between.pixels[i])));
         if (settings.clip_sigmas > 0) {
           clip(spread_around(frame, motion, x, y, footprint.pixels[i]), settings.clip_sigmas, past);
         }

@@ -10,6 +10,7 @@
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
 #include "temporal/clip.hpp"
+#include "temporal/resampling_error.hpp"
 #include "temporal/residuals.hpp"
 #include "temporal/worth.hpp"
 
@@ -90,6 +91,10 @@ void NeighbourSums::add(const TemporalHistory& neighbour, const SurfaceMotion& m
     PastSums found = look_up(neighbour, view, motion, i);
     if (found.count > 0) {
       scale_worth(found, kept / ratio_of_areas(found, static_cast<double>(footprint_.pixels[i])));
+      if (footprint_.pixels[i] < kFullRatePx) {
+        scale_worth(found,
+                    share_kept_between_pixels(found, frame_, neighbour.surfaces, motion, i, 2 * settings_.window));
+      }
       side.pixels[i] = sum_of(side.pixels[i], found);
     }
   });

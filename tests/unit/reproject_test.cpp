@@ -160,8 +160,8 @@ double hash_noise(int x, int y, int k, double salt) {
   return 2 * (value - std::floor(value)) - 1;
 }
 
-// Mean squared errors in the middle of frame 12, without accumulation and with it: a picture that glides by a part of a
-// pixel each frame, under noise.
+// Squared errors in the middle of frames 8 to 24, without accumulation and with it: a picture that glides by a part of
+// a pixel each frame, under noise.
 struct Errors {
   double alone = 0, accumulated = 0;
 };
@@ -170,12 +170,12 @@ Errors gliding_errors(const std::function<double(double u, double v)>& picture, 
   settings.mode = AccumulateMode::reproject;
   TemporalHistory history;
   Errors errors;
-  for (int k = 1; k <= 12; ++k) {
+  for (int k = 1; k <= 24; ++k) {
     const auto truth = [&](int x, int y) { return picture(x + k * shift.x, y + k * shift.y); };
     const Frame frame = frame_of([&](int x, int y) { return truth(x, y) + noise * hash_noise(x, y, k, 0.5); }, 32,
                                  static_cast<float>(noise * noise / 3 * 0.5883 * 0.5883));
     const Frame out = pass(frame, wall(shift), settings, history, k);
-    if (k == 12) {
+    if (k >= 8) {
       for (int y = 3; y < kHeight - 3; ++y) {
         for (int x = 3; x < kWidth - 4; ++x) {
           errors.alone += std::pow(value(frame, x, y) - truth(x, y), 2);
@@ -208,6 +208,44 @@ TEST(Reproject, TextureThatGlidesIsNotBlurredBeyondTheNoise) {
   // What has no texture loses noise all the same.
   const Errors flat = gliding_errors([](double, double) { return 1.0; }, 0.1, {0.37, -0.21});
   EXPECT_LT(flat.accumulated, 0.3 * flat.alone);
+}
+
+// A body of twice the wall's light covers the columns up to the fourth, and a third of the fifth.
+Frame body_before_wall(int covered, double part_of_next) {
+  return frame_of([=](int x, int) { return x <= covered       ? 2.0
+                                           : x == covered + 1 ? 1 + part_of_next
+                                                              : 1.0; }, 32,
+                  1e-4F);
+}
+
+SurfaceMotion with_body(SurfaceMotion motion, int covered, double moved_px) {
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x <= covered; ++x) {
+      motion.object(x, y) = 2;
+      motion.other_px(x, y).x += moved_px;
+    }
+  }
+  return motion;
+}
+
+TEST(Reproject, ABodyThatMovesOnLeavesNoTrailOfItsEdge) {
+  TemporalHistory history;
+  (void)pass(body_before_wall(4, 1 / 3.0), with_body(wall(), 4, 0), all_kept(), history);
+  // The wall's pixel beside the body had a third of the body's light, and now it has none, or a tenth.
+  TemporalHistory as_it_was = history;
+  const Frame gone = pass(body_before_wall(2, 0.1), with_body(wall(), 2, 2), all_kept(), history, 2);
+  EXPECT_NEAR(value(gone, 5, 5), 1, 0.01) << "one standard deviation of the frame";
+  EXPECT_GE(gone.sample_count(8, 5), 63) << "the wall beyond keeps its past";
+  const Frame slid = pass(body_before_wall(4, 0.1), with_body(wall(), 4, 0.23), all_kept(), as_it_was, 2);
+  EXPECT_NEAR(value(slid, 5, 5), 1.1, 0.01);
+}
+
+TEST(Reproject, TheEdgeOfABodyAtRestKeepsItsPast) {
+  TemporalHistory history;
+  (void)pass(body_before_wall(4, 1 / 3.0), with_body(wall(), 4, 0), all_kept(), history);
+  const Frame rests = pass(body_before_wall(4, 0.1), with_body(wall(), 4, 0), all_kept(), history, 2);
+  EXPECT_NEAR(value(rests, 5, 5), 1 + 0.5 * (1 / 3.0 + 0.1), 1e-5) << "the mean of both, as they were sampled";
+  EXPECT_FLOAT_EQ(rests.sample_count(5, 5), 64);
 }
 
 TEST(Reproject, AHistoryThatGetsBetterIsNotDropped) {
