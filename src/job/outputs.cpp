@@ -160,6 +160,12 @@ void check_output_folders(const OutputSettings& output, const std::string& check
 PipelineSettings pipeline_settings(const JobSettings& job) {
   PipelineSettings settings;
   settings.foveation = job.foveation;
+  if (job.foveation.falloff == "visible" && job.accumulate.mode == AccumulateMode::two_sided &&
+      job.foveation.max_block_px == kDefaultMaxBlockPx) {
+    // Frames at rest are added up only where their sites are the same, and larger blocks follow from each frame's own
+    // pilot.
+    settings.foveation.max_block_px = 1;
+  }
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
   settings.trace.guides = show_first_hits(job.exr.aovs);

@@ -129,6 +129,16 @@ class Adaptive(harness.CliTest):
         clip("whole", "1-6", *both, "--resume")
         self.assertEqual(whole, self.pictures("whole"))
 
+    def test_frames_that_are_added_up_have_no_blocks(self):
+        def difference(test):
+            self.run_ok("compare", "default/f.####.exr", f"{test}/f.####.exr", "--metrics", "mse", "--anyway", "--json", f"{test}.json")
+            return json.loads((self.folder / f"{test}.json").read_text())["sequence"][0]["scores"][0]["value"]
+
+        for name, more in (("default", []), ("pixels", ["--max-block", "1"]), ("blocks", ["--max-block", "4"])):
+            self.render(name, *GAZE, "--budget-spp", "3", "--frames", "1-3", "--accumulate", "two-sided", *more)
+        self.assertEqual(difference("pixels"), 0)
+        self.assertGreater(difference("blocks"), 0)
+
     def test_a_flip_of_frames_that_are_added_up(self):
         def clip(folder, *more):
             self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--target-flip", "0.03", "--accumulate", "two-sided", *more, "-o",

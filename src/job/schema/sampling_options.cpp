@@ -82,7 +82,9 @@ void add_budget_options(JobSchema& schema) {
       .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
       .value("--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
-             "Density models: the largest side of a block, in pixels")
+             "Density models: the largest side of a block, in pixels; 16 means 1 for --falloff visible with "
+             "--accumulate two-sided, "
+             "whose frames are added up where their blocks are the same")
       .within(1, 16)
       .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
