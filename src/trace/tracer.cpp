@@ -321,8 +321,8 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   const CameraRays rays(camera, map.height_px);
   const PixelFilterSampler filter(settings.filter, settings.footprint);
   const SceneFeatures& features = tracer_->render_scene.features;
-  const NamedKernel& variant =
-      choose_kernel(kernel_features(features, tracer_->render_scene), tracer_->options.all_features);
+  const KernelFeatures needed = kernel_features(features, tracer_->render_scene);
+  const NamedKernel& variant = choose_kernel(needed, tracer_->options.all_features);
 
   const FrameContext context =
       make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
