@@ -94,8 +94,10 @@ bool is_cut(const TemporalHistory& history, const Camera& camera, int width_px, 
 // object, on the plane of the surface and with its normal. Where all sixteen pixels around the place did, each sampled
 // on its own, it takes Catmull-Rom weights, which blur texture less. The counts of these pixels say what the history is
 // worth. That worth shrinks with age; by the ratio of areas where the history was coarser than this frame's site; where
-// resampling has blurred it by more than noise explains; and where clipping moves it. The result is the mean weighted
-// by counts. It is never worth less than the frame alone, and has the frame's own bits where there is no history.
+// resampling has blurred it by more than noise explains, or is likely to, since texture is finer than the pixels; where
+// the edge of another surface slides or slid over the pixel; and where clipping moves it. The result is the mean
+// weighted by counts. It is never worth less than the frame alone, and has the frame's own bits where there is no
+// history.
 Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion, const FrameRequest& request,
                 const AccumulateSettings& settings, TemporalHistory& history, int threads);
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 #include "core/luminance.hpp"
 #include "temporal/worth.hpp"
@@ -13,9 +12,13 @@ namespace gazetrace {
 namespace {
 
 // Two surfaces whose motions differ by less than this many pixels a frame share their pixels as before.
-constexpr double kSlides_px = 0.05;
+constexpr double kSlidesPx = 0.05;
 // The variance of what two ways of interpolation differ by, beside that of what they interpolate, for white noise.
 constexpr double kNoiseBetweenWays = 0.1;
+// At an edge that slides, a difference counts as an error where its square is above the variance of both by a factor of
+// 1 + kFewSamples / count: a frame of few samples knows its variance badly, and what it would lose by mistake is worth
+// more.
+constexpr double kFewSamples = 8;
 
 struct Around {
   int x0, x1, y0, y1;
@@ -37,7 +40,7 @@ bool slides_now(const SurfaceMotion& motion, int x, int y) {
       }
       const Vec2d there = motion.other_px(i, j);
       // Written so that NaN counts as moving differently.
-      if (!(std::hypot(there.x - here.x - (i - x), there.y - here.y - (j - y)) < kSlides_px)) {
+      if (!(std::hypot(there.x - here.x - (i - x), there.y - here.y - (j - y)) < kSlidesPx)) {
         return true;
       }
     }
@@ -100,7 +103,7 @@ double share_kept_between_pixels(const PastSums& past, const Frame& frame, const
   if (slides_now(motion, x, y) || showed_another(was, motion, x, y)) {
     const double off = luminance(past.radiance / past.count - to_double(frame.radiance.pixels[pixel]));
     bias =
-        std::max(bias, off * off - (1 + 8 / count) *
+        std::max(bias, off * off - (1 + kFewSamples / count) *
                                        (std::max(noise, static_cast<double>(frame.variance.pixels[pixel])) + of_past));
   }
   if (!(bias > 0)) {
