@@ -108,7 +108,8 @@ int run(int argc, char** argv) {
       uniform, view_of_perspective(camera.projection.yfov_rad, options.width_px, options.height_px), {});
   const PixelFilterSampler filter(PixelFilter::box);
   FrameContext context = make_frame_context(scene, render_scene, lights, rays, options.settings);
-  const NamedKernel& kernel = choose_kernel(kernel_features(render_scene.features, render_scene), options.all);
+  const KernelFeatures needed = kernel_features(render_scene.features, render_scene);
+  const NamedKernel& kernel = choose_kernel(needed, options.all);
 
   const FlushDenormals flush;
   const auto work = std::make_unique<Workspace>();

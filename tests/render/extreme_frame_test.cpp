@@ -148,7 +148,8 @@ TEST(ExtremeFrame, ManySamplesLoseNothingInTheSum) {
   const LightSampler lights(scene);
   const CameraRays rays(camera, 1);
   const FrameContext context = make_frame_context(scene, render_scene, lights, rays, settings);
-  const NamedKernel& kernel = choose_kernel(kernel_features(render_scene.features, render_scene), false);
+  const KernelFeatures needed = kernel_features(render_scene.features, render_scene);
+  const NamedKernel& kernel = choose_kernel(needed, false);
   const PixelFilterSampler filter(PixelFilter::box);
   const auto work = std::make_unique<Workspace>();
   KernelCounts counts;
