@@ -81,10 +81,10 @@ void add_budget_options(JobSchema& schema) {
       .within(1, 65536)
       .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
-      .value("--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
-             "Density models: the largest side of a block, in pixels; 16 means 1 for --falloff visible with "
-             "--accumulate two-sided, "
-             "whose frames are added up where their blocks are the same")
+      .value(
+          "--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
+          "Density models: the largest side of a block, in pixels. With --falloff visible and --accumulate two-sided "
+          "the default is 1, since frames are added up where their blocks are the same; 16 then counts as not given")
       .within(1, 16)
       .idle_when({without_density(), with_hard_regions(), with_uniform()});
   schema
