@@ -38,6 +38,9 @@ struct FrameSettings {
   double frames_per_second = 0;  // of the clip that the frame belongs to; 0: a still
   // Where it is given: the rates of a frame, in place of the file of the fall-off `map` and of the pilot of `visible`.
   std::function<FrameRates(const FrameRequest& request)> rates_of;
+  // Where it is given, and TraceSettings::learn_light is set: what a frame has learned of its light, in place of
+  // PosedScene::learn_light(). So a part of a frame can know what the whole frame does.
+  std::function<std::shared_ptr<const LearnedLight>(const FrameRequest& request)> light_of;
   // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
   std::function<DisplayCurve(double exposure_ev)> display_curve;
   LayerSettings layers;
@@ -52,7 +55,7 @@ bool uses_history(const FrameSettings& settings);
 // Wall time of the stages, ms.
 struct StageTimes {
   double plan_ms = 0;         // the sampling map
-  double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`
+  double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`, and learning of light
   double trace_ms = 0;        // samples, those of the first look included, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
   double reconstruct_ms = 0;  // the filter, and the enhancement
@@ -71,8 +74,8 @@ struct Prediction {
 struct TracedFrame {
   SamplingMap map;
   SparseFrame sparse;
-  // Of the samples that told where the frame's own belong, and were discarded: those of the pilot, or of the first look
-  // of `contrast_strength`.
+  // Of the samples that told where the frame's own belong, and were discarded: those of the pilot, of the first look of
+  // `contrast_strength`, and the paths of TraceSettings::learn_light.
   TraceStats first_look;
   Prediction prediction;
   StageTimes times;  // plan_ms, pilot_ms and trace_ms
@@ -141,6 +144,9 @@ class FrameRenderer {
   [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
 
  private:
+  // Adds the paths that it takes to `stats`.
+  [[nodiscard]] std::shared_ptr<const LearnedLight> learned_light(const PosedScene& scene, const FrameRequest& request,
+                                                                  TraceStats& stats) const;
   // Each group of light by a filter that is linear; none unless they are asked for.
   [[nodiscard]] std::vector<ImageRgb> filtered_light(const TracedFrame& traced, StageTimes& times) const;
   void add_layers(const FrameRequest& request, std::vector<ImageRgb> light, RenderedFrame& rendered) const;

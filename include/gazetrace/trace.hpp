@@ -31,6 +31,8 @@ enum class PixelFilter : std::uint8_t { box, blackman_harris };
 enum class SamplePattern : std::uint8_t { scrambled, z_order };
 enum class BvhQuality : std::uint8_t { high, medium };
 
+class LearnedLight;  // opaque; made by PosedScene::learn_light
+
 struct TraceSettings {
   int max_bounces = 3;  // scattering events on a path; 0 shows emission only
   // From the third scattering event on, a path survives with probability min(0.95, sqrt(largest channel of its
@@ -52,6 +54,12 @@ struct TraceSettings {
   // the pixel's samples average. Coarser levels save too little time to be worth their blur (Sponza at 960 x 540: a
   // root mean square difference of 12 % per pixel).
   double pixel_cone = 0;
+  // The frame first learns from some paths of its own where its light arrives from, and draws bounces towards it
+  // (PosedScene::learn_light). Means do not change. Frames take less samples for the same noise where most of the sky
+  // is hidden, and a little more time where it is not.
+  bool learn_light = false;
+  // What the frame has learned: trace() draws bounces by it. Empty: by the BSDF alone, whatever `learn_light` says.
+  std::shared_ptr<const LearnedLight> learned;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
   SamplePattern sample_pattern = SamplePattern::scrambled;
   // The pixel filter is this many times as wide, above 0. So a frame of an eighth of the size shows, with 1/8, single
@@ -152,6 +160,12 @@ struct TraceStats {
   std::vector<BadSample> bad_samples;    // the first 16, in pixel order
   std::vector<RegionTraceStats> regions;
   std::string kernel;  // name of the kernel variant that was used
+};
+
+// What a frame has learned of its light.
+struct LightLearning {
+  std::shared_ptr<const LearnedLight> light;  // empty where it would not pay, and with LightSampling::light_only
+  TraceStats stats;                           // of the paths that it took, which are discarded
 };
 
 // What the tracer found: one entry per site of the map, in the map's order.
@@ -272,6 +286,12 @@ class PosedScene {
   // TraceSettings::seed and `frame` together seed the samples.
   [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                                   const TraceSettings& settings) const;
+
+  // Traces one path for every eight pixels, at most 65536, and learns from them for each place from where light
+  // arrives (Müller, Gross and Novák, "Practical Path Guiding for Efficient Light-Transport Simulation", 2017). The
+  // result depends on the pose, the arguments and the seed, not on what is traced with it.
+  [[nodiscard]] LightLearning learn_light(const Camera& camera, std::int32_t frame, int width_px, int height_px,
+                                          const TraceSettings& settings) const;
 
   // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.
   [[nodiscard]] Guides guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const;

@@ -167,6 +167,7 @@ class JobOptions(TypedDict, total=False):
     diffuse: Value | None
     light_sampling: Value | None
     compensate_environment: bool | None
+    learn_light: bool | None
     clamp_indirect: Value | None
     pixel_filter: Value | None
     pixel_cone: Value | None

@@ -20,8 +20,9 @@ Settings paper_settings(const std::string& angle_reading) {
           {"filter", "linear"},     {"accumulate", "off"},
           {"bounces", "3"},         {"russian-roulette", "false"},
           {"diffuse", "burley"},    {"light-sampling", "mis"},
-          {"pixel-filter", "box"},  {"clamp-indirect", "0"},
-          {"exposure", "auto"},     {"view", "Reinhard"}};
+          {"learn-light", "false"}, {"pixel-filter", "box"},
+          {"clamp-indirect", "0"},  {"exposure", "auto"},
+          {"view", "Reinhard"}};
 }
 
 }  // namespace
@@ -50,6 +51,7 @@ const std::vector<Preset>& presets() {
         {"filter", "none"},
         {"accumulate", "off"},
         {"clamp-indirect", "0"},
+        {"learn-light", "false"},
         {"exr-pixels", "float"}}},
   };
   return table;

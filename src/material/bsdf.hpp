@@ -117,6 +117,9 @@ class Bsdf {
     return diffuse_ * (shape(wi, albedo_terms(row_, std::clamp(wi.z, 0.0F, 1.0F))) * wi.z);
   }
 
+  // How often a direction is drawn from the specular lobe.
+  [[nodiscard]] float specular_probability() const noexcept { return specular_probability_; }
+
   struct Direction {
     Vec3f direction, half;
   };

@@ -8,6 +8,7 @@
 #include "pipeline/first_look.hpp"
 #include "pipeline/frame_layers.hpp"
 #include "pipeline/frame_stages.hpp"
+#include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {
 namespace {
@@ -24,10 +25,27 @@ FrameRenderer::FrameRenderer(PathTracer& tracer, FrameSettings settings)
       reconstruction_(settings_.reconstruction),
       tables_(matte_tables(tracer.scene(), settings_.layers.mattes)) {}
 
+std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScene& scene, const FrameRequest& request,
+                                                                 TraceStats& stats) const {
+  if (settings_.light_of) {
+    return settings_.light_of(request);
+  }
+  LightLearning learning =
+      scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, settings_.trace);
+  add_traces(learning.stats, stats);
+  return std::move(learning.light);
+}
+
 TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   TracedFrame traced;
   StageTimes& times = traced.times;
   const PosedScene scene = timed(times.trace_ms, [&] { return tracer_->at(shutter_of(request)); });
+  // The pilot and the first look see the noise that the frame will have, so that they know what it has learned.
+  FrameSettings frame_settings = settings_;
+  if (settings_.trace.learn_light) {
+    frame_settings.trace.learned =
+        timed(times.pilot_ms, [&] { return learned_light(scene, request, traced.first_look); });
+  }
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;
   ImageGray contrast;
@@ -41,28 +59,28 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
     density = timed(times.plan_ms, [&] { return read_density_map(foveation, request.frame); });
     context.density = &density;
   } else if (foveation.falloff == "visible") {
-    AdaptiveRates adaptive = timed(times.pilot_ms, [&] { return adaptive_rates(scene, request, settings_); });
+    AdaptiveRates adaptive = timed(times.pilot_ms, [&] { return adaptive_rates(scene, request, frame_settings); });
     foveation.target = {};
     foveation.budget_samples.reset();
     foveation.budget_spp = adaptive.spp;
     density = std::move(adaptive.rates);
     context.density = &density;
-    traced.first_look = std::move(adaptive.pilot);
+    add_traces(adaptive.pilot, traced.first_look);
     traced.prediction = adaptive.prediction;
   }
   if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
     foveation = less_first_look(foveation, request);
     FirstLook first_look = timed(times.trace_ms, [&] {
-      return trace_first_look(scene, request, settings_.trace, settings_.foveation.contrast_strength);
+      return trace_first_look(scene, request, frame_settings.trace, settings_.foveation.contrast_strength);
     });
     contrast = std::move(first_look.multiplier);
     context.contrast = &contrast;
-    traced.first_look = std::move(first_look.stats);
+    add_traces(first_look.stats, traced.first_look);
   }
   traced.map = timed(times.plan_ms, [&] {
     return make_sampling_map(foveation, request.view, request.gaze_direction_render, context);
   });
-  TraceSettings settings = reconstruction_.trace_settings(settings_.trace);
+  TraceSettings settings = reconstruction_.trace_settings(frame_settings.trace);
   settings.light_groups = settings_.layers.light;
   traced.sparse =
       timed(times.trace_ms, [&] { return scene.trace(request.camera, request.frame, traced.map, settings); });

@@ -144,13 +144,21 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   const double least = least_budget_spp(settings_.foveation, request);
   const double most = std::max(least, settings_.foveation.max_spp);
 
+  FrameSettings looking = settings_;  // of what traces no whole frame
+  if (looking.trace.learn_light) {
+    LightLearning learning =
+        scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, looking.trace);
+    add_traces(learning.stats, rehearsal_);
+    looking.trace.learned = std::move(learning.light);
+  }
+
   // Roughly, by a pilot: what a sample costs.
   std::uint64_t round = 1;  // the scrambling of round 0 is that of the frame's own first pilot
   const auto pilot_at = [&](const ImageGray& rates) {
     const double cell_pixels = static_cast<double>(pilot_cell_px(request)) * pilot_cell_px(request);
     // A pilot of the frame's own rates has 1 / cell_pixels of its samples, which in small frames is many.
     Pilot pilot =
-        trace_pilot(scene, request, settings_, scaled(rates, std::min(1.0, kPilotShare * cell_pixels)), ++round);
+        trace_pilot(scene, request, looking, scaled(rates, std::min(1.0, kPilotShare * cell_pixels)), ++round);
     add_traces(pilot.stats, rehearsal_);
     return pilot;
   };
@@ -188,7 +196,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
     // What deciding the rates takes, and how much more or less a sample costs where they put it.
     const double spp = affordable_spp(budget_ms_ - watch.elapsed_ms(), cost_, pixels, least, most);
     const Stopwatch deciding;
-    AdaptiveRates adaptive = adaptive_rates(scene, request, with_budget(settings_, spp));
+    AdaptiveRates adaptive = adaptive_rates(scene, request, with_budget(looking, spp));
     const double deciding_ms = deciding.elapsed_ms();
     add_traces(adaptive.pilot, rehearsal_);
     const double anywhere = cpu_ms_of_sample(pilot_at(ImageGray(1, 1, static_cast<float>(adaptive.spp))).stats);

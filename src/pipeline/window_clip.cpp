@@ -52,6 +52,7 @@ FrameSettings uniform(FrameSettings settings, double spp, const char* filter) {
   settings.reconstruction = {filter, {}};
   settings.enhance_contrast = 0;
   settings.trace.clamp_indirect = 0;
+  settings.trace.learn_light = false;
   return settings;
 }
 
@@ -295,7 +296,28 @@ double WindowClip::q_of(const WindowPictures& pictures) const {
   return std::pow(std::max(square(q) - square(reference_q_), kLeastShare * square(q)), kPowerOfSquare);
 }
 
-ImageGray WindowClip::pilot_rates(const FrameRequest& request, const FrameSettings& settings) {
+// Where the view rests, all frames are lit alike, and learn once.
+std::int32_t WindowClip::light_number(const FrameRequest& request) const {
+  return judged_.view_moves ? request.frame : first().frame;
+}
+
+void WindowClip::learn_light(const FrameRequest& request) {
+  if (!settings_.trace.learn_light || light_.contains(light_number(request))) {
+    return;
+  }
+  TraceSettings own = settings_.trace;
+  own.seed = hash_combine(own.seed, kLookTag);
+  LightLearning learning = tracer_.at({request.shutter_open_ns, request.shutter_close_ns})
+                               .learn_light(request.camera, request.frame, request.width_px, request.height_px, own);
+  add_traces(learning.stats, stats_);
+  light_.emplace(light_number(request), std::move(learning.light));
+}
+
+ImageGray WindowClip::pilot_rates(const FrameRequest& request, FrameSettings settings) {
+  if (settings.trace.learn_light) {
+    learn_light(request);
+    settings.trace.learned = light_.at(light_number(request));
+  }
   AdaptiveRates adaptive =
       adaptive_rates(tracer_.at({request.shutter_open_ns, request.shutter_close_ns}), request, settings);
   add_traces(adaptive.pilot, stats_);
@@ -389,6 +411,7 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   const auto number = [&](const FrameRequest& request) { return is_same ? 0 : request.frame; };
   const auto find_rates = [&](const std::vector<FrameRequest>& requests) {
     for (const FrameRequest& request : requests) {
+      learn_light(request);
       if (is_uniform || rates.contains(number(request))) {
         continue;
       }
@@ -406,6 +429,7 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   WindowPictures pictures;
   for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
     FrameSettings own = settings_in_window(w, hash_combine(kLookTag, round));
+    own.light_of = [&](const FrameRequest& request) { return light_.at(light_number(request)); };
     if (is_uniform) {
       own.foveation.budget_spp = spp;
     } else {

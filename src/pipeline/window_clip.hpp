@@ -11,6 +11,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "gazetrace/color.hpp"
@@ -53,7 +55,10 @@ class WindowClip {
   [[nodiscard]] const FrameRequest& first() const { return judged_.runs.front().front(); }
   // Samples a pixel that every pixel of a frame expects.
   [[nodiscard]] ImageGray expected_spp(const FrameRequest& request, double spp, std::uint64_t round);
-  [[nodiscard]] ImageGray pilot_rates(const FrameRequest& request, const FrameSettings& settings);
+  [[nodiscard]] ImageGray pilot_rates(const FrameRequest& request, FrameSettings settings);
+  // What whole frames learn of their light, which windows of them are rendered with.
+  void learn_light(const FrameRequest& request);
+  [[nodiscard]] std::int32_t light_number(const FrameRequest& request) const;
   [[nodiscard]] FrameSettings settings_in_window(std::size_t window, std::uint64_t tag) const;
   // One picture a judged frame.
   [[nodiscard]] std::vector<ImageRgb> look_at(std::size_t window, const FrameSettings& settings);
@@ -72,6 +77,7 @@ class WindowClip {
   const FrameSettings& settings_;
   const ColorPipeline& color_;
   TraceStats stats_;
+  std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by light_number()
   JudgedWindows windows_;
   std::vector<const FrameRequest*> views_;  // that have a reference: the first frame, or every judged one
   // What lies around the windows: of the first frame of each run or, at rest, of the first.

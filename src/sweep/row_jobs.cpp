@@ -114,7 +114,8 @@ Job reference_job(const SweepRequest& request, const SweepFileScene& scene, cons
   assign(job, scene.options, schema, is_trade_off);
   for (const auto& [option, value] :
        {std::pair("falloff", "uniform"), std::pair("spp", "256"), std::pair("filter", "none"),
-        std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0")}) {
+        std::pair("accumulate", "off"), std::pair("russian-roulette", "false"), std::pair("clamp-indirect", "0"),
+        std::pair("learn-light", "false")}) {
     set_option(job, option, {value}, {Origin::file, {}, {}}, option, schema);
   }
   assign(job, request.file.reference.options, schema);

@@ -16,6 +16,7 @@
 #include "trace/guides/coverage.hpp"
 #include "trace/guides/first_hits.hpp"
 #include "trace/guides/guides.hpp"
+#include "trace/guiding/learning_pass.hpp"
 #include "trace/kernel/kernel.hpp"
 #include "trace/motion/surface_motion.hpp"
 #include "trace/samples/sample_list.hpp"
@@ -94,6 +95,18 @@ void store(const SiteSum& sum, std::size_t site, SparseFrame& out) {
   if (!out.unrounded.guides.empty()) {
     out.unrounded.guides[site] = sum.guides;
   }
+}
+
+Kernel kernel_of(const NamedKernel& variant, DiffuseModel diffuse) {
+  switch (diffuse) {
+    case DiffuseModel::burley:
+      return variant.burley;
+    case DiffuseModel::lambert:
+      return variant.lambert;
+    case DiffuseModel::matte:
+      break;
+  }
+  return variant.matte;
 }
 
 // Workspaces are reused from tile to tile, so that memory is allocated only once per thread.
@@ -187,6 +200,10 @@ struct PathTracer::Impl {
           std::make_unique<LightSampler>(*scene, options.light_choice, EnvironmentDensity::compensated);
     });
     return *compensated_lights;
+  }
+
+  [[nodiscard]] const NamedKernel& kernel_variant() const {
+    return choose_kernel(kernel_features(render_scene.features, render_scene), options.all_features);
   }
 
   const Scene* scene;
@@ -320,12 +337,10 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   tracer_->pose(times_);
   const CameraRays rays(camera, map.height_px);
   const PixelFilterSampler filter(settings.filter, settings.footprint);
-  const SceneFeatures& features = tracer_->render_scene.features;
-  const KernelFeatures needed = kernel_features(features, tracer_->render_scene);
-  const NamedKernel& variant = choose_kernel(needed, tracer_->options.all_features);
-
-  const FrameContext context =
+  const NamedKernel& variant = tracer_->kernel_variant();
+  FrameContext context =
       make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
+  context.learned = settings.learned.get();
 
   SparseFrame out;
   out.width_px = map.width_px;
@@ -364,9 +379,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   if (settings.sample_pattern == SamplePattern::z_order) {
     z_order.emplace(map);
   }
-  const Kernel kernel = settings.diffuse == DiffuseModel::burley    ? variant.burley
-                        : settings.diffuse == DiffuseModel::lambert ? variant.lambert
-                                                                    : variant.matte;
+  const Kernel kernel = kernel_of(variant, settings.diffuse);
   parallel_for(ranges.size(), tracer_->options.threads, [&](std::size_t i) {
     if (settings.stop && settings.stop()) {
       throw Error(ErrorKind::interrupted, "", "the frame was given up");
@@ -398,6 +411,19 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
     join_surfaces(ranges, results, out);
   }
   return out;
+}
+
+LightLearning PosedScene::learn_light(const Camera& camera, std::int32_t frame, int width_px, int height_px,
+                                      const TraceSettings& settings) const {
+  tracer_->pose(times_);
+  if (settings.light_sampling == LightSampling::light_only) {
+    return {};
+  }
+  const CameraRays rays(camera, height_px);
+  const FrameContext context =
+      make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
+  return gazetrace::learn_light(context, kernel_of(tracer_->kernel_variant(), settings.diffuse), frame, width_px,
+                                height_px, tracer_->options.threads);
 }
 
 Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {

@@ -192,7 +192,7 @@ class Scene:
     def loading(self):
         if "loading" not in self.costs:
             self.costs["loading"] = run(self.asked.program, "render", *self.options, "--size", "8x8", "--falloff", "uniform", "--spp", "1",
-                                        "--filter", "none", "--quiet", "--overwrite", "-o", self.folder / "loading.exr")
+                                        "--filter", "none", "--frames", "1", "--quiet", "--overwrite", "-o", self.folder / "loading.####.exr")
         return self.costs["loading"]
 
     def seconds_of_sample(self):

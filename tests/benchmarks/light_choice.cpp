@@ -9,7 +9,8 @@
 // take turns frame by frame, on one thread. Printed for each row and rate:
 //   error   mean over the pixels and seeds of the squared error by the squared reference, and of one default sample
 //   by      that of the default at the same rate, with its standard error over the seeds; `time` is the median of the
-//           ratios of turns and counts everything that PosedScene::trace() does; `cost` is the product of both
+//           ratios of turns and counts everything that PosedScene::trace() does, and learn_light() before it; `cost` is
+//           the product of both
 //   typical median over the pixels of the ratio of squared errors
 //   top     99.99th percentile over pixels and seeds of a pixel over its reference, by that of the default
 //   mean    the frame's mean over the reference's, with its standard error over the seeds
@@ -97,6 +98,7 @@ constexpr Word kWords[] = {
     {"light-only", [](TraceSettings& s) { s.light_sampling = LightSampling::light_only; }},
     {"bsdf-only", [](TraceSettings& s) { s.light_sampling = LightSampling::bsdf_only; }},
     {"roulette", [](TraceSettings& s) { s.russian_roulette = true; }},
+    {"learned", [](TraceSettings& s) { s.learn_light = true; }},
     {"z-order", [](TraceSettings& s) { s.sample_pattern = SamplePattern::z_order; }},
 };
 
@@ -199,6 +201,9 @@ void take_turn(Row& row, const PosedScene& scene, const Camera& camera, const Sa
                const Reference& reference, std::uint64_t seed) {
   row.settings.seed = seed;
   const std::int64_t begin_ns = thread_cpu_ns();
+  if (row.settings.learn_light) {
+    row.settings.learned = scene.learn_light(camera, 0, map.width_px, map.height_px, row.settings).light;
+  }
   const SparseFrame frame = scene.trace(camera, 0, map, row.settings);
   const std::int64_t end_ns = thread_cpu_ns();
   const Picture picture = picture_of(frame);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 
 namespace gazetrace {
@@ -38,6 +39,13 @@ void add_path_options(JobSchema& schema) {
             "Takes light samples of the environment only where it is brighter than half its mean: less noise in the "
             "open, more indoors")
       .with(Trait::trade_off);
+  schema
+      .flag("--learn-light", trace(&TraceSettings::learn_light), Touch::tracing,
+            "Each frame learns from some paths of its own where its light arrives from, and draws bounces towards it: "
+            "less noise indoors and under arcades, without bias")
+      .with(Trait::trade_off)
+      .idle_when({{"with `light-sampling` light",
+                   [](const JobSettings& job) { return job.trace.light_sampling == LightSampling::light_only; }}});
   schema
       .value("--clamp-indirect", trace(&TraceSettings::clamp_indirect), "RADIANCE", Touch::tracing,
              "The most that a sample may add after more than one scattering event, which removes fireflies but is "

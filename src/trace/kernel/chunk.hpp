@@ -92,6 +92,11 @@ struct ChunkHits {
   ChunkArray<float> random_lobe;
   ChunkVec3 next, next_weight;  // the BSDF sample
   ChunkArray<float> next_pdf, next_good;
+  // Only with FrameContext::learned: the cell of LearnedLight, the share of its table in the choice of a direction, and
+  // whether the direction is the table's.
+  ChunkArray<std::int32_t> cell;
+  ChunkArray<float> table_share;
+  ChunkArray<std::uint8_t> by_table;
   // Of camera rays' hits, what the diffuse lobe has of light_f_cos and next_weight, 0..1; only with light groups.
   ChunkVec3 light_diffuse, next_diffuse;
 };

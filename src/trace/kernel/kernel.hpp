@@ -6,6 +6,7 @@
 
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
+#include "trace/guiding/learned_light.hpp"
 #include "trace/kernel/path_batch.hpp"
 #include "trace/lights/light_sampling.hpp"
 #include "trace/rays/camera_rays.hpp"
@@ -28,10 +29,12 @@ struct FrameContext {
   const LightSampler* lights = nullptr;
   const CameraRays* camera = nullptr;
   TraceSettings settings;
-  bool last_ray_finds_light = false;    // the ray after the last scattering event can still find light
-  bool last_ray_needs_surface = false;  // it can find light on a surface, so visibility of the sky is not enough
-  bool first_hits = false;              // SparseFrame::first_hits are collected
-  RayRecorder* recorder = nullptr;      // for measurements only
+  bool last_ray_finds_light = false;      // the ray after the last scattering event can still find light
+  bool last_ray_needs_surface = false;    // it can find light on a surface, so visibility of the sky is not enough
+  bool first_hits = false;                // SparseFrame::first_hits are collected
+  const LearnedLight* learned = nullptr;  // where light arrives from; empty: directions follow the BSDF alone
+  bool records_bounces = false;           // Workspace::bounces are collected, for learning
+  RayRecorder* recorder = nullptr;        // for measurements only
 };
 
 FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,

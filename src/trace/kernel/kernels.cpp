@@ -3,6 +3,7 @@
 
 #include "trace/kernel/emission.hpp"
 #include "trace/kernel/generate.hpp"
+#include "trace/kernel/guided.hpp"
 #include "trace/kernel/layers.hpp"
 #include "trace/kernel/light_groups.hpp"
 #include "trace/kernel/path_kernel.hpp"

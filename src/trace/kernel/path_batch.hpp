@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "gazetrace/guides.hpp"
 #include "gazetrace/light_groups.hpp"
 #include "gazetrace/math.hpp"
+#include "trace/guiding/learned_light.hpp"
 #include "trace/kernel/chunk.hpp"
 #include "trace/rays/ray_batch.hpp"
 #include "trace/samples/sampler.hpp"
@@ -78,6 +80,17 @@ struct LightGroupBatch {
   BatchVec3 diffuse;  // of what the path's next contributions are, the share that the first surface's diffuse lobe has
 };
 
+// Of a learning path; so memory is bounded whatever TraceSettings::max_bounces is.
+inline constexpr int kRecordedBounces = 8;
+
+// A bounce of a path that others learn from, until the path is finished.
+struct BounceFound {
+  LearningRecord record;
+  float throughput = 0;    // luminance, after the bounce
+  float shone_before = 0;  // luminance of the sample without what the bounce finds
+  std::uint32_t slot = 0;
+};
+
 // One per thread, of about 0.5 MiB.
 struct Workspace {
   SampleBatch samples;
@@ -91,6 +104,7 @@ struct Workspace {
   ShadowBatch shadows;
   BatchArray<std::uint8_t> occluded;
   ChunkHits chunk;
+  std::vector<BounceFound> bounces;  // only with FrameContext::records_bounces
 };
 
 }  // namespace gazetrace

@@ -13,6 +13,7 @@
 
 #include "core/hash.hpp"
 #include "core/instruction_sets.hpp"
+#include "core/luminance.hpp"
 #include "material/bsdf.hpp"
 #include "trace/kernel/chunk.hpp"
 #include "trace/kernel/kernel.hpp"
@@ -57,6 +58,7 @@ class PathKernel {
       record(rays, alive, shape, false);
       counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
       shadow_count_ = 0;
+      const std::size_t first_bounce = work_.bounces.size();
       alive = shade(vertex, alive);
       if (vertex == 0 && frame_.settings.surfaces) {
         keep_shone(static_cast<std::size_t>(count));
@@ -65,6 +67,11 @@ class PathKernel {
         }
       }
       trace_shadows(vertex);
+      for (std::size_t i = first_bounce; i < work_.bounces.size(); ++i) {
+        const std::size_t slot = work_.bounces[i].slot;
+        work_.bounces[i].shone_before =
+            luminance(Vec3f{work_.radiance.r[slot], work_.radiance.g[slot], work_.radiance.b[slot]});
+      }
     }
   }
 
@@ -188,6 +195,12 @@ class PathKernel {
   [[nodiscard]] float coverage_of_emitter(const EmissiveTriangle& emitter, const ShadingMaterial& material,
                                           const Vec2f& at) const;
 
+  // guided.hpp
+  void find_cells(std::size_t count);
+  static void choose_tables(ChunkHits& chunk, std::size_t count);
+  static void take_directions_of_tables(ChunkHits& chunk, std::size_t count, const LearnedLight& learned);
+  void mix_densities(std::size_t count, const LightSample* lights, bool bounces);
+
   // scatter.hpp
   void scatter_chunk(int vertex, const PathBatch& paths, std::size_t count, const std::uint16_t* active,
                      std::size_t active_count);
@@ -200,7 +213,8 @@ class PathKernel {
   static Surface surface_of(const ChunkHits& chunk, std::size_t i);
   static Bsdf<kDiffuse> bsdf_of(const ChunkHits& chunk, std::size_t i);
   GAZETRACE_CLONES [[gnu::flatten, gnu::noinline]] static void evaluate_lanes(ChunkHits& chunk, std::size_t count,
-                                                                              bool lit, bool bounces);
+                                                                              bool lit, bool bounces,
+                                                                              const LearnedLight* learned);
   void take_light_sample(int vertex, std::size_t i, const LightSample& light, const PathBatch& paths);
   void take_bsdf_sample(int vertex, std::size_t i, const PathBatch& paths);
 

@@ -64,7 +64,14 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
     work_.chunk.random.set(i, bsdf_uv[i]);
     work_.chunk.random_lobe[i] = select[i].y;
   }
-  evaluate_lanes(work_.chunk, count, lit, bounces);
+  const bool guided = frame_.learned != nullptr && bounces;
+  if (guided) {
+    find_cells(count);
+  }
+  evaluate_lanes(work_.chunk, count, lit, bounces, guided ? frame_.learned : nullptr);
+  if (guided) {
+    mix_densities(count, lit ? lights.data() : nullptr, bounces);
+  }
   if constexpr (kLayers) {
     scatter_layers(vertex, active, active_count, lit ? lights.data() : nullptr, bounces);
   }
@@ -134,7 +141,8 @@ inline Bsdf<kDiffuse> PathKernel<kFeatures, kDiffuse>::bsdf_of(const ChunkHits& 
 
 // Evaluates the BSDF of every lane towards its light sample, and samples it.
 template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
-void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit, bool bounces) {
+void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size_t count, bool lit, bool bounces,
+                                                     const LearnedLight* learned) {
   for_lanes(
       count, [&](std::size_t i) __attribute__((always_inline)) {
         const LocalFrame local(chunk.shading.get(i));
@@ -157,6 +165,13 @@ void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size
           chunk.light_pdf[i] = eval.pdf;
         });
   }
+  if (learned != nullptr) {
+    for_lanes(
+        count, [&](std::size_t i) __attribute__((always_inline)) {
+          chunk.table_share[i] *= 1.0F - bsdf_of(chunk, i).specular_probability();
+        });
+    choose_tables(chunk, count);
+  }
   if (bounces) {
     for_lanes(
         count, [&](std::size_t i) __attribute__((always_inline)) {
@@ -164,6 +179,9 @@ void PathKernel<kFeatures, kDiffuse>::evaluate_lanes(ChunkHits& chunk, std::size
           chunk.next.set(i, chosen.direction);
           chunk.half.set(i, chosen.half);
         });
+    if (learned != nullptr) {
+      take_directions_of_tables(chunk, count, *learned);
+    }
     read_terms(chunk, count, chunk.next.z, chunk.next_terms);
     for_lanes(
         count, [&](std::size_t i) __attribute__((always_inline)) {
@@ -238,6 +256,12 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   state.g[n] = weight.y;
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
+  if (frame_.records_bounces && vertex < kRecordedBounces) {
+    work_.bounces.push_back({{chunk.position.get(i), chunk.shading.get(i), direction, chunk.next_pdf[i], 0.0F, 0U},
+                             luminance(weight),
+                             0.0F,
+                             static_cast<std::uint32_t>(slot)});
+  }
   if (frame_.lights->depends_on_place()) {
     state.lit_point.set(n, chunk.lit_point.get(i));
     state.lit_normal.set(n, chunk.lit_normal.get(i));

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/guiding/learning_pass.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/hash.hpp"
+#include "core/luminance.hpp"
+#include "core/parallel.hpp"
+#include "core/stopwatch.hpp"
+#include "gazetrace/error.hpp"
+#include "trace/samples/sample_list.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::uint64_t kLearningTag = 0x6c6561726e696e67ULL;
+
+// Cells of about square shape, one path each.
+struct Grid {
+  std::uint64_t columns = 1, rows = 1;
+};
+
+Grid grid_of(double paths, int width_px, int height_px) {
+  const double cell_px = std::sqrt(static_cast<double>(width_px) * height_px / std::max(1.0, paths));
+  const auto cells = [cell_px](int side_px) {
+    return static_cast<std::uint64_t>(std::max(1.0, std::floor(static_cast<double>(side_px) / cell_px)));
+  };
+  return {cells(width_px), cells(height_px)};
+}
+
+void fill(std::uint64_t first, int count, const Grid& grid, std::uint64_t seed, std::int32_t frame, int width_px,
+          int height_px, SampleBatch& out) {
+  for (int k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const std::uint64_t path = first + i;
+    const SampleKey key = make_sample_key(seed, frame, path);
+    const Vec2f u = sample_2d(key, 0, dimension_of(PathDimension::pixel));
+    const double x = (static_cast<double>(path % grid.columns) + static_cast<double>(u.x)) /
+                     static_cast<double>(grid.columns) * width_px;
+    const double y = (static_cast<double>(path / grid.columns) + static_cast<double>(u.y)) /
+                     static_cast<double>(grid.rows) * height_px;
+    out.site[i] = 0;
+    out.sample[i] = 0;
+    out.half[i] = 0;
+    out.key[i] = key;
+    out.index[i] = 0;
+    out.x[i] = static_cast<float>(x - 0.5 * width_px);
+    out.y[i] = static_cast<float>(y - 0.5 * height_px);
+    out.pixel_x[i] = static_cast<std::uint16_t>(std::min(x, width_px - 1.0));
+    out.pixel_y[i] = static_cast<std::uint16_t>(std::min(y, height_px - 1.0));
+  }
+}
+
+void keep(const Workspace& work, std::uint64_t first, std::vector<LearningRecord>& out) {
+  for (const BounceFound& bounce : work.bounces) {
+    const std::size_t slot = bounce.slot;
+    const float end = luminance(Vec3f{work.radiance.r[slot], work.radiance.g[slot], work.radiance.b[slot]});
+    if (work.radiance.rejected[slot] != 0 || !(bounce.throughput > 0)) {
+      continue;
+    }
+    LearningRecord record = bounce.record;
+    record.radiance = std::max(0.0F, end - bounce.shone_before) / bounce.throughput;
+    record.path = static_cast<std::uint32_t>(first + slot);
+    if (std::isfinite(record.radiance)) {
+      out.push_back(record);
+    }
+  }
+}
+
+// The learning paths of a frame.
+class LearningPaths {
+ public:
+  LearningPaths(FrameContext context, Kernel kernel, std::int32_t frame, int width_px, int height_px, int threads)
+      : context_(std::move(context)),
+        kernel_(kernel),
+        frame_(frame),
+        width_px_(width_px),
+        height_px_(height_px),
+        threads_(threads) {
+    context_.records_bounces = true;
+    context_.learned = nullptr;
+    context_.first_hits = false;
+    context_.settings.guides = context_.settings.surfaces = context_.settings.light_groups = false;
+    context_.settings.samples = kAllSamples;  // rays one by one: the same hits whichever rays are traced together
+  }
+
+  // About so many more of them, spread evenly. `round` chooses their scrambling.
+  void trace(double about, std::uint64_t round) {
+    const std::uint64_t seed = hash_combine(hash_combine(context_.settings.seed, kLearningTag), round);
+    const Grid grid = grid_of(about, width_px_, height_px_);
+    const std::uint64_t paths = grid.columns * grid.rows;
+    const std::uint64_t batches = (paths + kBatchSize - 1) / kBatchSize;
+    const auto ranges = static_cast<std::size_t>(std::min<std::uint64_t>(batches, kMostRanges));
+    std::vector<std::vector<LearningRecord>> found(ranges);
+    std::vector<KernelCounts> counts(ranges);
+    std::vector<std::int64_t> cpu_ns(ranges);
+    parallel_for(ranges, threads_, [&](std::size_t range) {
+      const FlushDenormals flush;
+      const std::int64_t begin_ns = thread_cpu_ns();
+      const auto work = std::make_unique<Workspace>();
+      const std::uint64_t end = batches * (range + 1) / ranges;
+      for (std::uint64_t batch = batches * range / ranges; batch < end; ++batch) {
+        if (context_.settings.stop && context_.settings.stop()) {
+          throw Error(ErrorKind::interrupted, "", "the frame was given up");
+        }
+        const std::uint64_t first = batch * kBatchSize;
+        const int count = static_cast<int>(std::min<std::uint64_t>(kBatchSize, paths - first));
+        fill(first, count, grid, seed, frame_, width_px_, height_px_, work->samples);
+        work->bounces.clear();
+        kernel_(context_, *work, count, counts[range]);
+        keep(*work, first, found[range]);
+      }
+      cpu_ns[range] = thread_cpu_ns() - begin_ns;
+    });
+    RegionTraceStats& region = stats_.regions.emplace_back();
+    for (std::size_t range = 0; range < ranges; ++range) {
+      records_.insert(records_.end(), found[range].begin(), found[range].end());
+      found[range] = {};
+      stats_.rays_primary += counts[range].rays_primary;
+      stats_.rays_bounce += counts[range].rays_bounce;
+      stats_.rays_shadow += counts[range].rays_shadow;
+      stats_.rejected_rays += counts[range].rejected;
+      region.cpu_ns += cpu_ns[range];
+    }
+    stats_.samples += paths;
+    region.samples += paths;
+  }
+
+  [[nodiscard]] LearnedLight learned() const { return {records_, threads_}; }
+  [[nodiscard]] const TraceStats& stats() const { return stats_; }
+
+ private:
+  static constexpr std::uint64_t kMostRanges = 64;
+
+  FrameContext context_;
+  Kernel kernel_;
+  std::int32_t frame_;
+  int width_px_, height_px_, threads_;
+  std::vector<LearningRecord> records_;
+  TraceStats stats_;
+};
+
+}  // namespace
+
+LightLearning learn_light(const FrameContext& context, Kernel kernel, std::int32_t frame, int width_px, int height_px,
+                          int threads) {
+  const double paths = std::min(kMostLearningPaths, static_cast<double>(width_px) * height_px / kPixelsPerLearningPath);
+  const double glimpse = std::min(kGlimpsePaths, paths);
+  LearningPaths learning(context, kernel, frame, width_px, height_px, threads);
+  learning.trace(glimpse, 0);
+  LearnedLight learned = learning.learned();
+  if (paths > glimpse && learned.promises()) {
+    learning.trace(paths - glimpse, 1);
+    learned = learning.learned();
+  }
+  return {learned.pays() ? std::make_shared<const LearnedLight>(std::move(learned)) : nullptr, learning.stats()};
+}
+
+}  // namespace gazetrace

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Directions that follow what the frame has learned of its light: of the choices of a diffuse direction, a share is
+// drawn from the table of the hit's cell, and all densities are those of the mixture.
+#pragma once
+
+#include <algorithm>
+
+#include "trace/guiding/learned_light.hpp"
+#include "trace/kernel/path_kernel.hpp"
+
+namespace gazetrace {
+
+// Finds the cells of hits, and how much of the choice their tables have. Layered materials choose by themselves.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::find_cells(std::size_t count) {
+  ChunkHits& chunk = work_.chunk;
+  const LearnedLight& learned = *frame_.learned;
+  for (std::size_t i = 0; i < count; ++i) {
+    chunk.cell[i] = learned.cell_at(chunk.position.get(i), chunk.shading.get(i));
+    chunk.table_share[i] = chunk.cell[i] < 0 ? 0.0F : learned.share(chunk.cell[i]);
+    if constexpr (kLayers) {
+      if (frame_.scene->layered.of(chunk.material[i]) != nullptr) {
+        chunk.table_share[i] = 0;
+      }
+    }
+  }
+}
+
+// Takes the number that chooses a lobe as the choice between table and BSDF first, and replaces the BSDF's direction,
+// in the local frame, where the table was chosen. Call it between finding the share of the diffuse lobe and sampling.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::choose_tables(ChunkHits& chunk, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float share = chunk.table_share[i];
+    const float u = chunk.random_lobe[i];
+    chunk.by_table[i] = u < share ? 1 : 0;
+    if (share > 0 && !(u < share)) {
+      chunk.random_lobe[i] = std::min((u - share) / (1.0F - share), 0x1.fffffep-1F);
+    }
+  }
+}
+
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::take_directions_of_tables(ChunkHits& chunk, std::size_t count,
+                                                                       const LearnedLight& learned) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (chunk.by_table[i] != 0) {
+      const Vec3f world = learned.table(chunk.cell[i]).sample(chunk.random.get(i)).direction;
+      const Vec3f direction = LocalFrame(chunk.shading.get(i)).to_local(world);
+      const Vec3f middle = chunk.view.get(i) + direction;
+      chunk.next.set(i, direction);
+      chunk.half.set(i, middle * (1.0F / std::sqrt(std::max(dot(middle, middle), 1e-20F))));
+    }
+  }
+}
+
+// Densities and weights of the mixture, after the BSDF has been evaluated towards both directions.
+template <KernelFeatures kFeatures, DiffuseModel kDiffuse>
+inline void PathKernel<kFeatures, kDiffuse>::mix_densities(std::size_t count, const LightSample* lights, bool bounces) {
+  ChunkHits& chunk = work_.chunk;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float share = chunk.table_share[i];
+    if (!(share > 0)) {
+      continue;
+    }
+    const DirectionTable& table = frame_.learned->table(chunk.cell[i]);
+    if (lights != nullptr && lights[i].valid && bounces) {
+      chunk.light_pdf[i] = (1.0F - share) * chunk.light_pdf[i] + share * table.pdf(lights[i].direction);
+    }
+    if (chunk.next_good[i] != 0) {
+      const float bsdf = chunk.next_pdf[i];
+      const float mixed = (1.0F - share) * bsdf + share * table.pdf(chunk.next.get(i));
+      chunk.next_pdf[i] = mixed;
+      chunk.next_weight.set(i, chunk.next_weight.get(i) * (bsdf / mixed));
+    }
+  }
+}
+
+}  // namespace gazetrace

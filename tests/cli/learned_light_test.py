@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""--learn-light: frames that learn from paths of their own have the same bits alone, in parts and with any threads."""
+
+import csv
+import json
+
+import harness
+
+
+def hall_gltf():
+    """The box and its floor in a hall that is open on one side, through which a part of the sky is seen; a camera that glides."""
+    gltf = harness.box_gltf(camera_seconds=1.0)
+    nodes = gltf["nodes"]
+    for translation, scale in (([0, 3, 0], [4, 0.1, 4]), ([-3, 1, 0], [0.1, 3, 4]), ([0, 1, -3], [4, 3, 0.1]), ([0, 1, 5], [4, 3, 0.1])):
+        gltf["scenes"][0]["nodes"].append(len(nodes))
+        nodes.append({"mesh": 0, "translation": translation, "scale": scale})
+    gltf["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 0.1
+    return gltf
+
+
+JOB = ["hall.gltf", "--size", "192x128", "--fps", "24", "--quiet", "--exposure", "0"]
+GAZE = ["--gaze-at", "0.4,0.5", "--screen-px", "192,128", "--screen-ppd", "8"]
+
+
+class LearnedLight(harness.CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("hall.gltf", json.dumps(hall_gltf()))
+
+    def render(self, folder, *more, frames="1-3", learning=("--learn-light",)):
+        self.run_ok("render", *JOB, "--frames", frames, *learning, *more, "-o", f"{folder}/f.####.exr")
+        return self.pictures(folder)
+
+    def rows(self, folder):
+        with open(self.folder / folder / "timing.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_the_same_bits_however_it_is_rendered(self):
+        for name, settings in (("foveated", GAZE), ("visible", [*GAZE, "--falloff", "visible", "--budget-spp", "2"]),
+                               ("around", ["--falloff", "uniform", "--spp", "1", "--accumulate", "two-sided", "--accumulate-window", "1"])):
+            with self.subTest(settings=name):
+                whole = self.render(f"{name}", *settings, "--threads", "1")
+                self.assertEqual(len(whole), 3)
+                self.assertEqual(self.render(f"{name}-threads", *settings, "--threads", "2"), whole)
+                alone = self.render(f"{name}-alone", *settings, frames="2")
+                self.assertEqual(alone, {key: value for key, value in whole.items() if "0002" in key})
+                folder = self.folder / name
+                (folder / "f.0003.exr").unlink()
+                self.assertEqual(self.render(name, *settings, "--resume"), whole)
+
+    def test_parts_of_samples_learn_the_same(self):
+        raw = ["--falloff", "uniform", "--spp", "4", "--filter", "linear"]
+        whole = self.render("whole", *raw)
+        for samples in ("2:4", "0:1", "1:2"):
+            self.render("parts", *raw, "--sample-range", samples)
+        self.run_ok("merge", "parts")
+        self.assertEqual(self.pictures("parts"), whole)
+
+    def test_it_changes_pictures_and_is_counted(self):
+        raw = ["--falloff", "uniform", "--spp", "2", "--filter", "none"]
+        learned = self.render("learned", *raw)
+        plain = self.render("plain", *raw, learning=())
+        self.assertTrue(all(learned[key] != plain[key] for key in plain))
+        for row in self.rows("learned"):
+            self.assertGreater(int(row["pilot_samples"]), 0)
+            self.assertEqual(int(row["samples"]) - int(row["pilot_samples"]), 2 * 192 * 128)
+            self.assertGreater(float(row["pilot_ms"]), 0)
+        self.assertEqual({row["pilot_samples"] for row in self.rows("plain")}, {"0"})
+
+
+if __name__ == "__main__":
+    harness.main()

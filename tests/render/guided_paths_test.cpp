@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Paths that draw directions from what the frame has learned: means that do not change, less noise where the sky is
+// hidden, the same bits for any thread count.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+
+#include "core/luminance.hpp"
+#include "render/tracer_scenes.hpp"
+#include "render/tracer_statistics.hpp"
+#include "support/picture_evidence.hpp"
+#include "trace/guiding/learned_light.hpp"
+
+namespace gazetrace {
+namespace {
+
+using namespace test;
+
+constexpr int kRepeats = 32;
+constexpr int kLearnWidth = 256, kLearnHeight = 192;
+
+// A room with a hole in a wall, through which a bright sky shines. Its floor may be polished, its box varnished.
+Scene room(bool glossy, bool layered) {
+  Scene scene;
+  scene.materials.push_back(diffuse_material({0.7F, 0.6F, 0.5F}));
+  scene.materials.push_back(diffuse_material({0.8F, 0.8F, 0.8F}));
+  if (glossy) {
+    scene.materials[0].metallic = 0.6F;
+    scene.materials[0].roughness = 0.35F;
+  }
+  if (layered) {
+    scene.materials[1].clearcoat.factor = 0.8F;
+    scene.materials[1].clearcoat.roughness = 0.3F;
+  }
+  const auto wall = [](const std::array<Vec3f, 4>& corners) { return quad(corners, 1); };
+  add_mesh(scene, {quad({{{-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}}}, 0),
+                   wall({{{-3, 3, -3}, {3, 3, -3}, {3, 3, 3}, {-3, 3, 3}}}),
+                   wall({{{-3, 0, -3}, {3, 0, -3}, {3, 3, -3}, {-3, 3, -3}}}),
+                   wall({{{-3, 0, 3}, {-3, 3, 3}, {3, 3, 3}, {3, 0, 3}}}),
+                   wall({{{-3, 0, 3}, {-3, 0, -3}, {-3, 3, -3}, {-3, 3, 3}}}),
+                   wall({{{3, 0, -3}, {3, 0, 3}, {3, 1.4F, 3}, {3, 1.4F, -3}}}),
+                   wall({{{3, 1.4F, -3}, {3, 1.4F, 1.5F}, {3, 3, 1.5F}, {3, 3, -3}}})});
+  add_mesh(scene, box(0.5F, false, 1), make_affine({0.3, 0.5, 0}, {0, 0.3, 0, 0.954}, {1, 1, 1}));
+  scene.environment = builtin_sky();
+  return scene;
+}
+
+const Camera kCamera = camera_at({-2.5, 1.6, 2.0}, {0.8, 0.7, 0});
+
+std::shared_ptr<const LearnedLight> learn(PathTracer& tracer, const TraceSettings& settings) {
+  return tracer.at_rest().learn_light(kCamera, 1, kLearnWidth, kLearnHeight, settings).light;
+}
+
+Repeats repeat(PathTracer& tracer, const SamplingMap& map, TraceSettings settings) {
+  Repeats result;
+  for (int i = 0; i < kRepeats; ++i) {
+    settings.seed = static_cast<std::uint64_t>(i + 1);
+    result.means.push_back(mean_radiance(tracer.at_rest().trace(kCamera, 1, map, settings)).y);
+  }
+  return result;
+}
+
+// Tables that know nothing of the scene: narrow lobes at random, as bad as they can be.
+std::shared_ptr<const LearnedLight> learned_nonsense() {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+  std::vector<LearningRecord> records;
+  for (std::uint32_t i = 0; i < 60000; ++i) {
+    const Vec3f place{3 * uniform(random), 1.5F + 1.5F * uniform(random), 3 * uniform(random)};
+    const Vec3f toward = to_float(normalize(Vec3d{uniform(random) + 1e-3, uniform(random), uniform(random)}));
+    for (const Vec3f& normal :
+         {Vec3f{0, 1, 0}, Vec3f{0, -1, 0}, Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}}) {
+      const bool bright = toward.x + 0.3F * toward.z > 0.8F * std::sin(7 * place.x);
+      records.push_back({place, normal, toward, 0.08F, bright ? 1.0F : 0.01F, i});
+    }
+  }
+  return std::make_shared<const LearnedLight>(records, 1);
+}
+
+TEST(GuidedPaths, MeansDoNotChange) {
+  const std::shared_ptr<const LearnedLight> nonsense = learned_nonsense();
+  ASSERT_TRUE(nonsense->pays());
+  for (const bool glossy : {false, true}) {
+    for (const bool layered : {false, true}) {
+      for (const DiffuseModel diffuse : {DiffuseModel::matte, DiffuseModel::lambert}) {
+        const Scene scene = room(glossy, layered);
+        PathTracer tracer(scene, threads(2));
+        const SamplingMap map = uniform_map(24, 16, 64);
+        TraceSettings settings;
+        settings.diffuse = diffuse;
+        const Repeats plain = repeat(tracer, map, settings);
+        TraceSettings guided = settings;
+        guided.learned = learn(tracer, settings);
+        ASSERT_NE(guided.learned, nullptr);
+        const Repeats learned = repeat(tracer, map, guided);
+        EXPECT_LT(std::fabs(welch_t(plain, learned)), kCriticalT) << plain.mean() << " " << learned.mean();
+        EXPECT_LT(std::sqrt(learned.variance_of_mean()), 0.01 * learned.mean()) << "too noisy to mean anything";
+        EXPECT_NE(plain.means, learned.means);
+        guided.learned = nonsense;
+        guided.light_sampling = LightSampling::mis;
+        const Repeats misled = repeat(tracer, map, guided);
+        EXPECT_LT(std::fabs(welch_t(plain, misled)), kCriticalT) << plain.mean() << " " << misled.mean();
+        // Without light samples nothing corrects a wrong density.
+        guided.light_sampling = LightSampling::bsdf_only;
+        const Repeats alone = repeat(tracer, map, guided);
+        EXPECT_LT(std::fabs(welch_t(plain, alone)), kCriticalT) << plain.mean() << " " << alone.mean();
+      }
+    }
+  }
+}
+
+TEST(GuidedPaths, LessNoiseInARoom) {
+  const Scene scene = room(false, false);
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = uniform_map(48, 32, 16);
+  TraceSettings settings;
+  settings.light_sampling = LightSampling::mis;
+  const auto variance_of = [&](const TraceSettings& own) {
+    Repeats repeats;
+    for (int i = 0; i < kRepeats; ++i) {
+      TraceSettings seeded = own;
+      seeded.seed = static_cast<std::uint64_t>(i + 1);
+      const SparseFrame frame = tracer.at_rest().trace(kCamera, 1, map, seeded);
+      double sum = 0;
+      for (std::size_t site = 0; site < frame.sum.size(); ++site) {
+        const double n = frame.count[site];
+        const double mean = static_cast<double>(luminance(frame.sum[site])) / n;
+        sum += static_cast<double>(frame.sum_square_luminance[site]) / n - mean * mean;
+      }
+      repeats.means.push_back(sum / static_cast<double>(frame.sum.size()));
+    }
+    return repeats;
+  };
+  const Repeats plain = variance_of(settings);
+  settings.learned = learn(tracer, settings);
+  ASSERT_NE(settings.learned, nullptr);
+  const Repeats learned = variance_of(settings);
+  EXPECT_GT(welch_t(plain, learned), kCriticalT) << plain.mean() << " " << learned.mean();
+}
+
+TEST(GuidedPaths, SameBitsForAnyThreads) {
+  const Scene scene = room(true, true);
+  const SamplingMap map = uniform_map(48, 32, 4);
+  const auto traced = [&](int count, std::uint64_t seed, std::int32_t frame) {
+    PathTracer tracer(scene, threads(count));
+    TraceSettings settings;
+    settings.seed = seed;
+    LightLearning learning = tracer.at_rest().learn_light(kCamera, frame, kLearnWidth, kLearnHeight, settings);
+    EXPECT_GT(learning.stats.samples, 5000U);
+    EXPECT_LE(learning.stats.samples, 6200U);
+    settings.learned = learning.light;
+    return tracer.at_rest().trace(kCamera, 1, map, settings);
+  };
+  const SparseFrame one = traced(1, 3, 1);
+  EXPECT_TRUE(same_samples(one, traced(2, 3, 1), map));
+  EXPECT_TRUE(same_samples(one, traced(7, 3, 1), map));
+  EXPECT_FALSE(same_samples(one, traced(1, 3, 2), map)) << "frames learn from paths of their own";
+}
+
+TEST(GuidedPaths, NothingToLearn) {
+  Scene scene = room(false, false);
+  scene.environment = {};
+  PathTracer tracer(scene, threads(2));
+  EXPECT_EQ(learn(tracer, {}), nullptr) << "it is dark";
+  const Scene lit = room(false, false);
+  PathTracer other(lit, threads(2));
+  TraceSettings settings;
+  settings.light_sampling = LightSampling::light_only;
+  EXPECT_EQ(learn(other, settings), nullptr);
+  settings.light_sampling = LightSampling::mis;
+  settings.max_bounces = 0;
+  EXPECT_EQ(learn(other, settings), nullptr);
+}
+
+}  // namespace
+}  // namespace gazetrace
