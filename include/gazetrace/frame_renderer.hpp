@@ -133,6 +133,9 @@ class FrameRenderer {
   [[nodiscard]] std::optional<Guides> guides(const FrameRequest& request) const;
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
+  // Whether frames around a frame are read before its filter, surface by surface (temporal/moving_views.hpp): all that
+  // can move in the scene is the camera, and the filter takes light surface by surface.
+  [[nodiscard]] bool only_views_move() const;
   // Lets other frames read this one: fills in ReconstructedFrame::alone.
   void keep_history(ReconstructedFrame& frame) const;
   [[nodiscard]] RenderedFrame join(const std::vector<const ReconstructedFrame*>& window, std::size_t own,

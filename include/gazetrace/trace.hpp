@@ -185,6 +185,9 @@ struct SparseFrame {
   // that miss, or hit an unlit surface, belong to none. Both are empty unless TraceSettings::surfaces.
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
+  // Of each surface, how many samples of other frames are in SurfaceSums::reflected, ::square and ::half_difference,
+  // which are brought to the surface's own count and albedo (temporal/moving_views.hpp). Empty: none.
+  std::vector<std::uint32_t> samples_of_others;
   // Of each site that filters change, beside its surfaces; empty where no sample can see anything else than a pinhole
   // at one instant: without lens, motion while the shutter is open, and blended surfaces.
   std::vector<FirstHitSums> first_hits;

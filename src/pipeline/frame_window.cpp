@@ -4,10 +4,12 @@
 #include <limits>
 #include <utility>
 
+#include "foveation/sites.hpp"
 #include "pipeline/frame_stages.hpp"
 #include "pipeline/trace_counts.hpp"
 #include "temporal/clip.hpp"
 #include "temporal/frames_at_rest.hpp"
+#include "temporal/moving_views.hpp"
 #include "temporal/worth.hpp"
 
 namespace gazetrace {
@@ -78,24 +80,92 @@ const ReconstructedFrame& FrameWindow::alone(std::int32_t frame, bool read_by_ot
   return *held.alone;
 }
 
+TracedFrame FrameWindow::sum_of(const Run& run, const Guides* guides) const {
+  std::vector<SamplesOfFrame> frames;
+  for (std::int32_t one = run.first; one <= run.last; ++one) {
+    const TracedFrame& traced = held_.at(one).traced;
+    frames.push_back({one, &traced.map, &traced.sparse});
+  }
+  SamplesAtRest sums = add_up(frames, guides != nullptr ? &guides->camera : nullptr, renderer_->settings().threads);
+  TracedFrame all;
+  all.map = std::move(sums.map);
+  all.sparse = std::move(sums.sparse);
+  return all;
+}
+
+FrameWindow::Run FrameWindow::seen_by(std::int32_t frame, Run window) const {
+  const AccumulateSettings& settings = renderer_->settings().accumulate;
+  Run seen{frame, frame};
+  while (seen.first > window.first && !eye_forbids(request_of(seen.first), settings)) {
+    --seen.first;
+  }
+  while (seen.last < window.last && !eye_forbids(request_of(seen.last + 1), settings)) {
+    ++seen.last;
+  }
+  return seen;
+}
+
+bool FrameWindow::only_views_move(const Run& window) const {
+  if (!renderer_->only_views_move()) {
+    return false;
+  }
+  const SamplingMap& size = held_.at(window.first).traced.map;
+  for (std::int32_t frame = window.first; frame <= window.last; ++frame) {
+    const TracedFrame& traced = held_.at(frame).traced;
+    if (traced.sparse.first_surface.empty() || traced.map.width_px != size.width_px ||
+        traced.map.height_px != size.height_px) {
+      return false;
+    }
+  }
+  return true;
+}
+
+ReconstructedFrame FrameWindow::among_views(const Run& run, const Run& window, std::int32_t frame, StageTimes& times) {
+  const FrameRequest& request = request_of(frame);
+  const TracedFrame& own = held_.at(frame).traced;
+  const Guides* guides = guides_of(request, times);
+  std::vector<float> others;
+  TracedFrame all;
+  timed(times.temporal_ms, [&] {
+    if (run.first != run.last) {
+      all = sum_of(run, guides);
+    } else {
+      all.map = own.map;
+      all.sparse = own.sparse;
+    }
+    const ViewSamples base{frame, &request.camera, &all.map, &all.sparse};
+    std::vector<ViewSamples> views;
+    for (std::int32_t one = window.first; one <= window.last; ++one) {
+      if (one < run.first || one > run.last) {
+        const TracedFrame& traced = held_.at(one).traced;
+        views.push_back({one, &request_of(one).camera, &traced.map, &traced.sparse});
+      }
+    }
+    JoinedSurfaces joined = surfaces_of_views(base, views, guides->camera, renderer_->settings().threads);
+    all.sparse.surfaces = std::move(joined.surfaces);
+    all.sparse.samples_of_others = std::move(joined.samples_of_others);
+    others = others_per_pixel(all.map, all.sparse);
+    return true;
+  });
+  ReconstructedFrame shown = renderer_->reconstruct(request, all, guides);
+  add_times(std::exchange(shown.times, {}), times);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    for_each_pixel(all.map, all.map.sites[i], [&](int x, int y) { shown.frame.sample_count(x, y) += others[i]; });
+  }
+  shown.map = own.map;
+  shown.samples = own.sparse.stats;
+  shown.first_look = own.first_look;
+  shown.prediction = own.prediction;
+  return shown;
+}
+
 const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame, bool beside_others,
                                               StageTimes& times) {
   const FrameRequest& request = request_of(frame);
   if (!rested_ || rested_->run != run) {
     rested_.reset();
     const Guides* guides = guides_of(request, times);
-    TracedFrame all;
-    timed(times.temporal_ms, [&] {
-      std::vector<SamplesOfFrame> frames;
-      for (std::int32_t one = run.first; one <= run.last; ++one) {
-        const TracedFrame& traced = held_.at(one).traced;
-        frames.push_back({one, &traced.map, &traced.sparse});
-      }
-      SamplesAtRest sums = add_up(frames, guides != nullptr ? &guides->camera : nullptr, renderer_->settings().threads);
-      all.map = std::move(sums.map);
-      all.sparse = std::move(sums.sparse);
-      return true;
-    });
+    const TracedFrame all = timed(times.temporal_ms, [&] { return sum_of(run, guides); });
     rested_ = Rested{run, renderer_->reconstruct(request, all, guides)};
     add_times(std::exchange(rested_->frame.times, {}), times);
   }
@@ -132,6 +202,14 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
   }
   add_times(held_.at(request.frame).traced.times, times);
   const Run run = at_rest_with(request.frame, window);
+  const Run seen = seen_by(request.frame, window);
+  if (run != seen && only_views_move(seen)) {
+    const ReconstructedFrame own = among_views(run, seen, request.frame, times);
+    RenderedFrame rendered = renderer_->join({&own}, 0, history);
+    rendered.others = std::move(others);
+    add_times(times, rendered.times);
+    return rendered;
+  }
   std::vector<const ReconstructedFrame*> read;
   // Before a saccade or blink nothing is read; that of the frame itself is looked at by join().
   if (run.first == request.frame || !eye_forbids(request_of(run.first), renderer_->settings().accumulate)) {

@@ -12,9 +12,10 @@
 
 namespace gazetrace {
 
-// Neighbours are read in one of two ways. Where nothing moves between them and a frame, and their sites are the same,
-// their samples are added to the frame's own before the filter (temporal/frames_at_rest.hpp). Others are looked up in
-// their own reconstructed pictures (temporal/two_sided.hpp).
+// Neighbours are read in one of three ways. Where nothing moves between them and a frame, and their sites are the same,
+// their samples are added to the frame's own before the filter (temporal/frames_at_rest.hpp). Where only the camera
+// moves, what they saw of the frame's surfaces is (temporal/moving_views.hpp). Others are looked up in their own
+// reconstructed pictures (temporal/two_sided.hpp).
 //
 // Holds the samples of at most 2 * AccumulateSettings::window + 1 frames, and the pictures of those that are looked up,
 // which is all the memory that it takes.
@@ -55,6 +56,14 @@ class FrameWindow {
   const Guides* guides_of(const FrameRequest& request, StageTimes& times);
   const ReconstructedFrame& alone(std::int32_t frame, bool read_by_others, StageTimes& times);
   const ReconstructedFrame& rested(const Run& run, std::int32_t frame, bool beside_others, StageTimes& times);
+  // The sums over the frames of a run at rest.
+  TracedFrame sum_of(const Run& run, const Guides* guides) const;
+  // The frames of the window that no movement of the eye, nor a blink, keeps from being read by the frame.
+  [[nodiscard]] Run seen_by(std::int32_t frame, Run window) const;
+  // Whether surfaces of all these frames can be joined before the filter.
+  [[nodiscard]] bool only_views_move(const Run& window) const;
+  // The frame with the samples of `run`, those at rest with it, and what the others of `window` saw of its surfaces.
+  ReconstructedFrame among_views(const Run& run, const Run& window, std::int32_t frame, StageTimes& times);
 
   const FrameRenderer* renderer_;
   std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included

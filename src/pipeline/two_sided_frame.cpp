@@ -48,6 +48,11 @@ bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const 
   return !tracer_->moves() && a.width_px == b.width_px && a.height_px == b.height_px && same_camera(a.camera, b.camera);
 }
 
+bool FrameRenderer::only_views_move() const {
+  return !tracer_->moves() && reconstruction_.needs().surfaces && !(settings_.accumulate.blend > 0) &&
+         settings_.reconstruction.pass_through_samples.value_or(0) == 0;
+}
+
 ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request, const TracedFrame& traced,
                                               const Guides* guides) const {
   ReconstructedFrame done;

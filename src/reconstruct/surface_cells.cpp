@@ -111,6 +111,8 @@ SurfaceCells make_surface_cells(const SparseFrame& sparse, const SamplingMap& ma
       for_each_pixel(map, map.sites[i], [&](int x, int y) { out.site_of_pixel(x, y) = static_cast<std::uint32_t>(i); });
       for (std::size_t s = out.first[i]; s < out.first[i + 1]; ++s) {
         out.cells[s] = cell_of(sparse.surfaces[s], block, pixel_m, camera.perspective);
+        out.cells[s].samples +=
+            sparse.samples_of_others.empty() ? 0.0F : static_cast<float>(sparse.samples_of_others[s]);
       }
     }
   });

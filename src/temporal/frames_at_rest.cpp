@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
@@ -13,10 +12,6 @@
 
 namespace gazetrace {
 namespace {
-
-float in_range(double value) {
-  return static_cast<float>(std::min(value, static_cast<double>(std::numeric_limits<float>::max())));
-}
 
 std::uint8_t half_of(const SamplesOfFrame& one) {
   return static_cast<std::uint8_t>(one.frame & 1);
@@ -56,7 +51,7 @@ class SiteAdder {
       }
     }
     out_.sum[site] = to_float(sum);
-    out_.sum_square_luminance[site] = in_range(square);
+    out_.sum_square_luminance[site] = saturated(square);
     out_.count[site] = count[0] + count[1];
     if (!out_.light_groups.empty()) {
       add_light_groups(site);
@@ -110,7 +105,7 @@ class SiteAdder {
     }
     to.shone = to_float(shone);
     to.shone_difference = half_difference(bright, count);
-    to.square_shift_px2 = in_range(square_shift);
+    to.square_shift_px2 = saturated(square_shift);
   }
 
   const std::vector<SamplesOfFrame>& frames_;
@@ -137,7 +132,7 @@ SamplingMap map_of_all(const std::vector<SamplesOfFrame>& frames) {
       map.tiles[i].samples += other.tiles[i].samples;
     }
   }
-  std::transform(expected.begin(), expected.end(), map.expected_samples.begin(), in_range);
+  std::transform(expected.begin(), expected.end(), map.expected_samples.begin(), saturated);
   return map;
 }
 

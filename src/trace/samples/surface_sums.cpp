@@ -80,8 +80,8 @@ void SurfaceSorter::finish_site(const std::array<std::uint32_t, 2>& samples, std
   for (std::size_t k = 0; k < used_; ++k) {
     const Surface& s = surfaces_[k];
     out.push_back({to_float(s.reflected), to_float(s.albedo), to_float(s.normal), to_float(s.place),
-                   static_cast<float>(std::min(s.square, static_cast<double>(std::numeric_limits<float>::max()))),
-                   s.halves.difference(), s.count, s.kind, half_difference(s.albedo_of_half, samples)});
+                   saturated(s.square), s.halves.difference(), s.count, s.kind,
+                   half_difference(s.albedo_of_half, samples)});
   }
   used_ = 0;
 }

@@ -2,10 +2,12 @@
 // Sorts the samples of a site by the surface that they hit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/luminance.hpp"
@@ -18,6 +20,11 @@ namespace gazetrace {
 // no farther away than `kPlanePixels` times the size of a pixel there.
 inline constexpr float kSameNormal = 0.8F;
 inline constexpr float kPlanePixels = 2.0F;
+
+// Sums of squares end at float's largest value.
+inline float saturated(double value) {
+  return static_cast<float>(std::min(value, static_cast<double>(std::numeric_limits<float>::max())));
+}
 
 // SparseFrame::half_difference, from the sums and the numbers of samples of both halves.
 inline float half_difference(const std::array<double, 2>& sum, const std::array<std::uint32_t, 2>& count) {

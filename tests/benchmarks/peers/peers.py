@@ -54,8 +54,9 @@ def command(program, options, scene, out, size, spp, seed, view):
     if program.startswith("gazetrace"):
         common += ["--learn-light"] if program == "gazetrace-learned" else []
         materials = ["--diffuse", "matte" if options.materials == "matte" else "burley"]
-        return [options.gazetrace, "render", scene, *common, *materials, "--exr-pixels", "float", "--quiet", "--overwrite",
-                "-o", str(out)]
+        # The scene without normal maps links to the files of the one that was given.
+        return [options.gazetrace, "render", scene, *common, *materials, "--allow-outside", "--filter", "none",
+                "--exr-pixels", "float", "--quiet", "--overwrite", "-o", str(out)]
     if program == "cycles":
         return [options.blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
                 str(HERE / "cycles_render.py"), "--", scene, str(out), "--threads", str(os.cpu_count()), *common,

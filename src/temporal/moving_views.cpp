@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "temporal/moving_views.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "core/luminance.hpp"
+#include "core/parallel.hpp"
+#include "foveation/sites.hpp"
+#include "gazetrace/motion.hpp"
+#include "temporal/same_camera.hpp"
+#include "trace/samples/surface_sums.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr std::uint32_t kNowhere = 0xffffffffU;
+// How far off a surface's plane another one may lie, in pixels, or as a share of the site's block.
+constexpr float kPlaneShare = 0.5F;
+
+// Of the surfaces of other frames that belong to one of the frame's own.
+struct JoinedSums {
+  Vec3d reflected, albedo;
+  double square = 0;
+  HalfSums halves;  // of light_of(), by the number of frames away: even, odd; counts are those of samples
+
+  [[nodiscard]] std::uint32_t samples() const { return halves.count[0] + halves.count[1]; }
+};
+
+// Where the surfaces of another frame's tile went.
+struct TileTargets {
+  std::vector<std::uint32_t> target;  // of each surface: an index into the own ones, or kNowhere
+  std::uint32_t first = kNowhere, last = 0;
+};
+
+std::size_t first_surface_of_tile(const ViewSamples& view, std::size_t tile) {
+  return view.sparse->first_surface[view.map->tiles[tile].first_site];
+}
+std::size_t end_surface_of_tile(const ViewSamples& view, std::size_t tile) {
+  const MapTile& of = view.map->tiles[tile];
+  return view.sparse->first_surface[of.first_site + of.site_count];
+}
+
+class OwnSurfaces {
+ public:
+  OwnSurfaces(const ViewSamples& own, const GuideCamera& camera, int threads)
+      : own_(own),
+        projection_(*own.camera, own.map->width_px, own.map->height_px),
+        pixel_m_(std::sqrt(dot(camera.up_step, camera.up_step))),
+        perspective_(camera.perspective),
+        site_of_pixel_(own.map->width_px, own.map->height_px) {
+    parallel_for(own.map->tiles.size(), threads, [&](std::size_t t) {
+      const MapTile& tile = own.map->tiles[t];
+      for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
+        for_each_pixel(*own.map, own.map->sites[i],
+                       [&](int x, int y) { site_of_pixel_(x, y) = static_cast<std::uint32_t>(i); });
+      }
+    });
+  }
+
+  // The own surface that `surface` of another view belongs to. `pixels`: side of the site that it was seen in.
+  [[nodiscard]] std::uint32_t find(const Camera& other, const SurfaceSums& surface, float pixels) const {
+    const float share = 1.0F / static_cast<float>(surface.count);
+    const Vec3f seen_m = share * surface.position_m;
+    const Vec3d place = other.pose.position_m + to_double(seen_m);
+    const Vec2d px = projection_.point(place).px;
+    // Not for what is no number either.
+    if (!(px.x >= 0 && px.y >= 0 && px.x < own_.map->width_px && px.y < own_.map->height_px)) {
+      return kNowhere;
+    }
+    const std::uint32_t site = site_of_pixel_(static_cast<int>(px.x), static_cast<int>(px.y));
+    const Vec3f place_m = to_float(place - own_.camera->pose.position_m);
+    const float block_px = static_cast<float>(own_.map->regions[own_.map->sites[site].region].block_px);
+    const float pixel_here_m = pixel_m_ * distance(place_m);
+    if (pixels * distance(seen_m) > kMostCoarse * block_px * distance(place_m)) {
+      return kNowhere;
+    }
+    const float reach_m = std::max(kPlanePixels, kPlaneShare * block_px) * pixel_here_m;
+    const float length = std::sqrt(dot(surface.normal, surface.normal));
+    std::uint32_t nearest = kNowhere;
+    float least = reach_m;
+    for (std::uint32_t k = own_.sparse->first_surface[site]; k < own_.sparse->first_surface[site + 1]; ++k) {
+      const SurfaceSums& candidate = own_.sparse->surfaces[k];
+      const float own_length = std::sqrt(dot(candidate.normal, candidate.normal));
+      if (candidate.kind != surface.kind ||
+          !(dot(candidate.normal, surface.normal) > kSameNormal * length * own_length)) {
+        continue;
+      }
+      const Vec3f way = place_m - (1.0F / static_cast<float>(candidate.count)) * candidate.position_m;
+      const float off = std::fabs(dot(candidate.normal, way)) / own_length;
+      if (off < least) {
+        least = off;
+        nearest = k;
+      }
+    }
+    return nearest;
+  }
+
+ private:
+  [[nodiscard]] float distance(const Vec3f& place_m) const {
+    return perspective_ ? std::sqrt(dot(place_m, place_m)) : 1.0F;
+  }
+
+  ViewSamples own_;
+  PixelProjection projection_;
+  float pixel_m_;  // the size of a pixel at 1 m (perspective), or at any depth
+  bool perspective_;
+  Image<std::uint32_t> site_of_pixel_;
+};
+
+TileTargets targets_of_tile(const OwnSurfaces& own, const ViewSamples& other, std::size_t t, bool same_view) {
+  TileTargets out;
+  const MapTile& tile = other.map->tiles[t];
+  out.target.reserve(end_surface_of_tile(other, t) - first_surface_of_tile(other, t));
+  for (std::size_t site = tile.first_site; site < tile.first_site + tile.site_count; ++site) {
+    const auto pixels = std::sqrt(static_cast<float>(other.map->sites[site].pixels));
+    for (std::size_t s = other.sparse->first_surface[site]; s < other.sparse->first_surface[site + 1]; ++s) {
+      const SurfaceSums& surface = other.sparse->surfaces[s];
+      const std::uint32_t target =
+          same_view || surface.kind == SurfaceKind::diffuse ? own.find(*other.camera, surface, pixels) : kNowhere;
+      out.target.push_back(target);
+      if (target != kNowhere) {
+        out.first = std::min(out.first, target);
+        out.last = std::max(out.last, target);
+      }
+    }
+  }
+  return out;
+}
+
+// Sum over the samples, of luminance without texture.
+double light_of(const SurfaceSums& surface) {
+  return surface.count * luminance(to_double(surface.reflected)) / luminance(to_double(surface.albedo));
+}
+
+void add(const SurfaceSums& surface, std::size_t half, JoinedSums& to) {
+  to.reflected += to_double(surface.reflected);
+  to.albedo += to_double(surface.albedo);
+  to.square += static_cast<double>(surface.square);
+  to.halves.luminance[half] += light_of(surface);
+  to.halves.count[half] += surface.count;
+}
+
+SurfaceSums lit_by_all(const SurfaceSums& own, const JoinedSums& others) {
+  const double count = own.count;
+  const double total = count + static_cast<double>(others.samples());
+  const Vec3d albedo = to_double(own.albedo);
+  const Vec3d all_albedo = albedo + others.albedo;
+  const Vec3d reflected = to_double(own.reflected) + others.reflected;
+  SurfaceSums sums = own;
+  sums.reflected =
+      to_float(albedo * Vec3d{reflected.x / all_albedo.x, reflected.y / all_albedo.y, reflected.z / all_albedo.z});
+  sums.square = saturated((static_cast<double>(own.square) + others.square) * count / total);
+  const double mean_albedo = luminance(albedo) / count;
+  const auto own_difference = static_cast<double>(own.half_difference);
+  const double apart = mean_albedo * static_cast<double>(others.halves.difference());
+  double difference = 0;
+  if (own_difference == 0) {  // of a single sample, say: it belongs to the frames an even number away
+    HalfSums all = others.halves;
+    all.luminance[0] += light_of(own);
+    all.count[0] += own.count;
+    difference = mean_albedo * static_cast<double>(all.difference());
+  } else if (apart == 0) {  // only one half of the others is there: all samples are taken to be as noisy as the own
+    difference = own_difference * std::sqrt(count / total);
+  } else {  // errors of different samples, which add up
+    difference = (own_difference * count + apart * (total - count)) / total;
+  }
+  sums.half_difference = static_cast<float>(difference);
+  return sums;
+}
+
+}  // namespace
+
+JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewSamples>& others,
+                                 const GuideCamera& camera, int threads) {
+  const OwnSurfaces surfaces(own, camera, threads);
+  std::vector<JoinedSums> sums(own.sparse->surfaces.size());
+  for (const ViewSamples& other : others) {
+    const bool same_view = same_camera(*own.camera, *other.camera);
+    std::vector<TileTargets> tiles(other.map->tiles.size());
+    parallel_for(tiles.size(), threads,
+                 [&](std::size_t t) { tiles[t] = targets_of_tile(surfaces, other, t, same_view); });
+    // Every part of the own surfaces is added up by one thread, always in the same order.
+    constexpr std::size_t kMostParts = 64;
+    const std::size_t own_tiles = own.map->tiles.size();
+    const std::size_t parts = std::min(own_tiles, kMostParts);
+    const auto half = static_cast<std::size_t>((other.frame - own.frame) & 1);
+    parallel_for(parts, threads, [&](std::size_t part) {
+      const std::size_t begin = first_surface_of_tile(own, part * own_tiles / parts);
+      const std::size_t end = end_surface_of_tile(own, (part + 1) * own_tiles / parts - 1);
+      for (std::size_t t = 0; t < tiles.size(); ++t) {
+        if (tiles[t].first == kNowhere || tiles[t].first >= end || tiles[t].last < begin) {
+          continue;
+        }
+        const std::size_t first = first_surface_of_tile(other, t);
+        for (std::size_t k = 0; k < tiles[t].target.size(); ++k) {
+          const std::size_t target = tiles[t].target[k];
+          if (target >= begin && target < end) {
+            add(other.sparse->surfaces[first + k], half, sums[target]);
+          }
+        }
+      }
+    });
+  }
+  JoinedSurfaces out{own.sparse->surfaces, std::vector<std::uint32_t>(sums.size())};
+  parallel_for(own.map->tiles.size(), threads, [&](std::size_t t) {
+    for (std::size_t i = first_surface_of_tile(own, t); i < end_surface_of_tile(own, t); ++i) {
+      out.samples_of_others[i] = sums[i].samples();
+      if (sums[i].samples() > 0) {
+        out.surfaces[i] = lit_by_all(own.sparse->surfaces[i], sums[i]);
+      }
+    }
+  });
+  return out;
+}
+
+std::vector<float> others_per_pixel(const SamplingMap& map, const SparseFrame& joined) {
+  std::vector<float> others(map.sites.size());
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    std::uint64_t samples = 0;
+    for (std::size_t s = joined.first_surface[i]; s < joined.first_surface[i + 1]; ++s) {
+      samples += joined.samples_of_others[s];
+    }
+    others[i] = static_cast<float>(samples) / static_cast<float>(map.sites[i].pixels);
+  }
+  return others;
+}
+
+}  // namespace gazetrace

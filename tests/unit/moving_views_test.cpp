@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// What other views saw of a frame's surfaces, against walls whose light is known at every point.
+#include "temporal/moving_views.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "foveation/sites.hpp"
+#include "gazetrace/motion.hpp"
+
+namespace gazetrace {
+namespace {
+
+constexpr int kSide = 64;
+constexpr double kFovRad = 1;
+const double kStep = 2 * std::tan(kFovRad / 2) / kSide;  // size of a pixel at 1 m
+
+SamplingMap map_of_blocks(int block_px) {
+  Layout layout;
+  layout.regions = {{"uniform", block_px, 1, SampleUnit::per_block}};
+  layout.region = Image<std::uint8_t>(kSide, kSide);
+  return map_from_layout(std::move(layout));
+}
+
+Camera camera_at(const Vec3d& position_m) {
+  Camera camera;
+  camera.pose.position_m = position_m;
+  camera.projection.yfov_rad = kFovRad;
+  return camera;
+}
+
+GuideCamera guide_camera() {
+  GuideCamera camera;
+  camera.up_step = {0, static_cast<float>(kStep), 0};
+  return camera;
+}
+
+struct Wall {
+  double z_m = -3;
+  Vec3f normal{0, 0, 1};
+  SurfaceKind kind = SurfaceKind::diffuse;
+  std::function<float(const Vec3d& place)> light;
+  int samples = 1;
+};
+
+// One frame that looks along -z at a wall: every site samples it in its middle.
+struct View {
+  Camera camera;
+  SamplingMap map;
+  SparseFrame frame;
+};
+
+View view_of(const Vec3d& eye, const Wall& wall, int block_px = 1) {
+  View view{camera_at(eye), map_of_blocks(block_px), {}};
+  SparseFrame& frame = view.frame;
+  frame.width_px = frame.height_px = kSide;
+  for (std::size_t i = 0; i < view.map.sites.size(); ++i) {
+    const Site& site = view.map.sites[i];
+    const double side = view.map.regions[site.region].block_px;
+    const double depth = eye.z - wall.z_m;
+    const Vec3d place{eye.x + ((site.block_x + 0.5) * side - 0.5 * kSide) * kStep * depth,
+                      eye.y - ((site.block_y + 0.5) * side - 0.5 * kSide) * kStep * depth, wall.z_m};
+    SurfaceSums sums;
+    const auto n = static_cast<float>(wall.samples);
+    const float light = wall.light(place);
+    sums.reflected = Vec3f{1, 1, 1} * (n * 0.5F * light);
+    sums.albedo = Vec3f{1, 1, 1} * (n * 0.5F);
+    sums.normal = wall.normal * n;
+    sums.position_m = to_float(place - eye) * n;
+    sums.square = n * light * light;
+    sums.count = static_cast<std::uint32_t>(wall.samples);
+    sums.kind = wall.kind;
+    frame.first_surface.push_back(static_cast<std::uint32_t>(i));
+    frame.surfaces.push_back(sums);
+    frame.sum.push_back(sums.reflected);
+    frame.count.push_back(sums.count);
+  }
+  frame.first_surface.push_back(static_cast<std::uint32_t>(frame.surfaces.size()));
+  return view;
+}
+
+ViewSamples samples_of(const View& view, std::int32_t frame) {
+  return {frame, &view.camera, &view.map, &view.frame};
+}
+
+JoinedSurfaces join(const View& own, const std::vector<View>& others, int threads = 2) {
+  std::vector<ViewSamples> views;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    views.push_back(samples_of(others[k], 11 + static_cast<std::int32_t>(k)));
+  }
+  return surfaces_of_views(samples_of(own, 10), views, guide_camera(), threads);
+}
+
+std::uint64_t added(const JoinedSurfaces& joined) {
+  return std::accumulate(joined.samples_of_others.begin(), joined.samples_of_others.end(), std::uint64_t{0});
+}
+
+float lit_evenly(const Vec3d&) {
+  return 1;
+}
+
+// Every sample of another view that lies within the frame counts once, and only there.
+TEST(MovingViews, EverySampleJoinsTheSiteThatSeesItsPlace) {
+  const auto light = [](const Vec3d& place) { return static_cast<float>(5 + place.x + 0.5 * place.y); };
+  const View own = view_of({0, 0, 0}, {.light = light});
+  for (const Vec3d eye : {Vec3d{0.3, -0.1, 0}, Vec3d{0.05, 0.02, 0.4}, Vec3d{0, 0, -0.5}}) {
+    const View other = view_of(eye, {.light = light, .samples = 3});
+    const PixelProjection projection(own.camera, kSide, kSide);
+    std::uint64_t inside = 0;
+    for (const SurfaceSums& surface : other.frame.surfaces) {
+      const Vec2d px = projection.point(eye + to_double(surface.position_m * (1.0F / 3))).px;
+      inside += px.x >= 0 && px.y >= 0 && px.x < kSide && px.y < kSide ? 3 : 0;
+    }
+    ASSERT_GT(inside, 3U * kSide * kSide / 2);
+    const JoinedSurfaces joined = join(own, {other});
+    EXPECT_EQ(added(joined), inside);
+    // What joins a pixel was seen at most half a pixel from its middle on each axis.
+    const double half_px_m = 0.5 * kStep * 3;
+    for (std::size_t i = 0; i < joined.surfaces.size(); ++i) {
+      const SurfaceSums& before = own.frame.surfaces[i];
+      const SurfaceSums& surface = joined.surfaces[i];
+      const double own_light = before.reflected.x / before.albedo.x;
+      EXPECT_NEAR(surface.reflected.x / surface.albedo.x, own_light, 1.5 * half_px_m + 1e-5) << i;
+      EXPECT_EQ(surface.albedo, before.albedo);
+      EXPECT_EQ(surface.position_m, before.position_m);
+      EXPECT_EQ(surface.count, before.count);
+    }
+    SparseFrame frame = own.frame;
+    frame.samples_of_others = joined.samples_of_others;
+    const std::vector<float> of_others = others_per_pixel(own.map, frame);
+    double sum = 0;
+    for (const float samples : of_others) {
+      sum += static_cast<double>(samples);
+    }
+    EXPECT_NEAR(sum, static_cast<double>(inside), 1e-3);
+  }
+}
+
+TEST(MovingViews, OnlyTheSameSurfaceJoins) {
+  const View own = view_of({0, 0, 0}, {.light = lit_evenly});
+  const Vec3d eye{0.2, 0, 0};
+  const auto joins = [&](const Wall& wall) { return added(join(own, {view_of(eye, wall)})); };
+  EXPECT_GT(joins({.light = lit_evenly}), 0U);
+  // Two pixels there are 2 kStep 3 = 0.1 m.
+  EXPECT_GT(joins({.z_m = -2.95, .light = lit_evenly}), 0U);
+  EXPECT_EQ(joins({.z_m = -2.85, .light = lit_evenly}), 0U);
+  EXPECT_GT(joins({.normal = {0.5F, 0, 0.866F}, .light = lit_evenly}), 0U) << "30 degrees";
+  EXPECT_EQ(joins({.normal = {0.643F, 0, 0.766F}, .light = lit_evenly}), 0U) << "40 degrees";
+  EXPECT_EQ(joins({.kind = SurfaceKind::glossy, .light = lit_evenly}), 0U) << "another kind";
+}
+
+TEST(MovingViews, WhatShinesByTheViewJoinsUnderTheSameViewOnly) {
+  const Wall glossy{.kind = SurfaceKind::glossy, .light = lit_evenly};
+  const View own = view_of({0, 0, 0}, glossy);
+  EXPECT_EQ(added(join(own, {view_of({0.2, 0, 0}, glossy)})), 0U);
+  EXPECT_EQ(added(join(own, {view_of({0, 0, 0}, glossy)})), static_cast<std::uint64_t>(kSide * kSide));
+}
+
+TEST(MovingViews, WhatWasSeenTooCoarselyIsLeftOut) {
+  const View fine = view_of({0, 0, 0}, {.light = lit_evenly});
+  const View halved = view_of({0.01, 0.01, 0}, {.light = lit_evenly}, 2);
+  const View coarse = view_of({0.01, 0.01, 0}, {.light = lit_evenly}, 4);
+  EXPECT_GT(added(join(fine, {halved})), 0U);
+  EXPECT_EQ(added(join(fine, {coarse})), 0U);
+  EXPECT_GT(added(join(coarse, {fine})), 0U);
+  // At 1.2 m a block covers what 1.6 pixels do at 3 m.
+  const View near = view_of({0, 0, -1.8}, {.light = lit_evenly}, 4);
+  EXPECT_GT(added(join(fine, {near})), 0U);
+}
+
+TEST(MovingViews, WhatNothingJoinsKeepsItsBits) {
+  const View own = view_of({0, 0, 0}, {.light = lit_evenly});
+  const JoinedSurfaces joined = join(own, {view_of({50, 0, 0}, {.light = lit_evenly})});
+  EXPECT_EQ(added(joined), 0U);
+  for (std::size_t i = 0; i < joined.surfaces.size(); ++i) {
+    EXPECT_EQ(joined.surfaces[i].reflected, own.frame.surfaces[i].reflected);
+    EXPECT_EQ(joined.surfaces[i].square, own.frame.surfaces[i].square);
+    EXPECT_EQ(joined.surfaces[i].half_difference, 0.0F);
+  }
+}
+
+// The replica of the joined light's error has the error's variance, whether the frame's own samples state one or not.
+TEST(MovingViews, ReplicasHaveTheVarianceOfTheError) {
+  constexpr double kDeviation = 0.3;
+  std::mt19937 random(5);
+  for (const int samples : {1, 2}) {
+    const auto noisy_view = [&] {
+      std::normal_distribution<float> noise(0, static_cast<float>(kDeviation / std::sqrt(samples)));
+      View view = view_of({0, 0, 0}, {.light = [&](const Vec3d&) { return 1 + noise(random); }, .samples = samples});
+      for (SurfaceSums& surface : view.frame.surfaces) {
+        surface.half_difference = samples > 1 ? 0.5F * noise(random) : 0;  // of reflected, with albedo 1/2
+      }
+      return view;
+    };
+    const View own = noisy_view();
+    const std::vector<View> others{noisy_view(), noisy_view(), noisy_view(), noisy_view()};
+    const JoinedSurfaces joined = join(own, others);
+    double replicas = 0;
+    double errors = 0;
+    for (const SurfaceSums& surface : joined.surfaces) {
+      const double error = surface.reflected.x / static_cast<double>(surface.count) - 0.5;
+      errors += error * error;
+      replicas += static_cast<double>(surface.half_difference) * static_cast<double>(surface.half_difference);
+    }
+    // Each is a sum of 4096 squares of a normal number of this variance: 5 standard deviations.
+    const double expected = kSide * kSide * 0.25 * kDeviation * kDeviation / (5 * samples);
+    const double allowed = 5 * std::sqrt(2.0 / (kSide * kSide)) * expected;
+    EXPECT_NEAR(errors, expected, allowed) << samples;
+    EXPECT_NEAR(replicas, expected, allowed) << samples;
+  }
+}
+
+TEST(MovingViews, TheSameBitsByAnyNumberOfThreads) {
+  const auto light = [](const Vec3d& place) { return static_cast<float>(2 + std::sin(7 * place.x + place.y)); };
+  const View own = view_of({0, 0, 0}, {.light = light}, 2);
+  const std::vector<View> others{view_of({0.1, 0, 0.3}, {.light = light}), view_of({0.3, 0.1, 0}, {.light = light})};
+  const std::vector<SurfaceSums> one = join(own, others, 1).surfaces;
+  const std::vector<SurfaceSums> three = join(own, others, 3).surfaces;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].reflected, three[i].reflected);
+    EXPECT_EQ(one[i].square, three[i].square);
+    EXPECT_EQ(one[i].half_difference, three[i].half_difference);
+  }
+}
+
+}  // namespace
+}  // namespace gazetrace
