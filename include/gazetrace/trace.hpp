@@ -123,7 +123,7 @@ struct SurfaceSums {
   std::uint32_t count = 0;
   SurfaceKind kind = SurfaceKind::diffuse;
   // As SparseFrame::half_difference, of the luminance of `albedo` over *all* samples of the site: what chance does to
-  // the surface's texture and to the share of the site that it covers. 0 without SparseFrame::first_hits.
+  // the surface's texture and to the share of the site that it covers.
   float albedo_difference = 0;
 };
 inline constexpr std::size_t kMostSurfaces = 3;
@@ -134,7 +134,7 @@ struct FirstHitSums {
   Vec3f shone;                 // sum of the radiance that is seen directly: emission, unlit surfaces, the environment
   float shone_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `shone`
   // Sum of the squared distances (px^2) between where a sample is in the frame and where the pinhole sees what it hit.
-  // In focus and at rest this is 0, apart from rounding. A single distance counts as kMostShiftPx at most.
+  // Without a lens and without motion while the shutter is open this is 0. A single distance counts as kMostShiftPx at most.
   float square_shift_px2 = 0;
   std::uint32_t blended = 0;  // how many samples hit a surface of AlphaMode::blend
 };
@@ -188,8 +188,7 @@ struct SparseFrame {
   // Of each surface, how many samples of other frames are in SurfaceSums::reflected, ::square and ::half_difference,
   // which are brought to the surface's own count and albedo (temporal/moving_views.hpp). Empty: none.
   std::vector<std::uint32_t> samples_of_others;
-  // Of each site that filters change, beside its surfaces; empty where no sample can see anything else than a pinhole
-  // at one instant: without lens, motion while the shutter is open, and blended surfaces.
+  // Of each site that filters change, beside its surfaces; empty unless TraceSettings::surfaces.
   std::vector<FirstHitSums> first_hits;
   SampleSums unrounded;  // empty unless TraceSettings::samples
   TraceStats stats;

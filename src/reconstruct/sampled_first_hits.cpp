@@ -43,7 +43,8 @@ class SampledFirstHits {
     for_each_site([&](std::size_t i) { around_[i] = mean_around(i); });
   }
 
-  [[nodiscard]] bool any() const {
+  // Whether there is anything to show().
+  [[nodiscard]] bool any_takes_the_place() const {
     return std::any_of(seen_.begin(), seen_.end(), [](const Seen& seen) { return seen.share > 0; });
   }
 
@@ -84,9 +85,9 @@ class SampledFirstHits {
       const float part = 1.0F / static_cast<float>(map_.sites[i].pixels);
       SiteResidual& residual = residuals[i];
       residual.shown = part * luminance(mean);
-      residual.radiance = seen.share * (seen.radiance - part * mean);
-      residual.replica = input_.values.count(i) > 1 ? seen.share * (seen.replica - part * replica)
-                                                    : replica_of_single_sample(i, residual.radiance);
+      residual.radiance = seen.radiance - part * mean;
+      residual.replica =
+          input_.values.count(i) > 1 ? seen.replica - part * replica : replica_of_single_sample(i, residual.radiance);
     });
     return residuals;
   }
@@ -233,10 +234,9 @@ class SampledFirstHits {
 void show_what_samples_saw(const FilterInput& input, const SurfaceCells& cells, const SmoothingSettings& settings,
                            SurfacePicture& picture) {
   const SampledFirstHits hits(input, cells);
-  if (!hits.any()) {
-    return;
+  if (hits.any_takes_the_place()) {
+    hits.show(picture);
   }
-  hits.show(picture);
   keep_residuals(input, settings, cells.site_of_pixel, hits.residuals(picture), false, picture);
 }
 

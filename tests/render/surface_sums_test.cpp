@@ -246,21 +246,17 @@ double mean_square_shift(const PosedScene& scene, const Camera& camera) {
   return sum / sites;
 }
 
-TEST(FirstHits, AreSummedOnlyWhereSamplesMaySeeWhatAPinholeDoesNot) {
+TEST(FirstHits, AreSummedWhereSurfacesAre) {
   const Scene scene = shining_edge(4, unlit_white());
   PathTracer tracer(scene, threads(2));
   const SamplingMap map = uniform_map(8, 8, 2);
-  EXPECT_TRUE(tracer.at_rest().trace(kAhead, 0, map, with_halves()).first_hits.empty());
-  Camera lens = kAhead;
-  lens.lens = {0.1, 2};
-  EXPECT_TRUE(tracer.at_rest().trace(lens, 0, map, {}).first_hits.empty());
-  EXPECT_EQ(tracer.at_rest().trace(lens, 0, map, with_halves()).first_hits.size(), map.sites.size());
-  Material half = unlit_white();
-  half.alpha_mode = AlphaMode::blend;
-  half.base_color.w = 0.5F;
-  const Scene blended = shining_edge(4, half);
-  PathTracer other(blended, threads(2));
-  EXPECT_EQ(other.at_rest().trace(kAhead, 0, map, with_halves()).first_hits.size(), map.sites.size());
+  EXPECT_TRUE(tracer.at_rest().trace(kAhead, 0, map, {}).first_hits.empty());
+  const SparseFrame sparse = tracer.at_rest().trace(kAhead, 0, map, with_halves());
+  ASSERT_EQ(sparse.first_hits.size(), map.sites.size());
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    EXPECT_EQ(sparse.first_hits[i].shone, sparse.sum[i]) << "nothing is lit here, all light is seen directly";
+    EXPECT_EQ(sparse.first_hits[i].square_shift_px2, 0.0F) << "a pinhole at rest";
+  }
 }
 
 // A point at distance d blurs into a disc of radius R |1/d - 1/f| in tangents, whose mean square radius is half its
@@ -344,6 +340,49 @@ ColumnErrors errors_of_columns(const Scene& scene, const Camera& camera, const S
   }
   const double pixels = kHeight * (end - first);
   return {std::sqrt(sum.guided / pixels), std::sqrt(sum.none / pixels), std::sqrt(sum.pinhole / pixels)};
+}
+
+// An edge between white and black crosses a column of pixels, under a sky half of which is hidden, so that light is
+// noisy. How much of a pixel is white is known as well as by that many random samples: its standard error is
+// sqrt(c (1 - c) / n) of the white. Five rays, and the samples' own noisy mean, know it worse.
+TEST(GuidedFilter, SamplesSayHowMuchOfAPixelIsCovered) {
+  constexpr double kBlack = 0.3;  // of the pixel
+  constexpr int kColumn = kWidth / 2;
+  constexpr std::uint32_t kSpp = 16;
+  const double edge_m = kBlack / pixels_per_tangent() * 4;
+  Scene scene = shining_edge(4, diffuse_material({0.8F, 0.8F, 0.8F}), edge_m);
+  scene.environment = constant_environment({1, 1, 1});
+  scene.materials.push_back(diffuse_material({0, 0, 0}));
+  const auto x = static_cast<float>(edge_m);
+  add_mesh(scene, {quad({{{-50, -50, -4}, {x, -50, -4}, {x, 50, -4}, {-50, 50, -4}}}, 1)});
+  add_mesh(scene, {quad({{{-50, 0, 1}, {-50, 50, 1}, {50, 50, 1}, {50, 0, 1}}}, 1)});  // behind the camera
+  PathTracer tracer(scene, threads(2));
+  TraceSettings other = with_halves();
+  other.seed = 99;
+  const SamplingMap full = uniform_map(kWidth, kHeight, 512);
+  const Frame many = reconstruct(tracer.at_rest().trace(kAhead, 0, full, other), full, "none");
+  const SamplingMap map = uniform_map(kWidth, kHeight, kSpp);
+  const SparseFrame sparse = tracer.at_rest().trace(kAhead, 0, map, with_halves());
+  const Guides guides = tracer.at_rest().guides(kAhead, kWidth, kHeight, {.edge_rays = 4});
+  const Frame guided = reconstruct(sparse, map, "guided", 0, &guides);
+  const Frame none = reconstruct(sparse, map, "none");
+  double of_guided = 0;
+  double of_none = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    double white = 0;
+    for (int k = 1; k <= 8; ++k) {
+      white += static_cast<double>(many.radiance(kColumn + k, y).y) / 8;
+    }
+    const auto square = [&](const Frame& frame) {
+      const double off = static_cast<double>(frame.radiance(kColumn, y).y) / white - (1 - kBlack);
+      return off * off / kHeight;
+    };
+    of_guided += square(guided);
+    of_none += square(none);
+  }
+  const double of_random = kBlack * (1 - kBlack) / kSpp;
+  EXPECT_LT(of_guided, of_random);
+  EXPECT_GT(of_none, of_random);
 }
 
 // An edge out of focus becomes the share of a disc that lies on one side of a line u radii off its centre:

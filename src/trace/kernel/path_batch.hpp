@@ -42,7 +42,7 @@ struct SurfaceBatch {
   BatchArray<float> albedo_r, albedo_g, albedo_b, normal_x, normal_y, normal_z, place_x, place_y, place_z;
   BatchArray<float> shone_r, shone_g, shone_b;  // radiance that the sample sees directly
   BatchArray<SurfaceKind> kind;
-  // Only with FrameContext::first_hits, as the terms of FirstHitSums.
+  // As the terms of FirstHitSums.
   BatchArray<float> square_shift_px2;
   BatchArray<std::uint8_t> blended;
 };

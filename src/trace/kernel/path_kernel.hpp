@@ -62,8 +62,10 @@ class PathKernel {
       alive = shade(vertex, alive);
       if (vertex == 0 && frame_.settings.surfaces) {
         keep_shone(static_cast<std::size_t>(count));
-        if (frame_.first_hits) {
+        if (frame_.shifts_hits) {
           find_shifts(static_cast<std::size_t>(count));
+        } else {
+          std::fill_n(work_.surfaces.square_shift_px2.data, count, 0.0F);
         }
       }
       trace_shadows(vertex);
