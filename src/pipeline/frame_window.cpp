@@ -141,10 +141,11 @@ ReconstructedFrame FrameWindow::among_views(const Run& run, const Run& window, s
         views.push_back({one, &request_of(one).camera, &traced.map, &traced.sparse});
       }
     }
-    JoinedSurfaces joined = surfaces_of_views(base, views, guides->camera, renderer_->settings().threads);
+    JoinedSurfaces joined = surfaces_of_views(base, views, *guides, renderer_->settings().threads);
     all.sparse.surfaces = std::move(joined.surfaces);
+    all.sparse.first_surface = std::move(joined.first_surface);
     all.sparse.samples_of_others = std::move(joined.samples_of_others);
-    others = others_per_pixel(all.map, all.sparse);
+    others = std::move(joined.others_per_pixel);
     return true;
   });
   ReconstructedFrame shown = renderer_->reconstruct(request, all, guides);

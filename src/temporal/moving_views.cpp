@@ -35,18 +35,60 @@ struct TileTargets {
   std::uint32_t first = kNowhere, last = 0;
 };
 
-std::size_t first_surface_of_tile(const ViewSamples& view, std::size_t tile) {
-  return view.sparse->first_surface[view.map->tiles[tile].first_site];
+std::size_t first_in_tile(const std::vector<std::uint32_t>& first_surface, const MapTile& tile) {
+  return first_surface[tile.first_site];
 }
-std::size_t end_surface_of_tile(const ViewSamples& view, std::size_t tile) {
-  const MapTile& of = view.map->tiles[tile];
-  return view.sparse->first_surface[of.first_site + of.site_count];
+std::size_t end_in_tile(const std::vector<std::uint32_t>& first_surface, const MapTile& tile) {
+  return first_surface[tile.first_site + tile.site_count];
+}
+
+// What others may join: the surfaces of a frame, and of its sites without samples those that the guides see.
+struct OwnSums {
+  std::vector<SurfaceSums> surfaces;
+  std::vector<std::uint32_t> first;  // as SparseFrame::first_surface
+};
+
+// Its one sample is still to come.
+SurfaceSums surface_of_guides(const Guides& guides, int x, int y) {
+  SurfaceSums sums;
+  sums.albedo = guides.albedo(x, y);
+  sums.normal = guides.normal(x, y);
+  sums.position_m = guides.camera.place(static_cast<float>(x) + 0.5F - 0.5F * static_cast<float>(guides.kind.width_px),
+                                        static_cast<float>(y) + 0.5F - 0.5F * static_cast<float>(guides.kind.height_px),
+                                        guides.depth_m(x, y));
+  sums.kind = guides.kind(x, y);
+  sums.count = 1;
+  return sums;
+}
+
+OwnSums own_sums(const ViewSamples& own, const Guides& guides) {
+  OwnSums sums;
+  sums.first.reserve(own.map->sites.size() + 1);
+  sums.surfaces.reserve(std::max(own.sparse->surfaces.size(), own.map->sites.size()));
+  for (std::size_t i = 0; i < own.map->sites.size(); ++i) {
+    sums.first.push_back(static_cast<std::uint32_t>(sums.surfaces.size()));
+    if (own.sparse->count[i] > 0) {
+      sums.surfaces.insert(sums.surfaces.end(), own.sparse->surfaces.begin() + own.sparse->first_surface[i],
+                           own.sparse->surfaces.begin() + own.sparse->first_surface[i + 1]);
+      continue;
+    }
+    const BlockRect block = block_rect(*own.map, own.map->sites[i]);
+    const int x = (block.x + block.x_end) / 2;
+    const int y = (block.y + block.y_end) / 2;
+    const SurfaceKind kind = guides.kind(x, y);
+    if ((kind == SurfaceKind::diffuse || kind == SurfaceKind::glossy) && std::isfinite(guides.depth_m(x, y))) {
+      sums.surfaces.push_back(surface_of_guides(guides, x, y));
+    }
+  }
+  sums.first.push_back(static_cast<std::uint32_t>(sums.surfaces.size()));
+  return sums;
 }
 
 class OwnSurfaces {
  public:
-  OwnSurfaces(const ViewSamples& own, const GuideCamera& camera, int threads)
+  OwnSurfaces(const ViewSamples& own, const OwnSums& sums, const GuideCamera& camera, int threads)
       : own_(own),
+        sums_(sums),
         projection_(*own.camera, own.map->width_px, own.map->height_px),
         pixel_m_(std::sqrt(dot(camera.up_step, camera.up_step))),
         perspective_(camera.perspective),
@@ -81,8 +123,8 @@ class OwnSurfaces {
     const float length = std::sqrt(dot(surface.normal, surface.normal));
     std::uint32_t nearest = kNowhere;
     float least = reach_m;
-    for (std::uint32_t k = own_.sparse->first_surface[site]; k < own_.sparse->first_surface[site + 1]; ++k) {
-      const SurfaceSums& candidate = own_.sparse->surfaces[k];
+    for (std::uint32_t k = sums_.first[site]; k < sums_.first[site + 1]; ++k) {
+      const SurfaceSums& candidate = sums_.surfaces[k];
       const float own_length = std::sqrt(dot(candidate.normal, candidate.normal));
       if (candidate.kind != surface.kind ||
           !(dot(candidate.normal, surface.normal) > kSameNormal * length * own_length)) {
@@ -104,6 +146,7 @@ class OwnSurfaces {
   }
 
   ViewSamples own_;
+  const OwnSums& sums_;
   PixelProjection projection_;
   float pixel_m_;  // the size of a pixel at 1 m (perspective), or at any depth
   bool perspective_;
@@ -113,7 +156,7 @@ class OwnSurfaces {
 TileTargets targets_of_tile(const OwnSurfaces& own, const ViewSamples& other, std::size_t t, bool same_view) {
   TileTargets out;
   const MapTile& tile = other.map->tiles[t];
-  out.target.reserve(end_surface_of_tile(other, t) - first_surface_of_tile(other, t));
+  out.target.reserve(end_in_tile(other.sparse->first_surface, tile) - first_in_tile(other.sparse->first_surface, tile));
   for (std::size_t site = tile.first_site; site < tile.first_site + tile.site_count; ++site) {
     const auto pixels = std::sqrt(static_cast<float>(other.map->sites[site].pixels));
     for (std::size_t s = other.sparse->first_surface[site]; s < other.sparse->first_surface[site + 1]; ++s) {
@@ -141,6 +184,17 @@ void add(const SurfaceSums& surface, std::size_t half, JoinedSums& to) {
   to.square += static_cast<double>(surface.square);
   to.halves.luminance[half] += light_of(surface);
   to.halves.count[half] += surface.count;
+}
+
+// Of a surface that only the guides have seen.
+SurfaceSums lit_by_others(const SurfaceSums& own, const JoinedSums& others) {
+  SurfaceSums sums = own;
+  const Vec3d albedo = to_double(own.albedo);
+  sums.reflected = to_float(albedo * Vec3d{others.reflected.x / others.albedo.x, others.reflected.y / others.albedo.y,
+                                           others.reflected.z / others.albedo.z});
+  sums.square = saturated(others.square / static_cast<double>(others.samples()));
+  sums.half_difference = static_cast<float>(luminance(albedo)) * others.halves.difference();
+  return sums;
 }
 
 SurfaceSums lit_by_all(const SurfaceSums& own, const JoinedSums& others) {
@@ -173,10 +227,11 @@ SurfaceSums lit_by_all(const SurfaceSums& own, const JoinedSums& others) {
 
 }  // namespace
 
-JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewSamples>& others,
-                                 const GuideCamera& camera, int threads) {
-  const OwnSurfaces surfaces(own, camera, threads);
-  std::vector<JoinedSums> sums(own.sparse->surfaces.size());
+JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewSamples>& others, const Guides& guides,
+                                 int threads) {
+  const OwnSums base = own_sums(own, guides);
+  const OwnSurfaces surfaces(own, base, guides.camera, threads);
+  std::vector<JoinedSums> sums(base.surfaces.size());
   for (const ViewSamples& other : others) {
     const bool same_view = same_camera(*own.camera, *other.camera);
     std::vector<TileTargets> tiles(other.map->tiles.size());
@@ -184,17 +239,17 @@ JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewS
                  [&](std::size_t t) { tiles[t] = targets_of_tile(surfaces, other, t, same_view); });
     // Every part of the own surfaces is added up by one thread, always in the same order.
     constexpr std::size_t kMostParts = 64;
-    const std::size_t own_tiles = own.map->tiles.size();
-    const std::size_t parts = std::min(own_tiles, kMostParts);
+    const std::vector<MapTile>& own_tiles = own.map->tiles;
+    const std::size_t parts = std::min(own_tiles.size(), kMostParts);
     const auto half = static_cast<std::size_t>((other.frame - own.frame) & 1);
     parallel_for(parts, threads, [&](std::size_t part) {
-      const std::size_t begin = first_surface_of_tile(own, part * own_tiles / parts);
-      const std::size_t end = end_surface_of_tile(own, (part + 1) * own_tiles / parts - 1);
+      const std::size_t begin = first_in_tile(base.first, own_tiles[part * own_tiles.size() / parts]);
+      const std::size_t end = end_in_tile(base.first, own_tiles[(part + 1) * own_tiles.size() / parts - 1]);
       for (std::size_t t = 0; t < tiles.size(); ++t) {
         if (tiles[t].first == kNowhere || tiles[t].first >= end || tiles[t].last < begin) {
           continue;
         }
-        const std::size_t first = first_surface_of_tile(other, t);
+        const std::size_t first = first_in_tile(other.sparse->first_surface, other.map->tiles[t]);
         for (std::size_t k = 0; k < tiles[t].target.size(); ++k) {
           const std::size_t target = tiles[t].target[k];
           if (target >= begin && target < end) {
@@ -204,28 +259,28 @@ JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewS
       }
     });
   }
-  JoinedSurfaces out{own.sparse->surfaces, std::vector<std::uint32_t>(sums.size())};
-  parallel_for(own.map->tiles.size(), threads, [&](std::size_t t) {
-    for (std::size_t i = first_surface_of_tile(own, t); i < end_surface_of_tile(own, t); ++i) {
-      out.samples_of_others[i] = sums[i].samples();
-      if (sums[i].samples() > 0) {
-        out.surfaces[i] = lit_by_all(own.sparse->surfaces[i], sums[i]);
-      }
-    }
-  });
-  return out;
-}
-
-std::vector<float> others_per_pixel(const SamplingMap& map, const SparseFrame& joined) {
-  std::vector<float> others(map.sites.size());
-  for (std::size_t i = 0; i < others.size(); ++i) {
+  JoinedSurfaces out;
+  out.surfaces.reserve(base.surfaces.size());
+  out.samples_of_others.reserve(base.surfaces.size());
+  for (std::size_t site = 0; site < own.map->sites.size(); ++site) {
+    out.first_surface.push_back(static_cast<std::uint32_t>(out.surfaces.size()));
+    const bool is_sampled = own.sparse->count[site] > 0;
     std::uint64_t samples = 0;
-    for (std::size_t s = joined.first_surface[i]; s < joined.first_surface[i + 1]; ++s) {
-      samples += joined.samples_of_others[s];
+    for (std::size_t s = base.first[site]; s < base.first[site + 1]; ++s) {
+      const std::uint32_t added = sums[s].samples();
+      samples += added;
+      if (added == 0 && !is_sampled) {
+        continue;  // nobody has seen it
+      }
+      out.surfaces.push_back(added == 0   ? base.surfaces[s]
+                             : is_sampled ? lit_by_all(base.surfaces[s], sums[s])
+                                          : lit_by_others(base.surfaces[s], sums[s]));
+      out.samples_of_others.push_back(is_sampled ? added : added - 1);
     }
-    others[i] = static_cast<float>(samples) / static_cast<float>(map.sites[i].pixels);
+    out.others_per_pixel.push_back(static_cast<float>(samples) / static_cast<float>(own.map->sites[site].pixels));
   }
-  return others;
+  out.first_surface.push_back(static_cast<std::uint32_t>(out.surfaces.size()));
+  return out;
 }
 
 }  // namespace gazetrace

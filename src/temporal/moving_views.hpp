@@ -23,10 +23,12 @@ struct ViewSamples {
   const SparseFrame* sparse = nullptr;  // with surfaces
 };
 
-// SparseFrame::surfaces and ::samples_of_others.
+// Members of SparseFrame, and how many samples of others there are for each pixel of each site.
 struct JoinedSurfaces {
   std::vector<SurfaceSums> surfaces;
+  std::vector<std::uint32_t> first_surface;
   std::vector<std::uint32_t> samples_of_others;
+  std::vector<float> others_per_pixel;
 };
 
 // The surfaces of `own`, lit as its samples and those of the others found: of those surfaces that lie in the same site
@@ -40,16 +42,15 @@ struct JoinedSurfaces {
 // Where nothing joins a surface it keeps its bits. Halves are the samples of frames an even and an odd number of frames
 // away, beside the halves of the frame's own samples where it has both.
 //
+// A site without samples has the surface that the guides see in its middle, lit as the others found it, if they did; it
+// counts one of their samples as its own.
+//
 // A surface is where its samples hit it, which through a lens or an open shutter is not where the site is: there fewer
 // samples find a surface of the site to join.
 //
-// `others`: frames of the same size, of other numbers, in any order; the last digits depend on it. `camera`: that of
-// the guides of `own`.
+// `others`: frames of the same size, of other numbers, in any order; the last digits depend on it. `guides`: of `own`.
 inline constexpr float kMostCoarse = 2;
-JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewSamples>& others,
-                                 const GuideCamera& camera, int threads);
-
-// So many samples of others there are for each pixel of each site.
-std::vector<float> others_per_pixel(const SamplingMap& map, const SparseFrame& joined);
+JoinedSurfaces surfaces_of_views(const ViewSamples& own, const std::vector<ViewSamples>& others, const Guides& guides,
+                                 int threads);
 
 }  // namespace gazetrace

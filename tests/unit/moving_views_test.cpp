@@ -36,10 +36,16 @@ Camera camera_at(const Vec3d& position_m) {
   return camera;
 }
 
-GuideCamera guide_camera() {
-  GuideCamera camera;
-  camera.up_step = {0, static_cast<float>(kStep), 0};
-  return camera;
+// What the camera at the origin sees of the wall.
+Guides guides_of_wall() {
+  Guides guides;
+  const auto step = static_cast<float>(kStep);
+  guides.camera = {true, {0, 0, -1}, {step, 0, 0}, {0, step, 0}, {}};
+  guides.albedo = ImageRgb(kSide, kSide, {0.25F, 0.25F, 0.25F});
+  guides.normal = ImageRgb(kSide, kSide, {0, 0, 1});
+  guides.depth_m = ImageGray(kSide, kSide, 3);
+  guides.kind = Image<SurfaceKind>(kSide, kSide, SurfaceKind::diffuse);
+  return guides;
 }
 
 struct Wall {
@@ -95,7 +101,7 @@ JoinedSurfaces join(const View& own, const std::vector<View>& others, int thread
   for (std::size_t k = 0; k < others.size(); ++k) {
     views.push_back(samples_of(others[k], 11 + static_cast<std::int32_t>(k)));
   }
-  return surfaces_of_views(samples_of(own, 10), views, guide_camera(), threads);
+  return surfaces_of_views(samples_of(own, 10), views, guides_of_wall(), threads);
 }
 
 std::uint64_t added(const JoinedSurfaces& joined) {
@@ -132,11 +138,8 @@ TEST(MovingViews, EverySampleJoinsTheSiteThatSeesItsPlace) {
       EXPECT_EQ(surface.position_m, before.position_m);
       EXPECT_EQ(surface.count, before.count);
     }
-    SparseFrame frame = own.frame;
-    frame.samples_of_others = joined.samples_of_others;
-    const std::vector<float> of_others = others_per_pixel(own.map, frame);
     double sum = 0;
-    for (const float samples : of_others) {
+    for (const float samples : joined.others_per_pixel) {
       sum += static_cast<double>(samples);
     }
     EXPECT_NEAR(sum, static_cast<double>(inside), 1e-3);
@@ -153,7 +156,8 @@ TEST(MovingViews, OnlyTheSameSurfaceJoins) {
   EXPECT_EQ(joins({.z_m = -2.85, .light = lit_evenly}), 0U);
   EXPECT_GT(joins({.normal = {0.5F, 0, 0.866F}, .light = lit_evenly}), 0U) << "30 degrees";
   EXPECT_EQ(joins({.normal = {0.643F, 0, 0.766F}, .light = lit_evenly}), 0U) << "40 degrees";
-  EXPECT_EQ(joins({.kind = SurfaceKind::glossy, .light = lit_evenly}), 0U) << "another kind";
+  const View glossy = view_of({0, 0, 0}, {.kind = SurfaceKind::glossy, .light = lit_evenly});
+  EXPECT_EQ(added(join(glossy, {view_of(eye, {.light = lit_evenly})})), 0U) << "another kind";
 }
 
 TEST(MovingViews, WhatShinesByTheViewJoinsUnderTheSameViewOnly) {
@@ -173,6 +177,40 @@ TEST(MovingViews, WhatWasSeenTooCoarselyIsLeftOut) {
   // At 1.2 m a block covers what 1.6 pixels do at 3 m.
   const View near = view_of({0, 0, -1.8}, {.light = lit_evenly}, 4);
   EXPECT_GT(added(join(fine, {near})), 0U);
+}
+
+// The guides say what a pixel without samples sees, of which nobody has seen the light but the others.
+TEST(MovingViews, ASiteWithoutSamplesIsLitAsOthersSawItsSurface) {
+  View own = view_of({0, 0, 0}, {.light = lit_evenly});
+  SparseFrame& frame = own.frame;
+  frame.surfaces.clear();
+  std::fill(frame.first_surface.begin(), frame.first_surface.end(), 0U);
+  std::fill(frame.count.begin(), frame.count.end(), 0U);
+  std::fill(frame.sum.begin(), frame.sum.end(), Vec3f{});
+  const auto light = [](const Vec3d& place) { return static_cast<float>(5 + place.x); };
+  const double across_m = kSide * kStep * 3;
+  // Shifted by a quarter of the frame, so that the left quarter stays unseen.
+  const JoinedSurfaces joined = join(own, {view_of({across_m / 4, 0, 0}, {.light = light, .samples = 3})});
+  ASSERT_EQ(joined.first_surface.size(), own.map.sites.size() + 1);
+  int lit = 0;
+  for (std::size_t i = 0; i < own.map.sites.size(); ++i) {
+    const int x = own.map.sites[i].block_x;
+    const std::uint32_t begin = joined.first_surface[i];
+    ASSERT_EQ(joined.first_surface[i + 1] - begin, x < kSide / 4 ? 0U : 1U) << x;
+    if (x < kSide / 4) {
+      EXPECT_EQ(joined.others_per_pixel[i], 0.0F);
+      continue;
+    }
+    ++lit;
+    const SurfaceSums& surface = joined.surfaces[begin];
+    const double here_m = (x + 0.5 - 0.5 * kSide) * kStep * 3;
+    EXPECT_NEAR(surface.reflected.x, 0.25 * (5 + here_m), 0.25 * 0.5 * kStep * 3 + 1e-4);
+    EXPECT_EQ(surface.albedo.x, 0.25F);
+    EXPECT_NEAR(surface.position_m.x, here_m, 1e-5);
+    EXPECT_EQ(surface.count + joined.samples_of_others[begin], 3U);
+    EXPECT_EQ(joined.others_per_pixel[i], 3.0F);
+  }
+  EXPECT_EQ(lit, kSide * kSide * 3 / 4);
 }
 
 TEST(MovingViews, WhatNothingJoinsKeepsItsBits) {
