@@ -134,7 +134,8 @@ class FrameRenderer {
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
   // Whether frames around a frame are read before its filter, surface by surface (temporal/moving_views.hpp): all that
-  // can move in the scene is the camera, and the filter takes light surface by surface.
+  // can move in the scene is the camera, the filter takes light surface by surface, and neither
+  // AccumulateSettings::blend nor ReconstructionSettings::pass_through_samples is set.
   [[nodiscard]] bool only_views_move() const;
   // Lets other frames read this one: fills in ReconstructedFrame::alone.
   void keep_history(ReconstructedFrame& frame) const;

@@ -39,10 +39,10 @@ struct TemporalHistory {
 };
 
 // off: every frame stands for itself. running: the mean over frames while the camera stands still. reproject: what a
-// pixel shows is looked up where it was in the frame before, and used where it was the same surface. two_sided: it is
-// looked up so in the frames before and in those after, as each was reconstructed from its own samples; nothing is
-// accumulated from frame to frame. Frames that are still to come are known only where whole sequences are rendered, so
-// this is not causal: nobody could be shown such a picture while looking.
+// pixel shows is looked up where it was in the frame before, and used where it was the same surface. two_sided: frames
+// before and after are read, their samples where only the view moves (FrameRenderer::only_views_move), else what each
+// shows by itself; nothing is accumulated from frame to frame. Frames that are still to come are known only where whole
+// sequences are rendered, so this is not causal: nobody could be shown such a picture while looking.
 enum class AccumulateMode : std::uint8_t { off, running, reproject, two_sided };
 // Whether frames are accumulated before or after the reconstruction filter. Filters that need sums per surface
 // (ReconstructionNeeds::surfaces) always come first, since an accumulated site no longer holds them.
@@ -57,10 +57,10 @@ struct AccumulateSettings {
 
   // Only two_sided uses this: so many frames before a frame and after it are read.
   std::int32_t window = 4;
-  // Only reproject uses this: two_sided comes after the filter.
+  // Only reproject uses this.
   AccumulateOrder order = AccumulateOrder::after;
 
-  // reproject and two_sided use the rest.
+  // The rest is for reproject and two_sided. What two_sided joins before the filter is neither forgotten nor clipped.
   // Memory in frames: each frame multiplies the counts of the past by 1 - 1/frames, so that a pixel gathers this many
   // times a frame's samples. 0: nothing is forgotten. two_sided: so it does for each frame that lies between.
   double frames = 16;

@@ -134,7 +134,7 @@ struct FirstHitSums {
   Vec3f shone;                 // sum of the radiance that is seen directly: emission, unlit surfaces, the environment
   float shone_difference = 0;  // as SparseFrame::half_difference, of the mean luminance of `shone`
   // Sum of the squared distances (px^2) between where a sample is in the frame and where the pinhole sees what it hit.
-  // Without a lens and without motion while the shutter is open this is 0. A single distance counts as kMostShiftPx at most.
+  // Without a lens and without motion while the shutter is open this is 0. A distance counts as kMostShiftPx at most.
   float square_shift_px2 = 0;
   std::uint32_t blended = 0;  // how many samples hit a surface of AlphaMode::blend
 };
@@ -186,7 +186,8 @@ struct SparseFrame {
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
   // Of each surface, how many samples of other frames are in SurfaceSums::reflected, ::square and ::half_difference,
-  // which are brought to the surface's own count and albedo (temporal/moving_views.hpp). Empty: none.
+  // which are brought to the surface's own count and albedo (temporal/moving_views.hpp). A site without samples then
+  // may have a surface whose count of 1 stands for one of theirs. Empty: none.
   std::vector<std::uint32_t> samples_of_others;
   // Of each site that filters change, beside its surfaces; empty unless TraceSettings::surfaces.
   std::vector<FirstHitSums> first_hits;

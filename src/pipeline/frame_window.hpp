@@ -18,7 +18,7 @@ namespace gazetrace {
 // reconstructed pictures (temporal/two_sided.hpp).
 //
 // Holds the samples of at most 2 * AccumulateSettings::window + 1 frames, and the pictures of those that are looked up,
-// which is all the memory that it takes.
+// beside which one frame is being joined.
 class FrameWindow {
  public:
   // Keeps references to both, which must outlive it. `counted` are the frames whose own samples and times are counted

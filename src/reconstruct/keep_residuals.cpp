@@ -60,7 +60,7 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
 
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, const std::vector<SiteResidual>& residuals,
-                    bool estimates, SurfacePicture& picture) {
+                    bool of_light, SurfacePicture& picture) {
   const SamplingMap& map = input.map;
   std::vector<RegionResiduals> of_region;
   of_region.reserve(map.regions.size());
@@ -81,9 +81,10 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
       if (filtered) {
         const Vec3f value = radiance + kept.radiance;
         radiance = {std::max(value.x, 0.0F), std::max(value.y, 0.0F), std::max(value.z, 0.0F)};
+        picture.replica.pixels[i] += kept.replica;
       }
-      if (estimates) {
-        const float rest = kept.rest * kept.rest;
+      if (of_light || filtered) {
+        const float rest = of_light ? kept.rest * kept.rest : 1.0F;
         picture.variance.pixels[i] = rest * picture.variance.pixels[i] + kept.variance;
         picture.error.pixels[i] = rest * picture.error.pixels[i] + kept.error;
       }

@@ -26,11 +26,12 @@ struct SiteResidual {
   float replica = 0;  // of the error of its luminance
   float shown = 0;    // mean luminance of the picture
 };
-// The same for residuals of any kind, one for each site of the map. The picture's variance and error stay what they
-// were unless `estimates`.
+// The same for residuals of any kind, one for each site of the map. What is given back brings its own noise.
+// `of_light`: it takes the place of the picture's light and of its noise; else the residual has the picture's light,
+// whose noise stays.
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, const std::vector<SiteResidual>& residuals,
-                    bool estimates, SurfacePicture& picture);
+                    bool of_light, SurfacePicture& picture);
 
 // The replica of a residual of a single sample. Nobody knows what of it is noise: all of it, with a sign of its own, so
 // that around a pixel such noise cancels out as the noise of the samples does.

@@ -57,6 +57,7 @@ void add(float weight, const KeptResidual& kept, KeptResidual& sum) {
   sum.rest += weight * kept.rest;
   sum.variance += weight * kept.variance;
   sum.error += weight * kept.error;
+  sum.replica += weight * kept.replica;
   sum.shown += weight * kept.shown;
 }
 
@@ -183,6 +184,7 @@ void RegionResiduals::keep_band(int band, const Plane& scales, const Residuals* 
                           share_to_keep(p, around, independent, doubt_[index(x, y)]);
       KeptResidual& kept = kept_[index(x, y)];
       kept.radiance += share * radiance_of(d);
+      kept.replica += share * d[3];
       const float rest = 1.0F - share;
       constexpr float kMost = kMostLight * kMostLight;
       const float noise = std::min(kMost, p.noise / scale);  // kMost also for what is no number
@@ -230,6 +232,7 @@ KeptResidual RowOfResiduals::at(int x, float light) const {
   sum.radiance = share * sum.radiance;
   sum.variance *= share * share;
   sum.error *= share * share;
+  sum.replica *= share;
   return sum;
 }
 

@@ -19,7 +19,8 @@ struct KeptResidual {
   Vec3f radiance;
   float rest = 1;  // the share of the finest band that is not given back
   float variance = 0, error = 0;
-  float shown = 0;  // as SiteResidual
+  float replica = 0;  // of the error of what is given back
+  float shown = 0;    // as SiteResidual
 };
 
 // The residuals of the blocks of one region, and what is kept of them.

@@ -39,8 +39,10 @@ class SampledFirstHits {
   SampledFirstHits(const FilterInput& input, const SurfaceCells& cells)
       : input_(input), map_(input.map), cells_(cells), seen_(map_.sites.size()), around_(map_.sites.size()) {
     for_each_site([&](std::size_t i) { seen_[i] = seen_at(i); });
-    for_each_site([&](std::size_t i) { seen_[i].share = share_at(i); });
-    for_each_site([&](std::size_t i) { around_[i] = mean_around(i); });
+    if (std::any_of(input.sparse.first_hits.begin(), input.sparse.first_hits.end(), is_unlike_a_pinhole)) {
+      for_each_site([&](std::size_t i) { seen_[i].share = share_at(i); });
+      for_each_site([&](std::size_t i) { around_[i] = mean_around(i); });
+    }
   }
 
   // Whether there is anything to show().
@@ -86,13 +88,16 @@ class SampledFirstHits {
       SiteResidual& residual = residuals[i];
       residual.shown = part * luminance(mean);
       residual.radiance = seen.radiance - part * mean;
-      residual.replica =
-          input_.values.count(i) > 1 ? seen.replica - part * replica : replica_of_single_sample(i, residual.radiance);
+      // Halves that are equal to the bit say nothing: one of them may be empty.
+      const bool has_halves = input_.values.count(i) > 1 && input_.sparse.half_difference[i] != 0;
+      residual.replica = has_halves ? seen.replica - part * replica : replica_of_single_sample(i, residual.radiance);
     });
     return residuals;
   }
 
  private:
+  static bool is_unlike_a_pinhole(const FirstHitSums& hits) { return hits.square_shift_px2 > 0 || hits.blended > 0; }
+
   template <class Visit>
   void for_each_site(const Visit& visit) const {
     parallel_for(map_.tiles.size(), input_.threads, [&](std::size_t t) {

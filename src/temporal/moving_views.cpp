@@ -19,6 +19,9 @@ namespace {
 constexpr std::uint32_t kNowhere = 0xffffffffU;
 // How far off a surface's plane another one may lie, in pixels, or as a share of the site's block.
 constexpr float kPlaneShare = 0.5F;
+// Cosine of the angle, 5 degrees, by which the direction to the eye may differ. What counts as diffuse has a lobe as
+// well, of more than 7 degrees about the half vector.
+constexpr float kSameView = 0.99619F;
 
 // Of the surfaces of other frames that belong to one of the frame's own.
 struct JoinedSums {
@@ -116,7 +119,7 @@ class OwnSurfaces {
     const Vec3f place_m = to_float(place - own_.camera->pose.position_m);
     const float block_px = static_cast<float>(own_.map->regions[own_.map->sites[site].region].block_px);
     const float pixel_here_m = pixel_m_ * distance(place_m);
-    if (pixels * distance(seen_m) > kMostCoarse * block_px * distance(place_m)) {
+    if (pixels * distance(seen_m) > kMostCoarse * block_px * distance(place_m) || !same_view(seen_m, place_m)) {
       return kNowhere;
     }
     const float reach_m = std::max(kPlanePixels, kPlaneShare * block_px) * pixel_here_m;
@@ -145,6 +148,11 @@ class OwnSurfaces {
     return perspective_ ? std::sqrt(dot(place_m, place_m)) : 1.0F;
   }
 
+  // An orthographic camera looks in one direction everywhere.
+  [[nodiscard]] bool same_view(const Vec3f& seen_m, const Vec3f& place_m) const {
+    return !perspective_ || dot(seen_m, place_m) >= kSameView * distance(seen_m) * distance(place_m);
+  }
+
   ViewSamples own_;
   const OwnSums& sums_;
   PixelProjection projection_;
@@ -158,7 +166,7 @@ TileTargets targets_of_tile(const OwnSurfaces& own, const ViewSamples& other, st
   const MapTile& tile = other.map->tiles[t];
   out.target.reserve(end_in_tile(other.sparse->first_surface, tile) - first_in_tile(other.sparse->first_surface, tile));
   for (std::size_t site = tile.first_site; site < tile.first_site + tile.site_count; ++site) {
-    const auto pixels = std::sqrt(static_cast<float>(other.map->sites[site].pixels));
+    const auto pixels = static_cast<float>(other.map->regions[other.map->sites[site].region].block_px);
     for (std::size_t s = other.sparse->first_surface[site]; s < other.sparse->first_surface[site + 1]; ++s) {
       const SurfaceSums& surface = other.sparse->surfaces[s];
       const std::uint32_t target =

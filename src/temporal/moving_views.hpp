@@ -33,9 +33,9 @@ struct JoinedSurfaces {
 
 // The surfaces of `own`, lit as its samples and those of the others found: of those surfaces that lie in the same site
 // as `own` sees them, are of the same kind, on the same plane and face the same way. Samples of all frames count alike.
-// Left out are surfaces whose look depends on the view, unless the camera is the same, and those that were seen more
-// coarsely than at kMostCoarse times the frame's own footprint, whose mean would lie in one of the many sites that it
-// belongs to.
+// Left out are surfaces whose look depends on the view, unless the camera is the same; all that was seen from a
+// direction more than 5 degrees away, since other surfaces shine a little, too; and what was seen more coarsely than at
+// kMostCoarse times the frame's own footprint, whose mean would lie in one of the many sites that it belongs to.
 //
 // What joins a surface is the light on it, the quotient of what it reflects and its albedo. Its own texture, normal and
 // place stay, as do all other sums of the site, since they hold what is seen at this very place: edges, reflections.
