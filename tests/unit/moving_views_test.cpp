@@ -151,10 +151,10 @@ TEST(MovingViews, OnlyTheSameSurfaceJoins) {
   const Vec3d eye{0.2, 0, 0};
   const auto joins = [&](const Wall& wall) { return added(join(own, {view_of(eye, wall)})); };
   EXPECT_GT(joins({.light = lit_evenly}), 0U);
-  // Up to two pixels off its plane, which are so large there.
+  // Up to two pixels off its plane: so large in the middle, and 1.3 times in the corners.
   const double pixel_m = 3 * kStep;
   EXPECT_GT(joins({.z_m = -3 + 1.8 * pixel_m, .light = lit_evenly}), 0U);
-  EXPECT_EQ(joins({.z_m = -3 + 2.2 * pixel_m, .light = lit_evenly}), 0U);
+  EXPECT_EQ(joins({.z_m = -3 + 2.8 * pixel_m, .light = lit_evenly}), 0U);
   EXPECT_GT(joins({.normal = {0.5F, 0, 0.866F}, .light = lit_evenly}), 0U) << "30 degrees";
   EXPECT_EQ(joins({.normal = {0.643F, 0, 0.766F}, .light = lit_evenly}), 0U) << "40 degrees";
   const View glossy = view_of({0, 0, 0}, {.kind = SurfaceKind::glossy, .light = lit_evenly});
