@@ -83,10 +83,13 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
         radiance = {std::max(value.x, 0.0F), std::max(value.y, 0.0F), std::max(value.z, 0.0F)};
         picture.replica.pixels[i] += kept.replica;
       }
-      if (of_light || filtered) {
-        const float rest = of_light ? kept.rest * kept.rest : 1.0F;
+      if (of_light) {
+        const float rest = kept.rest * kept.rest;
         picture.variance.pixels[i] = rest * picture.variance.pixels[i] + kept.variance;
         picture.error.pixels[i] = rest * picture.error.pixels[i] + kept.error;
+      } else if (filtered) {
+        picture.first_hits_variance.pixels[i] = kept.variance;
+        picture.first_hits_error.pixels[i] = kept.error;
       }
     }
   });

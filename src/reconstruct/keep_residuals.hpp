@@ -26,9 +26,9 @@ struct SiteResidual {
   float replica = 0;  // of the error of its luminance
   float shown = 0;    // mean luminance of the picture
 };
-// The same for residuals of any kind, one for each site of the map. What is given back brings its own noise.
-// `of_light`: it takes the place of the picture's light and of its noise; else the residual has the picture's light,
-// whose noise stays.
+// The same for residuals of any kind, one for each site of the map. `of_light`: what is given back takes the place of
+// the picture's light and of its noise. Else it is of first hits under the picture's light, and its own noise and error
+// are noted in SurfacePicture::first_hits_variance and ::first_hits_error.
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, const std::vector<SiteResidual>& residuals,
                     bool of_light, SurfacePicture& picture);

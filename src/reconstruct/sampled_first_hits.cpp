@@ -242,6 +242,8 @@ void show_what_samples_saw(const FilterInput& input, const SurfaceCells& cells, 
   if (hits.any_takes_the_place()) {
     hits.show(picture);
   }
+  picture.first_hits_variance = ImageGray(input.map.width_px, input.map.height_px);
+  picture.first_hits_error = picture.first_hits_variance;
   keep_residuals(input, settings, cells.site_of_pixel, hits.residuals(picture), false, picture);
 }
 

@@ -48,6 +48,10 @@ Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
     show_what_samples_saw(input, lattice, settings, picture);
   }
   keep_residuals(input, settings, lattice.site_of_pixel, picture);
+  for (std::size_t i = 0; i < picture.first_hits_variance.pixels.size(); ++i) {
+    picture.variance.pixels[i] += picture.first_hits_variance.pixels[i];
+    picture.error.pixels[i] += picture.first_hits_error.pixels[i];
+  }
   frame.radiance = std::move(picture.radiance);
   frame.variance = std::move(picture.variance);
   frame.squared_error = std::move(picture.error);

@@ -82,6 +82,9 @@ struct PixelValue {
 struct SurfacePicture {
   ImageRgb radiance;
   ImageGray variance, replica, error;  // as PixelValue
+  // What first hits brought in addition, which better light does not take away: the samples' own mean has it as well.
+  // Empty without SparseFrame::first_hits.
+  ImageGray first_hits_variance, first_hits_error;
 
   SurfacePicture(int width_px, int height_px)
       : radiance(width_px, height_px),

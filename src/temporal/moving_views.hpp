@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where nothing but the camera moves, a surface is lit in every frame as in any other. What frames around one saw of
-// its surfaces joins what its own samples say of their light, before the filter: a filter finds less noise to take away
-// then, and leaves less bias. Bias is what frames have in common that were filtered one by one, so that no mean over
-// them is rid of it.
+// Where nothing but the camera moves, a surface is lit in one frame as in any other. What the frames around a frame saw
+// of its surfaces' light joins what its own samples say, before the filter, which then finds less noise to take away
+// and leaves less bias. If each frame were filtered by itself, bias would be what all of them have in common, and a
+// mean over them would keep it.
 #pragma once
 
 #include <cstdint>

@@ -354,7 +354,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   out.unrounded.sites.resize(settings.samples ? map.sites.size() : 0);
   out.unrounded.guides.resize(settings.samples && settings.guides ? map.sites.size() : 0);
   out.first_surface.resize(settings.surfaces ? map.sites.size() + 1 : 0);
-  out.first_hits.resize(context.first_hits ? map.sites.size() : 0);
+  out.first_hits.resize(settings.surfaces ? map.sites.size() : 0);
   out.stats.kernel = variant.name;
   out.stats.regions.resize(map.regions.size());
 

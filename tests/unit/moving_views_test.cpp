@@ -18,7 +18,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr int kSide = 200;  // several tiles, some of them cut by the edge
+constexpr int kSide = 580;  // more tiles than parts of the work, some of them cut by the edge
 constexpr double kFovRad = 1;
 const double kStep = 2 * std::tan(kFovRad / 2) / kSide;  // size of a pixel at 1 m
 

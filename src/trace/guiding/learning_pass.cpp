@@ -83,8 +83,6 @@ class LearningPaths {
         threads_(threads) {
     context_.records_bounces = true;
     context_.learned = nullptr;
-    context_.first_hits = false;
-    context_.shifts_hits = false;
     context_.settings.guides = context_.settings.surfaces = context_.settings.light_groups = false;
     context_.settings.samples = kAllSamples;  // rays one by one: the same hits whichever rays are traced together
   }

@@ -31,7 +31,6 @@ struct FrameContext {
   TraceSettings settings;
   bool last_ray_finds_light = false;      // the ray after the last scattering event can still find light
   bool last_ray_needs_surface = false;    // it can find light on a surface, so visibility of the sky is not enough
-  bool first_hits = false;                // SparseFrame::first_hits are collected
   bool shifts_hits = false;               // samples may hit what the pinhole sees elsewhere in the frame
   const LearnedLight* learned = nullptr;  // where light arrives from; empty: directions follow the BSDF alone
   bool records_bounces = false;           // Workspace::bounces are collected, for learning

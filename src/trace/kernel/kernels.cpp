@@ -54,8 +54,7 @@ FrameContext make_frame_context(const Scene& scene, const RenderScene& render_sc
   context.last_ray_needs_surface = features.unlit || (lamps_found_by_chance && features.emissive_triangles);
   context.last_ray_finds_light =
       context.last_ray_needs_surface || (light_found_by_chance && scene.environment.present());
-  context.first_hits = settings.surfaces;
-  context.shifts_hits = settings.surfaces && (camera.has_lens() || camera.moves() || render_scene.blurs);
+  context.shifts_hits = camera.has_lens() || camera.moves() || render_scene.blurs;
   return context;
 }
 
