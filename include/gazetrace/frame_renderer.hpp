@@ -75,7 +75,7 @@ struct TracedFrame {
   SamplingMap map;
   SparseFrame sparse;
   // Of the samples that told where the frame's own belong, and were discarded: those of the pilot, of the first look of
-  // `contrast_strength`, and the paths of TraceSettings::learn_light.
+  // `contrast_strength`. The paths of TraceSettings::learn_light are counted here, too, but are no samples.
   TraceStats first_look;
   Prediction prediction;
   StageTimes times;  // plan_ms, pilot_ms and trace_ms

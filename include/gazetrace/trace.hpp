@@ -56,8 +56,8 @@ struct TraceSettings {
   double pixel_cone = 0;
   // The frame first learns from some paths of its own where its light arrives from, and draws bounces towards it
   // (PosedScene::learn_light). Means do not change. Frames take less samples for the same noise where most of the sky
-  // is hidden, and a little more time where it is not.
-  bool learn_light = false;
+  // is hidden, and a little more time where it is not. FrameRenderer does it; trace() itself only follows `learned`.
+  bool learn_light = true;
   // What the frame has learned: trace() draws bounces by it. Empty: by the BSDF alone, whatever `learn_light` says.
   std::shared_ptr<const LearnedLight> learned;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
@@ -154,6 +154,7 @@ struct RegionTraceStats {
 
 struct TraceStats {
   std::uint64_t samples = 0;
+  std::uint64_t learning_paths = 0;  // of PosedScene::learn_light(); no samples, but their rays are among the rays
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
   std::uint64_t non_finite_samples = 0;  // such samples count as black and are always reported here

@@ -22,6 +22,11 @@ std::string joined(const std::vector<std::string>& texts) {
   return line;
 }
 
+// What is on by default has a second flag that turns it off: --no-NAME.
+std::string flags_of(const Option& flag) {
+  return flag.flags + (flag.defaults == std::vector<std::string>{"true"} ? ",!--no-" + flag.name : "");
+}
+
 }  // namespace
 
 void bind_options(CLI::App& app, const OptionList& options, const TakeOption& take) {
@@ -30,7 +35,7 @@ void bind_options(CLI::App& app, const OptionList& options, const TakeOption& ta
     CLI::Option* option = nullptr;
     if (described->shape == OptionShape::flag) {
       option = app.add_flag_function(
-          described->flags, [take, described](std::int64_t count) { take(*described, {count > 0 ? "true" : "false"}); },
+          flags_of(*described), [take, described](std::int64_t count) { take(*described, {count > 0 ? "true" : "false"}); },
           described->help);
     } else {
       option = app.add_option(

@@ -17,7 +17,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr SealedKind kTraced{"gazetrace traced 3", "file of a traced frame",
+constexpr SealedKind kTraced{"gazetrace traced 4", "file of a traced frame",
                              "give the folder that `stage` trace wrote into",
                              "trace this frame again, with `stage` trace and `resume`",
                              "trace this frame again with the settings of `stage` finish"};
@@ -26,6 +26,7 @@ constexpr SealedKind kTraced{"gazetrace traced 3", "file of a traced frame",
 template <class Stats, class Visit>
 void each_count(Stats& stats, Visit& visit) {
   visit(stats.samples);
+  visit(stats.learning_paths);
   visit(stats.rays_primary);
   visit(stats.rays_bounce);
   visit(stats.rays_shadow);

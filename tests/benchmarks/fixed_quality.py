@@ -18,7 +18,7 @@ stands for itself. A margin around each belongs to what FovVideoVDP sees and has
 (`compare --pooling-weights`). Outside of the windows test and reference show the same picture. `--whole` traces and scores
 whole frames instead, to see what the windows change.
 
-Raw samples are rendered once, at 64 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
+References and raw samples are traced without learned light. Raw samples are rendered once, at 64 samples a pixel, a fresh pattern for each frame. Their score at N samples is that of a
 clip whose differences from the reference are divided by the root of N / 64; the line `scaling` shows how well that holds, by a
 clip that was rendered at 16. Rare light is cut off by the display less the more samples there are, and samples of a sequence are
 better than independent ones, so that raw samples are a little better than they are scaled to be.
@@ -31,9 +31,10 @@ budgets around it, and never beyond the smallest and the largest one. `--paper`:
 what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are used again. Needs numpy, scipy and OpenEXR.
 
 `--tool-in-windows`, where whole frames are too dear: the tool chooses its rates for one whole frame (`--falloff visible`), and
-the clip is traced with these rates in the windows only. What it would have cost follows from what a sample of that whole frame
-took, for all samples of all frames that the clip reads (those after its end as well), and from what the clip took beside its
-samples, which it takes for the whole frame: first hits, sums, filter, files. The same price of a sample is that of raw frames.
+the clip is traced with these rates in the windows only. What it would have cost follows from what tracing that whole frame took,
+pilot and learning of light included, for all frames that the clip reads (those after its end as well), and from what the clip took
+beside its samples, which it takes for the whole frame: first hits, sums, filter, files. Raw frames cost what a whole frame of one
+raw sample a pixel takes, in proportion.
 Everything is processor time, so that other work on the machine matters less.
 
 Beside each score stand two judges that nothing was optimised for: `cortical`, the relative squared error weighted by cortical
@@ -61,6 +62,7 @@ DISPLAYS = {"desktop": (1708, 961, 28), "hmd": (1131, 1209, 13)}
 FRAMES_PER_SECOND = 24
 RAW_SPP = 64
 OUTSIDE_SPP = 1 / 256
+RAW = ["--filter", "none", "--no-learn-light"]
 METRICS = ("fovvideovdp", "flicker")
 
 
@@ -114,10 +116,10 @@ class Scene:
     def in_windows(self, name, frames, spp, seed):
         """Raw samples, `spp` of them a pixel within the windows."""
         if self.asked.whole:
-            return self.render(name, frames, "--falloff", "uniform", "--filter", "none", "--spp", spp, "--seed", seed)
+            return self.render(name, frames, *RAW, "--falloff", "uniform", "--spp", spp, "--seed", seed)
         rates = self.folder / f"rates-{spp}.exr"
         write_exr(rates, {"Y": numpy.where(self.bench.windows.is_traced, spp, OUTSIDE_SPP)})
-        return self.render(name, frames, "--falloff", "map", "--density-map", rates, "--filter", "none", "--seed", seed)
+        return self.render(name, frames, *RAW, "--falloff", "map", "--density-map", rates, "--seed", seed)
 
     def halves(self, frame):
         """Two independent references of a frame. At rest each is the mean of four frames."""
@@ -191,34 +193,33 @@ class Scene:
 
     def loading(self):
         if "loading" not in self.costs:
-            self.costs["loading"] = run(self.asked.program, "render", *self.options, "--size", "8x8", "--falloff", "uniform", "--spp", "1",
-                                        "--filter", "none", "--frames", "1", "--quiet", "--overwrite", "-o", self.folder / "loading.####.exr")
+            self.costs["loading"] = run(self.asked.program, "render", *self.options, "--size", "8x8", *RAW, "--falloff", "uniform",
+                                        "--spp", "1", "--frames", "1", "--quiet", "--overwrite", "-o", self.folder / "loading.####.exr")
         return self.costs["loading"]
 
     def seconds_of_sample(self):
-        """Of a whole frame's samples."""
-        self.rates(self.asked.budgets[0], None)
-        name = f"rates-of-nowhere-{self.asked.budgets[0]:g}"
-        samples, seconds, pilot = self.traced(name)
-        return seconds / (samples - pilot)
+        """Of a raw whole frame's samples."""
+        self.render("raw-samples", "1", *RAW, "--falloff", "uniform", "--spp", "1")
+        samples, seconds, _ = self.traced("raw-samples")
+        return seconds / samples
 
     def beside_samples(self, name, frames):
         """Processor seconds a frame that the clip took for all but its samples."""
         return max(self.costs[name] - self.traced(name)[1] - self.loading(), 0) / frames
 
     def rates(self, budget, looks_at, seed=0):
-        """The rates that the tool chooses for a whole frame."""
+        """The rates that the tool chooses for a whole frame, its samples, and processor seconds of tracing it."""
         name = f"rates-of-{told(looks_at)}-{budget:g}{of_seed(seed)}"
         folder = self.render(name, "1", "--falloff", "visible", "--budget-spp", f"{budget:g}", "--filter", "guided", "--max-block", "1",
                              "--map", self.folder / f"{name}.exr", "--overwrite",
                              *(["--gaze-at", looks_at] if looks_at is not None else []), *seed_options(seed))
         assert folder.exists()
         with OpenEXR.File(str(self.folder / f"{name}.exr"), separate_channels=True) as file:
-            return file.channels()["samples_per_pixel"].pixels.astype(numpy.float32), self.traced(name)[0]
+            return file.channels()["samples_per_pixel"].pixels.astype(numpy.float32), *self.traced(name)[:2]
 
     def tool_in_windows(self, gaze, looks_at, budget, seed=0):
         name = f"in-windows-{self.asked.accumulate.replace(' ', '')}-{told(looks_at)}-{budget:g}{of_seed(seed)}"
-        rates, samples_of_frame = self.rates(budget, looks_at, seed)
+        rates, samples_of_frame, seconds_of_frame = self.rates(budget, looks_at, seed)
         path = self.folder / f"{name}.exr"
         write_exr(path, {"Y": numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP)})
         frames = self.asked.frames
@@ -228,7 +229,7 @@ class Scene:
         # How many frames were traced for those that are shown.
         in_windows = float(numpy.where(self.bench.windows.is_traced, rates, OUTSIDE_SPP).sum())
         traced_frames = self.traced(name)[0] / in_windows
-        cost = self.seconds_of_sample() * samples_of_frame * traced_frames / frames + self.beside_samples(name, frames)
+        cost = seconds_of_frame * traced_frames / frames + self.beside_samples(name, frames)
         print(f"  {name}: {samples_of_frame / rates.size:.2f} samples a pixel of {traced_frames:.1f} frames for {frames}, beside samples "
               f"{self.beside_samples(name, frames) / self.seconds_of_sample() / rates.size:.2f} a pixel", flush=True)
         return cost, self.score(name, gaze, lambda frame: read_exr(folder / f"f.{frame:04d}.exr")), budget
@@ -248,7 +249,7 @@ class Scene:
             for frames in ("1", "1-3"):
                 name = f"cost-{spp}-{frames}"
                 if name not in self.costs:
-                    shutil.rmtree(self.render(name, frames, "--falloff", "uniform", "--filter", "none", "--spp", str(spp)))
+                    shutil.rmtree(self.render(name, frames, *RAW, "--falloff", "uniform", "--spp", str(spp)))
         of_frame = {spp: (self.costs[f"cost-{spp}-1-3"] - self.costs[f"cost-{spp}-1"]) / 2 for spp in (2, 10)}
         of_sample = (of_frame[10] - of_frame[2]) / 8
         fixed = max(of_frame[2] - 2 * of_sample, 0)

@@ -102,7 +102,9 @@ constexpr Word kWords[] = {
     {"z-order", [](TraceSettings& s) { s.sample_pattern = SamplePattern::z_order; }},
 };
 
+// Only the rows that say so learn light.
 TraceSettings settings_of(const std::string& row, TraceSettings settings) {
+  settings.learn_light = false;
   for (std::size_t begin = 0; begin < row.size();) {
     const std::size_t end = std::min(row.find('+', begin), row.size());
     const std::string word = row.substr(begin, end - begin);

@@ -56,7 +56,7 @@ class Bench:
 
     def reference(self, folder, scene):
         """The same picture for every frame."""
-        self.render(folder, scene, "--frames", "1", "--filter", "none", "--spp", self.asked.reference_spp, "--seed", "77")
+        self.render(folder, scene, "--frames", "1", "--filter", "none", "--no-learn-light", "--spp", self.asked.reference_spp, "--seed", "77")
         for frame in self.frames[1:]:
             link = folder / f"f.{frame:04d}.exr"
             if not link.exists():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""--learn-light: frames that learn from paths of their own have the same bits alone, in parts and with any threads."""
+"""Learned light: frames that learn from paths of their own have the same bits alone, in parts and with any threads."""
 
 import csv
 import json
@@ -27,7 +27,7 @@ class LearnedLight(harness.CliTest):
         super().setUp()
         self.write("hall.gltf", json.dumps(hall_gltf()))
 
-    def render(self, folder, *more, frames="1-3", learning=("--learn-light",)):
+    def render(self, folder, *more, frames="1-3", learning=()):
         self.run_ok("render", *JOB, "--frames", frames, *learning, *more, "-o", f"{folder}/f.####.exr")
         return self.pictures(folder)
 
@@ -59,13 +59,13 @@ class LearnedLight(harness.CliTest):
     def test_it_changes_pictures_and_is_counted(self):
         raw = ["--falloff", "uniform", "--spp", "2", "--filter", "none"]
         learned = self.render("learned", *raw)
-        plain = self.render("plain", *raw, learning=())
+        plain = self.render("plain", *raw, learning=("--no-learn-light",))
         self.assertTrue(all(learned[key] != plain[key] for key in plain))
         for row in self.rows("learned"):
-            self.assertGreater(int(row["pilot_samples"]), 0)
-            self.assertEqual(int(row["samples"]) - int(row["pilot_samples"]), 2 * 192 * 128)
+            self.assertGreater(int(row["learning_paths"]), 0)
+            self.assertEqual(int(row["samples"]), 2 * 192 * 128)  # what is discarded is no sample
             self.assertGreater(float(row["pilot_ms"]), 0)
-        self.assertEqual({row["pilot_samples"] for row in self.rows("plain")}, {"0"})
+        self.assertEqual({row["learning_paths"] for row in self.rows("plain")}, {"0"})
 
 
 if __name__ == "__main__":

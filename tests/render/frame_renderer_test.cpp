@@ -76,13 +76,15 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
     TraceSettings trace = settings.trace;
     trace.surfaces = filter == "guided";
     trace.halves = filter == "guided";
+    trace.learned = by_hand.learn_light(request.camera, request.frame, kWidth, kHeight, trace).light;
     const SparseFrame sparse = by_hand.trace(request.camera, request.frame, map, trace);
     const Guides guides = by_hand.guides(request.camera, kWidth, kHeight, {.edge_rays = 4});
     const Frame frame = Reconstruction({filter, {}}).frame(sparse, map, filter == "guided" ? &guides : nullptr);
     EXPECT_TRUE(same_picture(rendered.frame.radiance, frame.radiance, filter));
     EXPECT_EQ(rendered.frame.variance, frame.variance);
     EXPECT_EQ(rendered.samples.samples, map.samples());
-    EXPECT_EQ(rendered.first_look.samples, 0U);
+    EXPECT_EQ(rendered.first_look.samples, 0U);  // the paths that it learns from are none
+    EXPECT_GT(rendered.first_look.learning_paths, 0U);
     EXPECT_EQ(rendered.times.guides_ms > 0, filter == "guided");
     EXPECT_EQ(history.passed, std::vector<std::int32_t>{3});
   }

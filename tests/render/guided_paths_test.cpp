@@ -147,8 +147,8 @@ TEST(GuidedPaths, SameBitsForAnyThreads) {
     TraceSettings settings;
     settings.seed = seed;
     LightLearning learning = tracer.at_rest().learn_light(kCamera, frame, kLearnWidth, kLearnHeight, settings);
-    EXPECT_GT(learning.stats.samples, 5000U);
-    EXPECT_LE(learning.stats.samples, 6200U);
+    EXPECT_GT(learning.stats.learning_paths, 5000U);
+    EXPECT_LE(learning.stats.learning_paths, 6200U);
     settings.learned = learning.light;
     return tracer.at_rest().trace(kCamera, 1, map, settings);
   };

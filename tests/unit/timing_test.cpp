@@ -23,6 +23,7 @@ TimingRow example(std::int32_t frame) {
   row.trace_cpu_ms = 2469;
   row.pixels = 8'294'400;
   row.samples = 18'446'744'073'709'551'615U;
+  row.learning_paths = 65'536;
   row.rays_primary = 3;
   row.rays_bounce = 4;
   row.rays_shadow = 5;
@@ -47,7 +48,7 @@ TEST(Timing, ColumnsNameTheirUnits) {
       testing::ElementsAre(
           "frame", "plan_ms", "pilot_ms", "trace_ms", "guides_ms", "reconstruct_ms", "temporal_ms", "exposure_ms",
           "layers_ms", "color_ms", "write_ms", "total_ms", "trace_cpu_ms", "pixels", "samples", "pilot_samples",
-          "rays_primary", "rays_bounce", "rays_shadow", "rejected_rays", "non_finite_samples", "fovea_pixels",
+          "learning_paths", "rays_primary", "rays_bounce", "rays_shadow", "rejected_rays", "non_finite_samples", "fovea_pixels",
           "fovea_samples", "fovea_cpu_ms", "intermediate_pixels", "intermediate_samples", "intermediate_cpu_ms",
           "periphery_pixels", "periphery_samples", "periphery_cpu_ms", "uniform_pixels", "uniform_samples",
           "uniform_cpu_ms", "block_1_pixels", "block_1_samples", "block_1_cpu_ms", "block_2_pixels", "block_2_samples",
@@ -110,7 +111,7 @@ TEST(Timing, BrokenTables) {
   const std::string header = timing_csv_text({});
   expect_error(path, "", "first line");
   expect_error(path, "frame,ms\n", "timing.csv:1: the columns");
-  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 66");
+  expect_error(path, header + "1,2,3\n", "timing.csv:2: 3 columns instead of 67");
   std::string letters = timing_csv_text({example(1)});
   letters.replace(letters.find("1234.5000"), 9, "fast");
   expect_error(path, letters, "timing.csv:2: 'fast' is not a number for column trace_ms");

@@ -125,8 +125,7 @@ class LearningPaths {
       stats_.rejected_rays += counts[range].rejected;
       region.cpu_ns += cpu_ns[range];
     }
-    stats_.samples += paths;
-    region.samples += paths;
+    stats_.learning_paths += paths;
   }
 
   [[nodiscard]] LearnedLight learned() const { return {records_, threads_}; }

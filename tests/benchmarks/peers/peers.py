@@ -15,8 +15,8 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
   cost        us * own: time to a given error. The ratio column is that of gazetrace
   furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
 
-`gazetrace-learned` is gazetrace with --learn-light, whose gain depends on the size of the frame: measure its error at
-the size of the timed pictures.
+`gazetrace-plain` is gazetrace with --no-learn-light. What learned light gains depends on the size of the frame: measure errors
+at the size of the timed pictures.
 
 Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
 """
@@ -52,7 +52,7 @@ def command(program, options, scene, out, size, spp, seed, view):
     """The command line of one render; `view` holds environment, camera and materials."""
     common = ["--size", size, "--spp", str(spp), "--seed", str(seed), "--bounces", str(options.bounces), *view]
     if program.startswith("gazetrace"):
-        common += ["--learn-light"] if program == "gazetrace-learned" else []
+        common += ["--no-learn-light"] if program == "gazetrace-plain" else []
         materials = ["--diffuse", "matte" if options.materials == "matte" else "burley"]
         # The scene without normal maps links to the files of the one that was given.
         return [options.gazetrace, "render", scene, *common, *materials, "--allow-outside", "--filter", "none",
@@ -178,7 +178,7 @@ def main():
         for r in range(options.rounds):
             for p in programs:
                 # What a frame learns from takes time once: against a run without, all of it counts.
-                without = "gazetrace" if p == "gazetrace-learned" else p
+                without = "gazetrace-plain" if p == "gazetrace" else p
                 low, _ = run(without, options, options.scene, folder, options.size, few, 2 * r, view)
                 high, _ = run(p, options, options.scene, folder, options.size, many, 2 * r + 1, view)
                 times[p].append((high - low) / (width * height * (many - few)) * 1e6)
