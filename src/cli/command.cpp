@@ -35,8 +35,8 @@ void bind_options(CLI::App& app, const OptionList& options, const TakeOption& ta
     CLI::Option* option = nullptr;
     if (described->shape == OptionShape::flag) {
       option = app.add_flag_function(
-          flags_of(*described), [take, described](std::int64_t count) { take(*described, {count > 0 ? "true" : "false"}); },
-          described->help);
+          flags_of(*described),
+          [take, described](std::int64_t count) { take(*described, {count > 0 ? "true" : "false"}); }, described->help);
     } else {
       option = app.add_option(
           described->flags,
