@@ -246,7 +246,7 @@ class Talk(harness.CliTest):
         done = self.run_ok("render", "--config", str(harness.SOURCE / "examples" / "example.toml"), "--size", "160x90", "--frames", "1-2", "-o", "f.####.exr")
         with open(self.folder / "timing.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        seconds = sum(float(row["trace_ms"]) for row in rows) / 1000
+        seconds = sum(float(row["trace_ms"]) + float(row["pilot_ms"]) for row in rows) / 1000
         samples = sum(int(row["samples"]) for row in rows)
         rays = sum(int(row[kind]) for row in rows for kind in ("rays_primary", "rays_bounce", "rays_shadow"))
         told = re.search(r"([0-9.]+) M samples/s and ([0-9.]+) M rays/s", done.stdout + done.stderr)
