@@ -55,7 +55,8 @@ bool uses_history(const FrameSettings& settings);
 // Wall time of the stages, ms.
 struct StageTimes {
   double plan_ms = 0;         // the sampling map
-  double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`, and learning of light
+  double learn_ms = 0;        // PosedScene::learn_light()
+  double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`
   double trace_ms = 0;        // samples, those of the first look included, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
   double reconstruct_ms = 0;  // the filter, and the enhancement
@@ -78,7 +79,7 @@ struct TracedFrame {
   // `contrast_strength`. The paths of TraceSettings::learn_light are counted here, too, but are no samples.
   TraceStats first_look;
   Prediction prediction;
-  StageTimes times;  // plan_ms, pilot_ms and trace_ms
+  StageTimes times;  // plan_ms, learn_ms, pilot_ms and trace_ms
 };
 
 struct RenderedFrame {

@@ -116,6 +116,8 @@ struct Option {
   std::function<void(const std::vector<std::string>& values, const std::string& place)> check;
 
   [[nodiscard]] bool is(Trait trait) const;
+  // A flag that is set unless it is turned off. The command line takes --no-NAME for it.
+  [[nodiscard]] bool is_on_by_default() const;
 };
 using OptionList = std::vector<const Option*>;
 [[nodiscard]] const Option* find_option(const OptionList& options, const std::string& name);

@@ -154,7 +154,7 @@ struct RegionTraceStats {
 
 struct TraceStats {
   std::uint64_t samples = 0;
-  std::uint64_t learning_paths = 0;  // of PosedScene::learn_light(); no samples, but their rays are among the rays
+  std::uint64_t learning_paths = 0;  // of PosedScene::learn_light(): no samples, and nothing else here counts them
   std::uint64_t rays_primary = 0, rays_bounce = 0, rays_shadow = 0;
   std::uint64_t rejected_rays = 0;
   std::uint64_t non_finite_samples = 0;  // such samples count as black and are always reported here
@@ -166,7 +166,7 @@ struct TraceStats {
 // What a frame has learned of its light.
 struct LightLearning {
   std::shared_ptr<const LearnedLight> light;  // empty where it would not pay, and with LightSampling::light_only
-  TraceStats stats;                           // of the paths that it took, which are discarded
+  std::uint64_t paths = 0;                    // that it took, which are discarded
 };
 
 // What the tracer found: one entry per site of the map, in the map's order.

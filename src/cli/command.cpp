@@ -22,9 +22,8 @@ std::string joined(const std::vector<std::string>& texts) {
   return line;
 }
 
-// What is on by default has a second flag that turns it off: --no-NAME.
 std::string flags_of(const Option& flag) {
-  return flag.flags + (flag.defaults == std::vector<std::string>{"true"} ? ",!--no-" + flag.name : "");
+  return flag.flags + (flag.is_on_by_default() ? ",!--no-" + flag.name : "");
 }
 
 }  // namespace

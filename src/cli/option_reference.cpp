@@ -61,6 +61,9 @@ std::string option_section(const Option& option) {
   if (option.shape == OptionShape::repeated) {
     text += " May be given several times.";
   }
+  if (option.is_on_by_default()) {
+    text += fmt::format(" Turned off by `--no-{}`.", option.name);
+  }
   text += fmt::format(" Touches: {}.", joined(touch_names(option.touches), ", "));
   if (option.decides == Decides::file) {
     text += " The content of the file counts, not its name.";
@@ -116,6 +119,9 @@ std::string options_as_json(const JobSchema& schema) {
                                {"needs", option->needs},      {"idle", option->idle_words}};
     if (option->range) {
       one["range"] = option->range->words();
+    }
+    if (option->is_on_by_default()) {
+      one["off"] = "no-" + option->name;
     }
     json.push_back(std::move(one));
   }

@@ -17,7 +17,8 @@ struct Stage {
   const char* name;
   double TimingRow::*ms;
 };
-constexpr std::array<Stage, 11> kStages{{{"plan", &TimingRow::plan_ms},
+constexpr std::array<Stage, 12> kStages{{{"plan", &TimingRow::plan_ms},
+                                         {"learn", &TimingRow::learn_ms},
                                          {"pilot", &TimingRow::pilot_ms},
                                          {"trace", &TimingRow::trace_ms},
                                          {"guides", &TimingRow::guides_ms},
@@ -42,9 +43,8 @@ Totals add_up(const SequenceResult& result) {
     for (std::size_t i = 0; i < kStages.size(); ++i) {
       totals.ms[i] += row.*kStages[i].ms;
     }
-    // A pilot's samples and rays are among those of the row, and so are the rays of learning paths. They were traced in
-    // their own time.
-    totals.trace_ms += row.trace_ms + (row.pilot_samples + row.learning_paths > 0 ? row.pilot_ms : 0);
+    // A pilot's samples and rays are among those of the row, and were traced in its own time.
+    totals.trace_ms += row.trace_ms + (row.pilot_samples > 0 ? row.pilot_ms : 0);
     totals.samples += row.samples;
     totals.rays += row.rays_primary + row.rays_bounce + row.rays_shadow;
     totals.pixels += row.pixels;

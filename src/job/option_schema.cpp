@@ -51,6 +51,10 @@ bool Option::is(Trait trait) const {
   return std::find(traits.begin(), traits.end(), trait) != traits.end();
 }
 
+bool Option::is_on_by_default() const {
+  return shape == OptionShape::flag && defaults == std::vector<std::string>{"true"};
+}
+
 const Option* find_option(const OptionList& options, const std::string& name) {
   const auto found =
       std::find_if(options.begin(), options.end(), [&](const Option* option) { return option->name == name; });

@@ -21,6 +21,7 @@ template <class Row, class Visit>
 void for_each_column(Row& row, const Visit& visit) {
   visit("frame", row.frame);
   visit("plan_ms", row.plan_ms);
+  visit("learn_ms", row.learn_ms);
   visit("pilot_ms", row.pilot_ms);
   visit("trace_ms", row.trace_ms);
   visit("guides_ms", row.guides_ms);

@@ -32,7 +32,7 @@ std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScen
   }
   LightLearning learning =
       scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, settings_.trace);
-  add_traces(learning.stats, stats);
+  stats.learning_paths += learning.paths;
   return std::move(learning.light);
 }
 
@@ -44,7 +44,7 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   FrameSettings frame_settings = settings_;
   if (settings_.trace.learn_light) {
     frame_settings.trace.learned =
-        timed(times.pilot_ms, [&] { return learned_light(scene, request, traced.first_look); });
+        timed(times.learn_ms, [&] { return learned_light(scene, request, traced.first_look); });
   }
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;

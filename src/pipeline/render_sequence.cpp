@@ -98,7 +98,7 @@ RenderedFrame finish_from_file(const FrameRenderer& renderer, const FrameRequest
     throw Error(ErrorKind::input, traced_file_name(settings.output.run_directory, request.frame),
                 "holds a frame of another size", "trace it again");
   }
-  row.total_ms += traced.times.plan_ms + traced.times.pilot_ms + traced.times.trace_ms;
+  row.total_ms += traced.times.plan_ms + traced.times.learn_ms + traced.times.pilot_ms + traced.times.trace_ms;
   return renderer.finish(request, std::move(traced), history);
 }
 

@@ -36,6 +36,7 @@ void ReplicaClip::look(double spp, std::uint64_t round) {
   TemporalHistory none;
   RenderedFrame rendered = FrameRenderer(tracer_, base).render(judged_.runs.front().front(), none);
   add_traces(rendered.samples, stats_);
+  add_traces(rendered.first_look, stats_);
   ++looks_;
   spp_ = spp;
   base_ = std::move(rendered.frame.radiance);

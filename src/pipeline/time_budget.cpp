@@ -71,8 +71,9 @@ ImageGray scaled(ImageGray rates, double by) {
 FrameCost cost_of(const TimingRow& row) {
   FrameCost cost;
   cost.sample_ms = row.trace_ms / traced_samples(row);
-  cost.fixed_ms = row.plan_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms + row.color_ms +
-                  row.write_ms + std::max(0.0, row.pilot_ms - cost.sample_ms * static_cast<double>(row.pilot_samples));
+  cost.fixed_ms = row.plan_ms + row.learn_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms +
+                  row.color_ms + row.write_ms +
+                  std::max(0.0, row.pilot_ms - cost.sample_ms * static_cast<double>(row.pilot_samples));
   return cost;
 }
 
@@ -145,10 +146,12 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   const double most = std::max(least, settings_.foveation.max_spp);
 
   FrameSettings looking = settings_;  // of what traces no whole frame
+  double learn_ms = 0;
   if (looking.trace.learn_light) {
-    LightLearning learning =
-        scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, looking.trace);
-    add_traces(learning.stats, rehearsal_);
+    LightLearning learning = timed(learn_ms, [&] {
+      return scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, looking.trace);
+    });
+    rehearsal_.learning_paths += learning.paths;
     looking.trace.learned = std::move(learning.light);
   }
 
@@ -169,6 +172,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   // than a sample falls on a pixel, every further one is a further pixel's, too, and costs more.
   const auto settings_at = [&](double spp) {
     FrameSettings settings = with_budget(settings_, spp);
+    settings.light_of = [&](const FrameRequest&) { return looking.trace.learned; };
     settings.trace.seed = hash_combine(settings.trace.seed, kRehearsalTag);
     if (by_pilot) {
       settings.foveation.falloff = "uniform";
@@ -190,7 +194,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   }
   cost_ = with_slope(cost_of(row), {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},
                      {few.times.trace_ms, static_cast<double>(few.samples.samples)});
-  cost_.fixed_ms += guessed_output_ms(output_, pixels);
+  cost_.fixed_ms += learn_ms + guessed_output_ms(output_, pixels);
 
   if (by_pilot) {
     // What deciding the rates takes, and how much more or less a sample costs where they put it.

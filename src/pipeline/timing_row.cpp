@@ -46,9 +46,9 @@ TimingRow timing_row(const FrameRequest& request) {
 TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   TimingRow row = timing_row(request);
-  for (double* ms : {&row.plan_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms, &row.temporal_ms,
-                     &row.exposure_ms, &row.layers_ms, &row.color_ms, &row.write_ms, &row.total_ms, &row.trace_cpu_ms,
-                     &row.peak_memory_mib}) {
+  for (double* ms : {&row.plan_ms, &row.learn_ms, &row.pilot_ms, &row.trace_ms, &row.guides_ms, &row.reconstruct_ms,
+                     &row.temporal_ms, &row.exposure_ms, &row.layers_ms, &row.color_ms, &row.write_ms, &row.total_ms,
+                     &row.trace_cpu_ms, &row.peak_memory_mib}) {
     *ms = kUnknown;
   }
   row.region_cpu_ms.fill(kUnknown);
@@ -93,6 +93,7 @@ void add_samples(const TraceStats& samples, const TraceStats& first_look, const 
 }
 
 void add_traced(const TimingRow& part, TimingRow& whole) {
+  whole.learn_ms += part.learn_ms;
   whole.trace_ms += part.trace_ms;
   whole.trace_cpu_ms += part.trace_cpu_ms;
   whole.total_ms += part.total_ms;

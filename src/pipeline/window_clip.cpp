@@ -17,6 +17,7 @@
 #include "pipeline/clip_score.hpp"
 #include "pipeline/frame_window.hpp"
 #include "pipeline/trace_counts.hpp"
+#include "trace/guiding/learned_light.hpp"
 
 namespace gazetrace {
 namespace {
@@ -30,6 +31,7 @@ constexpr double kAroundSpp = 1;
 constexpr double kPowerOfSquare = 0.9;
 // Of a picture alone: examples of it that are judged.
 constexpr std::size_t kStillRuns = 2;
+constexpr std::size_t kMostLightBytes = std::size_t{256} << 20U;  // of what frames have learned, kept at once
 constexpr std::uint64_t kPilots = 4;  // whose rates are averaged, where all frames share them
 
 FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
@@ -309,7 +311,14 @@ void WindowClip::learn_light(const FrameRequest& request) {
   own.seed = hash_combine(own.seed, kLookTag);
   LightLearning learning = tracer_.at({request.shutter_open_ns, request.shutter_close_ns})
                                .learn_light(request.camera, request.frame, request.width_px, request.height_px, own);
-  add_traces(learning.stats, stats_);
+  stats_.learning_paths += learning.paths;
+  // A frame whose light was dropped learns it again, bit by bit.
+  const std::size_t bytes = learning.light ? learning.light->bytes() : 0;
+  if (light_bytes_ + bytes > kMostLightBytes) {
+    light_.clear();
+    light_bytes_ = 0;
+  }
+  light_bytes_ += bytes;
   light_.emplace(light_number(request), std::move(learning.light));
 }
 
@@ -411,7 +420,6 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   const auto number = [&](const FrameRequest& request) { return is_same ? 0 : request.frame; };
   const auto find_rates = [&](const std::vector<FrameRequest>& requests) {
     for (const FrameRequest& request : requests) {
-      learn_light(request);
       if (is_uniform || rates.contains(number(request))) {
         continue;
       }
@@ -429,7 +437,10 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   WindowPictures pictures;
   for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
     FrameSettings own = settings_in_window(w, hash_combine(kLookTag, round));
-    own.light_of = [&](const FrameRequest& request) { return light_.at(light_number(request)); };
+    own.light_of = [&](const FrameRequest& request) {
+      learn_light(request);
+      return light_.at(light_number(request));
+    };
     if (is_uniform) {
       own.foveation.budget_spp = spp;
     } else {

@@ -78,6 +78,7 @@ class WindowClip {
   const ColorPipeline& color_;
   TraceStats stats_;
   std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by light_number()
+  std::size_t light_bytes_ = 0;                                        // of all of them
   JudgedWindows windows_;
   std::vector<const FrameRequest*> views_;  // that have a reference: the first frame, or every judged one
   // What lies around the windows: of the first frame of each run or, at rest, of the first.

@@ -45,7 +45,8 @@ double peak_memory_since_mib() {
 }
 
 double render_ms(const TimingRow& row) {
-  return row.plan_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms;
+  return row.plan_ms + row.learn_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms +
+         row.temporal_ms;
 }
 
 // Adds up the timing of the frames of one run; the scores are added later.
@@ -56,7 +57,7 @@ class RunSum {
     run_.rays += static_cast<double>(row.rays_primary + row.rays_bounce + row.rays_shadow);
     run_.pixels += static_cast<double>(row.pixels);
     run_.lost_samples += static_cast<double>(row.rejected_rays + row.non_finite_samples);
-    run_.trace_reconstruct_ms += row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms;
+    run_.trace_reconstruct_ms += row.learn_ms + row.pilot_ms + row.trace_ms + row.guides_ms + row.reconstruct_ms;
     stored_.trace_ms += row.trace_ms;
     stored_.trace_cpu_ms += row.trace_cpu_ms;
     const std::vector<std::string>& regions = timing_regions();

@@ -74,11 +74,12 @@ std::string light_of_references(const SweepPlan& plan) {
   for (const SweepReference& reference : plan.references) {
     const TraceSettings& trace = reference.pipeline.trace;
     texts.push_back(fmt::format(
-        "{} bounces, a pixel cone of {:g} pixels, a bounce cone of {:g} rad, {}, {}, filter {}", trace.max_bounces,
+        "{} bounces, a pixel cone of {:g} pixels, a bounce cone of {:g} rad, {}, {}, {}, filter {}", trace.max_bounces,
         trace.pixel_cone, trace.bounce_cone_rad,
         trace.clamp_indirect > 0 ? fmt::format("indirect light clamped at {:g}", trace.clamp_indirect)
                                  : "indirect light not clamped",
-        trace.russian_roulette ? "Russian roulette" : "no Russian roulette", reference.pipeline.reconstruction.filter));
+        trace.russian_roulette ? "Russian roulette" : "no Russian roulette",
+        trace.learn_light ? "learned light" : "no learned light", reference.pipeline.reconstruction.filter));
   }
   return each_once(texts);
 }
@@ -185,7 +186,8 @@ std::string sweep_methods(const SweepPlan& plan, const Results& results) {
       "alternates, "
       "after {} unmeasured frame(s) of each row; intervals are 95 % by Student's t over the repeats, those of "
       "speed-ups "
-      "over the logarithms of pairwise ratios. Times are of the sampling map, path tracing, reconstruction and "
+      "over the logarithms of pairwise ratios. Times are of the sampling map, learning of light, path tracing, "
+      "reconstruction and "
       "temporal "
       "accumulation (and bilinear upscaling of linear light, where a picture was rendered on fewer pixels), without "
       "exposure, colour and files; speed-up is "

@@ -32,9 +32,9 @@ what the tool scores at that cost. Pictures and scores that OUT_FOLDER holds are
 
 `--tool-in-windows`, where whole frames are too dear: the tool chooses its rates for one whole frame (`--falloff visible`), and
 the clip is traced with these rates in the windows only. What it would have cost follows from what tracing that whole frame took,
-pilot and learning of light included, for all frames that the clip reads (those after its end as well), and from what the clip took
-beside its samples, which it takes for the whole frame: first hits, sums, filter, files. Raw frames cost what a whole frame of one
-raw sample a pixel takes, in proportion.
+its pilot included, for all frames that the clip reads (those after its end as well), and from what the clip took beside its
+samples, which it takes for the whole frame: learning of light, first hits, sums, filter, files. Raw frames cost what a whole
+frame of one raw sample a pixel takes, in proportion.
 Everything is processor time, so that other work on the machine matters less.
 
 Beside each score stand two judges that nothing was optimised for: `cortical`, the relative squared error weighted by cortical

@@ -119,7 +119,9 @@ int run(int argc, char** argv) {
   };
   FrameSettings settings = resolved.pipeline;
   settings.foveation.falloff = "uniform";
+  settings.trace.learn_light = false;
   const RenderedFrame best = render(settings, 1000003);
+  settings.trace.learn_light = resolved.pipeline.trace.learn_light;
   const double ev = best.exposure_ev;
   const ImageGray reference = luminance_of(best.frame.radiance);
   const ImageGray reference_shown = displayed(best.frame.radiance, color, ev);

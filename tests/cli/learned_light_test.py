@@ -64,7 +64,7 @@ class LearnedLight(harness.CliTest):
         for row in self.rows("learned"):
             self.assertGreater(int(row["learning_paths"]), 0)
             self.assertEqual(int(row["samples"]), 2 * 192 * 128)  # what is discarded is no sample
-            self.assertGreater(float(row["pilot_ms"]), 0)
+            self.assertGreater(float(row["learn_ms"]), 0)
         self.assertEqual({row["learning_paths"] for row in self.rows("plain")}, {"0"})
 
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/luminance.hpp"
+#include "gazetrace/frame_renderer.hpp"
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 #include "support/picture_evidence.hpp"
@@ -147,8 +148,8 @@ TEST(GuidedPaths, SameBitsForAnyThreads) {
     TraceSettings settings;
     settings.seed = seed;
     LightLearning learning = tracer.at_rest().learn_light(kCamera, frame, kLearnWidth, kLearnHeight, settings);
-    EXPECT_GT(learning.stats.learning_paths, 5000U);
-    EXPECT_LE(learning.stats.learning_paths, 6200U);
+    EXPECT_GT(learning.paths, 5000U);
+    EXPECT_LE(learning.paths, 6200U);
     settings.learned = learning.light;
     return tracer.at_rest().trace(kCamera, 1, map, settings);
   };
@@ -156,6 +157,39 @@ TEST(GuidedPaths, SameBitsForAnyThreads) {
   EXPECT_TRUE(same_samples(one, traced(2, 3, 1), map));
   EXPECT_TRUE(same_samples(one, traced(7, 3, 1), map));
   EXPECT_FALSE(same_samples(one, traced(1, 3, 2), map)) << "frames learn from paths of their own";
+}
+
+// By default, and counted as what it is.
+TEST(GuidedPaths, AFrameLearnsBeforeItIsTraced) {
+  const Scene scene = room(false, false);
+  PathTracer tracer(scene, threads(2));
+  FrameRequest request;
+  request.frame = 1;
+  request.width_px = kLearnWidth;
+  request.height_px = kLearnHeight;
+  request.camera = kCamera;
+  request.view = view_of_perspective(50 * kRadPerDeg, kLearnWidth, kLearnHeight);
+  FrameSettings settings;
+  settings.foveation.falloff = "uniform";
+  settings.foveation.uniform_spp = 1;
+  settings.reconstruction.filter = "none";
+  const TracedFrame frame = FrameRenderer(tracer, settings).trace(request);
+
+  TraceSettings by_hand = settings.trace;
+  by_hand.learned = learn(tracer, by_hand);
+  ASSERT_NE(by_hand.learned, nullptr);
+  EXPECT_TRUE(same_samples(frame.sparse, tracer.at_rest().trace(kCamera, 1, frame.map, by_hand), frame.map));
+  EXPECT_EQ(frame.sparse.stats.samples, static_cast<std::uint64_t>(kLearnWidth) * kLearnHeight);
+  EXPECT_EQ(frame.first_look.samples, 0U);
+  EXPECT_GT(frame.first_look.learning_paths, 5000U);
+  EXPECT_EQ(frame.first_look.rays_primary, 0U);
+  EXPECT_GT(frame.times.learn_ms, 0);
+  EXPECT_EQ(frame.times.pilot_ms, 0);
+
+  settings.trace.learn_light = false;
+  const TracedFrame plain = FrameRenderer(tracer, settings).trace(request);
+  EXPECT_FALSE(same_samples(frame.sparse, plain.sparse, frame.map));
+  EXPECT_EQ(plain.first_look.learning_paths, 0U);
 }
 
 TEST(GuidedPaths, NothingToLearn) {

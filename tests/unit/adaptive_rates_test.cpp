@@ -136,6 +136,10 @@ TEST(TimeBudget, SamplesOfAPilotAreNotPaidTwice) {
   EXPECT_DOUBLE_EQ(cost_of(row).fixed_ms, 70);
   row.pilot_ms = 0;  // a first look, whose time is part of trace_ms
   EXPECT_DOUBLE_EQ(cost_of(row).sample_ms, 500.0 / 6e5);
+  row.learn_ms = 25;  // which no sample pays, whoever else took a look
+  row.learning_paths = 65536;
+  EXPECT_DOUBLE_EQ(cost_of(row).sample_ms, 500.0 / 6e5);
+  EXPECT_DOUBLE_EQ(cost_of(row).fixed_ms, 95);
 }
 
 TEST(TimeBudget, AFrameThatTookTwiceAsLongMakesTracingTwiceAsDear) {

@@ -42,8 +42,9 @@ void add_path_options(JobSchema& schema) {
   schema
       .flag("--learn-light", trace(&TraceSettings::learn_light), Touch::tracing,
             "Each frame learns from some paths of its own where its light arrives from, and draws bounces towards it: "
-            "less noise indoors and under arcades, without bias. --no-learn-light leaves it out")
+            "less noise indoors and under arcades, without bias")
       .with(Trait::trade_off)
+      .with(Trait::always_stated)
       .idle_when({{"with `light-sampling` light",
                    [](const JobSettings& job) { return job.trace.light_sampling == LightSampling::light_only; }}});
   schema

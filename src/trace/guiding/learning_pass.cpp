@@ -10,7 +10,6 @@
 #include "core/hash.hpp"
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
-#include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
 #include "trace/samples/sample_list.hpp"
 
@@ -95,12 +94,10 @@ class LearningPaths {
     const std::uint64_t batches = (paths + kBatchSize - 1) / kBatchSize;
     const auto ranges = static_cast<std::size_t>(std::min<std::uint64_t>(batches, kMostRanges));
     std::vector<std::vector<LearningRecord>> found(ranges);
-    std::vector<KernelCounts> counts(ranges);
-    std::vector<std::int64_t> cpu_ns(ranges);
     parallel_for(ranges, threads_, [&](std::size_t range) {
       const FlushDenormals flush;
-      const std::int64_t begin_ns = thread_cpu_ns();
       const auto work = std::make_unique<Workspace>();
+      KernelCounts unused;
       const std::uint64_t end = batches * (range + 1) / ranges;
       for (std::uint64_t batch = batches * range / ranges; batch < end; ++batch) {
         if (context_.settings.stop && context_.settings.stop()) {
@@ -110,26 +107,19 @@ class LearningPaths {
         const int count = static_cast<int>(std::min<std::uint64_t>(kBatchSize, paths - first));
         fill(first, count, grid, seed, frame_, width_px_, height_px_, work->samples);
         work->bounces.clear();
-        kernel_(context_, *work, count, counts[range]);
+        kernel_(context_, *work, count, unused);
         keep(*work, first, found[range]);
       }
-      cpu_ns[range] = thread_cpu_ns() - begin_ns;
     });
-    RegionTraceStats& region = stats_.regions.emplace_back();
     for (std::size_t range = 0; range < ranges; ++range) {
       records_.insert(records_.end(), found[range].begin(), found[range].end());
       found[range] = {};
-      stats_.rays_primary += counts[range].rays_primary;
-      stats_.rays_bounce += counts[range].rays_bounce;
-      stats_.rays_shadow += counts[range].rays_shadow;
-      stats_.rejected_rays += counts[range].rejected;
-      region.cpu_ns += cpu_ns[range];
     }
-    stats_.learning_paths += paths;
+    paths_ += paths;
   }
 
   [[nodiscard]] LearnedLight learned() const { return {records_, threads_}; }
-  [[nodiscard]] const TraceStats& stats() const { return stats_; }
+  [[nodiscard]] std::uint64_t paths() const { return paths_; }
 
  private:
   static constexpr std::uint64_t kMostRanges = 64;
@@ -139,7 +129,7 @@ class LearningPaths {
   std::int32_t frame_;
   int width_px_, height_px_, threads_;
   std::vector<LearningRecord> records_;
-  TraceStats stats_;
+  std::uint64_t paths_ = 0;
 };
 
 }  // namespace
@@ -155,7 +145,7 @@ LightLearning learn_light(const FrameContext& context, Kernel kernel, std::int32
     learning.trace(paths - glimpse, 1);
     learned = learning.learned();
   }
-  return {learned.pays() ? std::make_shared<const LearnedLight>(std::move(learned)) : nullptr, learning.stats()};
+  return {learned.pays() ? std::make_shared<const LearnedLight>(std::move(learned)) : nullptr, learning.paths()};
 }
 
 }  // namespace gazetrace

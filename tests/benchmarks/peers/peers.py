@@ -18,6 +18,9 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
 `gazetrace-plain` is gazetrace with --no-learn-light. What learned light gains depends on the size of the frame: measure errors
 at the size of the timed pictures.
 
+With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
+what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones.
+
 Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
 """
 
@@ -36,6 +39,8 @@ import tempfile
 import numpy as np
 
 HERE = pathlib.Path(__file__).parent
+VARIANTS = {"mitsuba-scalar": "scalar_rgb", "mitsuba-llvm": "llvm_ad_rgb"}
+PROGRAMS = ("gazetrace", "gazetrace-plain", "cycles", *VARIANTS)
 
 
 def read_picture(path):
@@ -51,7 +56,7 @@ def read_picture(path):
 def command(program, options, scene, out, size, spp, seed, view):
     """The command line of one render; `view` holds environment, camera and materials."""
     common = ["--size", size, "--spp", str(spp), "--seed", str(seed), "--bounces", str(options.bounces), *view]
-    if program.startswith("gazetrace"):
+    if program in ("gazetrace", "gazetrace-plain"):
         common += ["--no-learn-light"] if program == "gazetrace-plain" else []
         materials = ["--diffuse", "matte" if options.materials == "matte" else "burley"]
         # The scene without normal maps links to the files of the one that was given.
@@ -61,7 +66,7 @@ def command(program, options, scene, out, size, spp, seed, view):
         return [options.blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
                 str(HERE / "cycles_render.py"), "--", scene, str(out), "--threads", str(os.cpu_count()), *common,
                 "--materials", options.materials]
-    variant = {"mitsuba-scalar": "scalar_rgb", "mitsuba-llvm": "llvm_ad_rgb"}[program]
+    variant = VARIANTS[program]
     return [options.mitsuba_python, str(HERE / "mitsuba_render.py"), scene, str(out), "--variant", variant, *common,
             "--materials", options.materials]
 
@@ -160,8 +165,12 @@ def main():
     parser.add_argument("--error-spp", type=int, default=64)
     parser.add_argument("--reference-spp", type=int, default=2048)
     parser.add_argument("--seeds", type=int, default=8)
+    parser.add_argument("--base-spp", type=int, default=1, help="samples a pixel of the picture that those of --rates are timed against")
+    parser.add_argument("--rates", help="samples a pixel, each with a table of its own, in place of --spp, --error-spp and --error-size")
     options = parser.parse_args()
     programs = options.programs.split(",")
+    if unknown := [p for p in programs if p not in PROGRAMS]:
+        parser.error(f"--programs: '{unknown[0]}' is none of {', '.join(PROGRAMS)}")
     # With =, since a value may begin with a minus.
     view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
 
@@ -172,37 +181,59 @@ def main():
             options.scene = without_normal_maps(options.scene, folder / "scene")
         shine = {p: furnace(p, options, folder) if options.materials == "matte" else math.nan for p in programs}
 
-        few, many = map(int, options.spp.split(","))
-        width, height = map(int, options.size.split("x"))
-        times = {p: [] for p in programs}
+        if options.rates:
+            # Beside a picture of few samples, so that loading and building cancel.
+            rates = [int(rate) for rate in options.rates.split(",")]
+            pairs = {rate: (options.base_spp, options.base_spp + rate) for rate in rates}
+            error_size = options.size
+        else:
+            few, many = map(int, options.spp.split(","))
+            pairs = {options.error_spp: (few, many)}
+            error_size = options.error_size
+
+        times = {rate: {p: [] for p in programs} for rate in pairs}
         for r in range(options.rounds):
-            for p in programs:
-                # What a frame learns from takes time once: against a run without, all of it counts.
-                without = "gazetrace-plain" if p == "gazetrace" else p
-                low, _ = run(without, options, options.scene, folder, options.size, few, 2 * r, view)
-                high, _ = run(p, options, options.scene, folder, options.size, many, 2 * r + 1, view)
-                times[p].append((high - low) / (width * height * (many - few)) * 1e6)
+            for rate, (few, many) in pairs.items():
+                for p in programs:
+                    times[rate][p].append(sample_us(p, options, folder, view, few, many, r))
 
         def picture(p, spp, seed):
-            return read_picture(run(p, options, options.scene, folder, options.error_size, spp, seed, view)[1])
+            return read_picture(run(p, options, options.scene, folder, error_size, spp, seed, view)[1])
 
         reference = {}
         if options.seeds > 0:
             reference = {p: picture(p, options.reference_spp, 1000) for p in programs}
             common = sum(reference.values()) / len(programs)
-        own, shared = {p: [] for p in programs}, {p: [] for p in programs}
-        # What the reference's own noise adds: a share spp / reference spp of the picture's.
-        noise = 1 + options.error_spp / options.reference_spp
-        for s in range(options.seeds):
-            for p in programs:
-                x = picture(p, options.error_spp, 2000 + s)
-                own[p].append(relative_mse(x, reference[p]) / noise * options.error_spp)
-                shared[p].append(relative_mse(x, common) / (1 + (noise - 1) / len(programs)) * options.error_spp)
+        own = {rate: {p: [] for p in programs} for rate in pairs}
+        shared = {rate: {p: [] for p in programs} for rate in pairs}
+        for rate in pairs:
+            # What the reference's own noise adds: a share spp / reference spp of the picture's.
+            noise = 1 + rate / options.reference_spp
+            for s in range(options.seeds):
+                for p in programs:
+                    x = picture(p, rate, 2000 + s)
+                    own[rate][p].append(relative_mse(x, reference[p]) / noise * rate)
+                    shared[rate][p].append(relative_mse(x, common) / (1 + (noise - 1) / len(programs)) * rate)
 
     target = sum(0.5**k for k in range(options.bounces + 1))
-    print(f"{pathlib.Path(options.scene).name}, {options.materials}, {options.bounces} bounces, {options.size}, "
-          f"{options.rounds} rounds of {few} and {many} spp; error at {options.error_size}, {options.error_spp} spp, "
-          f"reference {options.reference_spp} spp, {options.seeds} seeds; furnace {target}")
+    for rate, (few, many) in pairs.items():
+        print(f"{pathlib.Path(options.scene).name}, {options.materials}, {options.bounces} bounces, {options.size}, "
+              f"{options.rounds} rounds of {few} and {many} spp; error at {error_size}, {rate} spp, "
+              f"reference {options.reference_spp} spp, {options.seeds} seeds; furnace {target}")
+        print_table(programs, times[rate], own[rate], shared[rate], shine)
+
+
+def sample_us(program, options, folder, view, few, many, r):
+    """CPU time per sample of the round `r`, us."""
+    width, height = map(int, options.size.split("x"))
+    # What a frame learns from takes time once: against a run without, all of it counts.
+    without = "gazetrace-plain" if program == "gazetrace" else program
+    low, _ = run(without, options, options.scene, folder, options.size, few, 2 * r, view)
+    high, _ = run(program, options, options.scene, folder, options.size, many, 2 * r + 1, view)
+    return (high - low) / (width * height * (many - few)) * 1e6
+
+
+def print_table(programs, times, own, shared, shine):
     print(f"{'program':16}{'us':>8}{'least':>8}{'most':>8}{'own':>9}{'+-':>8}{'common':>9}{'+-':>8}{'cost':>9}{'ratio':>7}"
           f"{'furnace':>9}")
     mean = lambda v: statistics.mean(v) if v else math.nan
@@ -212,7 +243,7 @@ def main():
         t = times[p] or [math.nan]
         print(f"{p:16}{median(times[p]):8.3f}{min(t):8.3f}{max(t):8.3f}{mean(own[p]):9.3f}"
               f"{interval(own[p]):8.3f}{mean(shared[p]):9.3f}{interval(shared[p]):8.3f}{cost[p]:9.3f}"
-              f"{cost[p] / cost[programs[0]]:7.2f}{shine[p]:9.4f}")
+              f"{cost[p] / cost[programs[0]]:7.2f}{shine[p]:9.4f}", flush=True)
 
 
 if __name__ == "__main__":

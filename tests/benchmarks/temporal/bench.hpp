@@ -85,6 +85,7 @@ class Bench {
     settings.foveation.falloff = "uniform";
     settings.foveation.uniform_spp = reference_spp(still) / 2;
     settings.reconstruction.filter = "linear";
+    settings.trace.learn_light = false;
     settings.trace.seed = seed;
     return settings;
   }
