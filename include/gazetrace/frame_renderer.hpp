@@ -108,6 +108,12 @@ struct ReconstructedFrame {
   StageTimes times;
 };
 
+// What a frame has learned of its light. A frame at rest with it would learn the same, bit by bit, and takes it over.
+struct KnownLight {
+  std::optional<FrameRequest> request;  // of the frame that has learned it; empty: none has
+  std::shared_ptr<const LearnedLight> light;
+};
+
 class FrameRenderer {
  public:
   // Error(usage) for a filter that is not there. Keeps a reference to `tracer`, which must outlive it; several
@@ -121,6 +127,8 @@ class FrameRenderer {
   // `history` is that of the frames before, and then that of this frame as well; it begins empty. Error(usage) with
   // AccumulateMode::two_sided, which takes reconstruct() and join().
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
+  // With `known`, which saves time and changes nothing else. It begins empty, and is then that of this frame.
+  [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const;
 
   // AccumulateMode::two_sided in two steps: the stages up to reconstruction, and, once the frames around it are there,
   // accumulation and all that follows. `window` holds frames in order, at most AccumulateSettings::window on each side
@@ -145,13 +153,14 @@ class FrameRenderer {
 
   // The first two stages alone. With TraceSettings::samples their sums are what can be joined with other parts'.
   [[nodiscard]] TracedFrame trace(const FrameRequest& request) const;
+  [[nodiscard]] TracedFrame trace(const FrameRequest& request, KnownLight& known) const;
   // All stages after them: render() is finish(request, trace(request), history), in one process or in two.
   [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
 
  private:
   // Adds the paths that it takes to `stats`.
   [[nodiscard]] std::shared_ptr<const LearnedLight> learned_light(const PosedScene& scene, const FrameRequest& request,
-                                                                  TraceStats& stats) const;
+                                                                  KnownLight& known, TraceStats& stats) const;
   // Each group of light by a filter that is linear; none unless they are asked for.
   [[nodiscard]] std::vector<ImageRgb> filtered_light(const TracedFrame& traced, StageTimes& times) const;
   void add_layers(const FrameRequest& request, std::vector<ImageRgb> light, RenderedFrame& rendered) const;

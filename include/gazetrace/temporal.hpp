@@ -57,6 +57,10 @@ struct AccumulateSettings {
 
   // Only two_sided uses this: so many frames before a frame and after it are read.
   std::int32_t window = 4;
+  // Only two_sided uses this, where nothing moves in the whole window: so many consecutive frames, counted from frame 1
+  // on, show one sum of those that are in the windows of all of them, which is filtered once. 0: (window + 1) / 3, at
+  // least 1.
+  std::int32_t hold = 0;
   // Only reproject uses this.
   AccumulateOrder order = AccumulateOrder::after;
 

@@ -293,8 +293,9 @@ class PosedScene {
 
   // Traces one path for every eight pixels, at most 65536, and learns from them for each place from where light
   // arrives (Müller, Gross and Novák, "Practical Path Guiding for Efficient Light-Transport Simulation", 2017). The
-  // result depends on the pose, the arguments and the seed, not on what is traced with it.
-  [[nodiscard]] LightLearning learn_light(const Camera& camera, std::int32_t frame, int width_px, int height_px,
+  // result depends on the pose, the arguments and the seed, not on what is traced with it: frames between which nothing
+  // moves learn the same.
+  [[nodiscard]] LightLearning learn_light(const Camera& camera, int width_px, int height_px,
                                           const TraceSettings& settings) const;
 
   // First hits of every pixel, for filters. Error(usage) for numbers of rays out of range.

@@ -26,17 +26,25 @@ FrameRenderer::FrameRenderer(PathTracer& tracer, FrameSettings settings)
       tables_(matte_tables(tracer.scene(), settings_.layers.mattes)) {}
 
 std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScene& scene, const FrameRequest& request,
-                                                                 TraceStats& stats) const {
+                                                                 KnownLight& known, TraceStats& stats) const {
   if (settings_.light_of) {
     return settings_.light_of(request);
   }
-  LightLearning learning =
-      scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, settings_.trace);
-  stats.learning_paths += learning.paths;
-  return std::move(learning.light);
+  if (!known.request || !at_rest(*known.request, request)) {
+    known = {};
+    LightLearning learning = scene.learn_light(request.camera, request.width_px, request.height_px, settings_.trace);
+    stats.learning_paths += learning.paths;
+    known = {request, std::move(learning.light)};
+  }
+  return known.light;
 }
 
 TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
+  KnownLight none;
+  return trace(request, none);
+}
+
+TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known) const {
   TracedFrame traced;
   StageTimes& times = traced.times;
   const PosedScene scene = timed(times.trace_ms, [&] { return tracer_->at(shutter_of(request)); });
@@ -44,7 +52,7 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
   FrameSettings frame_settings = settings_;
   if (settings_.trace.learn_light) {
     frame_settings.trace.learned =
-        timed(times.learn_ms, [&] { return learned_light(scene, request, traced.first_look); });
+        timed(times.learn_ms, [&] { return learned_light(scene, request, known, traced.first_look); });
   }
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;
@@ -88,11 +96,16 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request) const {
 }
 
 RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history) const {
+  KnownLight none;
+  return render(request, history, none);
+}
+
+RenderedFrame FrameRenderer::render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const {
   if (settings_.accumulate.mode == AccumulateMode::two_sided) {
     throw Error(ErrorKind::usage, "`accumulate`", "two-sided reads the frames around a frame, and here is one alone",
                 "reconstruct them and join them, or call render_sequence()");
   }
-  return finish(request, trace(request), history);
+  return finish(request, trace(request, known), history);
 }
 
 RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const {

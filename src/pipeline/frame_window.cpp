@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/frame_window.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -55,6 +56,12 @@ FrameWindow::Run FrameWindow::at_rest_with(std::int32_t frame, const Run& window
     ++run.last;
   }
   return run;
+}
+
+FrameWindow::Run FrameWindow::held_in(const Run& window, std::int32_t frame) const {
+  const ShownAtRest shown = shown_at_rest(frame, renderer_->settings().accumulate);
+  return {static_cast<std::int32_t>(std::max<std::int64_t>(window.first, shown.first)),
+          static_cast<std::int32_t>(std::min<std::int64_t>(window.last, shown.last))};
 }
 
 const Guides* FrameWindow::guides_of(const FrameRequest& request, StageTimes& times) {
@@ -194,7 +201,7 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
       continue;
     }
     const TracedFrame& traced =
-        held_.emplace(frame, Held{renderer_->trace(request_of(frame)), {}}).first->second.traced;
+        held_.emplace(frame, Held{renderer_->trace(request_of(frame), light_), {}}).first->second.traced;
     if (frame != request.frame && !counted_.contains(frame)) {
       add_traces(traced.sparse.stats, others);
       add_traces(traced.first_look, others);
@@ -222,8 +229,9 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
   for (std::int32_t frame = run.last + 1; frame <= window.last; ++frame) {
     read.push_back(&alone(frame, true, times));
   }
-  const ReconstructedFrame& own = run.first == run.last ? alone(request.frame, window.first != window.last, times)
-                                                        : rested(run, request.frame, run != window, times);
+  const Run summed = run == window ? held_in(window, request.frame) : run;
+  const ReconstructedFrame& own = summed.first == summed.last ? alone(request.frame, window.first != window.last, times)
+                                                              : rested(summed, request.frame, run != window, times);
   read.insert(read.begin() + static_cast<std::ptrdiff_t>(at), &own);
   RenderedFrame rendered = renderer_->join(read, at, history);
   rendered.others = std::move(others);

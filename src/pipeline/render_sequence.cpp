@@ -61,8 +61,8 @@ std::set<std::int32_t> rendered_frames(const FramePlan& plan, const ResumePlan& 
 
 // A part of the samples: their sums are all that becomes of the frame.
 void render_samples(const FrameRenderer& renderer, const FrameRequest& request, const PipelineSettings& settings,
-                    TimingRow& row, SequenceResult& result) {
-  const TracedFrame traced = renderer.trace(request);
+                    KnownLight& light, TimingRow& row, SequenceResult& result) {
+  const TracedFrame traced = renderer.trace(request, light);
   add_samples(traced.sparse.stats, traced.first_look, traced.map, row);
   keep_bad_samples(traced.sparse.stats, result);
   add_times(traced.times, row);
@@ -76,8 +76,8 @@ void render_samples(const FrameRenderer& renderer, const FrameRequest& request, 
 
 // The first half of the stages: what was found is all that becomes of the frame until a run finishes it.
 void trace_to_file(const FrameRenderer& renderer, const FrameRequest& request, const PipelineSettings& settings,
-                   TimingRow& row, SequenceResult& result) {
-  const TracedFrame traced = renderer.trace(request);
+                   KnownLight& light, TimingRow& row, SequenceResult& result) {
+  const TracedFrame traced = renderer.trace(request, light);
   add_samples(traced.sparse.stats, traced.first_look, traced.map, row);
   keep_bad_samples(traced.sparse.stats, result);
   add_times(traced.times, row);
@@ -317,6 +317,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   if (own.foveation.target.time_s) {
     time_budget.emplace(tracer, own, settings.output);
   }
+  KnownLight light;
   TimingLog timing(paths.timing, resume.kept_rows);
   FileJournal journal(paths.record, resume.kept_files);
   if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
@@ -328,7 +329,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     if (time_budget) {
       return FrameRenderer(tracer, time_budget->settings_for(request, history)).render(request, history);
     }
-    return window ? window->render(request, history) : renderer.render(request, history);
+    return window ? window->render(request, history) : renderer.render(request, history, light);
   };
   // The frame's files and its row. Error(interrupted) leaves both as they were, and the history as well: a frame is
   // given up only while it is traced.
@@ -337,9 +338,9 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
     RenderedFrame rendered;
     result.files.clear();
     if (settings.trace.samples) {
-      render_samples(renderer, request, settings, row, result);
+      render_samples(renderer, request, settings, light, row, result);
     } else if (settings.stage == SequenceStage::trace) {
-      trace_to_file(renderer, request, settings, row, result);
+      trace_to_file(renderer, request, settings, light, row, result);
     } else {
       const std::string behind = uses_history(settings) ? history_text(history.passed) : std::string();
       rendered = settings.stage == SequenceStage::finish ? finish_from_file(renderer, request, settings, history, row)

@@ -14,6 +14,7 @@
 #include "gazetrace/metrics.hpp"
 #include "pipeline/clip_score.hpp"
 #include "pipeline/trace_counts.hpp"
+#include "temporal/frames_at_rest.hpp"
 
 namespace gazetrace {
 namespace {
@@ -50,8 +51,12 @@ std::int64_t ReplicaClip::reach() const {
 }
 
 SummedFrames ReplicaClip::summed_in(std::int64_t frame) const {
-  const std::int64_t first = std::max<std::int64_t>(1, frame - reach());
-  return {static_cast<std::size_t>(first), static_cast<std::size_t>(frame + reach() + 1 - first)};
+  if (reach() == 0) {
+    return {static_cast<std::size_t>(frame), 1};
+  }
+  const ShownAtRest shown = shown_at_rest(frame, settings_.accumulate);
+  const std::int64_t first = std::max<std::int64_t>(1, shown.first);
+  return {static_cast<std::size_t>(first), static_cast<std::size_t>(shown.last + 1 - first)};
 }
 
 SummedFrames ReplicaClip::example_of(std::int64_t frame, std::size_t n) const {

@@ -149,7 +149,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   double learn_ms = 0;
   if (looking.trace.learn_light) {
     LightLearning learning = timed(learn_ms, [&] {
-      return scene.learn_light(request.camera, request.frame, request.width_px, request.height_px, looking.trace);
+      return scene.learn_light(request.camera, request.width_px, request.height_px, looking.trace);
     });
     rehearsal_.learning_paths += learning.paths;
     looking.trace.learned = std::move(learning.light);

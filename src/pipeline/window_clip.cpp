@@ -310,7 +310,7 @@ void WindowClip::learn_light(const FrameRequest& request) {
   TraceSettings own = settings_.trace;
   own.seed = hash_combine(own.seed, kLookTag);
   LightLearning learning = tracer_.at({request.shutter_open_ns, request.shutter_close_ns})
-                               .learn_light(request.camera, request.frame, request.width_px, request.height_px, own);
+                               .learn_light(request.camera, request.width_px, request.height_px, own);
   stats_.learning_paths += learning.paths;
   // A frame whose light was dropped learns it again, bit by bit.
   const std::size_t bytes = learning.light ? learning.light->bytes() : 0;

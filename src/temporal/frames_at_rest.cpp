@@ -152,6 +152,16 @@ void join_surfaces(const SamplingMap& map, const std::vector<std::vector<Surface
 
 }  // namespace
 
+ShownAtRest shown_at_rest(std::int64_t frame, const AccumulateSettings& settings) {
+  const std::int64_t window = settings.window;
+  const std::int64_t hold =
+      std::clamp<std::int64_t>(settings.hold > 0 ? settings.hold : (window + 1) / 3, 1, window + 1);
+  const std::int64_t since_first = frame - 1;
+  const std::int64_t place = (since_first % hold + hold) % hold;  // among those that show the same
+  const std::int64_t first = frame - place;
+  return {first + hold - 1 - window, first + window};
+}
+
 bool same_sites(const SamplingMap& a, const SamplingMap& b) {
   const auto same = [](const Site& x, const Site& y) {
     return x.block_x == y.block_x && x.block_y == y.block_y && x.pixels == y.pixels && x.region == y.region;

@@ -8,9 +8,17 @@
 
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/guides.hpp"
+#include "gazetrace/temporal.hpp"
 #include "gazetrace/trace.hpp"
 
 namespace gazetrace {
+
+// The frames whose samples a frame at rest shows, the last one included, as far as they exist: those in the windows of
+// all frames that show the same (AccumulateSettings::hold). They hold the frame itself.
+struct ShownAtRest {
+  std::int64_t first = 0, last = 0;
+};
+ShownAtRest shown_at_rest(std::int64_t frame, const AccumulateSettings& settings);
 
 // Whether both maps divide the frame into the same sites, whatever the numbers of samples.
 bool same_sites(const SamplingMap& a, const SamplingMap& b);

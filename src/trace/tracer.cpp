@@ -413,7 +413,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   return out;
 }
 
-LightLearning PosedScene::learn_light(const Camera& camera, std::int32_t frame, int width_px, int height_px,
+LightLearning PosedScene::learn_light(const Camera& camera, int width_px, int height_px,
                                       const TraceSettings& settings) const {
   tracer_->pose(times_);
   if (settings.light_sampling == LightSampling::light_only) {
@@ -422,8 +422,8 @@ LightLearning PosedScene::learn_light(const Camera& camera, std::int32_t frame, 
   const CameraRays rays(camera, height_px);
   const FrameContext context =
       make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
-  return gazetrace::learn_light(context, kernel_of(tracer_->kernel_variant(), settings.diffuse), frame, width_px,
-                                height_px, tracer_->options.threads);
+  return gazetrace::learn_light(context, kernel_of(tracer_->kernel_variant(), settings.diffuse), width_px, height_px,
+                                tracer_->options.threads);
 }
 
 Guides PosedScene::guides(const Camera& camera, int width_px, int height_px, const GuideSettings& settings) const {

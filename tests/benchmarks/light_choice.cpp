@@ -204,7 +204,7 @@ void take_turn(Row& row, const PosedScene& scene, const Camera& camera, const Sa
   row.settings.seed = seed;
   const std::int64_t begin_ns = thread_cpu_ns();
   if (row.settings.learn_light) {
-    row.settings.learned = scene.learn_light(camera, 0, map.width_px, map.height_px, row.settings).light;
+    row.settings.learned = scene.learn_light(camera, map.width_px, map.height_px, row.settings).light;
   }
   const SparseFrame frame = scene.trace(camera, 0, map, row.settings);
   const std::int64_t end_ns = thread_cpu_ns();

@@ -76,7 +76,7 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
     TraceSettings trace = settings.trace;
     trace.surfaces = filter == "guided";
     trace.halves = filter == "guided";
-    trace.learned = by_hand.learn_light(request.camera, request.frame, kWidth, kHeight, trace).light;
+    trace.learned = by_hand.learn_light(request.camera, kWidth, kHeight, trace).light;
     const SparseFrame sparse = by_hand.trace(request.camera, request.frame, map, trace);
     const Guides guides = by_hand.guides(request.camera, kWidth, kHeight, {.edge_rays = 4});
     const Frame frame = Reconstruction({filter, {}}).frame(sparse, map, filter == "guided" ? &guides : nullptr);

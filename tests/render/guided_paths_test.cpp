@@ -50,7 +50,7 @@ Scene room(bool glossy, bool layered) {
 const Camera kCamera = camera_at({-2.5, 1.6, 2.0}, {0.8, 0.7, 0});
 
 std::shared_ptr<const LearnedLight> learn(PathTracer& tracer, const TraceSettings& settings) {
-  return tracer.at_rest().learn_light(kCamera, 1, kLearnWidth, kLearnHeight, settings).light;
+  return tracer.at_rest().learn_light(kCamera, kLearnWidth, kLearnHeight, settings).light;
 }
 
 Repeats repeat(PathTracer& tracer, const SamplingMap& map, TraceSettings settings) {
@@ -143,36 +143,64 @@ TEST(GuidedPaths, LessNoiseInARoom) {
 TEST(GuidedPaths, SameBitsForAnyThreads) {
   const Scene scene = room(true, true);
   const SamplingMap map = uniform_map(48, 32, 4);
-  const auto traced = [&](int count, std::uint64_t seed, std::int32_t frame) {
+  const auto traced = [&](int count, std::uint64_t seed) {
     PathTracer tracer(scene, threads(count));
     TraceSettings settings;
     settings.seed = seed;
-    LightLearning learning = tracer.at_rest().learn_light(kCamera, frame, kLearnWidth, kLearnHeight, settings);
+    LightLearning learning = tracer.at_rest().learn_light(kCamera, kLearnWidth, kLearnHeight, settings);
     EXPECT_GT(learning.paths, 5000U);
     EXPECT_LE(learning.paths, 6200U);
     settings.learned = learning.light;
     return tracer.at_rest().trace(kCamera, 1, map, settings);
   };
-  const SparseFrame one = traced(1, 3, 1);
-  EXPECT_TRUE(same_samples(one, traced(2, 3, 1), map));
-  EXPECT_TRUE(same_samples(one, traced(7, 3, 1), map));
-  EXPECT_FALSE(same_samples(one, traced(1, 3, 2), map)) << "frames learn from paths of their own";
+  const SparseFrame one = traced(1, 3);
+  EXPECT_TRUE(same_samples(one, traced(2, 3), map));
+  EXPECT_TRUE(same_samples(one, traced(7, 3), map));
+  EXPECT_FALSE(same_samples(one, traced(1, 4), map));
+}
+
+FrameRequest request_of(std::int32_t frame) {
+  FrameRequest request;
+  request.frame = frame;
+  request.width_px = kLearnWidth;
+  request.height_px = kLearnHeight;
+  request.camera = kCamera;
+  request.view = view_of_perspective(50 * kRadPerDeg, kLearnWidth, kLearnHeight);
+  return request;
+}
+
+FrameSettings one_sample() {
+  FrameSettings settings;
+  settings.foveation.falloff = "uniform";
+  settings.foveation.uniform_spp = 1;
+  settings.reconstruction.filter = "none";
+  return settings;
+}
+
+TEST(GuidedPaths, FramesAtRestLearnOnce) {
+  const Scene scene = room(false, false);
+  PathTracer tracer(scene, threads(2));
+  const FrameRenderer renderer(tracer, one_sample());
+  KnownLight known;
+  EXPECT_GT(renderer.trace(request_of(1), known).first_look.learning_paths, 5000U);
+  const TracedFrame second = renderer.trace(request_of(2), known);
+  EXPECT_EQ(second.first_look.learning_paths, 0U);
+  EXPECT_TRUE(same_samples(second.sparse, renderer.trace(request_of(2)).sparse, second.map));
+
+  FrameRequest moved = request_of(3);
+  moved.camera = camera_at({-2.4, 1.6, 2.0}, {0.8, 0.7, 0});
+  const TracedFrame third = renderer.trace(moved, known);
+  EXPECT_GT(third.first_look.learning_paths, 5000U);
+  EXPECT_TRUE(same_samples(third.sparse, renderer.trace(moved).sparse, third.map));
+  EXPECT_GT(renderer.trace(request_of(4), known).first_look.learning_paths, 5000U);
 }
 
 // By default, and counted as what it is.
 TEST(GuidedPaths, AFrameLearnsBeforeItIsTraced) {
   const Scene scene = room(false, false);
   PathTracer tracer(scene, threads(2));
-  FrameRequest request;
-  request.frame = 1;
-  request.width_px = kLearnWidth;
-  request.height_px = kLearnHeight;
-  request.camera = kCamera;
-  request.view = view_of_perspective(50 * kRadPerDeg, kLearnWidth, kLearnHeight);
-  FrameSettings settings;
-  settings.foveation.falloff = "uniform";
-  settings.foveation.uniform_spp = 1;
-  settings.reconstruction.filter = "none";
+  const FrameRequest request = request_of(1);
+  FrameSettings settings = one_sample();
   const TracedFrame frame = FrameRenderer(tracer, settings).trace(request);
 
   TraceSettings by_hand = settings.trace;

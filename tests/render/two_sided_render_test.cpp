@@ -251,6 +251,47 @@ TEST(TwoSidedRender, AFrameAtRestDoesNotDependOnWhichOthersAreRendered) {
   expect_same_bits(middle.at(6), whole.at(6));
 }
 
+// Frames 4 to 6 show the samples that are in the windows of all three, and not those of 1 and of 9.
+TEST(TwoSidedRender, FramesThatHoldShowOneSum) {
+  const Scene scene = room(false);
+  PipelineSettings settings = settings_of(AccumulateMode::two_sided, 4);
+  settings.accumulate.hold = 3;
+  const auto held = render(scene, plan_of(numbers(1, 10), {}, false), settings);
+  expect_same_bits(held.at(4), held.at(5));
+  expect_same_bits(held.at(4), held.at(6));
+  EXPECT_NE(held.at(4).radiance, held.at(3).radiance);
+  EXPECT_NE(held.at(6).radiance, held.at(7).radiance);
+  settings.accumulate = settings_of(AccumulateMode::two_sided, 3).accumulate;
+  settings.accumulate.hold = 1;
+  expect_same_bits(held.at(5), render(scene, plan_of(numbers(1, 10), {}, false), settings).at(5));
+}
+
+// The eye may move meanwhile.
+TEST(TwoSidedRender, AFrameThatHoldsDoesNotDependOnWhichOthersAreRendered) {
+  const Scene scene = room(false);
+  PipelineSettings settings = guided(AccumulateMode::two_sided, 3, 1);
+  settings.accumulate.hold = 3;
+  settings.foveation.falloff = "visible";
+  settings.foveation.budget_spp = 8;
+  settings.foveation.max_block_px = 1;
+  const auto look_along = [](std::vector<FrameRequest>& frames) {
+    for (FrameRequest& request : frames) {
+      request.gaze_direction_render = request.view.direction(8.0 + 5 * request.frame, 24);
+      request.gaze_direction_true = request.gaze_direction_render;
+    }
+  };
+  FramePlan all = plan_of(numbers(1, 9), {}, false);
+  look_along(all.frames);
+  const auto whole = render(scene, all, settings);
+  settings.threads = 1;
+  FramePlan some = plan_of({5, 6}, {2, 3, 4, 7, 8, 9}, false);
+  look_along(some.frames);
+  look_along(some.around);
+  const auto middle = render(scene, some, settings);
+  expect_same_bits(middle.at(5), whole.at(5));
+  expect_same_bits(middle.at(6), whole.at(6));
+}
+
 // Where only the camera moves, a filter sees what the whole window saw of a frame's surfaces. Edges, which few pixels
 // are on, stay as well known as by the frame's own samples, so that the median over the pixels is what tells. Frames of
 // other views have no mean to compare with: a frame alone with half as many samples as the window is the measure.

@@ -60,6 +60,31 @@ GuideCamera camera() {
   return camera;
 }
 
+TEST(FramesAtRest, ThoseThatShowTheSameReadWhatIsInAllTheirWindows) {
+  AccumulateSettings settings;
+  settings.window = 11;
+  for (const std::int32_t hold : {1, 2, 4, 12}) {
+    settings.hold = hold;
+    for (std::int64_t group = -2; group < 5; ++group) {
+      const std::int64_t first = 1 + group * hold;
+      for (std::int64_t frame = first; frame < first + hold; ++frame) {
+        const ShownAtRest shown = shown_at_rest(frame, settings);
+        EXPECT_EQ(shown.first, first + hold - 1 - 11) << frame;
+        EXPECT_EQ(shown.last, first + 11) << frame;
+      }
+    }
+  }
+  settings.hold = 100;  // more than a window can hold
+  EXPECT_EQ(shown_at_rest(12, settings).first, 1);
+  EXPECT_EQ(shown_at_rest(12, settings).last, 12);
+  settings.hold = 0;
+  EXPECT_EQ(shown_at_rest(3, settings).first, 4 - 11);
+  EXPECT_EQ(shown_at_rest(3, settings).last, 1 + 11);
+  settings.window = 2;
+  EXPECT_EQ(shown_at_rest(7, settings).first, 5);
+  EXPECT_EQ(shown_at_rest(7, settings).last, 9);
+}
+
 TEST(FramesAtRest, SumsAndCountsAreThoseOfAllSamples) {
   const SamplingMap map = map_of(1);
   const SparseFrame one = frame_of(map, [](std::size_t i) { return 0.25F * static_cast<float>(i % 7); });

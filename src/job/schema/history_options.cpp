@@ -20,6 +20,12 @@ void add_reproject_options(JobSchema& schema) {
       .within(0, 100)
       .idle_when({without_two_sided()});
   schema
+      .value("--accumulate-hold", accumulate(&A::hold), "N", Touch::history,
+             "two-sided, where nothing moves: N frames after each other show one sum, which is filtered once; 0: a "
+             "third of `accumulate-window`")
+      .within(0, 100)
+      .idle_when({without_two_sided()});
+  schema
       .value("--accumulate-order", accumulate(&A::order), choices<AccumulateOrder>(), Touch::history,
              "reproject: accumulates before or after the filter fills the pixels between samples; guided allows only "
              "after")

@@ -31,12 +31,12 @@ Grid grid_of(double paths, int width_px, int height_px) {
   return {cells(width_px), cells(height_px)};
 }
 
-void fill(std::uint64_t first, int count, const Grid& grid, std::uint64_t seed, std::int32_t frame, int width_px,
-          int height_px, SampleBatch& out) {
+void fill(std::uint64_t first, int count, const Grid& grid, std::uint64_t seed, int width_px, int height_px,
+          SampleBatch& out) {
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);
     const std::uint64_t path = first + i;
-    const SampleKey key = make_sample_key(seed, frame, path);
+    const SampleKey key = make_sample_key(seed, 0, path);
     const Vec2f u = sample_2d(key, 0, dimension_of(PathDimension::pixel));
     const double x = (static_cast<double>(path % grid.columns) + static_cast<double>(u.x)) /
                      static_cast<double>(grid.columns) * width_px;
@@ -73,13 +73,8 @@ void keep(const Workspace& work, std::uint64_t first, std::vector<LearningRecord
 // The learning paths of a frame.
 class LearningPaths {
  public:
-  LearningPaths(FrameContext context, Kernel kernel, std::int32_t frame, int width_px, int height_px, int threads)
-      : context_(std::move(context)),
-        kernel_(kernel),
-        frame_(frame),
-        width_px_(width_px),
-        height_px_(height_px),
-        threads_(threads) {
+  LearningPaths(FrameContext context, Kernel kernel, int width_px, int height_px, int threads)
+      : context_(std::move(context)), kernel_(kernel), width_px_(width_px), height_px_(height_px), threads_(threads) {
     context_.records_bounces = true;
     context_.learned = nullptr;
     context_.settings.guides = context_.settings.surfaces = context_.settings.light_groups = false;
@@ -105,7 +100,7 @@ class LearningPaths {
         }
         const std::uint64_t first = batch * kBatchSize;
         const int count = static_cast<int>(std::min<std::uint64_t>(kBatchSize, paths - first));
-        fill(first, count, grid, seed, frame_, width_px_, height_px_, work->samples);
+        fill(first, count, grid, seed, width_px_, height_px_, work->samples);
         work->bounces.clear();
         kernel_(context_, *work, count, unused);
         keep(*work, first, found[range]);
@@ -126,7 +121,6 @@ class LearningPaths {
 
   FrameContext context_;
   Kernel kernel_;
-  std::int32_t frame_;
   int width_px_, height_px_, threads_;
   std::vector<LearningRecord> records_;
   std::uint64_t paths_ = 0;
@@ -134,11 +128,10 @@ class LearningPaths {
 
 }  // namespace
 
-LightLearning learn_light(const FrameContext& context, Kernel kernel, std::int32_t frame, int width_px, int height_px,
-                          int threads) {
+LightLearning learn_light(const FrameContext& context, Kernel kernel, int width_px, int height_px, int threads) {
   const double paths = std::min(kMostLearningPaths, static_cast<double>(width_px) * height_px / kPixelsPerLearningPath);
   const double glimpse = std::min(kGlimpsePaths, paths);
-  LearningPaths learning(context, kernel, frame, width_px, height_px, threads);
+  LearningPaths learning(context, kernel, width_px, height_px, threads);
   learning.trace(glimpse, 0);
   LearnedLight learned = learning.learned();
   if (paths > glimpse && learned.promises()) {

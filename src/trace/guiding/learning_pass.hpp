@@ -2,23 +2,19 @@
 // The paths of a frame from which it learns where its light arrives from.
 #pragma once
 
-#include <cstdint>
-
 #include "trace/guiding/learned_light.hpp"
 #include "trace/kernel/kernel.hpp"
 
 namespace gazetrace {
 
 // Paths are spread over the frame evenly, one for every eight pixels but no more than these, each with a scrambling of
-// its own, so that what is learned depends on the view, the frame's number and the seed, and neither on the samples
-// that the frame gets nor on the part of them that is traced. How well a frame learns follows from their number,
-// whatever its size: with 65,536 of them the variance of Sponza's hall falls to 0.48, with a quarter to 0.60, with four
-// times as many to 0.46.
+// its own, so that what is learned depends on the view and the seed, and neither on the samples that the frame gets nor
+// on the part of them that is traced. How well a frame learns follows from their number, whatever its size: with 65,536
+// of them the variance of Sponza's hall falls to 0.48, with a quarter to 0.60, with four times as many to 0.46.
 inline constexpr double kPixelsPerLearningPath = 8, kMostLearningPaths = 65536;
 // Of the first few it is seen whether a scene has anything to learn.
 inline constexpr double kGlimpsePaths = 4096;
 
-LightLearning learn_light(const FrameContext& context, Kernel kernel, std::int32_t frame, int width_px, int height_px,
-                          int threads);
+LightLearning learn_light(const FrameContext& context, Kernel kernel, int width_px, int height_px, int threads);
 
 }  // namespace gazetrace
