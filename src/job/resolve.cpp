@@ -19,6 +19,7 @@
 #include "job/saving.hpp"
 #include "job/scene.hpp"
 #include "job/scene_camera.hpp"
+#include "temporal/frames_at_rest.hpp"
 
 namespace gazetrace {
 namespace {
@@ -166,8 +167,9 @@ void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::in
   const LaterFrames later = differs                                            ? LaterFrames::all_differ
                             : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
                                                                                : LaterFrames::as_early_ones;
-  const JudgedNumbers judged = judged_numbers(length, later, job.fps);
   const std::int32_t reach = job.accumulate.mode == AccumulateMode::two_sided ? job.accumulate.window : 0;
+  const std::int32_t held = reach > 0 && !view_moves ? frames_held(job.accumulate) : 1;
+  const JudgedNumbers judged = judged_numbers(length, later, job.fps, held);
   PlanSettings settings = resolved.plan_settings;
   std::set<std::int32_t> all;
   for (const std::vector<std::int32_t>& run : judged.runs) {

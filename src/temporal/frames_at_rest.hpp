@@ -13,6 +13,9 @@
 
 namespace gazetrace {
 
+// How many frames at rest show one sum, at least 1.
+std::int32_t frames_held(const AccumulateSettings& settings);
+
 // The frames whose samples a frame at rest shows, the last one included, as far as they exist: those in the windows of
 // all frames that show the same (AccumulateSettings::hold). They hold the frame itself.
 struct ShownAtRest {
