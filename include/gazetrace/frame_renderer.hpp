@@ -109,6 +109,7 @@ struct ReconstructedFrame {
 };
 
 // What a frame has learned of its light. A frame at rest with it would learn the same, bit by bit, and takes it over.
+// It belongs to one renderer: others have other settings, and would learn something else.
 struct KnownLight {
   std::optional<FrameRequest> request;  // of the frame that has learned it; empty: none has
   std::shared_ptr<const LearnedLight> light;
@@ -127,7 +128,7 @@ class FrameRenderer {
   // `history` is that of the frames before, and then that of this frame as well; it begins empty. Error(usage) with
   // AccumulateMode::two_sided, which takes reconstruct() and join().
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history) const;
-  // With `known`, which saves time and changes nothing else. It begins empty, and is then that of this frame.
+  // With `known`, which saves time and changes no picture. It begins empty, and is then that of this frame.
   [[nodiscard]] RenderedFrame render(const FrameRequest& request, TemporalHistory& history, KnownLight& known) const;
 
   // AccumulateMode::two_sided in two steps: the stages up to reconstruction, and, once the frames around it are there,

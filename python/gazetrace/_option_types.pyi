@@ -152,6 +152,7 @@ class JobOptions(TypedDict, total=False):
     enhance_contrast: Value | None
     accumulate: Value | None
     accumulate_window: Value | None
+    accumulate_hold: Value | None
     accumulate_order: Value | None
     accumulate_frames: Value | None
     accumulate_blend: Value | None

@@ -17,7 +17,7 @@ std::vector<std::int32_t> run_of(std::int32_t first, std::int32_t count) {
 
 }  // namespace
 
-JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps, std::int32_t held) {
+JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps, std::int32_t group) {
   JudgedNumbers judged;
   judged.sequence_frames = frames;
   if (frames == 1) {
@@ -28,8 +28,9 @@ JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const Frame
   const auto taps = static_cast<std::int32_t>(temporal_filters(rate).sustained.size());
   const std::int32_t first = std::min(frames, taps + 2);
   judged.runs.push_back(run_of(1, first));
-  // A run tells of its last frames, two where none are held: those before them are what the metric has in view.
-  const std::int32_t length = std::min(frames, taps + std::max(1, held - 1));
+  // A run tells of its last frames, two or a group: those before them are what the metric has in view.
+  const std::int32_t least = taps + 1;
+  const std::int32_t length = std::min(frames, std::max(least, taps + group - 1));
   const std::int32_t last = frames - length + 1;
   std::vector<std::int32_t> begins;
   if (later != LaterFrames::as_early_ones) {
@@ -38,10 +39,14 @@ JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const Frame
   if (later == LaterFrames::all_differ) {
     begins.push_back(last);
   }
-  for (const std::int32_t begin : begins) {
+  for (std::int32_t begin : begins) {
     const std::int32_t after = judged.runs.back().back() + 1;
-    if (begin >= after) {
-      judged.runs.push_back(run_of(begin, length));
+    if (later == LaterFrames::as_the_middle) {
+      begin = std::max(begin, after);
+    }
+    const std::int32_t count = std::min(length, frames - begin + 1);
+    if (begin >= after && count >= std::min(least, length)) {
+      judged.runs.push_back(run_of(begin, count));
     }
   }
   return judged;

@@ -168,8 +168,8 @@ void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::in
                             : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
                                                                                : LaterFrames::as_early_ones;
   const std::int32_t reach = job.accumulate.mode == AccumulateMode::two_sided ? job.accumulate.window : 0;
-  const std::int32_t held = reach > 0 && !view_moves ? frames_held(job.accumulate) : 1;
-  const JudgedNumbers judged = judged_numbers(length, later, job.fps, held);
+  const std::int32_t group = reach > 0 && !view_moves ? frames_in_group(job.accumulate) : 1;
+  const JudgedNumbers judged = judged_numbers(length, later, job.fps, group);
   PlanSettings settings = resolved.plan_settings;
   std::set<std::int32_t> all;
   for (const std::vector<std::int32_t>& run : judged.runs) {

@@ -58,8 +58,8 @@ FrameWindow::Run FrameWindow::at_rest_with(std::int32_t frame, const Run& window
   return run;
 }
 
-FrameWindow::Run FrameWindow::held_in(const Run& window, std::int32_t frame) const {
-  const ShownAtRest shown = shown_at_rest(frame, renderer_->settings().accumulate);
+FrameWindow::Run FrameWindow::of_group(const Run& window, std::int32_t frame) const {
+  const ShownAtRest shown = shown_at_rest(frame, window.last, renderer_->settings().accumulate);
   return {static_cast<std::int32_t>(std::max<std::int64_t>(window.first, shown.first)),
           static_cast<std::int32_t>(std::min<std::int64_t>(window.last, shown.last))};
 }
@@ -229,8 +229,8 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
   for (std::int32_t frame = run.last + 1; frame <= window.last; ++frame) {
     read.push_back(&alone(frame, true, times));
   }
-  const Run summed = run == window ? held_in(window, request.frame) : run;
-  const ReconstructedFrame& own = summed.first == summed.last ? alone(request.frame, window.first != window.last, times)
+  const Run summed = run == window ? of_group(window, request.frame) : run;
+  const ReconstructedFrame& own = summed.first == summed.last ? alone(request.frame, run != window, times)
                                                               : rested(summed, request.frame, run != window, times);
   read.insert(read.begin() + static_cast<std::ptrdiff_t>(at), &own);
   RenderedFrame rendered = renderer_->join(read, at, history);

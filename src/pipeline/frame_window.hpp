@@ -53,8 +53,8 @@ class FrameWindow {
   // The frames of the window whose samples join those of the frame.
   [[nodiscard]] Run at_rest_with(std::int32_t frame, const Run& window) const;
   [[nodiscard]] bool joins_next(std::int32_t earlier) const;
-  // What a frame shows of its window where all of that is at rest.
-  [[nodiscard]] Run held_in(const Run& window, std::int32_t frame) const;
+  // What a frame shows of its window where all of that is at rest: the same as all of its group.
+  [[nodiscard]] Run of_group(const Run& window, std::int32_t frame) const;
   const Guides* guides_of(const FrameRequest& request, StageTimes& times);
   const ReconstructedFrame& alone(std::int32_t frame, bool read_by_others, StageTimes& times);
   const ReconstructedFrame& rested(const Run& run, std::int32_t frame, bool beside_others, StageTimes& times);

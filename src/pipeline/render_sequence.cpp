@@ -217,6 +217,7 @@ class JudgedRate {
       return;
     }
     add_prediction({{}, rate_->predicted_jod}, row);
+    rate_->pilot.learning_paths = 0;  // whose time is in pilot_ms with all that the choice took
     add_pilot(rate_->pilot, row);
     row.pilot_ms += ms_;
     row.total_ms += ms_;
@@ -327,7 +328,8 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
 
   const auto render_one = [&](const FrameRequest& request) {
     if (time_budget) {
-      return FrameRenderer(tracer, time_budget->settings_for(request, history)).render(request, history);
+      // Budgets change nothing of what is learned.
+      return FrameRenderer(tracer, time_budget->settings_for(request, history)).render(request, history, light);
     }
     return window ? window->render(request, history) : renderer.render(request, history, light);
   };

@@ -54,7 +54,7 @@ SummedFrames ReplicaClip::summed_in(std::int64_t frame) const {
   if (reach() == 0) {
     return {static_cast<std::size_t>(frame), 1};
   }
-  const ShownAtRest shown = shown_at_rest(frame, settings_.accumulate);
+  const ShownAtRest shown = shown_at_rest(frame, frame + reach(), settings_.accumulate);
   const std::int64_t first = std::max<std::int64_t>(1, shown.first);
   return {static_cast<std::size_t>(first), static_cast<std::size_t>(shown.last + 1 - first)};
 }

@@ -151,7 +151,6 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
     LightLearning learning = timed(learn_ms, [&] {
       return scene.learn_light(request.camera, request.width_px, request.height_px, looking.trace);
     });
-    rehearsal_.learning_paths += learning.paths;
     looking.trace.learned = std::move(learning.light);
   }
 

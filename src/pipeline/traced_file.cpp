@@ -17,7 +17,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr SealedKind kTraced{"gazetrace traced 4", "file of a traced frame",
+constexpr SealedKind kTraced{"gazetrace traced 5", "file of a traced frame",
                              "give the folder that `stage` trace wrote into",
                              "trace this frame again, with `stage` trace and `resume`",
                              "trace this frame again with the settings of `stage` finish"};

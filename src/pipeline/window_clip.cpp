@@ -131,10 +131,14 @@ WindowClip::WindowClip(PathTracer& tracer, const JudgedFrames& judged, const Fra
       windows_(judged_windows(first().view, looked_at(judged), judged.view_moves)) {
   for (const std::vector<FrameRequest>& run : judged_.runs) {
     for (const FrameRequest& request : run) {
+      requests_.emplace(request.frame, &request);
       if (judged_.view_moves || views_.empty()) {
         views_.push_back(&request);
       }
     }
+  }
+  for (const FrameRequest& request : judged_.around) {
+    requests_.emplace(request.frame, &request);
   }
   render_around();
 }
@@ -299,34 +303,34 @@ double WindowClip::q_of(const WindowPictures& pictures) const {
 }
 
 // Where the view rests, all frames are lit alike, and learn once.
-std::int32_t WindowClip::light_number(const FrameRequest& request) const {
-  return judged_.view_moves ? request.frame : first().frame;
-}
-
-void WindowClip::learn_light(const FrameRequest& request) {
-  if (!settings_.trace.learn_light || light_.contains(light_number(request))) {
-    return;
+std::shared_ptr<const LearnedLight> WindowClip::light_of(std::int32_t frame) {
+  if (!settings_.trace.learn_light) {
+    return nullptr;
   }
-  TraceSettings own = settings_.trace;
-  own.seed = hash_combine(own.seed, kLookTag);
-  LightLearning learning = tracer_.at({request.shutter_open_ns, request.shutter_close_ns})
-                               .learn_light(request.camera, request.width_px, request.height_px, own);
-  stats_.learning_paths += learning.paths;
-  // A frame whose light was dropped learns it again, bit by bit.
-  const std::size_t bytes = learning.light ? learning.light->bytes() : 0;
-  if (light_bytes_ + bytes > kMostLightBytes) {
-    light_.clear();
-    light_bytes_ = 0;
+  const std::int32_t lit = judged_.view_moves ? frame : first().frame;
+  if (const auto known = light_.find(lit); known != light_.end()) {
+    return known->second;
   }
-  light_bytes_ += bytes;
-  light_.emplace(light_number(request), std::move(learning.light));
+  if (!last_light_ || last_light_->frame != lit) {
+    const FrameRequest& whole = *requests_.at(lit);
+    TraceSettings own = settings_.trace;
+    own.seed = hash_combine(own.seed, kLookTag);
+    LightLearning learning = tracer_.at({whole.shutter_open_ns, whole.shutter_close_ns})
+                                 .learn_light(whole.camera, whole.width_px, whole.height_px, own);
+    stats_.learning_paths += learning.paths;
+    last_light_ = LastLight{lit, std::move(learning.light)};
+  }
+  // Frames that no longer fit learn anew for each window, bit by bit the same.
+  const std::size_t bytes = last_light_->light ? last_light_->light->bytes() : 0;
+  if (light_bytes_ + bytes <= kMostLightBytes) {
+    light_bytes_ += bytes;
+    light_.emplace(lit, last_light_->light);
+  }
+  return last_light_->light;
 }
 
 ImageGray WindowClip::pilot_rates(const FrameRequest& request, FrameSettings settings) {
-  if (settings.trace.learn_light) {
-    learn_light(request);
-    settings.trace.learned = light_.at(light_number(request));
-  }
+  settings.trace.learned = light_of(request.frame);
   AdaptiveRates adaptive =
       adaptive_rates(tracer_.at({request.shutter_open_ns, request.shutter_close_ns}), request, settings);
   add_traces(adaptive.pilot, stats_);
@@ -437,10 +441,7 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   WindowPictures pictures;
   for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
     FrameSettings own = settings_in_window(w, hash_combine(kLookTag, round));
-    own.light_of = [&](const FrameRequest& request) {
-      learn_light(request);
-      return light_.at(light_number(request));
-    };
+    own.light_of = [&](const FrameRequest& request) { return light_of(request.frame); };
     if (is_uniform) {
       own.foveation.budget_spp = spp;
     } else {

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gazetrace/color.hpp"
@@ -56,9 +57,8 @@ class WindowClip {
   // Samples a pixel that every pixel of a frame expects.
   [[nodiscard]] ImageGray expected_spp(const FrameRequest& request, double spp, std::uint64_t round);
   [[nodiscard]] ImageGray pilot_rates(const FrameRequest& request, FrameSettings settings);
-  // What whole frames learn of their light, which windows of them are rendered with.
-  void learn_light(const FrameRequest& request);
-  [[nodiscard]] std::int32_t light_number(const FrameRequest& request) const;
+  // What the whole frame of this number learns of its light, which windows of it are rendered with.
+  [[nodiscard]] std::shared_ptr<const LearnedLight> light_of(std::int32_t frame);
   [[nodiscard]] FrameSettings settings_in_window(std::size_t window, std::uint64_t tag) const;
   // One picture a judged frame.
   [[nodiscard]] std::vector<ImageRgb> look_at(std::size_t window, const FrameSettings& settings);
@@ -77,7 +77,13 @@ class WindowClip {
   const FrameSettings& settings_;
   const ColorPipeline& color_;
   TraceStats stats_;
-  std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by light_number()
+  std::map<std::int32_t, const FrameRequest*> requests_;  // of whole frames, all that windows are traced of
+  struct LastLight {
+    std::int32_t frame = 0;
+    std::shared_ptr<const LearnedLight> light;
+  };
+  std::optional<LastLight> last_light_;
+  std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by the frame
   std::size_t light_bytes_ = 0;                                        // of all of them
   JudgedWindows windows_;
   std::vector<const FrameRequest*> views_;  // that have a reference: the first frame, or every judged one

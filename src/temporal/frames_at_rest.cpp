@@ -152,18 +152,18 @@ void join_surfaces(const SamplingMap& map, const std::vector<std::vector<Surface
 
 }  // namespace
 
-std::int32_t frames_held(const AccumulateSettings& settings) {
+std::int32_t frames_in_group(const AccumulateSettings& settings) {
   const std::int32_t wanted = settings.hold > 0 ? settings.hold : (settings.window + 1) / 3;
   return std::clamp(wanted, 1, settings.window + 1);
 }
 
-ShownAtRest shown_at_rest(std::int64_t frame, const AccumulateSettings& settings) {
+ShownAtRest shown_at_rest(std::int64_t frame, std::int64_t end, const AccumulateSettings& settings) {
   const std::int64_t window = settings.window;
-  const std::int64_t hold = frames_held(settings);
+  const std::int64_t group = frames_in_group(settings);
   const std::int64_t since_first = frame - 1;
-  const std::int64_t place = (since_first % hold + hold) % hold;  // among those that show the same
+  const std::int64_t place = (since_first % group + group) % group;
   const std::int64_t first = frame - place;
-  return {first + hold - 1 - window, first + window};
+  return {std::min(first + group - 1, end) - window, first + window};
 }
 
 bool same_sites(const SamplingMap& a, const SamplingMap& b) {

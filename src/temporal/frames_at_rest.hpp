@@ -13,15 +13,16 @@
 
 namespace gazetrace {
 
-// How many frames at rest show one sum, at least 1.
-std::int32_t frames_held(const AccumulateSettings& settings);
+// How many frames at rest are in a group, which shows one sum: at least 1.
+std::int32_t frames_in_group(const AccumulateSettings& settings);
 
 // The frames whose samples a frame at rest shows, the last one included, as far as they exist: those in the windows of
-// all frames that show the same (AccumulateSettings::hold). They hold the frame itself.
+// all frames of its group (AccumulateSettings::hold). They hold the frame itself. `end`: the last frame that exists, or
+// one beyond its window.
 struct ShownAtRest {
   std::int64_t first = 0, last = 0;
 };
-ShownAtRest shown_at_rest(std::int64_t frame, const AccumulateSettings& settings);
+ShownAtRest shown_at_rest(std::int64_t frame, std::int64_t end, const AccumulateSettings& settings);
 
 // Whether both maps divide the frame into the same sites, whatever the numbers of samples.
 bool same_sites(const SamplingMap& a, const SamplingMap& b);

@@ -290,6 +290,35 @@ TEST(TwoSidedRender, AFrameThatHoldsDoesNotDependOnWhichOthersAreRendered) {
   const auto middle = render(scene, some, settings);
   expect_same_bits(middle.at(5), whole.at(5));
   expect_same_bits(middle.at(6), whole.at(6));
+  EXPECT_EQ(whole.at(5).radiance, whole.at(6).radiance) << "one group";
+  EXPECT_NE(whole.at(3).radiance, whole.at(4).radiance) << "two groups";
+}
+
+// The last group has a single frame, which shows what is in its own window.
+TEST(TwoSidedRender, AGroupEndsWithTheSequence) {
+  const Scene scene = room(false);
+  PipelineSettings settings = settings_of(AccumulateMode::two_sided, 3);
+  settings.accumulate.hold = 3;
+  const FramePlan plan = plan_of(numbers(1, 7), {}, false);
+  const Frame last = render(scene, plan, settings).at(7);
+  settings.accumulate.hold = 1;
+  expect_same_bits(last, render(scene, plan, settings).at(7));
+}
+
+// What is learned does not depend on the frames, so that the first one learns for all that nothing moves between.
+TEST(TwoSidedRender, FramesAtRestLearnOnce) {
+  const Scene scene = room(false);
+  for (const AccumulateMode mode : {AccumulateMode::off, AccumulateMode::two_sided}) {
+    for (const bool moves : {false, true}) {
+      PathTracer tracer(scene, threads(2));
+      const auto rows = render_sequence(tracer, plan_of(numbers(1, 3), {}, moves), ColorPipeline(ColorSettings{}),
+                                        settings_of(mode, 1), {})
+                            .rows;
+      EXPECT_GT(rows[0].learning_paths, 0U);
+      EXPECT_EQ(rows[1].learning_paths > 0, moves);
+      EXPECT_EQ(rows[2].learning_paths > 0, moves);
+    }
+  }
 }
 
 // Where only the camera moves, a filter sees what the whole window saw of a frame's surfaces. Edges, which few pixels

@@ -68,21 +68,23 @@ TEST(FramesAtRest, ThoseThatShowTheSameReadWhatIsInAllTheirWindows) {
     for (std::int64_t group = -2; group < 5; ++group) {
       const std::int64_t first = 1 + group * hold;
       for (std::int64_t frame = first; frame < first + hold; ++frame) {
-        const ShownAtRest shown = shown_at_rest(frame, settings);
+        const ShownAtRest shown = shown_at_rest(frame, frame + settings.window, settings);
         EXPECT_EQ(shown.first, first + hold - 1 - 11) << frame;
         EXPECT_EQ(shown.last, first + 11) << frame;
       }
     }
   }
   settings.hold = 100;  // more than a window can hold
-  EXPECT_EQ(shown_at_rest(12, settings).first, 1);
-  EXPECT_EQ(shown_at_rest(12, settings).last, 12);
+  EXPECT_EQ(shown_at_rest(12, 12 + settings.window, settings).first, 1);
+  EXPECT_EQ(shown_at_rest(12, 12 + settings.window, settings).last, 12);
   settings.hold = 0;
-  EXPECT_EQ(shown_at_rest(3, settings).first, 4 - 11);
-  EXPECT_EQ(shown_at_rest(3, settings).last, 1 + 11);
+  EXPECT_EQ(shown_at_rest(3, 3 + settings.window, settings).first, 4 - 11);
+  EXPECT_EQ(shown_at_rest(3, 3 + settings.window, settings).last, 1 + 11);
+  // Frame 3 is the last one: its group has no fourth.
+  EXPECT_EQ(shown_at_rest(3, 3, settings).first, 3 - 11);
   settings.window = 2;
-  EXPECT_EQ(shown_at_rest(7, settings).first, 5);
-  EXPECT_EQ(shown_at_rest(7, settings).last, 9);
+  EXPECT_EQ(shown_at_rest(7, 7 + settings.window, settings).first, 5);
+  EXPECT_EQ(shown_at_rest(7, 7 + settings.window, settings).last, 9);
 }
 
 TEST(FramesAtRest, SumsAndCountsAreThoseOfAllSamples) {

@@ -50,8 +50,8 @@ class Program:
     def render(self, scene, size, spp, *more, seed=1, pixels="float"):
         """(row of timing.csv as numbers, picture's path)"""
         picture = self.folder / "picture.exr"
-        words = [self.path, "render", str(scene), *VIEW, "--size", size, "--spp", str(spp), "--seed", str(seed), "--quiet", "--no-learn-light",
-                 "--overwrite", "--threads", self.threads, "--exr-pixels", pixels, "-o", str(picture), *more]
+        words = [self.path, "render", str(scene), *VIEW, "--size", size, "--spp", str(spp), "--seed", str(seed), "--quiet",
+                 "--no-learn-light", "--overwrite", "--threads", self.threads, "--exr-pixels", pixels, "-o", str(picture), *more]
         done = subprocess.run(words, capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit(f"{' '.join(words)}\n{done.stderr}")
