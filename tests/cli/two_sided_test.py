@@ -53,6 +53,23 @@ class TwoSided(harness.CliTest):
         (self.folder / "whole" / "f.0004.png").unlink()
         self.assertEqual(self.render("whole", "--frames", "1-6", "--resume"), whole)
 
+    def test_groups_at_rest_are_the_same_in_every_run(self):
+        self.write("still.gltf", json.dumps(harness.box_gltf()))
+        rest = ["still.gltf", "--falloff", "uniform", "--spp", "2", "--filter", "guided", "--accumulate-hold", "2"]
+        whole = self.render("whole", *rest, "--frames", "1-6")
+        names = sorted(whole)
+        self.assertEqual([whole[a] == whole[b] for a, b in zip(names, names[1:])], [True, False, True, False, True])
+        for frames in ("1-3", "4", "2,5"):
+            for name, pixels in self.render(f"part-{frames}", *rest, "--frames", frames, "--part").items():
+                self.assertEqual(pixels, whole[name], f"{frames}: {name}")
+        self.render("parts", *rest, "--frames", "1-3", "--part")
+        self.render("parts", *rest, "--frames", "4-6", "--part")
+        self.run_ok("merge", "parts")
+        self.assertEqual({p.name: png_pixels(p) for p in (self.folder / "parts").glob("f.*.png")}, whole)
+        (self.folder / "whole" / "f.0004.png").unlink()
+        self.assertEqual(self.render("whole", *rest, "--frames", "1-6", "--resume"), whole)
+        self.assertNotEqual(self.render("alone", *rest[:-2], "--frames", "1-6", "--accumulate-hold", "1"), whole)
+
     def test_frames_beyond_the_camera_path_are_not_read(self):
         # The path of one second has 24 frames.
         last = self.render("last", "--frames", "24")
