@@ -19,7 +19,8 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
 at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
-what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones.
+what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For programs
+that learn nothing `us` is that of --steady-spp samples a pixel.
 
 Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
 """
@@ -166,6 +167,7 @@ def main():
     parser.add_argument("--reference-spp", type=int, default=2048)
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--base-spp", type=int, default=1, help="samples a pixel of the picture that those of --rates are timed against")
+    parser.add_argument("--steady-spp", type=int, default=64)
     parser.add_argument("--rates", help="samples a pixel, each with a table of its own, in place of --spp, --error-spp and --error-size")
     options = parser.parse_args()
     programs = options.programs.split(",")
@@ -193,8 +195,14 @@ def main():
 
         times = {rate: {p: [] for p in programs} for rate in pairs}
         for r in range(options.rounds):
-            for rate, (few, many) in pairs.items():
-                for p in programs:
+            for p in programs:
+                if options.rates and p != "gazetrace":
+                    # Who learns nothing takes as long for each sample, which many samples tell best.
+                    us = sample_us(p, options, folder, view, options.base_spp, options.base_spp + options.steady_spp, r)
+                    for rate in pairs:
+                        times[rate][p].append(us)
+                    continue
+                for rate, (few, many) in pairs.items():
                     times[rate][p].append(sample_us(p, options, folder, view, few, many, r))
 
         def picture(p, spp, seed):
