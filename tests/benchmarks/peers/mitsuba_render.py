@@ -100,7 +100,7 @@ def surface(gltf, index, options):
     if "baseColorTexture" in pbr:
         base = texture_node(gltf.image_path(pbr["baseColorTexture"]["index"]), factor[:3], raw=False)
     roughness, metallic = pbr.get("roughnessFactor", 1.0), pbr.get("metallicFactor", 1.0)
-    transmits = is_glass(material) and options.materials != "matte"
+    transmits = options.materials != "matte" and is_glass(material)
     if transmits:
         bsdf = glass(material, options.materials)
     elif options.materials == "matte":
