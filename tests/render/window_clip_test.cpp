@@ -38,7 +38,7 @@ FrameRequest request_of(std::int32_t frame) {
   request.height_px = kHeight;
   request.camera = camera_at({0.3, 0.5, 3.5}, {0, 0, 0});
   request.view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
-  request.gaze_direction_render = request.gaze_direction_true = request.view.direction(kWidth / 2, kHeight / 2);
+  request.gaze_direction_render = request.gaze_direction_true = request.view.direction(0.5 * kWidth, 0.5 * kHeight);
   return request;
 }
 

@@ -38,10 +38,11 @@ void fill(std::uint64_t first, int count, const Grid& grid, std::uint64_t seed, 
     const std::uint64_t path = first + i;
     const SampleKey key = make_sample_key(seed, 0, path);
     const Vec2f u = sample_2d(key, 0, dimension_of(PathDimension::pixel));
-    const double x = (static_cast<double>(path % grid.columns) + static_cast<double>(u.x)) /
-                     static_cast<double>(grid.columns) * width_px;
-    const double y = (static_cast<double>(path / grid.columns) + static_cast<double>(u.y)) /
-                     static_cast<double>(grid.rows) * height_px;
+    const std::uint64_t column = path % grid.columns;
+    const std::uint64_t row = path / grid.columns;
+    const double x =
+        (static_cast<double>(column) + static_cast<double>(u.x)) / static_cast<double>(grid.columns) * width_px;
+    const double y = (static_cast<double>(row) + static_cast<double>(u.y)) / static_cast<double>(grid.rows) * height_px;
     out.site[i] = 0;
     out.sample[i] = 0;
     out.half[i] = 0;
