@@ -2,6 +2,7 @@
 // What ways of finding light cost and give, beside the default in one run: error times time of a frame at several
 // rates.
 //   gazetrace_light_choice SCENE.gltf[=SKY.hdr] | lamps:N  [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--size 320x180]
+//   [--bounce-cone RAD]
 //       [--rows compensated,bsdf-only,compensated+z-order] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
 //       [--bounces N]
 // A row is one or several of the words of kWords.
@@ -75,6 +76,8 @@ Options parse(int argc, char** argv) {
       options.rates = parse_numbers(value);
     } else if (name == "--seeds") {
       options.seeds = std::atoi(value);
+    } else if (name == "--bounce-cone") {
+      options.settings.bounce_cone_rad = std::atof(value);
     } else if (name == "--bounces") {
       options.settings.max_bounces = std::atoi(value);
     } else if (name == "--reference") {
