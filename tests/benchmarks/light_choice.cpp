@@ -2,9 +2,8 @@
 // What ways of finding light cost and give, beside the default in one run: error times time of a frame at several
 // rates.
 //   gazetrace_light_choice SCENE.gltf[=SKY.hdr] | lamps:N  [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--size 320x180]
-//   [--bounce-cone RAD]
 //       [--rows compensated,bsdf-only,compensated+z-order] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
-//       [--bounces N]
+//       [--bounces N] [--bounce-cone RAD]
 // A row is one or several of the words of kWords.
 // The reference is rendered with the default choice: so many scramblings of so many samples, none of them a row's. Rows
 // take turns frame by frame, on one thread. Printed for each row and rate:
