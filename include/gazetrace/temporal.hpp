@@ -59,7 +59,7 @@ struct AccumulateSettings {
   std::int32_t window = 4;
   // Only two_sided uses this, where nothing moves in the whole window: so many consecutive frames, counted from frame 1
   // on, show one sum of those that are in the windows of all of them, which is filtered once. 0: (window + 1) / 3, at
-  // least 1.
+  // least 1. More than window + 1 counts as that.
   std::int32_t hold = 0;
   // Only reproject uses this.
   AccumulateOrder order = AccumulateOrder::after;

@@ -311,22 +311,22 @@ std::shared_ptr<const LearnedLight> WindowClip::light_of(std::int32_t frame) {
   if (const auto known = light_.find(lit); known != light_.end()) {
     return known->second;
   }
-  if (!last_light_ || last_light_->frame != lit) {
+  if (!last_light_.request || last_light_.request->frame != lit) {
     const FrameRequest& whole = *requests_.at(lit);
     TraceSettings own = settings_.trace;
     own.seed = hash_combine(own.seed, kLookTag);
     LightLearning learning = tracer_.at({whole.shutter_open_ns, whole.shutter_close_ns})
                                  .learn_light(whole.camera, whole.width_px, whole.height_px, own);
     stats_.learning_paths += learning.paths;
-    last_light_ = LastLight{lit, std::move(learning.light)};
+    last_light_ = {whole, std::move(learning.light)};
   }
   // Frames that no longer fit learn anew for each window, bit by bit the same.
-  const std::size_t bytes = last_light_->light ? last_light_->light->bytes() : 0;
+  const std::size_t bytes = last_light_.light ? last_light_.light->bytes() : 0;
   if (light_bytes_ + bytes <= kMostLightBytes) {
     light_bytes_ += bytes;
-    light_.emplace(lit, last_light_->light);
+    light_.emplace(lit, last_light_.light);
   }
-  return last_light_->light;
+  return last_light_.light;
 }
 
 ImageGray WindowClip::pilot_rates(const FrameRequest& request, FrameSettings settings) {

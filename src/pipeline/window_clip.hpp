@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "gazetrace/color.hpp"
@@ -78,11 +77,7 @@ class WindowClip {
   const ColorPipeline& color_;
   TraceStats stats_;
   std::map<std::int32_t, const FrameRequest*> requests_;  // of whole frames, all that windows are traced of
-  struct LastLight {
-    std::int32_t frame = 0;
-    std::shared_ptr<const LearnedLight> light;
-  };
-  std::optional<LastLight> last_light_;
+  KnownLight last_light_;
   std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by the frame
   std::size_t light_bytes_ = 0;                                        // of all of them
   JudgedWindows windows_;

@@ -40,13 +40,7 @@ Scene room() {
 }
 
 FrameRequest request_of(std::int32_t frame = 1) {
-  FrameRequest request;
-  request.frame = frame;
-  request.width_px = kWidth;
-  request.height_px = kHeight;
-  request.camera = camera_at({1.5, 2.0, 5}, {0, 0.8, 0});
-  request.view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
-  return request;
+  return frame_request(frame, camera_at({1.5, 2.0, 5}, {0, 0.8, 0}), kWidth, kHeight);
 }
 
 FrameSettings settings_of(const std::string& falloff, const std::string& filter = "none") {

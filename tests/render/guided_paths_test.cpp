@@ -161,13 +161,7 @@ TEST(GuidedPaths, SameBitsForAnyThreads) {
 }
 
 FrameRequest request_of(std::int32_t frame) {
-  FrameRequest request;
-  request.frame = frame;
-  request.width_px = kLearnWidth;
-  request.height_px = kLearnHeight;
-  request.camera = kCamera;
-  request.view = view_of_perspective(50 * kRadPerDeg, kLearnWidth, kLearnHeight);
-  return request;
+  return frame_request(frame, kCamera, kLearnWidth, kLearnHeight);
 }
 
 FrameSettings one_sample() {

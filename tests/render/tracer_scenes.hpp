@@ -9,6 +9,7 @@
 
 #include "gazetrace/camera.hpp"
 #include "gazetrace/foveation.hpp"
+#include "gazetrace/plan.hpp"
 #include "gazetrace/scene.hpp"
 #include "gazetrace/trace.hpp"
 
@@ -68,6 +69,17 @@ inline Camera camera_at(const Vec3d& eye, const Vec3d& target, double yfov_deg =
   camera.pose = look_at(eye, target, {0, 1, 0});
   camera.projection.yfov_rad = yfov_deg * kRadPerDeg;
   return camera;
+}
+
+// A frame of a camera_at() with its default field of view.
+inline FrameRequest frame_request(std::int32_t frame, const Camera& camera, int width_px, int height_px) {
+  FrameRequest request;
+  request.frame = frame;
+  request.width_px = width_px;
+  request.height_px = height_px;
+  request.camera = camera;
+  request.view = view_of_perspective(50 * kRadPerDeg, width_px, height_px);
+  return request;
 }
 
 inline SamplingMap uniform_map(int width_px, int height_px, std::uint32_t spp) {

@@ -32,12 +32,7 @@ Scene room() {
 }
 
 FrameRequest request_of(std::int32_t frame) {
-  FrameRequest request;
-  request.frame = frame;
-  request.width_px = kWidth;
-  request.height_px = kHeight;
-  request.camera = camera_at({0.3, 0.5, 3.5}, {0, 0, 0});
-  request.view = view_of_perspective(50 * kRadPerDeg, kWidth, kHeight);
+  FrameRequest request = frame_request(frame, camera_at({0.3, 0.5, 3.5}, {0, 0, 0}), kWidth, kHeight);
   request.gaze_direction_render = request.gaze_direction_true = request.view.direction(0.5 * kWidth, 0.5 * kHeight);
   return request;
 }
