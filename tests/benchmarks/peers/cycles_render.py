@@ -7,12 +7,17 @@
 Clamping, glossy blur, denoising, adaptive sampling and the light threshold are off, caustics on. matte replaces every
 surface by a diffuse one of its base colour, as gazetrace's `--diffuse matte`; principled keeps Blender's own import of the
 material. Bounces count scattering events: Cycles' own setting is one less. Cycles has no mip levels.
+
+--serve loads the scene once, and then renders what lines of the standard input ask for, `OUT.exr SPP SEED`. It answers each
+with `served SECONDS`, the processor time of that picture over all threads; OUT and --spp on the command line are not used.
+The scene and its tree stay in memory from one picture to the next.
 """
 
 import argparse
 import math
 import pathlib
 import sys
+import time
 
 import bpy
 import mathutils
@@ -121,6 +126,20 @@ def set_cycles(scene, options):
     scene.render.filepath = str(pathlib.Path(options.output).resolve())
 
 
+def serve(scene):
+    """Renders each `OUT.exr SPP SEED` of the standard input, until it ends."""
+    scene.render.use_persistent_data = True
+    scene.cycles.samples = 1
+    bpy.ops.render.render(write_still=False)  # builds the tree, which is no picture's time
+    for line in sys.stdin:
+        out, spp, seed = line.split()
+        scene.cycles.samples, scene.cycles.seed = int(spp), int(seed)
+        scene.render.filepath = out
+        begin = time.process_time()
+        bpy.ops.render.render(write_still=True)
+        print(f"served {time.process_time() - begin}", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("scene")
@@ -136,6 +155,7 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--materials", default="matte", choices=["matte", "principled"])
+    parser.add_argument("--serve", action="store_true")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
 
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -148,7 +168,10 @@ def main():
     set_camera(scene, options)
     set_environment(scene, options)
     set_cycles(scene, options)
-    bpy.ops.render.render(write_still=True)
+    if options.serve:
+        serve(scene)
+    else:
+        bpy.ops.render.render(write_still=True)
 
 
 main()

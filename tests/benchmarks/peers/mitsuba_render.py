@@ -20,11 +20,16 @@ it in, to see its share:
                       opacity is interpolated after the cutoff; matched, `volpath`, which does neither, and alpha_cutoff
   --own-normals       it knows no bent normals and lets light through where shading normal and triangle disagree; matched,
                       surface_sides
+
+--serve loads the scene once, and then renders what lines of the standard input ask for, `OUT.npy SPP SEED`. It answers each
+with `served SECONDS`, the processor time of that picture over all threads; OUT and --spp on the command line are not used.
 """
 
 import argparse
 import pathlib
+import sys
 import tempfile
+import time
 
 import mitsuba as mi
 import numpy as np
@@ -224,6 +229,18 @@ def render(scene, spp, seed, per_pass):
     return (total / spp).astype(np.float32)
 
 
+def serve(scene, per_pass):
+    """Renders each `OUT.npy SPP SEED` of the standard input, until it ends."""
+    render(scene, per_pass + 1, 0, per_pass)  # compiles the kernels, which is no picture's time
+    for line in sys.stdin:
+        out, spp, seed = line.split()
+        begin = time.process_time()
+        picture = render(scene, int(spp), int(seed), per_pass)
+        seconds = time.process_time() - begin
+        np.save(out, picture)
+        print(f"served {seconds}", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene")
@@ -247,6 +264,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=0, help="so many pictures from --seed on, as one array; 0: a picture")
     parser.add_argument("--per-pass", type=int, default=0,
                         help="samples a pixel held in memory at once (llvm); 0: 8, more for small pictures")
+    parser.add_argument("--serve", action="store_true")
     options = parser.parse_args()
     mi.set_variant(options.variant)
     if not options.matched:
@@ -261,6 +279,8 @@ def main():
         per_pass = options.per_pass or max(8, 2**21 // (width * height))
         if options.variant.startswith("scalar"):
             per_pass = options.spp
+        if options.serve:
+            return serve(scene, per_pass)
         pictures = [render(scene, options.spp, options.seed + s, per_pass) for s in range(max(options.seeds, 1))]
         np.save(options.output, np.stack(pictures) if options.seeds else pictures[0])
 

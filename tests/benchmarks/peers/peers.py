@@ -20,7 +20,7 @@ at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
 what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For programs
-that learn nothing `us` is that of --steady-spp samples a pixel.
+that learn nothing `us` is that of --steady-spp samples a pixel. Scenes are loaded once (picture_times.py).
 
 Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
 """
@@ -38,6 +38,8 @@ import sys
 import tempfile
 
 import numpy as np
+
+import picture_times
 
 HERE = pathlib.Path(__file__).parent
 VARIANTS = {"mitsuba-scalar": "scalar_rgb", "mitsuba-llvm": "llvm_ad_rgb"}
@@ -166,7 +168,6 @@ def main():
     parser.add_argument("--error-spp", type=int, default=64)
     parser.add_argument("--reference-spp", type=int, default=2048)
     parser.add_argument("--seeds", type=int, default=8)
-    parser.add_argument("--base-spp", type=int, default=1, help="samples a pixel of the picture that those of --rates are timed against")
     parser.add_argument("--steady-spp", type=int, default=64)
     parser.add_argument("--rates", help="samples a pixel, each with a table of its own, in place of --spp, --error-spp and --error-size")
     options = parser.parse_args()
@@ -183,56 +184,81 @@ def main():
             options.scene = without_normal_maps(options.scene, folder / "scene")
         shine = {p: furnace(p, options, folder) if options.materials == "matte" else math.nan for p in programs}
 
-        if options.rates:
-            # Beside a picture of few samples, so that loading and building cancel.
-            rates = [int(rate) for rate in options.rates.split(",")]
-            pairs = {rate: (options.base_spp, options.base_spp + rate) for rate in rates}
-            error_size = options.size
-        else:
-            few, many = map(int, options.spp.split(","))
-            pairs = {options.error_spp: (few, many)}
-            error_size = options.error_size
-
-        times = {rate: {p: [] for p in programs} for rate in pairs}
-        for r in range(options.rounds):
-            for p in programs:
-                if options.rates and p != "gazetrace":
-                    # Who learns nothing takes as long for each sample, which many samples tell best.
-                    us = sample_us(p, options, folder, view, options.base_spp, options.base_spp + options.steady_spp, r)
-                    for rate in pairs:
-                        times[rate][p].append(us)
-                    continue
-                for rate, (few, many) in pairs.items():
-                    times[rate][p].append(sample_us(p, options, folder, view, few, many, r))
-
-        def picture(p, spp, seed):
-            return read_picture(run(p, options, options.scene, folder, error_size, spp, seed, view)[1])
-
-        reference = {}
-        if options.seeds > 0:
-            reference = {p: picture(p, options.reference_spp, 1000) for p in programs}
-            common = sum(reference.values()) / len(programs)
-        own = {rate: {p: [] for p in programs} for rate in pairs}
-        shared = {rate: {p: [] for p in programs} for rate in pairs}
-        for rate in pairs:
-            # What the reference's own noise adds: a share spp / reference spp of the picture's.
-            noise = 1 + rate / options.reference_spp
-            for s in range(options.seeds):
-                for p in programs:
-                    x = picture(p, rate, 2000 + s)
-                    own[rate][p].append(relative_mse(x, reference[p]) / noise * rate)
-                    shared[rate][p].append(relative_mse(x, common) / (1 + (noise - 1) / len(programs)) * rate)
+        measure = measure_rates if options.rates else measure_one_rate
+        times, own, shared, error_size = measure(programs, options, folder, view)
 
     target = sum(0.5**k for k in range(options.bounces + 1))
-    for rate, (few, many) in pairs.items():
+    for rate in times:
+        timed = f"{rate}, where nothing is learned {options.steady_spp}" if options.rates else options.spp.replace(",", " and ")
         print(f"{pathlib.Path(options.scene).name}, {options.materials}, {options.bounces} bounces, {options.size}, "
-              f"{options.rounds} rounds of {few} and {many} spp; error at {error_size}, {rate} spp, "
+              f"{options.rounds} rounds of {timed} spp; error at {error_size}, {rate} spp, "
               f"reference {options.reference_spp} spp, {options.seeds} seeds; furnace {target}")
         print_table(programs, times[rate], own[rate], shared[rate], shine)
 
 
+def measure_one_rate(programs, options, folder, view):
+    """Times as differences of whole processes, errors at a size of their own: {rate: {program: values}} of each."""
+    few, many = map(int, options.spp.split(","))
+    times = {p: [] for p in programs}
+    for r in range(options.rounds):
+        for p in programs:
+            times[p].append(sample_us(p, options, folder, view, few, many, r))
+    picture = lambda p, spp, seed: read_picture(
+        run(p, options, options.scene, folder, options.error_size, spp, seed, view)[1])
+    own, shared = measure_errors(programs, options, [options.error_spp], picture)
+    return {options.error_spp: times}, own, shared, options.error_size
+
+
+def measure_rates(programs, options, folder, view):
+    """Times and errors of pictures of each rate: {rate: {program: values}} of each."""
+    rates = [int(rate) for rate in options.rates.split(",")]
+    width, height = map(int, options.size.split("x"))
+    open_programs = {p: opened(p, options, folder, view) for p in programs}
+    times = {rate: {p: [] for p in programs} for rate in rates}
+    for r in range(options.rounds):
+        for p in programs:
+            # Who learns nothing takes as long for each sample, which many samples tell best.
+            for spp in rates if p == "gazetrace" else [options.steady_spp]:
+                seconds, _ = open_programs[p].picture(spp, r)
+                for rate in [spp] if p == "gazetrace" else rates:
+                    times[rate][p].append(seconds / (width * height * spp) * 1e6)
+    picture = lambda p, spp, seed: read_picture(open_programs[p].picture(spp, seed)[1])
+    own, shared = measure_errors(programs, options, rates, picture)
+    for program in open_programs.values():
+        program.close()
+    return times, own, shared, options.size
+
+
+def opened(program, options, folder, view):
+    """The program with the scene, ready to render pictures of options.size."""
+    words = lambda out, spp, seed: command(program, options, options.scene, out, options.size, spp, seed, view)
+    if program.startswith("gazetrace"):
+        return picture_times.Gazetrace(words, folder)
+    out = folder / f"{program}.{'npy' if program.startswith('mitsuba') else 'exr'}"
+    return picture_times.Served([*words(out, 1, 0), "--serve"], out)
+
+
+def measure_errors(programs, options, rates, picture):
+    """Errors of one sample, against each program's own reference and against the common one, by rate and program."""
+    reference = {}
+    if options.seeds > 0:
+        reference = {p: picture(p, options.reference_spp, 1000) for p in programs}
+        common = sum(reference.values()) / len(programs)
+    own = {rate: {p: [] for p in programs} for rate in rates}
+    shared = {rate: {p: [] for p in programs} for rate in rates}
+    for rate in rates:
+        # What the reference's own noise adds: a share spp / reference spp of the picture's.
+        noise = 1 + rate / options.reference_spp
+        for s in range(options.seeds):
+            for p in programs:
+                x = picture(p, rate, 2000 + s)
+                own[rate][p].append(relative_mse(x, reference[p]) / noise * rate)
+                shared[rate][p].append(relative_mse(x, common) / (1 + (noise - 1) / len(programs)) * rate)
+    return own, shared
+
+
 def sample_us(program, options, folder, view, few, many, r):
-    """CPU time per sample of the round `r`, us."""
+    """CPU time per sample of the round `r`, us, from whole processes."""
     width, height = map(int, options.size.split("x"))
     # What a frame learns from takes time once: against a run without, all of it counts.
     without = "gazetrace-plain" if program == "gazetrace" else program
