@@ -65,10 +65,10 @@ struct StageTimes {
   double layers_ms = 0;  // FrameLayers
 };
 
-// What the pilot of the fall-off `visible` expects of the frame; empty for other fall-offs.
 struct Prediction {
-  std::optional<double> relmse;  // as QualityTarget::relmse
-  std::optional<double> jod;     // as QualityTarget::jod, of a clip of such frames
+  std::optional<double> relmse;  // as QualityTarget::relmse, of the frame, by the pilot of the fall-off `visible`
+  // As QualityTarget::jod, of the sequence, by the choice of its rate (render_sequence()). Empty from FrameRenderer.
+  std::optional<double> jod;
 };
 
 // The samples of a frame and where they went.

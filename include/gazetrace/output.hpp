@@ -160,7 +160,7 @@ struct TimingRow {
   std::array<std::uint64_t, kTimingRegions> region_pixels{}, region_samples{};
   std::array<double, kTimingRegions> region_cpu_ms{};
   double exposure_ev = 0;
-  std::string predicted_relmse, predicted_jod;  // by the pilot; empty where it did not
+  std::string predicted_relmse, predicted_jod;  // Prediction; empty: nothing was predicted
   std::string gaze_state;                       // of the gaze that steers the frame
   GazeNumbers gaze;                             // of the clean log
   std::string gaze_event;                       // fixation, saccade, blink, ...; "none": not known

@@ -20,7 +20,8 @@ struct Frame {
   ImageGray sample_count;  // effective samples behind a pixel: site samples / site pixels, plus what accumulation adds
   ImageGray variance;      // of the pixel's mean luminance, from the spread of its samples, or of those around one
   // Estimate of the squared error of the pixel's luminance: its variance, and the square of what the filter changed
-  // beside noise. Empty for filters that make no estimate of it (all but those that need halves).
+  // beside noise. Empty for filters that make no estimate of it (all but those that need halves). Accumulation leaves
+  // it as it was for the samples that went through the filter.
   ImageGray squared_error;
   ImageRgb albedo, normal;  // first hit, means over all samples; normal in world space, zero where nothing was hit
   ImageGray depth_m;        // mean over the hits; +Inf where the pixel's site hit nothing

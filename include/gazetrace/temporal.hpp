@@ -40,9 +40,10 @@ struct TemporalHistory {
 
 // off: every frame stands for itself. running: the mean over frames while the camera stands still. reproject: what a
 // pixel shows is looked up where it was in the frame before, and used where it was the same surface. two_sided: frames
-// before and after are read, their samples where only the view moves (FrameRenderer::only_views_move), else what each
-// shows by itself; nothing is accumulated from frame to frame. Frames that are still to come are known only where whole
-// sequences are rendered, so this is not causal: nobody could be shown such a picture while looking.
+// before and after are read: their samples where nothing moves (FrameRenderer::at_rest), under filters that work on
+// surfaces also where only the view does (FrameRenderer::only_views_move), else what each shows by itself; nothing is
+// accumulated from frame to frame. Frames that are still to come are known only where whole sequences are rendered, so
+// this is not causal: nobody could be shown such a picture while looking.
 enum class AccumulateMode : std::uint8_t { off, running, reproject, two_sided };
 // Whether frames are accumulated before or after the reconstruction filter. Filters that need sums per surface
 // (ReconstructionNeeds::surfaces) always come first, since an accumulated site no longer holds them.

@@ -6,14 +6,14 @@ namespace gazetrace {
 enum ExitCode : int {
   exit_done = 0,
   exit_over_threshold = 1,  // a comparison was made and is over its threshold
-  exit_bad_input = 2,       // usage or input; nothing was rendered
+  exit_bad_input = 2,       // usage or input, or a quality out of reach; no picture was begun
   exit_failed = 3,          // failed while running
   exit_interrupted = 4,     // asked to end before all was done; goes on with --resume
 };
 
 inline constexpr const char* kExitCodesHelp =
-    "Exit codes: 0 done; 1 compared and over the threshold (reserved for comparisons); 2 usage or input, before the "
-    "first ray; 3 failed while running; 4 interrupted, goes on with --resume.";
+    "Exit codes: 0 done; 1 compared and over the threshold (reserved for comparisons); 2 usage or input, before any "
+    "picture; 3 failed while running; 4 interrupted, goes on with --resume.";
 
 inline constexpr const char* kConfigHelp =
     "--config FILE reads any of these options from a TOML file (frames = \"1-100\"); what stands on the command line "

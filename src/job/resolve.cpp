@@ -108,7 +108,10 @@ void load_scene_of(const JobSettings& job, const ResolveOptions& options, Resolv
 }
 
 std::string sampling_without_gaze(const FoveationSettings& foveation) {
-  const std::string rate = foveation.budget_spp       ? fmt::format("{} samples a pixel", *foveation.budget_spp)
+  const QualityTarget& target = foveation.target;
+  const std::string rate = target.time_s              ? "as many samples as `time-budget` allows"
+                           : target.is_given()        ? "as many samples as the stated quality takes"
+                           : foveation.budget_spp     ? fmt::format("{} samples a pixel", *foveation.budget_spp)
                            : foveation.budget_samples ? fmt::format("{} samples in all", *foveation.budget_samples)
                                                       : fmt::format("{} samples", foveation.uniform_spp);
   return rate + " everywhere: there is no gaze";
@@ -317,10 +320,13 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   CameraPath camera;
   std::string decision;
   const bool needs_scene = camera_needs_scene(job);
+  bool length_needs_scene = false;
   if (!needs_scene) {
     camera = choose_camera(job, nullptr, log, taken_off_ns, decision);
+    length_needs_scene = !job.frames && camera.is_static && (log == nullptr || log->samples.size() < 2);
   }
-  if (options.loaded == nullptr && (options.scope == ResolveScope::render || (needs_scene && !job.scene.empty()))) {
+  const bool asks_scene = (needs_scene || length_needs_scene) && !job.scene.empty();
+  if (options.loaded == nullptr && (options.scope == ResolveScope::render || asks_scene)) {
     load_scene_of(job, options, resolved);
   }
   const Scene* scene = options.loaded != nullptr ? options.loaded : resolved.scene.get();
@@ -390,6 +396,9 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
         "other pictures");
   }
   resolved.pipeline = pipeline_settings(settings);
+  if (resolved.pipeline.foveation.max_block_px != settings.foveation.max_block_px) {
+    resolved.decisions.emplace_back("max-block", "1, so that the samples of frames at rest can be added up");
+  }
   if (options.scope == ResolveScope::render) {
     check_output_settings(resolved.pipeline.output, resolved.frames.size() > 1);
   }

@@ -6,8 +6,8 @@
 // of relative squared errors, sum of e^2 / (n (L^2 + epsilon)), is least for a given sum of n where
 //   n ~ e / sqrt(L^2 + epsilon)
 // (Neyman's allocation). e^2 comes from a pilot's own estimate of its error after the filter, times the rate that the
-// pilot had there, so that light that the filter smooths well gets less. With gaze, the eye's sensitivity weighs it;
-// see VisibleNoise::wanted_by_eye().
+// pilot had there, so that light that the filter smooths well gets less. With gaze, the eye's sensitivity weighs it
+// (VisibleNoise::wanted_by_eye()), but not with QualityTarget::relmse, whose measure knows no eye.
 #pragma once
 
 #include <optional>

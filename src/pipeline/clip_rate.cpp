@@ -60,7 +60,8 @@ Judge judge_of(const QualityTarget& target, const ReplicaClip& clip) {
 
 // Frames that are added up have a sample in every pixel, since the replica is one of single pixels.
 double least_spp(const FrameSettings& settings) {
-  return settings.accumulate.mode == AccumulateMode::two_sided ? 1 : 0.25;
+  const double least = settings.accumulate.mode == AccumulateMode::two_sided ? 1 : 0.25;
+  return std::max(least, settings.foveation.min_spp);
 }
 
 std::string counted(int number, const char* what) {

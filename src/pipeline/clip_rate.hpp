@@ -17,10 +17,14 @@ struct ClipRate {
   double spp = 0;  // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
   std::optional<double> predicted_jod, predicted_flip;  // of the sequence, at this rate: what was asked for
   TraceStats pilot;                                     // samples that were discarded
-  int rounds = 0;
-  int frames = 0;            // renderings of judged frames
-  bool is_least = false;     // fewer samples are not possible
-  bool settled = true;       // the last pilot was near enough to the rate; else the prediction is extrapolated far
+  int rounds = 0;                                       // of pilots, or looks at windows
+  int frames = 0;                                       // renderings of judged frames, by pilots alone
+  bool is_least = false;                                // fewer samples are not possible
+  // The last pilot or look was near enough to the rate; else the prediction is extrapolated far.
+  bool settled = true;
+  // Of windows: samples a pixel of their reference, and whether its own noise is too visible to judge by.
+  double reference_spp = 0;
+  bool reference_is_noisy = false;
   double summed_frames = 1;  // how many frames at most are added up for one
   std::string how;           // what was looked at
   // FrameRates::spp of every frame; empty: each has a pilot, or none.

@@ -44,7 +44,7 @@ bool FrameWindow::joins_next(std::int32_t earlier) const {
   const AccumulateSettings& settings = renderer_->settings().accumulate;
   const FrameRequest& later = request_of(earlier + 1);
   return !(settings.blend > 0) && !eye_forbids(later, settings) && renderer_->at_rest(request_of(earlier), later) &&
-         same_sites(held_.at(earlier).traced.map, held_.at(earlier + 1).traced.map);
+         same_sites(in_memory_.at(earlier).traced.map, in_memory_.at(earlier + 1).traced.map);
 }
 
 FrameWindow::Run FrameWindow::at_rest_with(std::int32_t frame, const Run& window) const {
@@ -73,24 +73,24 @@ const Guides* FrameWindow::guides_of(const FrameRequest& request, StageTimes& ti
 }
 
 const ReconstructedFrame& FrameWindow::alone(std::int32_t frame, bool read_by_others, StageTimes& times) {
-  Held& held = held_.at(frame);
+  WindowFrame& kept = in_memory_.at(frame);
   const FrameRequest& request = request_of(frame);
-  if (!held.alone) {
+  if (!kept.alone) {
     const Guides* guides = guides_of(request, times);
-    held.alone = renderer_->reconstruct(request, held.traced, guides);
-    add_times(std::exchange(held.alone->times, {}), times);
+    kept.alone = renderer_->reconstruct(request, kept.traced, guides);
+    add_times(std::exchange(kept.alone->times, {}), times);
   }
-  if (read_by_others && held.alone->alone.frames == 0) {
-    renderer_->keep_history(*held.alone);
-    add_times(std::exchange(held.alone->times, {}), times);
+  if (read_by_others && kept.alone->alone.frames == 0) {
+    renderer_->keep_history(*kept.alone);
+    add_times(std::exchange(kept.alone->times, {}), times);
   }
-  return *held.alone;
+  return *kept.alone;
 }
 
 TracedFrame FrameWindow::sum_of(const Run& run, const Guides* guides) const {
   std::vector<SamplesOfFrame> frames;
   for (std::int32_t one = run.first; one <= run.last; ++one) {
-    const TracedFrame& traced = held_.at(one).traced;
+    const TracedFrame& traced = in_memory_.at(one).traced;
     frames.push_back({one, &traced.map, &traced.sparse});
   }
   SamplesAtRest sums = add_up(frames, guides != nullptr ? &guides->camera : nullptr, renderer_->settings().threads);
@@ -116,9 +116,9 @@ bool FrameWindow::only_views_move(const Run& window) const {
   if (!renderer_->only_views_move()) {
     return false;
   }
-  const SamplingMap& size = held_.at(window.first).traced.map;
+  const SamplingMap& size = in_memory_.at(window.first).traced.map;
   for (std::int32_t frame = window.first; frame <= window.last; ++frame) {
-    const TracedFrame& traced = held_.at(frame).traced;
+    const TracedFrame& traced = in_memory_.at(frame).traced;
     if (traced.sparse.first_surface.empty() || traced.map.width_px != size.width_px ||
         traced.map.height_px != size.height_px) {
       return false;
@@ -129,7 +129,7 @@ bool FrameWindow::only_views_move(const Run& window) const {
 
 ReconstructedFrame FrameWindow::among_views(const Run& run, const Run& window, std::int32_t frame, StageTimes& times) {
   const FrameRequest& request = request_of(frame);
-  const TracedFrame& own = held_.at(frame).traced;
+  const TracedFrame& own = in_memory_.at(frame).traced;
   const Guides* guides = guides_of(request, times);
   std::vector<float> others;
   TracedFrame all;
@@ -144,7 +144,7 @@ ReconstructedFrame FrameWindow::among_views(const Run& run, const Run& window, s
     std::vector<ViewSamples> views;
     for (std::int32_t one = window.first; one <= window.last; ++one) {
       if (one < run.first || one > run.last) {
-        const TracedFrame& traced = held_.at(one).traced;
+        const TracedFrame& traced = in_memory_.at(one).traced;
         views.push_back({one, &request_of(one).camera, &traced.map, &traced.sparse});
       }
     }
@@ -182,7 +182,7 @@ const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame
     renderer_->keep_history(shown);
     add_times(std::exchange(shown.times, {}), times);
   }
-  const TracedFrame& own = held_.at(frame).traced;
+  const TracedFrame& own = in_memory_.at(frame).traced;
   shown.request = request;
   shown.map = own.map;
   shown.samples = own.sparse.stats;
@@ -193,22 +193,22 @@ const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame
 
 RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& history) {
   const Run window = window_around(request.frame);
-  held_.erase(held_.begin(), held_.lower_bound(window.first));
+  in_memory_.erase(in_memory_.begin(), in_memory_.lower_bound(window.first));
   TraceStats others;
   StageTimes times;
   for (std::int32_t frame = window.first; frame <= window.last; ++frame) {
-    if (held_.contains(frame)) {
+    if (in_memory_.contains(frame)) {
       continue;
     }
     const TracedFrame& traced =
-        held_.emplace(frame, Held{renderer_->trace(request_of(frame), light_), {}}).first->second.traced;
+        in_memory_.emplace(frame, WindowFrame{renderer_->trace(request_of(frame), light_), {}}).first->second.traced;
     if (frame != request.frame && !counted_.contains(frame)) {
       add_traces(traced.sparse.stats, others);
       add_traces(traced.first_look, others);
       add_times(traced.times, times);
     }
   }
-  add_times(held_.at(request.frame).traced.times, times);
+  add_times(in_memory_.at(request.frame).traced.times, times);
   const Run run = at_rest_with(request.frame, window);
   const Run seen = seen_by(request.frame, window);
   if (run != seen && only_views_move(seen)) {

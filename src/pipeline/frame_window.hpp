@@ -30,7 +30,7 @@ class FrameWindow {
   RenderedFrame render(const FrameRequest& request, TemporalHistory& history);
 
  private:
-  struct Held {
+  struct WindowFrame {
     TracedFrame traced;
     std::optional<ReconstructedFrame> alone;  // once it was looked up, or shown without neighbours at rest
   };
@@ -70,7 +70,7 @@ class FrameWindow {
   const FrameRenderer* renderer_;
   std::map<std::int32_t, const FrameRequest*> requests_;  // of the plan, those around its frames included
   std::set<std::int32_t> counted_;
-  std::map<std::int32_t, Held> held_;
+  std::map<std::int32_t, WindowFrame> in_memory_;
   std::optional<Rested> rested_;  // the last one: while nothing moves, the next frame may be the same
   std::optional<FirstHits> first_hits_;
   KnownLight light_;

@@ -115,6 +115,7 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
       clip.refine(wanted_reference(clip, q));
       q = clip.q_of(pictures);
     }
+    result.reference_is_noisy = clip.reference_q() > kMostOfReference * q;
     looks.add({std::log(spp), std::log(std::max(q, 1e-12))});
     ++result.rounds;
     const double reach = std::log(kGrowth);
@@ -139,6 +140,7 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
     }
   }
   result.is_least = result.spp == least;
+  result.reference_spp = clip.reference_spp();
   result.rates = clip.shared_rates(result.spp);
   result.how = fmt::format("{} looks at {}, beside {:.0f} samples a pixel", result.rounds,
                            clip.windows().is_whole_frame()

@@ -207,6 +207,12 @@ class JudgedRate {
                       "the sequence may be worse or better than stated",
                       rate_->rounds, rate_->spp));
     }
+    if (rate_->reference_is_noisy) {
+      warnings.push_back(fmt::format(
+          "`target-jod`: the reference of {:.0f} samples a pixel is still seen to be noisy, so that the sequence "
+          "may be worse than stated",
+          rate_->reference_spp));
+    }
     if (rate_->predicted_flip && rate_->spp * rate_->summed_frames < kKnownToHold) {
       warnings.push_back(fmt::format(
           "`target-flip`: at {:.3g} samples a pixel the prediction may be off by a third of it", rate_->spp));
@@ -329,7 +335,8 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   const auto render_one = [&](const FrameRequest& request) {
     if (time_budget) {
       // Budgets change nothing of what is learned.
-      return FrameRenderer(tracer, time_budget->settings_for(request, history)).render(request, history, light);
+      const FrameSettings within = time_budget->settings_for(request, history, light);
+      return FrameRenderer(tracer, within).render(request, history, light);
     }
     return window ? window->render(request, history) : renderer.render(request, history, light);
   };

@@ -71,7 +71,7 @@ ImageGray scaled(ImageGray rates, double by) {
 FrameCost cost_of(const TimingRow& row) {
   FrameCost cost;
   cost.sample_ms = row.trace_ms / traced_samples(row);
-  cost.fixed_ms = row.plan_ms + row.learn_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms +
+  cost.fixed_ms = row.plan_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms + row.layers_ms +
                   row.color_ms + row.write_ms +
                   std::max(0.0, row.pilot_ms - cost.sample_ms * static_cast<double>(row.pilot_samples));
   return cost;
@@ -125,19 +125,22 @@ TimeBudget::TimeBudget(PathTracer& tracer, const FrameSettings& settings, const 
       output_(output),
       budget_ms_(1e3 * settings.foveation.target.time_s.value()) {}
 
-FrameSettings TimeBudget::settings_for(const FrameRequest& request, const TemporalHistory& history) {
+FrameSettings TimeBudget::settings_for(const FrameRequest& request, const TemporalHistory& history, KnownLight& known) {
   if (known_frames_ == 0) {
-    rehearse(request, history);
+    rehearse(request, history, known);
   }
+  // What the frame before has learned holds at rest.
+  const bool learns = settings_.trace.learn_light &&
+                      (!known.request || !FrameRenderer(tracer_, settings_).at_rest(*known.request, request));
   const FoveationSettings& foveation = settings_.foveation;
   const double least = least_budget_spp(foveation, request);
-  const double spp =
-      affordable_spp(budget_ms_ - rehearsal_ms_, cost_, pixels_of(request), least, std::max(least, foveation.max_spp));
+  const double left_ms = budget_ms_ - rehearsal_ms_ - (learns ? learn_ms_ : 0);
+  const double spp = affordable_spp(left_ms, cost_, pixels_of(request), least, std::max(least, foveation.max_spp));
   at_least_ = spp <= least;
   return with_budget(settings_, spp);
 }
 
-void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& history) {
+void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& history, KnownLight& known) {
   const Stopwatch watch;
   const double pixels = pixels_of(request);
   const bool by_pilot = settings_.foveation.falloff == "visible";
@@ -146,12 +149,12 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   const double most = std::max(least, settings_.foveation.max_spp);
 
   FrameSettings looking = settings_;  // of what traces no whole frame
-  double learn_ms = 0;
   if (looking.trace.learn_light) {
-    LightLearning learning = timed(learn_ms, [&] {
+    LightLearning learning = timed(learn_ms_, [&] {
       return scene.learn_light(request.camera, request.width_px, request.height_px, looking.trace);
     });
     looking.trace.learned = std::move(learning.light);
+    known = {request, looking.trace.learned};  // the frame would learn the same
   }
 
   // Roughly, by a pilot: what a sample costs.
@@ -193,7 +196,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   }
   cost_ = with_slope(cost_of(row), {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},
                      {few.times.trace_ms, static_cast<double>(few.samples.samples)});
-  cost_.fixed_ms += learn_ms + guessed_output_ms(output_, pixels);
+  cost_.fixed_ms += guessed_output_ms(output_, pixels);
 
   if (by_pilot) {
     // What deciding the rates takes, and how much more or less a sample costs where they put it.
@@ -212,6 +215,9 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
 void TimeBudget::learn(TimingRow& row) {
   const FrameCost cost = cost_of(row, cost_);
   cost_ = known_frames_ == 0 ? cost : mean_cost(cost_, cost);
+  if (row.learn_ms > 0) {
+    learn_ms_ = row.learn_ms;
+  }
   ++known_frames_;
   add_pilot(rehearsal_, row);
   row.pilot_ms += rehearsal_ms_;

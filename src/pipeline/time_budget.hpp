@@ -19,8 +19,10 @@
 namespace gazetrace {
 
 struct FrameCost {
-  double fixed_ms = 0;  // first hits, filter, accumulation, view, files, and what of a pilot is not tracing
-  double base_ms = 0;   // of tracing, whatever the number of samples
+  // First hits, filter, accumulation, layers, view, files, and what of a pilot is not tracing. Learning of light is
+  // apart, since frames at rest learn once.
+  double fixed_ms = 0;
+  double base_ms = 0;  // of tracing, whatever the number of samples
   double sample_ms = 0;
 };
 
@@ -46,8 +48,10 @@ class TimeBudget {
   // `settings` have a QualityTarget::time_s. Keeps references to `tracer`, `settings` and `output`.
   TimeBudget(PathTracer& tracer, const FrameSettings& settings, const OutputSettings& output);
 
-  // The settings of the next frame, with a budget of samples in the place of the time. The first call rehearses.
-  [[nodiscard]] FrameSettings settings_for(const FrameRequest& request, const TemporalHistory& history);
+  // The settings of the next frame, with a budget of samples in the place of the time. The first call rehearses, and
+  // leaves in `known` what it has learned; later ones see in it whether the frame will have to learn.
+  [[nodiscard]] FrameSettings settings_for(const FrameRequest& request, const TemporalHistory& history,
+                                           KnownLight& known);
   // Takes in the row of the finished frame, of which total_ms may still be missing, and enters the rehearsal.
   void learn(TimingRow& row);
   // Of the frame's whole time.
@@ -56,13 +60,14 @@ class TimeBudget {
   [[nodiscard]] std::string warning() const;
 
  private:
-  void rehearse(const FrameRequest& request, const TemporalHistory& history);
+  void rehearse(const FrameRequest& request, const TemporalHistory& history, KnownLight& known);
 
   PathTracer& tracer_;
   const FrameSettings& settings_;
   const OutputSettings& output_;
   double budget_ms_;
   FrameCost cost_;
+  double learn_ms_ = 0;  // of the last frame that learned its light
   int known_frames_ = 0;
   // Of the rehearsal, until a row has it.
   TraceStats rehearsal_;

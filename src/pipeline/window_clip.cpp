@@ -200,9 +200,7 @@ bool WindowClip::is_steady() const {
            request.eye_speed_deg_s == first().eye_speed_deg_s && request.eye_in_saccade == first().eye_in_saccade;
   };
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
-  // Of `map` each frame may have a file.
-  const std::string& falloff = settings_.foveation.falloff;
-  return falloff != "map" && !(falloff == "visible" && judged_.view_moves) &&
+  return !(settings_.foveation.falloff == "visible" && judged_.view_moves) &&
          std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
 }
 

@@ -41,7 +41,7 @@ class WindowClip {
   [[nodiscard]] double reference_q() const { return reference_q_; }  // Q of its own error
 
   // The rates of the fall-off `visible` by the last look, for this mean, where all frames are looked at alike: they can
-  // share them. Empty for other fall-offs and for a gaze that moves.
+  // share them. Empty for other fall-offs, and where view or gaze moves.
   [[nodiscard]] ImageGray shared_rates(double spp) const;
   // Whether the sampling of all frames follows from the same view and gaze.
   [[nodiscard]] bool is_steady() const;

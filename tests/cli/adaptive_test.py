@@ -193,12 +193,39 @@ class Adaptive(harness.CliTest):
         # Bounds of a frame's rate, which here leave no choice.
         rows = timed("bound", "--falloff", "uniform", "--filter", "none", "--min-spp", "3", "--max-spp", "3")
         self.assertEqual([int(row["samples"]) - int(row["pilot_samples"]) for row in rows], [3 * 64 * 40] * 2)
+        # The rehearsal has learned for both frames, which see the same.
+        self.assertEqual([(int(row["learning_paths"]), float(row["learn_ms"])) for row in rows], [(0, 0)] * 2)
         # A frame that is there stays; the other is made again, of whatever number of samples.
         kept = (self.folder / "bound/f.0001.exr").read_bytes()
         (self.folder / "bound/f.0002.exr").unlink()
         timed("bound", "--falloff", "uniform", "--filter", "none", "--min-spp", "3", "--max-spp", "3", "--resume")
         self.assertEqual(kept, (self.folder / "bound/f.0001.exr").read_bytes())
         self.assertTrue((self.folder / "bound/f.0002.exr").exists())
+
+    def test_a_stated_quality_keeps_the_least_rate(self):
+        for target, value in (("jod", "3"), ("flip", "0.5")):
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, f"--target-{target}", value, "--min-spp", "3", "-o", f"{target}/f.exr")
+            row, = self.rows(target, "f.")
+            self.assertEqual(int(row["samples"]) - int(row["pilot_samples"]), 3 * 64 * 40)
+            record = self.record(target, "f.")
+            self.assertIn("the least there is", record["facts"]["rate"])
+            self.assertFalse([warning for warning in record["warnings"] if "min-spp" in warning])
+
+    def test_the_record_says_what_was_decided(self):
+        without_gaze = [*VIEW[:-2], "--screen-px", "64,40", "--screen-ppd", "12", "--falloff", "uniform", "--filter", "none"]
+        for name, words, *arguments in [
+            ("time", "as many samples as `time-budget` allows everywhere", *VIEW[:-2], "--time-budget", "20ms"),
+            ("flip", "as many samples as the stated quality takes everywhere", *without_gaze, "--target-flip", "0.3"),
+            ("spp", "2 samples everywhere", *VIEW[:-2], "--spp", "2"),
+        ]:
+            self.run_ok("render", "box.gltf", *arguments, "-o", f"{name}/f.exr")
+            self.assertIn(words, self.record(name, "f.")["facts"]["sampling"])
+        for limit, is_told in ((None, True), ("4", False)):
+            folder = f"blocks-{limit}"
+            more = ["--max-block", limit] if limit else []
+            self.run_ok("render", "box.gltf", *VIEW, "--budget-spp", "3", "--accumulate", "two-sided", *more, "--frames", "1-2", "-o",
+                        f"{folder}/f.####.exr")
+            self.assertEqual("max-block" in self.record(folder)["facts"], is_told)
 
     def measured_jod(self, reference, test, frames, gaze):
         self.run_ok("compare", f"{reference}/f.####.exr", f"{test}/f.####.exr", "--frames", frames, "--metrics", "fovvideovdp", "--fps",

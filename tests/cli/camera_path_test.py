@@ -40,6 +40,17 @@ class CameraPaths(harness.CliTest):
         self.assert_refused(["plan", "--size", "64x36", "--camera-path", "path.tum", "--save-camera", "x.fbx"],
                             ["x.fbx", ".chan"])
 
+    def test_a_plan_is_as_long_as_what_moves_in_the_scene(self):
+        moving = harness.box_gltf(camera_seconds=1)
+        self.write("camera.gltf", json.dumps(moving))
+        moving["animations"][0]["channels"][0]["target"]["node"] = 0
+        self.write("moving.gltf", json.dumps(moving))
+        eye = ["--eye", "0,0,3", "--target", "0,0,0", "--fps", "4"]
+        self.write("log.csv", harness.moving_gaze(50))  # half a second
+        for frames, arguments in ((4, ["moving.gltf", *eye]), (1, ["camera.gltf", *eye]), (1, ["box.gltf", *eye]), (1, eye),
+                                  (2, ["moving.gltf", *eye, "--gaze", "log.csv"]), (3, ["moving.gltf", *eye, "--frames", "1-3"])):
+            self.assertEqual(len(self.frames(*arguments)), frames, arguments)
+
     def test_the_help_says_how_a_saved_path_is_read_again(self):
         text = " ".join(self.run_ok("plan", "--help").stdout.split())
         saving = text[text.index("--save-camera"):]

@@ -12,7 +12,7 @@ void add_frame_options(JobSchema& schema) {
   schema
       .value("--frames,--only-frame", &JobSettings::frames, "LIST", Touch::frames,
              "Which frames, counted from 1: 1-100, 1-100x2, 3,7,9-12; default: as long as the animated camera, else "
-             "the gaze log, else frame 1")
+             "the gaze log, else the scene's animation, else frame 1")
       .decides_nothing();
   schema.value("--start", &JobSettings::start, "DURATION", Touch::frames, "Video time at which frame 1 begins");
   schema

@@ -159,15 +159,12 @@ void add_pilot_options(JobSchema& schema) {
   without_rates_to_limit.holds = [elsewhere = without_rates_to_limit.holds](const JobSettings& job) {
     return elsewhere(job) && !job.foveation.target.is_given();
   };
-  JobIdleRule without_least_rate = with_other_falloffs({"visible"});
-  without_least_rate.holds = [elsewhere = without_least_rate.holds](const JobSettings& job) {
-    return elsewhere(job) && !job.foveation.target.time_s;
-  };
   schema
       .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
-             "visible: the lowest rate anywhere in the frame, in samples a pixel; with --time-budget, of a frame")
+             "visible: the lowest rate anywhere in the frame, in samples a pixel; with --target-jod, --target-flip "
+             "and --time-budget, of a frame")
       .within(0, kMostSamples)
-      .idle_when({without_least_rate});
+      .idle_when({without_rates_to_limit});
   schema
       .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
              "visible: the highest rate anywhere in the frame, in samples a pixel; with --target-jod, --target-flip "

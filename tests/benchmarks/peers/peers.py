@@ -19,8 +19,8 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
 at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
-what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For programs
-that learn nothing `us` is that of --steady-spp samples a pixel. Scenes are loaded once (picture_times.py).
+what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For the other
+programs, which learn nothing, `us` is that of --steady-spp samples a pixel. Scenes are loaded once (picture_times.py).
 
 Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
 """
@@ -189,7 +189,7 @@ def main():
 
     target = sum(0.5**k for k in range(options.bounces + 1))
     for rate in times:
-        timed = f"{rate}, where nothing is learned {options.steady_spp}" if options.rates else options.spp.replace(",", " and ")
+        timed = f"{rate} (others {options.steady_spp})" if options.rates else options.spp.replace(",", " and ")
         print(f"{pathlib.Path(options.scene).name}, {options.materials}, {options.bounces} bounces, {options.size}, "
               f"{options.rounds} rounds of {timed} spp; error at {error_size}, {rate} spp, "
               f"reference {options.reference_spp} spp, {options.seeds} seeds; furnace {target}")
@@ -217,10 +217,10 @@ def measure_rates(programs, options, folder, view):
     times = {rate: {p: [] for p in programs} for rate in rates}
     for r in range(options.rounds):
         for p in programs:
-            # Who learns nothing takes as long for each sample, which many samples tell best.
-            for spp in rates if p == "gazetrace" else [options.steady_spp]:
+            # The others take as long for each sample, which many samples tell best.
+            for spp in rates if p.startswith("gazetrace") else [options.steady_spp]:
                 seconds, _ = open_programs[p].picture(spp, r)
-                for rate in [spp] if p == "gazetrace" else rates:
+                for rate in [spp] if p.startswith("gazetrace") else rates:
                     times[rate][p].append(seconds / (width * height * spp) * 1e6)
     picture = lambda p, spp, seed: read_picture(open_programs[p].picture(spp, seed)[1])
     own, shared = measure_errors(programs, options, rates, picture)
