@@ -215,7 +215,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
 void TimeBudget::learn(TimingRow& row) {
   const FrameCost cost = cost_of(row, cost_);
   cost_ = known_frames_ == 0 ? cost : mean_cost(cost_, cost);
-  if (row.learn_ms > 0) {
+  if (row.learning_paths > 0) {
     learn_ms_ = row.learn_ms;
   }
   ++known_frames_;
