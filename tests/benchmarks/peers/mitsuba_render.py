@@ -231,11 +231,12 @@ def render(scene, spp, seed, per_pass):
 
 def serve(scene, per_pass):
     """Renders each `OUT.npy SPP SEED` of the standard input, until it ends."""
-    render(scene, per_pass + 1, 0, per_pass)  # compiles the kernels, which is no picture's time
+    if per_pass:
+        render(scene, per_pass + 1, 0, per_pass)  # compiles the kernels, which is no picture's time
     for line in sys.stdin:
         out, spp, seed = line.split()
         begin = time.process_time()
-        picture = render(scene, int(spp), int(seed), per_pass)
+        picture = render(scene, int(spp), int(seed), per_pass or int(spp))
         seconds = time.process_time() - begin
         np.save(out, picture)
         print(f"served {seconds}", flush=True)
@@ -280,7 +281,7 @@ def main():
         if options.variant.startswith("scalar"):
             per_pass = options.spp
         if options.serve:
-            return serve(scene, per_pass)
+            return serve(scene, 0 if options.variant.startswith("scalar") else per_pass)
         pictures = [render(scene, options.spp, options.seed + s, per_pass) for s in range(max(options.seeds, 1))]
         np.save(options.output, np.stack(pictures) if options.seeds else pictures[0])
 

@@ -19,8 +19,8 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
 at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
-what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For the other
-programs, which learn nothing, `us` is that of --steady-spp samples a pixel. Scenes are loaded once (picture_times.py).
+what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For Mitsuba
+and Cycles `us` is that of --steady-spp samples a pixel; what counts as time is in picture_times.py.
 
 Relative MSE: mean of (x - r)^2 / (r^2 + (0.1 mean r)^2) over pixels and channels.
 """
