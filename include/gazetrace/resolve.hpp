@@ -31,7 +31,8 @@ enum class ResolveScope {
   // screen
   // is not checked, and stays empty where neither the job nor the log states one.
   viewing,
-  // The plan alone. The scene is read only where the camera comes from it, and may be missing where nothing needs it.
+  // The plan alone. The scene is read only where the camera comes from it, or where the number of frames may (no
+  // `frames`, a camera at rest, no gaze log), and may be missing where nothing needs it.
   // No file is hashed.
   plan,
   // The plan and the digests of all files, for work on pictures that were rendered already.

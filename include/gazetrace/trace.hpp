@@ -55,7 +55,7 @@ struct TraceSettings {
   // root mean square difference of 12 % per pixel).
   double pixel_cone = 0;
   // The frame first learns from some paths of its own where its light arrives from, and draws bounces towards it
-  // (PosedScene::learn_light). Means do not change but for texture levels after a bounce (bounce_cone). Frames take
+  // (PosedScene::learn_light). Means do not change but for texture levels after a bounce (bounce_cone_rad). Frames take
   // less samples for the same noise where most of the sky is hidden, and a little more time where it is not.
   // FrameRenderer does it; trace() itself only follows `learned`.
   bool learn_light = true;

@@ -38,7 +38,15 @@ std::int64_t last_motion_ns(const Scene* scene) {
   return last;
 }
 
+bool lasts(const GazeLog* log) {
+  return log != nullptr && log->samples.size() > 1;
+}
+
 }  // namespace
+
+bool may_follow_scene(const JobSettings& job, const CameraPath& camera, const GazeLog* log) {
+  return !job.frames && camera.is_static && !lasts(log);
+}
 
 // As long as the camera's path or, without one, the gaze log or, without one, the motion of the scene.
 std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath& camera, const GazeLog* log,
@@ -52,7 +60,7 @@ std::vector<std::int32_t> choose_frames(const JobSettings& job, const CameraPath
   if (!camera.is_static) {
     count = frames_until(static_cast<double>(camera.end_ns), job);
     reason = "as long as the camera's path";
-  } else if (log != nullptr && log->samples.size() > 1) {
+  } else if (lasts(log)) {
     const GazeMapping mapping = gaze_mapping(job, log, taken_off_ns);
     const std::int64_t begin_ns = mapping.event_ns.value_or(log->samples.front().t_ns);
     const std::int64_t end_ns = log->trial ? log->trial->end_ns : log->samples.back().t_ns;

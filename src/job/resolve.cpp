@@ -323,7 +323,7 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   bool length_needs_scene = false;
   if (!needs_scene) {
     camera = choose_camera(job, nullptr, log, taken_off_ns, decision);
-    length_needs_scene = !job.frames && camera.is_static && (log == nullptr || log->samples.size() < 2);
+    length_needs_scene = may_follow_scene(job, camera, log);
   }
   const bool asks_scene = (needs_scene || length_needs_scene) && !job.scene.empty();
   if (options.loaded == nullptr && (options.scope == ResolveScope::render || asks_scene)) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gazetrace/color.hpp"
 #include "gazetrace/frame_renderer.hpp"
@@ -12,6 +13,9 @@
 #include "gazetrace/plan.hpp"
 
 namespace gazetrace {
+
+// What may be seen of a reference's own error, as a part of what is seen of the frames' error. It is taken off.
+constexpr double kMostOfReference = 0.35;
 
 struct ClipRate {
   double spp = 0;  // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
@@ -22,15 +26,16 @@ struct ClipRate {
   bool is_least = false;                                // fewer samples are not possible
   // The last pilot or look was near enough to the rate; else the prediction is extrapolated far.
   bool settled = true;
-  // Of windows: samples a pixel of their reference, and whether its own noise is too visible to judge by.
-  double reference_spp = 0;
-  bool reference_is_noisy = false;
+  // Of windows: samples a pixel of their reference, and what is seen of its own error as a part of what is seen of the
+  // frames' in the last look.
+  double reference_spp = 0, reference_share = 0;
   double summed_frames = 1;  // how many frames at most are added up for one
   std::string how;           // what was looked at
   // FrameRates::spp of every frame; empty: each has a pilot, or none.
   ImageGray rates;
 
-  [[nodiscard]] std::string text() const;  // for the run record
+  [[nodiscard]] std::string text() const;                 // for the run record
+  [[nodiscard]] std::vector<std::string> doubts() const;  // sentences for warnings: why the quality may be missed
 };
 
 // Whether the error of frames is in a replica of their noise: single pixels of uniform frames that nothing smooths.

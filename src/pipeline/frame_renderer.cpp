@@ -25,12 +25,16 @@ FrameRenderer::FrameRenderer(PathTracer& tracer, FrameSettings settings)
       reconstruction_(settings_.reconstruction),
       tables_(matte_tables(tracer.scene(), settings_.layers.mattes)) {}
 
+bool FrameRenderer::knows_light(const KnownLight& known, const FrameRequest& request) const {
+  return known.request && (known.request->frame == request.frame || at_rest(*known.request, request));
+}
+
 std::shared_ptr<const LearnedLight> FrameRenderer::learned_light(const PosedScene& scene, const FrameRequest& request,
                                                                  KnownLight& known, TraceStats& stats) const {
   if (settings_.light_of) {
     return settings_.light_of(request);
   }
-  if (!known.request || !at_rest(*known.request, request)) {
+  if (!knows_light(known, request)) {
     known = {};
     LightLearning learning = scene.learn_light(request.camera, request.width_px, request.height_px, settings_.trace);
     stats.learning_paths += learning.paths;

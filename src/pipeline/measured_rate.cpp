@@ -27,8 +27,6 @@ constexpr double kTogether = 1.6;     // looks whose rates differ by no more tel
 constexpr double kLeastSpread = 0.2;  // of logarithms of rates: a sum of squares
 constexpr double kSteepest = -1.2, kFlattest = -0.2;
 constexpr double kFirstReferenceSpp = 128, kMostReferenceSpp = 16384;
-// What may be seen of the reference's own error beside that of the frames. It is taken off.
-constexpr double kMostOfReference = 0.35;
 
 // Frames that do not share their rates have a pilot each.
 double least_rate(const WindowClip& clip, const FrameSettings& settings, const FrameRequest& request) {
@@ -115,7 +113,7 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
       clip.refine(wanted_reference(clip, q));
       q = clip.q_of(pictures);
     }
-    result.reference_is_noisy = clip.reference_q() > kMostOfReference * q;
+    result.reference_share = clip.reference_q() / std::max(q, 1e-12);
     looks.add({std::log(spp), std::log(std::max(q, 1e-12))});
     ++result.rounds;
     const double reach = std::log(kGrowth);

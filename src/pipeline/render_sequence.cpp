@@ -198,24 +198,9 @@ class JudgedRate {
     }
   }
   [[nodiscard]] std::string text() const { return rate_->text(); }
-  // Of pixels of a few samples, what FLIP sees was off by up to 28 % of what was stated; from 30 samples on by 5 %.
   void warn(Warnings& warnings) const {
-    constexpr double kKnownToHold = 16;
-    if (!rate_->settled) {
-      warnings.push_back(
-          fmt::format("the rate for a stated quality did not settle in {} rounds: at {:.3g} samples a pixel "
-                      "the sequence may be worse or better than stated",
-                      rate_->rounds, rate_->spp));
-    }
-    if (rate_->reference_is_noisy) {
-      warnings.push_back(fmt::format(
-          "`target-jod`: the reference of {:.0f} samples a pixel is still seen to be noisy, so that the sequence "
-          "may be worse than stated",
-          rate_->reference_spp));
-    }
-    if (rate_->predicted_flip && rate_->spp * rate_->summed_frames < kKnownToHold) {
-      warnings.push_back(fmt::format(
-          "`target-flip`: at {:.3g} samples a pixel the prediction may be off by a third of it", rate_->spp));
+    for (std::string& doubt : rate_->doubts()) {
+      warnings.push_back(std::move(doubt));
     }
   }
   void enter(TimingRow& row) {

@@ -129,9 +129,7 @@ FrameSettings TimeBudget::settings_for(const FrameRequest& request, const Tempor
   if (known_frames_ == 0) {
     rehearse(request, history, known);
   }
-  // What the frame before has learned holds at rest.
-  const bool learns = settings_.trace.learn_light &&
-                      (!known.request || !FrameRenderer(tracer_, settings_).at_rest(*known.request, request));
+  const bool learns = settings_.trace.learn_light && !FrameRenderer(tracer_, settings_).knows_light(known, request);
   const FoveationSettings& foveation = settings_.foveation;
   const double least = least_budget_spp(foveation, request);
   const double left_ms = budget_ms_ - rehearsal_ms_ - (learns ? learn_ms_ : 0);

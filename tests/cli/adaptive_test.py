@@ -195,6 +195,17 @@ class Adaptive(harness.CliTest):
         self.assertEqual([int(row["samples"]) - int(row["pilot_samples"]) for row in rows], [3 * 64 * 40] * 2)
         # The rehearsal has learned for both frames, which see the same.
         self.assertEqual([int(row["learning_paths"]) for row in rows], [0, 0])
+        # Where something moves, it has learned for the first.
+        self.write("glide.gltf", json.dumps(harness.box_gltf(camera_seconds=1.0)))
+        moving = harness.box_gltf(camera_seconds=1.0)
+        moving["animations"][0]["channels"][0]["target"]["node"] = 0
+        self.write("moving.gltf", json.dumps(moving))
+        for scene, view in (("glide.gltf", []), ("moving.gltf", VIEW[2:6])):
+            self.run_ok("render", scene, *VIEW[:2], *view, "--quiet", "--frames", "1-2", "--time-budget", "50ms", "--falloff", "uniform",
+                        "--filter", "none", "-o", f"{scene}-timed/f.####.exr")
+            first, second = (int(row["learning_paths"]) for row in self.rows(f"{scene}-timed"))
+            self.assertEqual(first, 0)
+            self.assertGreater(second, 0)
         # A frame that is there stays; the other is made again, of whatever number of samples.
         kept = (self.folder / "bound/f.0001.exr").read_bytes()
         (self.folder / "bound/f.0002.exr").unlink()

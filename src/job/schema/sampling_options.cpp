@@ -156,6 +156,7 @@ void add_model_options(JobSchema& schema) {
 void add_pilot_options(JobSchema& schema) {
   using F = FoveationSettings;
   JobIdleRule without_rates_to_limit = with_other_falloffs({"visible"});
+  without_rates_to_limit.words = "with any other `falloff` than visible and without a target";
   without_rates_to_limit.holds = [elsewhere = without_rates_to_limit.holds](const JobSettings& job) {
     return elsewhere(job) && !job.foveation.target.is_given();
   };
