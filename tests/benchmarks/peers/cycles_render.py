@@ -9,8 +9,8 @@ surface by a diffuse one of its base colour, as gazetrace's `--diffuse matte`; p
 material. Bounces count scattering events: Cycles' own setting is one less. Cycles has no mip levels.
 
 --serve loads the scene once, and then renders what lines of the standard input ask for, `OUT.exr SPP SEED`. It answers each
-with `served SECONDS`, the processor time of that picture over all threads; OUT and --spp on the command line are not used.
-The scene and its tree stay in memory from one picture to the next.
+with `served SECONDS`, the processor time of that picture over all threads; a first picture, of one sample, goes
+to OUT. The scene and its tree stay in memory from one picture to the next.
 """
 
 import argparse
@@ -130,15 +130,14 @@ def serve(scene):
     """Renders each `OUT.exr SPP SEED` of the standard input, until it ends."""
     scene.render.use_persistent_data = True
     scene.cycles.samples = 1
-    bpy.ops.render.render(write_still=False)  # builds the tree, which is no picture's time
+    bpy.ops.render.render(write_still=True)  # builds the tree, which is no picture's time
     for line in sys.stdin:
         out, spp, seed = line.split()
         scene.cycles.samples, scene.cycles.seed = int(spp), int(seed)
+        scene.render.filepath = out
         begin = time.process_time()
-        bpy.ops.render.render(write_still=False)
-        seconds = time.process_time() - begin
-        bpy.data.images["Render Result"].save_render(out)
-        print(f"served {seconds}", flush=True)
+        bpy.ops.render.render(write_still=True)  # without a file to write, Blender renders nothing anew
+        print(f"served {time.process_time() - begin}", flush=True)
 
 
 def main():
