@@ -46,10 +46,6 @@ JudgedWindow window_at(const Vec2d& middle_px, int side_px, int margin_px, const
           {x.counted_begin, y.counted_begin, x.counted_end - x.counted_begin, y.counted_end - y.counted_begin}};
 }
 
-bool holds(const PixelRect& rect, const Vec2d& px) {
-  return px.x >= rect.x_px && px.x < rect.right_px() && px.y >= rect.y_px && px.y < rect.bottom_px();
-}
-
 // 0..1
 double jitter(std::uint64_t n) {
   return 0x1p-53 * static_cast<double>(hash_combine(kWindowTag, n) >> 11U);
@@ -92,8 +88,9 @@ JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& g
   std::vector<JudgedWindow> foveae;
   for (const Vec2d& gaze : gazes_px) {
     const PixelRect frame{0, 0, view.width_px, view.height_px};
-    const auto has_it = [&](const JudgedWindow& window) { return holds(window.counted, gaze); };
-    if (foveae.size() < kMostFoveae && holds(frame, gaze) && std::none_of(foveae.begin(), foveae.end(), has_it)) {
+    const auto has_it = [&](const JudgedWindow& window) { return window.counted.holds(gaze.x, gaze.y); };
+    if (foveae.size() < kMostFoveae && frame.holds(gaze.x, gaze.y) &&
+        std::none_of(foveae.begin(), foveae.end(), has_it)) {
       foveae.push_back(window_at(gaze, side_px, margin_px, view));
     }
   }

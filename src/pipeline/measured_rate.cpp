@@ -17,7 +17,7 @@
 namespace gazetrace {
 namespace {
 
-constexpr double kFirstSpp = 1, kLeastSpp = 0.25;
+constexpr double kFirstSpp = 1, kLeastRateSpp = 0.25;
 constexpr int kMostLooks = 8;
 constexpr double kGrowth = 16;  // of the rate from one look to the next
 constexpr double kNear = 1.3;   // a change of the rate that needs no further look
@@ -26,12 +26,12 @@ constexpr double kSlope = -0.6;
 constexpr double kTogether = 1.6;     // looks whose rates differ by no more tell of the same rate
 constexpr double kLeastSpread = 0.2;  // of logarithms of rates: a sum of squares
 constexpr double kSteepest = -1.2, kFlattest = -0.2;
-constexpr double kFirstReferenceSpp = 128, kMostReferenceSpp = 16384;
+constexpr double kFirstReferenceSpp = 64, kMostReferenceSpp = 16384;
 
 // Frames that do not share their rates have a pilot each.
 double least_rate(const WindowClip& clip, const FrameSettings& settings, const FrameRequest& request) {
   const bool has_pilots = settings.foveation.falloff == "visible" && !clip.is_steady();
-  const double least = std::max(kLeastSpp, settings.foveation.min_spp);
+  const double least = std::max(kLeastRateSpp, settings.foveation.min_spp);
   return has_pilots ? std::max(least, 4 * least_pilot_spp(request)) : least;
 }
 

@@ -15,6 +15,7 @@
 #include "gazetrace/fovvideovdp.hpp"
 #include "pipeline/adaptive_rates.hpp"
 #include "pipeline/clip_score.hpp"
+#include "pipeline/discarded.hpp"
 #include "pipeline/frame_window.hpp"
 #include "pipeline/trace_counts.hpp"
 #include "trace/guiding/learned_light.hpp"
@@ -22,8 +23,6 @@
 namespace gazetrace {
 namespace {
 
-constexpr std::uint64_t kLookTag = 0x4c4f4f4bULL;        // "LOOK"
-constexpr std::uint64_t kHalfTag = 0x48414c46ULL;        // "HALF"
 constexpr std::uint64_t kRatesTag = 0x5241544553ULL;     // "RATES"
 constexpr std::uint64_t kAroundTag = 0x41524f554e44ULL;  // "AROUND"
 constexpr double kAroundSpp = 1;
@@ -33,72 +32,6 @@ constexpr double kPowerOfSquare = 0.9;
 constexpr std::size_t kStillRuns = 2;
 constexpr std::size_t kMostLightBytes = std::size_t{256} << 20U;  // of what frames have learned, kept at once
 constexpr std::uint64_t kPilots = 4;  // whose rates are averaged, where all frames share them
-
-FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
-  FrameSettings own = settings;
-  own.foveation.target = {};
-  own.foveation.budget_samples.reset();
-  own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kLookTag), tag);
-  own.trace.guides = false;
-  own.trace.only_pixel.reset();
-  own.exposure.smoothing_s = 0;
-  own.layers = {};
-  return own;
-}
-
-FrameSettings uniform(FrameSettings settings, double spp, const char* filter) {
-  settings.foveation = {};
-  settings.foveation.falloff = "uniform";
-  settings.foveation.budget_spp = spp;
-  settings.accumulate = {};
-  settings.reconstruction = {filter, {}};
-  settings.enhance_contrast = 0;
-  settings.trace.clamp_indirect = 0;
-  settings.trace.learn_light = false;
-  return settings;
-}
-
-ImageRgb weighted_mean(const ImageRgb& a, double weight_a, const ImageRgb& b, double weight_b) {
-  ImageRgb mean = a;
-  const auto share = static_cast<float>(weight_b / (weight_a + weight_b));
-  for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
-    mean.pixels[i] += (b.pixels[i] - a.pixels[i]) * share;
-  }
-  return mean;
-}
-
-// A picture that is as far from the mean of two halves as that is from the truth. Of a bright speck that one half alone
-// has, the mean has half: the picture without it differs as the truth does, where a display shows no more than that.
-ImageRgb as_far_off(const ImageRgb& mean, const ImageRgb& a, const ImageRgb& b) {
-  constexpr float kSpeck = 0.5F;  // of the mean's light
-  ImageRgb picture = mean;
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-    const Vec3f off = (a.pixels[i] - b.pixels[i]) * 0.5F;
-    const float light = luminance(off);
-    const bool is_speck = std::abs(light) > kSpeck * luminance(mean.pixels[i]);
-    picture.pixels[i] += is_speck && light > 0 ? off * -1.0F : off;
-  }
-  return picture;
-}
-
-ImageGray cut_out(const ImageGray& image, const PixelRect& rect) {
-  ImageGray part(rect.width_px, rect.height_px);
-  for (int y = 0; y < rect.height_px; ++y) {
-    for (int x = 0; x < rect.width_px; ++x) {
-      part(x, y) = image(rect.x_px + x, rect.y_px + y);
-    }
-  }
-  return part;
-}
-
-template <class T>
-void paste(const Image<T>& part, const PixelRect& rect, Image<T>& image) {
-  for (int y = 0; y < rect.height_px; ++y) {
-    for (int x = 0; x < rect.width_px; ++x) {
-      image(rect.x_px + x, rect.y_px + y) = part(x, y);
-    }
-  }
-}
 
 double mean_rate(const ImageGray& image) {
   double sum = 0;
@@ -120,6 +53,19 @@ std::vector<Vec2d> looked_at(const JudgedFrames& judged) {
   return gazes;
 }
 
+// The frames that have a reference of their own: every judged one, or the first where all show the same.
+std::vector<const FrameRequest*> seen(const JudgedFrames& judged) {
+  std::vector<const FrameRequest*> views;
+  for (const std::vector<FrameRequest>& run : judged.runs) {
+    for (const FrameRequest& request : run) {
+      if (judged.view_moves || views.empty()) {
+        views.push_back(&request);
+      }
+    }
+  }
+  return views;
+}
+
 }  // namespace
 
 WindowClip::WindowClip(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
@@ -128,13 +74,11 @@ WindowClip::WindowClip(PathTracer& tracer, const JudgedFrames& judged, const Fra
       judged_(judged),
       settings_(settings),
       color_(color),
-      windows_(judged_windows(first().view, looked_at(judged), judged.view_moves)) {
+      windows_(judged_windows(first().view, looked_at(judged), judged.view_moves)),
+      reference_(tracer, windows_, seen(judged), settings) {
   for (const std::vector<FrameRequest>& run : judged_.runs) {
     for (const FrameRequest& request : run) {
       requests_.emplace(request.frame, &request);
-      if (judged_.view_moves || views_.empty()) {
-        views_.push_back(&request);
-      }
     }
   }
   for (const FrameRequest& request : judged_.around) {
@@ -144,7 +88,7 @@ WindowClip::WindowClip(PathTracer& tracer, const JudgedFrames& judged, const Fra
 }
 
 void WindowClip::render_around() {
-  const FrameSettings around = uniform(discarded(settings_, kAroundTag), kAroundSpp, "guided");
+  const FrameSettings around = raw(discarded(settings_, kAroundTag), kAroundSpp, "guided");
   for (const std::vector<FrameRequest>& run : judged_.runs) {
     if (!around_.empty() && !judged_.view_moves) {
       break;
@@ -193,6 +137,12 @@ double WindowClip::counted_px() const {
   return pixels;
 }
 
+TraceStats WindowClip::stats() const {
+  TraceStats all = stats_;
+  add_traces(reference_.stats(), all);
+  return all;
+}
+
 bool WindowClip::is_steady() const {
   const auto same = [&](const FrameRequest& request) {
     return request.gaze_direction_render == first().gaze_direction_render &&
@@ -202,30 +152,6 @@ bool WindowClip::is_steady() const {
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
   return !(settings_.foveation.falloff == "visible" && judged_.view_moves) &&
          std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
-}
-
-FrameSettings WindowClip::settings_in_window(std::size_t window, std::uint64_t tag) const {
-  return discarded(settings_, hash_combine(tag, window));
-}
-
-void WindowClip::add_samples(double spp, std::size_t half) {
-  // Further samples are those of another seed.
-  const std::uint64_t tag =
-      hash_combine(hash_combine(kHalfTag, half), static_cast<std::uint64_t>(std::llround(reference_spp_)));
-  WindowPictures& pictures = halves_.at(half);
-  pictures.resize(views_.size());
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    pictures[v].resize(windows_.windows.size());
-    for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
-      const FrameRenderer renderer(tracer_, uniform(settings_in_window(w, tag), spp, "none"));
-      TemporalHistory none;
-      RenderedFrame rendered = renderer.render(part_of(*views_[v], windows_.windows[w].traced), none);
-      add_traces(rendered.samples, stats_);
-      ImageRgb& mean = pictures[v][w];
-      mean = mean.empty() ? std::move(rendered.frame.radiance)
-                          : weighted_mean(mean, 0.5 * reference_spp_, rendered.frame.radiance, spp);
-    }
-  }
 }
 
 // The reference is pasted in first: what it shows decides the exposure.
@@ -239,29 +165,21 @@ void WindowClip::show_around() {
 }
 
 void WindowClip::refine(double spp) {
-  for (std::size_t half = 0; half < halves_.size(); ++half) {
-    add_samples(0.5 * (spp - reference_spp_), half);
-  }
-  reference_spp_ = spp;
-  reference_.assign(views_.size(), {});
-  WindowPictures off(views_.size());  // by as much as the reference is, on average
-  for (std::size_t v = 0; v < views_.size(); ++v) {
+  reference_.refine(spp);
+  reference_shown_.clear();
+  const WindowPictures& pictures = reference_.pictures();
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
     for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
-      const ImageRgb& a = halves_[0][v][w];
-      const ImageRgb& b = halves_[1][v][w];
-      reference_[v].push_back(weighted_mean(a, 1, b, 1));
-      paste(reference_[v].back(), windows_.windows[w].traced, around_[around_of(v)].radiance);
-      off[v].push_back(as_far_off(reference_[v].back(), a, b));
+      paste(pictures[v][w], windows_.windows[w].traced, around_[around_of(v)].radiance);
     }
   }
   show_around();
-  reference_shown_.clear();
-  for (std::size_t v = 0; v < views_.size(); ++v) {
-    reference_shown_.push_back(shown(reference_[v], v));
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
+    reference_shown_.push_back(shown(pictures[v], v));
   }
   // What stands still shows in one frame what it does in all.
   const JudgedFrames one{{{first_looked_at()}}, {}, judged_.sequence_frames, false};
-  reference_q_ = measured_q(judged_.view_moves ? judged_ : one, off);
+  reference_q_ = measured_q(judged_.view_moves ? judged_ : one, reference_.as_far_off());
 }
 
 ImageGray WindowClip::shown(const std::vector<ImageRgb>& windows, std::size_t index) const {
@@ -368,12 +286,7 @@ ImageGray WindowClip::expected_spp(const FrameRequest& request, double spp, std:
   } else {
     map = planned_sampling_map(own.foveation, request, own.trace.seed, settings_.threads);
   }
-  ImageGray expected(map.width_px, map.height_px);
-  for (std::size_t i = 0; i < map.sites.size(); ++i) {
-    const auto value = static_cast<float>(map.expected(i) / map.sites[i].pixels);
-    for_each_pixel(map, map.sites[i], [&](int x, int y) { expected(x, y) = value; });
-  }
-  return expected;
+  return expected_spp_of(map);
 }
 
 std::vector<ImageRgb> WindowClip::look_at(std::size_t window, const FrameSettings& settings) {
@@ -438,7 +351,7 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
   find_rates(judged_.around);
   WindowPictures pictures;
   for (std::size_t w = 0; w < windows_.windows.size(); ++w) {
-    FrameSettings own = settings_in_window(w, hash_combine(kLookTag, round));
+    FrameSettings own = discarded(settings_, hash_combine(hash_combine(kLookTag, round), w));
     own.light_of = [&](const FrameRequest& request) { return light_of(request.frame); };
     if (is_uniform) {
       own.foveation.budget_spp = spp;

@@ -8,7 +8,6 @@
 // dear.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -19,11 +18,9 @@
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/plan.hpp"
 #include "pipeline/judged_windows.hpp"
+#include "pipeline/window_reference.hpp"
 
 namespace gazetrace {
-
-// Of frames one after the other, those of all runs: what each shows in every window, linear.
-using WindowPictures = std::vector<std::vector<ImageRgb>>;
 
 class WindowClip {
  public:
@@ -35,9 +32,9 @@ class WindowClip {
   // Q of the whole sequence (fovvideovdp_jod()) with these pictures; the reference's own error is taken off.
   [[nodiscard]] double q_of(const WindowPictures& pictures) const;
 
-  // More samples for the reference: so many a pixel in all.
+  // WindowReference::refine()
   void refine(double spp);
-  [[nodiscard]] double reference_spp() const { return reference_spp_; }
+  [[nodiscard]] double reference_spp() const { return reference_.spp(); }
   [[nodiscard]] double reference_q() const { return reference_q_; }  // Q of its own error
 
   // The rates of the fall-off `visible` by the last look, for this mean, where all frames are looked at alike: they can
@@ -48,7 +45,7 @@ class WindowClip {
   [[nodiscard]] const JudgedWindows& windows() const { return windows_; }
   [[nodiscard]] double share_of_frame() const;
   [[nodiscard]] double counted_px() const;  // of a frame
-  [[nodiscard]] const TraceStats& stats() const { return stats_; }
+  [[nodiscard]] TraceStats stats() const;   // of all samples, the reference's among them
 
  private:
   [[nodiscard]] const FrameRequest& first_looked_at() const;
@@ -58,11 +55,9 @@ class WindowClip {
   [[nodiscard]] ImageGray pilot_rates(const FrameRequest& request, FrameSettings settings);
   // What the whole frame of this number learns of its light, which windows of it are rendered with.
   [[nodiscard]] std::shared_ptr<const LearnedLight> light_of(std::int32_t frame);
-  [[nodiscard]] FrameSettings settings_in_window(std::size_t window, std::uint64_t tag) const;
   // One picture a judged frame.
   [[nodiscard]] std::vector<ImageRgb> look_at(std::size_t window, const FrameSettings& settings);
   void render_around();
-  void add_samples(double spp, std::size_t half);
   void show_around();
   // The frame with these windows, as it is shown, cd/m2. `index` counts the judged frames.
   [[nodiscard]] ImageGray shown(const std::vector<ImageRgb>& windows, std::size_t index) const;
@@ -81,7 +76,6 @@ class WindowClip {
   std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by the frame
   std::size_t light_bytes_ = 0;                                        // of all of them
   JudgedWindows windows_;
-  std::vector<const FrameRequest*> views_;  // that have a reference: the first frame, or every judged one
   // What lies around the windows: of the first frame of each run or, at rest, of the first.
   struct Around {
     ImageRgb radiance;  // linear
@@ -89,11 +83,9 @@ class WindowClip {
     ImageGray shown;  // cd/m2
   };
   std::vector<Around> around_;
-  // Means of samples with nothing in common, of each view.
-  std::array<WindowPictures, 2> halves_;
-  WindowPictures reference_;  // their mean
-  std::vector<ImageGray> reference_shown_;
-  double reference_spp_ = 0, reference_q_ = 0;
+  WindowReference reference_;
+  std::vector<ImageGray> reference_shown_;  // cd/m2
+  double reference_q_ = 0;
   ImageGray shared_rates_;
 };
 

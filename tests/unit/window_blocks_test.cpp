@@ -7,6 +7,7 @@
 
 #include "foveation/sites.hpp"
 #include "gazetrace/foveation.hpp"
+#include "pipeline/frame_part.hpp"
 
 namespace gazetrace {
 namespace {
@@ -36,17 +37,8 @@ TEST(WindowBlocks, AreThoseOfTheFrame) {
     MapContext whole;
     whole.density = &rates;
     const SamplingMap frame = make_sampling_map(settings, view_of(kSide), std::nullopt, whole);
-    ImageGray expected(kSide, kSide);
-    for (std::size_t i = 0; i < frame.sites.size(); ++i) {
-      const auto value = static_cast<float>(frame.expected(i) / frame.sites[i].pixels);
-      for_each_pixel(frame, frame.sites[i], [&](int x, int y) { expected(x, y) = value; });
-    }
-    ImageGray part(kWindow, kWindow);
-    for (int y = 0; y < kWindow; ++y) {
-      for (int x = 0; x < kWindow; ++x) {
-        part(x, y) = expected(kX + x, kY + y);
-      }
-    }
+    const ImageGray expected = expected_spp_of(frame);
+    const ImageGray part = cut_out(expected, PixelRect{kX, kY, kWindow, kWindow});
     MapContext context;
     context.density = &part;
     context.full_rate_spp = *std::max_element(expected.pixels.begin(), expected.pixels.end());

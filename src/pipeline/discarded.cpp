@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/discarded.hpp"
+
+#include "core/hash.hpp"
+
+namespace gazetrace {
+
+FrameSettings discarded(const FrameSettings& settings, std::uint64_t tag) {
+  FrameSettings own = settings;
+  own.foveation.target = {};
+  own.foveation.budget_samples.reset();
+  own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kLookTag), tag);
+  own.trace.guides = false;
+  own.trace.only_pixel.reset();
+  own.exposure.smoothing_s = 0;
+  own.layers = {};
+  return own;
+}
+
+FrameSettings raw(FrameSettings settings, double spp, const char* filter) {
+  settings.foveation = {};
+  settings.foveation.falloff = "uniform";
+  settings.foveation.budget_spp = spp;
+  settings.accumulate = {};
+  settings.reconstruction = {filter, {}};
+  settings.enhance_contrast = 0;
+  settings.trace.clamp_indirect = 0;
+  settings.trace.learn_light = false;
+  return settings;
+}
+
+}  // namespace gazetrace
