@@ -110,12 +110,12 @@ bool is_noise_alone(const FrameSettings& settings) {
 }
 
 std::string ClipRate::text() const {
-  return fmt::format("{:.6g} samples a pixel{}, expected to reach {}: by {}", spp,
+  return fmt::format("{:.6g} samples a pixel{}, expected to reach {}: by {}{}", spp,
                      is_least ? ", the least there is" : "",
                      predicted_jod    ? fmt::format("{:.3f} JOD", *predicted_jod)
                      : predicted_flip ? fmt::format("a mean FLIP of {:.4g}", *predicted_flip)
                                       : "nothing",
-                     how);
+                     how, scatter_jod > 0 ? fmt::format("; looks differ by {:.3f} JOD", scatter_jod) : "");
 }
 
 // Of pixels of a few samples, what FLIP sees was off by up to 28 % of what was stated; from 30 samples on by 5 %.
@@ -133,6 +133,12 @@ std::vector<std::string> ClipRate::doubts() const {
         fmt::format("`target-jod`: what the sequence was judged by, {:.0f} samples a pixel, is still seen to be noisy: "
                     "the sequence may be worse than stated",
                     reference_spp));
+  }
+  if (looked_at_whole && scatter_jod > kMostScatterJod) {
+    doubts.push_back(fmt::format(
+        "`target-jod`: what is seen of these frames differs by {:.2f} JOD (one standard deviation) from one "
+        "rendering to the next, and so will the sequence; larger frames differ less",
+        scatter_jod));
   }
   if (predicted_flip && spp * summed_frames < kKnownToHold) {
     doubts.push_back(

@@ -18,6 +18,9 @@ namespace gazetrace {
 // what it has in common with the frames' bias is not known: with 0.35, rates for 9 JOD of one view and other seeds were
 // 1.29 to 2.35 samples a pixel, with 0.1 1.44 to 1.61.
 constexpr double kMostOfReference = 0.15;
+// Of ClipRate::scatter_jod of whole frames: beyond, a score is not within 0.1 JOD of what was stated about every fifth
+// time.
+constexpr double kMostScatterJod = 0.08;
 
 struct ClipRate {
   double spp = 0;  // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
@@ -31,6 +34,10 @@ struct ClipRate {
   // Of windows: samples a pixel of their reference, and what is seen of its own error as a part of what is seen of the
   // frames' in the last look.
   double reference_spp = 0, reference_share = 0;
+  // Of looks: the standard deviation of what one of them says, at this rate; of looks at whole frames also that of what
+  // the sequence will score. 0: not known.
+  double scatter_jod = 0;
+  bool looked_at_whole = false;
   double summed_frames = 1;  // how many frames at most are added up for one
   std::string how;           // what was looked at
   // FrameRates::spp of every frame; empty: each has a pilot, or none.

@@ -65,8 +65,13 @@ class Looks {
   // Of seen_at(), by how the looks near the last one differ.
   [[nodiscard]] double standard_error() const {
     const int count = near(last().rate);
+    return count < 2 ? std::numeric_limits<double>::infinity() : standard_deviation() / std::sqrt(count);
+  }
+  // Of what one look near the last one says; 0 where there are no others.
+  [[nodiscard]] double standard_deviation() const {
+    const int count = near(last().rate);
     if (count < 2) {
-      return std::numeric_limits<double>::infinity();
+      return 0;
     }
     const double mean = seen_at(last().rate);
     double square = 0;
@@ -74,7 +79,7 @@ class Looks {
       const double off = look.seen + slope() * (last().rate - look.rate) - mean;
       square += is_near(look, last().rate) ? off * off : 0;
     }
-    return std::sqrt(square / (count - 1) / count);
+    return std::sqrt(square / (count - 1));
   }
   [[nodiscard]] double rate_of(double seen) const { return last().rate + (seen - seen_at(last().rate)) / slope(); }
 
@@ -154,7 +159,10 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
     }
     if (is_last) {
       result.settled = is_near;
-      result.predicted_jod = fovvideovdp_jod(std::exp(looks.seen_at(std::log(result.spp))));
+      const double seen = looks.seen_at(std::log(result.spp));
+      result.predicted_jod = fovvideovdp_jod(std::exp(seen));
+      result.scatter_jod = *result.predicted_jod - fovvideovdp_jod(std::exp(seen + looks.standard_deviation()));
+      result.looked_at_whole = clip.windows().is_whole_frame();
       break;
     }
   }

@@ -39,6 +39,17 @@ TEST(ClipRate, ARateThatDidNotSettleLeavesADoubt) {
   EXPECT_THAT(rate.doubts(), ElementsAre(AllOf(HasSubstr("4 rounds"), HasSubstr("40 samples"))));
 }
 
+TEST(ClipRate, SmallFramesWhoseLooksDifferLeaveADoubtAndWindowsOfLargeOnesDoNot) {
+  ClipRate rate = rate_of_windows();
+  rate.scatter_jod = 1.5 * kMostScatterJod;
+  EXPECT_THAT(rate.doubts(), IsEmpty());
+  EXPECT_THAT(rate.text(), HasSubstr("looks differ by 0.120 JOD"));
+  rate.looked_at_whole = true;
+  EXPECT_THAT(rate.doubts(), ElementsAre(AllOf(HasSubstr("`target-jod`"), HasSubstr("0.12 JOD"))));
+  rate.scatter_jod = kMostScatterJod;
+  EXPECT_THAT(rate.doubts(), IsEmpty());
+}
+
 TEST(ClipRate, FlipOfFewSamplesLeavesADoubtUnlessFramesShareThem) {
   ClipRate rate;
   rate.spp = 4;
