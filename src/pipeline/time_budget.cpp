@@ -27,6 +27,11 @@ constexpr double kLeastRehearsal = 1.0 / 16, kMostRehearsal = 8;
 constexpr double kMoreShare = 0.1;        // of the time, for the second rehearsal; at least
 constexpr double kLeastMore = 2;          // times the samples of the first
 constexpr double kPilotShare = 1.0 / 16;  // of a frame's samples, that a pilot at the frame's rates may have
+// Of a frame whose samples take less of the budget, their time tells nothing.
+constexpr double kTellingShare = 0.1;
+// FrameCost::filter_share of `guided`. In Sponza 0.14 and 0.15 were measured from 0.01 to 1 and 2 samples a pixel; less
+// is better, since a sample costs less where there are more of them.
+constexpr double kFilterShare = 0.1;
 constexpr std::uint64_t kRehearsalTag =
     0x52454845415253ULL;       // "REHEARS": no sample of the frame has a part in its rate
 constexpr double kLate = 1.1;  // over the budget: worth a warning
@@ -70,7 +75,8 @@ ImageGray scaled(ImageGray rates, double by) {
 
 FrameCost cost_of(const TimingRow& row) {
   FrameCost cost;
-  cost.sample_ms = row.trace_ms / traced_samples(row);
+  cost.samples = traced_samples(row);
+  cost.sample_ms = row.trace_ms / cost.samples;
   cost.fixed_ms = row.plan_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms + row.layers_ms +
                   row.color_ms + row.write_ms +
                   std::max(0.0, row.pilot_ms - cost.sample_ms * static_cast<double>(row.pilot_samples));
@@ -79,6 +85,7 @@ FrameCost cost_of(const TimingRow& row) {
 
 FrameCost cost_of(const TimingRow& row, const FrameCost& known) {
   FrameCost cost = cost_of(row);
+  cost.filter_share = known.filter_share;
   const double expected_ms = known.base_ms + known.sample_ms * traced_samples(row);
   if (expected_ms > 0) {
     cost.base_ms = known.base_ms * row.trace_ms / expected_ms;
@@ -89,7 +96,8 @@ FrameCost cost_of(const TimingRow& row, const FrameCost& known) {
 
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next) {
   return {0.5 * (known.fixed_ms + next.fixed_ms), 0.5 * (known.base_ms + next.base_ms),
-          0.5 * (known.sample_ms + next.sample_ms)};
+          0.5 * (known.sample_ms + next.sample_ms), 0.5 * (known.samples + next.samples),
+          0.5 * (known.filter_share + next.filter_share)};
 }
 
 FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamples& fewer) {
@@ -103,8 +111,9 @@ FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamp
 }
 
 double affordable_spp(double budget_ms, const FrameCost& cost, double pixels, double least, double most) {
-  const double left_ms = std::max(0.0, budget_ms - cost.fixed_ms - cost.base_ms);
-  const double spp = left_ms / std::max(cost.sample_ms * pixels, 1e-12);
+  const double without_ms = cost.fixed_ms - cost.filter_share * cost.sample_ms * cost.samples;
+  const double left_ms = std::max(0.0, budget_ms - without_ms - cost.base_ms);
+  const double spp = left_ms / std::max((1 + cost.filter_share) * cost.sample_ms * pixels, 1e-12);
   return std::clamp(spp, std::min(least, most), most);
 }
 
@@ -195,6 +204,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   cost_ = with_slope(cost_of(row), {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},
                      {few.times.trace_ms, static_cast<double>(few.samples.samples)});
   cost_.fixed_ms += guessed_output_ms(output_, pixels);
+  cost_.filter_share = Reconstruction(settings_.reconstruction).needs().surfaces ? kFilterShare : 0;
 
   if (by_pilot) {
     // What deciding the rates takes, and how much more or less a sample costs where they put it.
@@ -211,7 +221,11 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
 }
 
 void TimeBudget::learn(TimingRow& row) {
-  const FrameCost cost = cost_of(row, cost_);
+  FrameCost cost = cost_of(row, cost_);
+  if (row.trace_ms < kTellingShare * budget_ms_) {
+    cost.base_ms = cost_.base_ms;
+    cost.sample_ms = cost_.sample_ms;
+  }
   cost_ = known_frames_ == 0 ? cost : mean_cost(cost_, cost);
   if (row.learning_paths > 0) {
     learn_ms_ = row.learn_ms;

@@ -24,6 +24,9 @@ struct FrameCost {
   double fixed_ms = 0;
   double base_ms = 0;  // of tracing, whatever the number of samples
   double sample_ms = 0;
+  // `fixed_ms` is of a frame of so many traced samples. A filter that looks them up takes longer where there are more:
+  // for each by this part of sample_ms.
+  double samples = 0, filter_share = 0;
 };
 
 // What a finished frame says of the next one.

@@ -163,6 +163,18 @@ TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
   EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {0, 2.5e4}).base_ms, 0, 1e-9);
 }
 
+TEST(TimeBudget, AFilterThatTakesLongerForMoreSamplesIsPaid) {
+  // 70 ms with 1e4 samples and a fifth of a microsecond for each further one, beside 1 for tracing it.
+  const FrameCost cost{70, 0, 1e-3, 1e4, 0.2};
+  const double spp = affordable_spp(670, cost, 1e5, 0.01, 1e6);
+  EXPECT_NEAR(70 + 2e-4 * (1e5 * spp - 1e4) + 1e-3 * 1e5 * spp, 670, 1e-9);
+  const FrameCost next = cost_of(frame_of(5e5), cost);
+  EXPECT_EQ(next.samples, 5e5);
+  EXPECT_EQ(next.filter_share, 0.2);
+  // As many samples again leave as much time again.
+  EXPECT_NEAR(affordable_spp(570, next, 1e5, 0.01, 1e6), 5, 1e-9);
+}
+
 TEST(TimeBudget, RatesKeepTheirLimits) {
   const FrameCost cost{60, 40, 1e-3};
   EXPECT_DOUBLE_EQ(affordable_spp(99, cost, 1e4, 0.5, 64), 0.5);  // not even the fixed cost
