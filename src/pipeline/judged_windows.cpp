@@ -99,7 +99,8 @@ JudgedWindows judged_windows(const PlanarView& view, const std::vector<Vec2d>& g
   std::vector<JudgedWindow> others;
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const auto n = static_cast<std::uint64_t>(row * columns + column);
+      const std::uint64_t n =
+          static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(columns) + static_cast<std::uint64_t>(column);
       const Vec2d middle{(column + jitter(2 * n)) * view.width_px / columns,
                          (row + jitter(2 * n + 1)) * view.height_px / rows};
       const JudgedWindow window = window_at(middle, side_px, margin_px, view);
