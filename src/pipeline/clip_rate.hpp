@@ -14,12 +14,12 @@
 
 namespace gazetrace {
 
-// What may be seen of a reference's own error, as a part of what is seen of the frames' error. It is taken off, but what
-// it has in common with the frames' bias is not known: with 0.35, four seeds chose rates of 1.29 to 1.92 samples a pixel
-// for 9 JOD of one small view, with 0.1 of 1.44 to 1.61.
+// What may be seen of a reference's own error, as a part of what is seen of the frames' error. It is taken off, but
+// what it has in common with the frames' bias is not known: with 0.35, four seeds chose rates of 1.29 to 1.92 samples a
+// pixel for 9 JOD of one small view, with 0.1 of 1.44 to 1.61.
 constexpr double kMostOfReference = 0.15;
-// Of ClipRate::scatter_jod of whole frames: beyond, a score is not within 0.1 JOD of what was stated about every fifth
-// time.
+// Of ClipRate::scatter_jod: if scores of small frames differ by more, more than one in five is further than 0.1 JOD
+// from what was stated.
 constexpr double kMostScatterJod = 0.08;
 
 struct ClipRate {

@@ -8,7 +8,7 @@
 
 namespace gazetrace {
 
-// Of these decisions, in the place of others: "LOOK".
+// Part of the seed of every such rendering, so that its samples are not those of the sequence: "LOOK".
 constexpr std::uint64_t kLookTag = 0x4c4f4f4bULL;
 
 // The job's own, with samples of their own that `tag` chooses, and nothing beside the picture.

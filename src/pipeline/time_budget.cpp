@@ -27,10 +27,10 @@ constexpr double kLeastRehearsal = 1.0 / 16, kMostRehearsal = 8;
 constexpr double kMoreShare = 0.1;        // of the time, for the second rehearsal; at least
 constexpr double kLeastMore = 2;          // times the samples of the first
 constexpr double kPilotShare = 1.0 / 16;  // of a frame's samples, that a pilot at the frame's rates may have
-// Of a frame whose samples take less of the budget, their time tells nothing.
+// Where tracing took less than this part of the budget, its time does not tell what samples cost.
 constexpr double kTellingShare = 0.1;
-// FrameCost::filter_share of `guided`. In Sponza 0.14 and 0.15 were measured from 0.01 to 1 and 2 samples a pixel; less
-// is better, since a sample costs less where there are more of them.
+// FrameCost::filter_share of `guided`. In Sponza it was 0.14 and 0.15, between 0.01 and about 1 sample a pixel. With
+// less than that frames come nearest to the budget, since a sample costs less where there are more of them.
 constexpr double kFilterShare = 0.1;
 constexpr std::uint64_t kRehearsalTag =
     0x52454845415253ULL;       // "REHEARS": no sample of the frame has a part in its rate
@@ -83,9 +83,14 @@ FrameCost cost_of(const TimingRow& row) {
   return cost;
 }
 
-FrameCost cost_of(const TimingRow& row, const FrameCost& known) {
+FrameCost cost_of(const TimingRow& row, const FrameCost& known, double telling_ms) {
   FrameCost cost = cost_of(row);
   cost.filter_share = known.filter_share;
+  if (row.trace_ms < telling_ms) {
+    cost.base_ms = known.base_ms;
+    cost.sample_ms = known.sample_ms;
+    return cost;
+  }
   const double expected_ms = known.base_ms + known.sample_ms * traced_samples(row);
   if (expected_ms > 0) {
     cost.base_ms = known.base_ms * row.trace_ms / expected_ms;
@@ -221,11 +226,7 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
 }
 
 void TimeBudget::learn(TimingRow& row) {
-  FrameCost cost = cost_of(row, cost_);
-  if (row.trace_ms < kTellingShare * budget_ms_) {
-    cost.base_ms = cost_.base_ms;
-    cost.sample_ms = cost_.sample_ms;
-  }
+  const FrameCost cost = cost_of(row, cost_, kTellingShare * budget_ms_);
   cost_ = known_frames_ == 0 ? cost : mean_cost(cost_, cost);
   if (row.learning_paths > 0) {
     learn_ms_ = row.learn_ms;

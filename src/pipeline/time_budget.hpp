@@ -24,8 +24,8 @@ struct FrameCost {
   double fixed_ms = 0;
   double base_ms = 0;  // of tracing, whatever the number of samples
   double sample_ms = 0;
-  // `fixed_ms` is of a frame of so many traced samples. A filter that looks them up takes longer where there are more:
-  // for each by this part of sample_ms.
+  // `fixed_ms` is that of a frame of so many traced samples. A filter that looks samples up takes longer where there
+  // are more of them: each further one adds this part of sample_ms.
   double samples = 0, filter_share = 0;
 };
 
@@ -37,8 +37,9 @@ struct TracedSamples {
 };
 // `cost` of a frame with `more` samples, if a sample costs what `more` takes longer than `fewer`.
 FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamples& fewer);
-// The same, where something is known already: tracing takes longer or less long than that by one factor.
-FrameCost cost_of(const TimingRow& row, const FrameCost& known);
+// The same, where something is known already: tracing takes longer or less long than that by one factor. A frame that
+// was traced in less than `telling_ms` tells nothing of that, and what is known of tracing stays.
+FrameCost cost_of(const TimingRow& row, const FrameCost& known, double telling_ms);
 // Half of what was known and half of what is new: a frame that was held up by chance counts for half.
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next);
 // Samples a pixel, between `least` and `most`, that leave the frame with `budget_ms`.

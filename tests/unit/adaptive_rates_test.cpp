@@ -145,10 +145,19 @@ TEST(TimeBudget, SamplesOfAPilotAreNotPaidTwice) {
 
 TEST(TimeBudget, AFrameThatTookTwiceAsLongMakesTracingTwiceAsDear) {
   const TimingRow row = frame_of(5e5);  // 500 ms, expected were 250
-  const FrameCost cost = cost_of(row, {1, 50, 4e-4});
+  const FrameCost cost = cost_of(row, {1, 50, 4e-4}, 100);
   EXPECT_DOUBLE_EQ(cost.fixed_ms, 70);
   EXPECT_DOUBLE_EQ(cost.base_ms, 100);
   EXPECT_DOUBLE_EQ(cost.sample_ms, 8e-4);
+}
+
+// A first frame of which a rehearsal left next to nothing once made the next one twice as long.
+TEST(TimeBudget, AFrameOfHardlyAnySamplesTellsNothingOfTheirCost) {
+  const TimingRow row = frame_of(5e5);
+  const FrameCost cost = cost_of(row, {1, 50, 4e-4}, 1.01 * row.trace_ms);
+  EXPECT_DOUBLE_EQ(cost.fixed_ms, 70);
+  EXPECT_DOUBLE_EQ(cost.base_ms, 50);
+  EXPECT_DOUBLE_EQ(cost.sample_ms, 4e-4);
 }
 
 TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
@@ -168,7 +177,7 @@ TEST(TimeBudget, AFilterThatTakesLongerForMoreSamplesIsPaid) {
   const FrameCost cost{70, 0, 1e-3, 1e4, 0.2};
   const double spp = affordable_spp(670, cost, 1e5, 0.01, 1e6);
   EXPECT_NEAR(70 + 2e-4 * (1e5 * spp - 1e4) + 1e-3 * 1e5 * spp, 670, 1e-9);
-  const FrameCost next = cost_of(frame_of(5e5), cost);
+  const FrameCost next = cost_of(frame_of(5e5), cost, 100);
   EXPECT_EQ(next.samples, 5e5);
   EXPECT_EQ(next.filter_share, 0.2);
   // As many samples again leave as much time again.
