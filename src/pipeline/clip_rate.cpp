@@ -129,15 +129,16 @@ std::vector<std::string> ClipRate::doubts() const {
                     rounds, spp));
   }
   if (reference_share > kMostOfReference) {
-    doubts.push_back(
-        fmt::format("`target-jod`: what the sequence was judged by, {:.0f} samples a pixel, is still seen to be noisy: "
-                    "the sequence may be worse than stated",
-                    reference_spp));
+    doubts.push_back(fmt::format(
+        "`target-jod`: what the sequence was judged by, {:.0f} samples a pixel on average, is still seen to be noisy: "
+        "the sequence may be worse than stated",
+        reference_spp));
   }
   if (looked_at_whole && scatter_jod > kMostScatterJod) {
     doubts.push_back(fmt::format(
         "`target-jod`: what is seen of these frames differs by {:.2f} JOD (one standard deviation) from one "
-        "rendering to the next, and so will the sequence; larger frames differ less",
+        "rendering to the next: the score of a still misses what was stated by about as much, that of a sequence by up "
+        "to that; larger frames differ less",
         scatter_jod));
   }
   if (predicted_flip && spp * summed_frames < kKnownToHold) {

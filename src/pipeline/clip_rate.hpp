@@ -15,11 +15,12 @@
 namespace gazetrace {
 
 // What may be seen of a reference's own error, as a part of what is seen of the frames' error. It is taken off, but
-// what it has in common with the frames' bias is not known: with 0.35, four seeds chose rates of 1.29 to 1.92 samples a
-// pixel for 9 JOD of one small view, with 0.1 of 1.44 to 1.61.
+// only on average over references: with 0.35, four seeds chose rates of 1.29 to 1.92 samples a pixel for 9 JOD of one
+// small view, with 0.1 of 1.44 to 1.61. The value is between the two: 0.1 would take about twice as many samples as
+// 0.15.
 constexpr double kMostOfReference = 0.15;
-// Of ClipRate::scatter_jod: if scores of small frames differ by more, more than one in five is further than 0.1 JOD
-// from what was stated.
+// Of ClipRate::scatter_jod: if scores differ by more, more than one in five is further than 0.1 JOD from what was
+// stated.
 constexpr double kMostScatterJod = 0.08;
 
 struct ClipRate {
@@ -31,11 +32,11 @@ struct ClipRate {
   bool is_least = false;                                // fewer samples are not possible
   // The last pilot or look was near enough to the rate; else the prediction is extrapolated far.
   bool settled = true;
-  // Of windows: samples a pixel of their reference, and what is seen of its own error as a part of what is seen of the
-  // frames' in the last look.
+  // Of windows: samples a pixel of their reference, a mean over what is traced of them (what counts has more), and what
+  // is seen of its own error as a part of what is seen of the frames' in the last look.
   double reference_spp = 0, reference_share = 0;
-  // Of looks: the standard deviation of what one of them says, at this rate; of looks at whole frames also that of what
-  // the sequence will score. 0: not known.
+  // Of looks: the standard deviation of what one rendering of the judged frames scores, at this rate. A still's score
+  // differs as much, that of a sequence by less, since it has more frames than are judged. 0: not known.
   double scatter_jod = 0;
   bool looked_at_whole = false;
   double summed_frames = 1;  // how many frames at most are added up for one

@@ -13,6 +13,9 @@ namespace gazetrace {
 struct JudgedWindow {
   PixelRect traced;   // the margin around what counts belongs to what filters and metrics see
   PixelRect counted;  // within it
+
+  // A pixel of `traced`, from its corner.
+  [[nodiscard]] bool counts(int x, int y) const { return counted.holds(traced.x_px + x, traced.y_px + y); }
 };
 
 struct JudgedWindows {

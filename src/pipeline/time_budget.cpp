@@ -27,14 +27,17 @@ constexpr double kLeastRehearsal = 1.0 / 16, kMostRehearsal = 8;
 constexpr double kMoreShare = 0.1;        // of the time, for the second rehearsal; at least
 constexpr double kLeastMore = 2;          // times the samples of the first
 constexpr double kPilotShare = 1.0 / 16;  // of a frame's samples, that a pilot at the frame's rates may have
-// Where tracing took less than this part of the budget, its time does not tell what samples cost.
+// Where tracing took less than this part of the budget, and was not expected to take more, its time does not tell what
+// samples cost.
 constexpr double kTellingShare = 0.1;
-// FrameCost::filter_share of `guided`. In Sponza it was 0.14 and 0.15, between 0.01 and about 1 sample a pixel. With
-// less than that frames come nearest to the budget, since a sample costs less where there are more of them.
+// FrameCost::filter_share of `guided`. In Sponza it was 0.14 and 0.15, between 0.01 and about 1 sample a pixel; from
+// there to 256 the filter took no longer. With less than that frames come nearest to the budget, since a sample costs
+// less where there are more of them.
 constexpr double kFilterShare = 0.1;
 constexpr std::uint64_t kRehearsalTag =
-    0x52454845415253ULL;       // "REHEARS": no sample of the frame has a part in its rate
-constexpr double kLate = 1.1;  // over the budget: worth a warning
+    0x52454845415253ULL;        // "REHEARS": no sample of the frame has a part in its rate
+constexpr double kLate = 1.1;   // over the budget: worth a warning
+constexpr double kEarly = 0.5;  // and under it, where more samples were allowed
 // Until the first frame's files are written: milliseconds a megapixel of a common machine.
 constexpr double kExrMs = 60, kDisplayMs = 200;
 
@@ -64,6 +67,12 @@ double traced_samples(const TimingRow& row) {
   return std::max(1.0, static_cast<double>(row.samples - (row.pilot_ms > 0 ? row.pilot_samples : 0)));
 }
 
+// Of all but tracing and learning; of a pilot, what its samples do not take.
+double fixed_ms_of(const TimingRow& row, double sample_ms) {
+  return row.plan_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms + row.layers_ms +
+         row.color_ms + row.write_ms + std::max(0.0, row.pilot_ms - sample_ms * static_cast<double>(row.pilot_samples));
+}
+
 ImageGray scaled(ImageGray rates, double by) {
   for (float& rate : rates.pixels) {
     rate = static_cast<float>(by * static_cast<double>(rate));
@@ -77,21 +86,20 @@ FrameCost cost_of(const TimingRow& row) {
   FrameCost cost;
   cost.samples = traced_samples(row);
   cost.sample_ms = row.trace_ms / cost.samples;
-  cost.fixed_ms = row.plan_ms + row.guides_ms + row.reconstruct_ms + row.temporal_ms + row.exposure_ms + row.layers_ms +
-                  row.color_ms + row.write_ms +
-                  std::max(0.0, row.pilot_ms - cost.sample_ms * static_cast<double>(row.pilot_samples));
+  cost.fixed_ms = fixed_ms_of(row, cost.sample_ms);
   return cost;
 }
 
 FrameCost cost_of(const TimingRow& row, const FrameCost& known, double telling_ms) {
   FrameCost cost = cost_of(row);
   cost.filter_share = known.filter_share;
-  if (row.trace_ms < telling_ms) {
+  const double expected_ms = known.base_ms + known.sample_ms * traced_samples(row);
+  if (std::max(row.trace_ms, expected_ms) < telling_ms) {
     cost.base_ms = known.base_ms;
     cost.sample_ms = known.sample_ms;
+    cost.fixed_ms = fixed_ms_of(row, known.sample_ms);
     return cost;
   }
-  const double expected_ms = known.base_ms + known.sample_ms * traced_samples(row);
   if (expected_ms > 0) {
     cost.base_ms = known.base_ms * row.trace_ms / expected_ms;
     cost.sample_ms = known.sample_ms * row.trace_ms / expected_ms;
@@ -116,10 +124,15 @@ FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamp
 }
 
 double affordable_spp(double budget_ms, const FrameCost& cost, double pixels, double least, double most) {
-  const double without_ms = cost.fixed_ms - cost.filter_share * cost.sample_ms * cost.samples;
+  // What the filter takes for samples, up to one a pixel.
+  const double filter_ms = cost.filter_share * cost.sample_ms;
+  const double without_ms = std::max(0.0, cost.fixed_ms - filter_ms * std::min(cost.samples, pixels));
   const double left_ms = std::max(0.0, budget_ms - without_ms - cost.base_ms);
-  const double spp = left_ms / std::max((1 + cost.filter_share) * cost.sample_ms * pixels, 1e-12);
-  return std::clamp(spp, std::min(least, most), most);
+  double samples = left_ms / std::max(cost.sample_ms + filter_ms, 1e-12);
+  if (samples > pixels) {
+    samples = (left_ms - filter_ms * pixels) / std::max(cost.sample_ms, 1e-12);
+  }
+  return std::clamp(samples / pixels, std::min(least, most), most);
 }
 
 double least_budget_spp(const FoveationSettings& foveation, const FrameRequest& request) {
@@ -147,8 +160,10 @@ FrameSettings TimeBudget::settings_for(const FrameRequest& request, const Tempor
   const FoveationSettings& foveation = settings_.foveation;
   const double least = least_budget_spp(foveation, request);
   const double left_ms = budget_ms_ - rehearsal_ms_ - (learns ? learn_ms_ : 0);
-  const double spp = affordable_spp(left_ms, cost_, pixels_of(request), least, std::max(least, foveation.max_spp));
+  const double most = std::max(least, foveation.max_spp);
+  const double spp = affordable_spp(left_ms, cost_, pixels_of(request), least, most);
   at_least_ = spp <= least;
+  at_most_ = spp >= most;
   return with_budget(settings_, spp);
 }
 
@@ -197,21 +212,27 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
                                 std::max(kMostRehearsal, least));
   TemporalHistory scratch = history;
   const RenderedFrame few = FrameRenderer(tracer_, settings_at(low)).render(request, scratch);
-  const double low_ms = few.times.trace_ms / std::max(1.0, static_cast<double>(few.samples.samples));
-  const double high = std::min(kMoreShare * budget_ms_ / (low_ms * pixels), kLeastMore * kMostRehearsal);
-  const TracedFrame more = FrameRenderer(tracer_, settings_at(std::max(high, kLeastMore * low))).trace(request);
   TimingRow row;
   add_times(few.times, row);
   add_samples(few.samples, few.first_look, few.map, row);
-  for (const TraceStats* stats : {&few.samples, &few.first_look, &more.sparse.stats, &more.first_look}) {
-    add_traces(*stats, rehearsal_);
+  add_traces(few.samples, rehearsal_);
+  add_traces(few.first_look, rehearsal_);
+  cost_ = cost_of(row);
+  // Where the least that is allowed takes all of the time already, there is nothing to choose.
+  const bool is_spent = watch.elapsed_ms() > budget_ms_;
+  if (!is_spent) {
+    const double low_ms = few.times.trace_ms / std::max(1.0, static_cast<double>(few.samples.samples));
+    const double high = std::min(kMoreShare * budget_ms_ / (low_ms * pixels), kLeastMore * kMostRehearsal);
+    const TracedFrame more = FrameRenderer(tracer_, settings_at(std::max(high, kLeastMore * low))).trace(request);
+    add_traces(more.sparse.stats, rehearsal_);
+    add_traces(more.first_look, rehearsal_);
+    cost_ = with_slope(cost_, {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},
+                       {few.times.trace_ms, static_cast<double>(few.samples.samples)});
   }
-  cost_ = with_slope(cost_of(row), {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},
-                     {few.times.trace_ms, static_cast<double>(few.samples.samples)});
   cost_.fixed_ms += guessed_output_ms(output_, pixels);
   cost_.filter_share = Reconstruction(settings_.reconstruction).needs().surfaces ? kFilterShare : 0;
 
-  if (by_pilot) {
+  if (by_pilot && !is_spent) {
     // What deciding the rates takes, and how much more or less a sample costs where they put it.
     const double spp = affordable_spp(budget_ms_ - watch.elapsed_ms(), cost_, pixels, least, most);
     const Stopwatch deciding;
@@ -240,6 +261,7 @@ void TimeBudget::learn(TimingRow& row) {
 
 void TimeBudget::check(const TimingRow& row) {
   ++frames_;
+  early_frames_ += row.total_ms < kEarly * budget_ms_ && !at_most_ ? 1 : 0;
   if (!(row.total_ms > kLate * budget_ms_)) {
     return;
   }
@@ -252,16 +274,19 @@ void TimeBudget::check(const TimingRow& row) {
 }
 
 std::string TimeBudget::warning() const {
-  if (late_frames_ == 0) {
-    return {};
+  std::string text;
+  if (late_frames_ > 0) {
+    text = fmt::format("{} of {} frames took longer than {:g} s by more than a tenth; frame {} took {:.3g} s",
+                       late_frames_, frames_, 1e-3 * budget_ms_, latest_frame_, 1e-3 * latest_ms_);
   }
-  std::string text =
-      fmt::format("`time-budget`: {} of {} frames took longer than {:g} s by more than a tenth; frame {} took {:.3g} s",
-                  late_frames_, frames_, 1e-3 * budget_ms_, latest_frame_, 1e-3 * latest_ms_);
   if (late_at_least_ > 0) {
     text += fmt::format("; {} of them had the fewest samples that `min-spp` or a pilot allow", late_at_least_);
   }
-  return text;
+  if (early_frames_ > 0) {
+    text += fmt::format("{}{} of {} frames took less than half of {:g} s, though more samples were allowed",
+                        text.empty() ? "" : "; ", early_frames_, frames_, 1e-3 * budget_ms_);
+  }
+  return text.empty() ? text : "`time-budget`: " + text;
 }
 
 }  // namespace gazetrace

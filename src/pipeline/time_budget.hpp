@@ -25,7 +25,7 @@ struct FrameCost {
   double base_ms = 0;  // of tracing, whatever the number of samples
   double sample_ms = 0;
   // `fixed_ms` is that of a frame of so many traced samples. A filter that looks samples up takes longer where there
-  // are more of them: each further one adds this part of sample_ms.
+  // are more of them: up to one a pixel, each further one adds this part of sample_ms.
   double samples = 0, filter_share = 0;
 };
 
@@ -37,8 +37,9 @@ struct TracedSamples {
 };
 // `cost` of a frame with `more` samples, if a sample costs what `more` takes longer than `fewer`.
 FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamples& fewer);
-// The same, where something is known already: tracing takes longer or less long than that by one factor. A frame that
-// was traced in less than `telling_ms` tells nothing of that, and what is known of tracing stays.
+// As cost_of(row), where something is known already: tracing takes longer or less long than that by one factor. A frame
+// that was traced in less than `telling_ms`, and was expected to be, tells nothing of that, and what is known of
+// tracing stays.
 FrameCost cost_of(const TimingRow& row, const FrameCost& known, double telling_ms);
 // Half of what was known and half of what is new: a frame that was held up by chance counts for half.
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next);
@@ -60,7 +61,7 @@ class TimeBudget {
   void learn(TimingRow& row);
   // Of the frame's whole time.
   void check(const TimingRow& row);
-  // What to say at the end about frames that took longer; empty: nothing.
+  // What to say at the end about frames that took longer, or much less long; empty: nothing.
   [[nodiscard]] std::string warning() const;
 
  private:
@@ -77,8 +78,8 @@ class TimeBudget {
   TraceStats rehearsal_;
   double rehearsal_ms_ = 0;
 
-  bool at_least_ = false;  // the last frame has the lowest rate that is allowed
-  int frames_ = 0, late_frames_ = 0, late_at_least_ = 0;
+  bool at_least_ = false, at_most_ = false;  // the last frame has the lowest or highest rate that is allowed
+  int frames_ = 0, late_frames_ = 0, late_at_least_ = 0, early_frames_ = 0;
   std::int32_t latest_frame_ = 0;
   double latest_ms_ = 0;
 };

@@ -289,11 +289,15 @@ ImageGray WindowClip::expected_spp(const FrameRequest& request, double spp, std:
   return expected_spp_of(map);
 }
 
+std::size_t WindowClip::stills_a_look() const {
+  return judged_.sequence_frames == 1 ? kStillRuns : 1;
+}
+
 std::vector<ImageRgb> WindowClip::look_at(std::size_t window, const FrameSettings& settings) {
   const PixelRect& rect = windows_.windows[window].traced;
   const bool is_still = judged_.sequence_frames == 1;
   std::vector<ImageRgb> pictures;
-  for (std::size_t example = 0; example < (is_still ? kStillRuns : 1); ++example) {
+  for (std::size_t example = 0; example < stills_a_look(); ++example) {
     FrameSettings own = settings;
     own.trace.seed = hash_combine(settings.trace.seed, example);
     const FrameRenderer renderer(tracer_, own);

@@ -45,7 +45,9 @@ class WindowClip {
   [[nodiscard]] const JudgedWindows& windows() const { return windows_; }
   [[nodiscard]] double share_of_frame() const;
   [[nodiscard]] double counted_px() const;  // of a frame
-  [[nodiscard]] TraceStats stats() const;   // of all samples, the reference's among them
+  // How many renderings of a still a look is the mean of. 1 for sequences.
+  [[nodiscard]] std::size_t stills_a_look() const;
+  [[nodiscard]] TraceStats stats() const;  // of all samples, the reference's among them
 
  private:
   [[nodiscard]] const FrameRequest& first_looked_at() const;

@@ -27,9 +27,11 @@ ImageRgb weighted_mean(const ImageRgb& a, double weight_a, const ImageRgb& b, do
   return mean;
 }
 
-// A picture that is as far from the mean of two halves as that is from the truth. Of a bright speck that one half alone
-// has, the mean has half: the picture without it differs as the truth does, where a display shows no more than that.
-// Around what counts few samples make specks of ordinary noise, which is as often above as below.
+// A picture that is as far from the mean of two halves as that is from the truth: half of their difference is added.
+// Where one half has a bright speck that the other lacks, the mean has half of it, and the difference is taken off
+// instead: a speck twice as bright would be cut off by the display, and what the truth lacks is seen in full. Only of
+// what counts: around it a pixel has so few samples that ordinary noise would pass for specks, and pictures would be
+// too dark.
 ImageRgb picture_as_far_off(const ImageRgb& mean, const ImageRgb& a, const ImageRgb& b, const JudgedWindow& window) {
   constexpr float kSpeck = 0.5F;  // of the mean's light
   ImageRgb picture = mean;
@@ -37,9 +39,8 @@ ImageRgb picture_as_far_off(const ImageRgb& mean, const ImageRgb& a, const Image
     for (int x = 0; x < picture.width_px; ++x) {
       const Vec3f off = (a(x, y) - b(x, y)) * 0.5F;
       const float light = luminance(off);
-      const bool is_speck = std::abs(light) > kSpeck * luminance(mean(x, y)) &&
-                            window.counted.holds(window.traced.x_px + x, window.traced.y_px + y);
-      picture(x, y) += is_speck && light > 0 ? off * -1.0F : off;
+      const bool is_bright_speck = light > kSpeck * luminance(mean(x, y)) && window.counts(x, y);
+      picture(x, y) += is_bright_speck ? off * -1.0F : off;
     }
   }
   return picture;
@@ -54,7 +55,7 @@ std::vector<ImageGray> rates_in(const JudgedWindows& windows) {
     ImageGray own(window.traced.width_px, window.traced.height_px);
     for (int y = 0; y < own.height_px; ++y) {
       for (int x = 0; x < own.width_px; ++x) {
-        own(x, y) = window.counted.holds(window.traced.x_px + x, window.traced.y_px + y) ? 1 : kMarginShare;
+        own(x, y) = window.counts(x, y) ? 1 : kMarginShare;
         sum += static_cast<double>(own(x, y));
       }
     }

@@ -65,11 +65,29 @@ TEST(WindowClip, WindowsAreLitByWhatTheWholeFrameLearns) {
   EXPECT_EQ(clip.stats().learning_paths, whole.paths);
 }
 
-FrameSettings raw_settings(std::uint64_t seed) {
+FrameSettings settings_of(std::uint64_t seed) {
   FrameSettings settings;
   settings.trace.seed = seed;
   settings.threads = 2;
-  return raw(settings, 16, "none");
+  return settings;
+}
+
+// Those of a job, none of which are a reference's.
+FrameSettings job_settings(std::uint64_t seed) {
+  FrameSettings settings = settings_of(seed);
+  settings.reconstruction.filter = "guided";
+  settings.trace.learn_light = true;
+  settings.trace.clamp_indirect = 0.1;
+  settings.foveation.falloff = "visible";
+  settings.foveation.budget_spp = 1;
+  settings.foveation.min_spp = 2;
+  settings.foveation.target.jod = 9;
+  return settings;
+}
+
+ImageRgb uniform_picture(PathTracer& tracer, const FrameRequest& request, double spp, std::uint64_t seed) {
+  TemporalHistory none;
+  return FrameRenderer(tracer, raw(settings_of(seed), spp, "none")).render(request, none).frame.radiance;
 }
 
 double mean_luminance(const ImageRgb& picture) {
@@ -80,10 +98,26 @@ double mean_luminance(const ImageRgb& picture) {
   return sum / static_cast<double>(picture.pixels.size());
 }
 
-// One where the door is, and one in a corner.
+// Mean squared difference in luminance, of the pixels that count.
+double squared_difference(const ImageRgb& a, const ImageRgb& b, const JudgedWindow& window) {
+  double sum = 0;
+  double count = 0;
+  for (int y = 0; y < a.height_px; ++y) {
+    for (int x = 0; x < a.width_px; ++x) {
+      if (window.counts(x, y)) {
+        const auto off = static_cast<double>(luminance(a(x, y) - b(x, y)));
+        sum += off * off;
+        count += 1;
+      }
+    }
+  }
+  return sum / count;
+}
+
+// One where the door is, and one at the frame's corner, of which other shares count.
 JudgedWindows two_windows() {
   JudgedWindows windows;
-  windows.windows = {{{464, 208, 64, 64}, {480, 224, 32, 32}}, {{96, 64, 64, 64}, {112, 80, 32, 32}}};
+  windows.windows = {{{464, 208, 64, 64}, {480, 224, 32, 32}}, {{0, 0, 48, 48}, {0, 0, 32, 32}}};
   return windows;
 }
 
@@ -92,24 +126,44 @@ TEST(WindowReference, SpendsWhatItIsToldAndLessAroundWhatCounts) {
   PathTracer tracer(scene, threads(2));
   const JudgedWindows windows = two_windows();
   const FrameRequest request = request_of(1);
-  const FrameSettings settings = raw_settings(1);
+  const FrameSettings settings = job_settings(1);
   WindowReference reference(tracer, windows, {&request}, settings);
   reference.refine(16);
   const std::uint64_t before = reference.stats().samples;
   reference.refine(48);
-  EXPECT_NEAR(static_cast<double>(reference.stats().samples - before), 32.0 * 2 * 64 * 64, 0.02 * 32 * 2 * 64 * 64);
+  constexpr double kPixels = 64 * 64 + 48 * 48;
+  EXPECT_NEAR(static_cast<double>(reference.stats().samples - before), 32 * kPixels, 0.02 * 32 * kPixels);
   EXPECT_EQ(reference.spp(), 48);
-  for (const ImageGray& rates : reference.rates()) {
-    double all = 0;
-    for (const float rate : rates.pixels) {
-      all += static_cast<double>(rate);
+  EXPECT_EQ(reference.stats().learning_paths, 0U);
+  // 2048 pixels count, and a quarter of the other 4352.
+  constexpr double kOfCounted = kPixels / (2048 + 0.25 * 4352);
+  for (std::size_t w = 0; w < 2; ++w) {
+    const ImageGray& rates = reference.rates().at(w);
+    const int first = w == 0 ? 16 : 0;
+    for (const int inside : {first, first + 31}) {
+      EXPECT_NEAR(rates(inside, inside), kOfCounted, 1e-5) << w;
     }
-    EXPECT_NEAR(all / (64 * 64), 1, 1e-4);
-    EXPECT_FLOAT_EQ(rates(20, 40), 4 * rates(5, 40));
+    EXPECT_NEAR(rates(first + 32, 20), 0.25 * kOfCounted, 1e-5) << w;
+    EXPECT_NEAR(rates(20, first + 32), 0.25 * kOfCounted, 1e-5) << w;
   }
+  EXPECT_NEAR(reference.rates().at(0)(15, 20), 0.25 * kOfCounted, 1e-5);
 }
 
-// That pixels have unlike numbers of samples, and more are added later, changes no mean: against uniform frames.
+TEST(WindowReference, EachHalfHasASampleInEveryPixel) {
+  const Scene scene = room();
+  PathTracer tracer(scene, threads(2));
+  const JudgedWindows windows = two_windows();
+  const FrameRequest request = request_of(1);
+  const FrameSettings settings = job_settings(1);
+  WindowReference reference(tracer, windows, {&request}, settings);
+  reference.refine(2);  // around what counts 0.5 in each half, and 2 where it counts
+  constexpr double kOfCounted = (64 * 64 + 48 * 48) / (2048 + 0.25 * 4352);
+  const double expected = 2 * (kOfCounted * 2048 + 4352);
+  EXPECT_NEAR(static_cast<double>(reference.stats().samples), expected, 0.03 * expected);
+}
+
+// That pixels have unlike numbers of samples, and more are added later, changes no mean: against uniform frames. Nor
+// do the job's filter, its learned light and its limits.
 TEST(WindowReference, ShowsTheLightThatUniformFramesShow) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(2));
@@ -119,20 +173,84 @@ TEST(WindowReference, ShowsTheLightThatUniformFramesShow) {
     Repeats by_rates;
     Repeats uniform;
     for (std::uint64_t seed = 1; seed <= 32; ++seed) {
-      const FrameSettings settings = raw_settings(seed);
+      const FrameSettings settings = job_settings(seed);
       WindowReference reference(tracer, windows, {&request}, settings);
       reference.refine(16);
       reference.refine(32);
       by_rates.means.push_back(mean_luminance(reference.pictures().at(0).at(w)));
-      TemporalHistory none;
       const FrameRequest part = part_of(request, windows.windows[w].traced);
-      uniform.means.push_back(
-          mean_luminance(FrameRenderer(tracer, raw_settings(1000 + seed)).render(part, none).frame.radiance));
+      uniform.means.push_back(mean_luminance(uniform_picture(tracer, part, 16, 1000 + seed)));
     }
     EXPECT_LT(std::abs(welch_t(by_rates, uniform)), kCriticalT)
         << w << ": " << by_rates.mean() << ", " << uniform.mean();
     EXPECT_NEAR(by_rates.mean() / uniform.mean(), 1, 0.02) << w;
   }
+}
+
+// Against the truth: samples that are added in two steps are worth as much as all of them at once, raw and weighted as
+// they must be, and pictures that are as far off are as far off.
+TEST(WindowReference, ItsErrorIsThatOfItsSamplesAndIsKnown) {
+  const Scene scene = room();
+  PathTracer tracer(scene, threads(2));
+  const JudgedWindows windows = two_windows();
+  const FrameRequest request = request_of(1);
+  for (std::size_t w = 0; w < 2; ++w) {
+    const JudgedWindow& window = windows.windows[w];
+    const FrameRequest part = part_of(request, window.traced);
+    const ImageRgb truth = uniform_picture(tracer, part, 1024, 77);
+    double at_once = 0;
+    double in_steps = 0;
+    double known = 0;
+    double raw_error = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const FrameSettings settings = job_settings(seed);
+      WindowReference once(tracer, windows, {&request}, settings);
+      once.refine(32);
+      WindowReference stepped(tracer, windows, {&request}, settings);
+      stepped.refine(8);
+      stepped.refine(32);
+      at_once += squared_difference(once.pictures().at(0).at(w), truth, window);
+      in_steps += squared_difference(stepped.pictures().at(0).at(w), truth, window);
+      known += squared_difference(once.as_far_off().at(0).at(w), once.pictures().at(0).at(w), window);
+      const double own_spp = 32 * static_cast<double>(once.rates().at(w)(20, 20));
+      raw_error += squared_difference(uniform_picture(tracer, part, own_spp, 900 + seed), truth, window);
+    }
+    // A sequence of samples that is cut into parts loses something of what it has over independent ones.
+    EXPECT_NEAR(in_steps / at_once, 1, 0.25) << w;
+    EXPECT_NEAR(known / at_once, 1, 0.25) << w;
+    EXPECT_NEAR(at_once / raw_error, 1.1, 0.25) << w;
+  }
+}
+
+// A display would cut off what is twice as bright.
+TEST(WindowReference, WhatIsAsFarOffHasNoBrightSpecksInWhatCounts) {
+  const Scene scene = room();
+  PathTracer tracer(scene, threads(2));
+  const JudgedWindows windows = two_windows();
+  const FrameRequest request = request_of(1);
+  const FrameSettings settings = job_settings(1);
+  WindowReference reference(tracer, windows, {&request}, settings);
+  reference.refine(2);
+  const WindowPictures off = reference.as_far_off();
+  int brighter_around = 0;
+  int darker = 0;
+  for (std::size_t w = 0; w < 2; ++w) {
+    const ImageRgb& mean = reference.pictures().at(0).at(w);
+    for (int y = 0; y < mean.height_px; ++y) {
+      for (int x = 0; x < mean.width_px; ++x) {
+        const auto light = static_cast<double>(luminance(mean(x, y)));
+        const auto other = static_cast<double>(luminance(off.at(0).at(w)(x, y)));
+        if (windows.windows[w].counts(x, y)) {
+          EXPECT_LE(other, 1.501 * light);
+          darker += other < 0.499 * light ? 1 : 0;
+        } else {
+          brighter_around += other > 1.501 * light ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(darker, 0);
+  EXPECT_GT(brighter_around, 0);
 }
 
 }  // namespace

@@ -153,11 +153,30 @@ TEST(TimeBudget, AFrameThatTookTwiceAsLongMakesTracingTwiceAsDear) {
 
 // A first frame of which a rehearsal left next to nothing once made the next one twice as long.
 TEST(TimeBudget, AFrameOfHardlyAnySamplesTellsNothingOfTheirCost) {
-  const TimingRow row = frame_of(5e5);
+  TimingRow row = frame_of(5e5);
+  row.pilot_samples = 100000;
+  row.samples += row.pilot_samples;
+  row.pilot_ms = 112;  // 40 of it for samples, by what they are known to cost
   const FrameCost cost = cost_of(row, {1, 50, 4e-4}, 1.01 * row.trace_ms);
-  EXPECT_DOUBLE_EQ(cost.fixed_ms, 70);
+  EXPECT_DOUBLE_EQ(cost.fixed_ms, 142);
   EXPECT_DOUBLE_EQ(cost.base_ms, 50);
   EXPECT_DOUBLE_EQ(cost.sample_ms, 4e-4);
+}
+
+// Or a rehearsal that was held up would leave all frames with hardly any samples.
+TEST(TimeBudget, AFrameThatWasExpectedToTraceForLongTellsThatItDidNot) {
+  FrameCost known{70, 50, 2e-2};  // samples cost a twentieth of that
+  const TimingRow row = frame_of(2e4);
+  ASSERT_DOUBLE_EQ(row.trace_ms, 20);
+  const FrameCost cost = cost_of(row, known, 60);
+  EXPECT_NEAR(cost.sample_ms, 2e-2 * 20 / 450, 1e-12);
+  // Half of what is wrong is left after each frame: next to nothing after twelve.
+  double spp = 0;
+  for (int frame = 0; frame < 12; ++frame) {
+    spp = affordable_spp(600, known, 1e5, 1.0 / 16, 1e6);
+    known = mean_cost(known, cost_of(frame_of(1e5 * spp), known, 60));
+  }
+  EXPECT_NEAR(spp, 5.3, 0.05);
 }
 
 TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
@@ -173,10 +192,17 @@ TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
 }
 
 TEST(TimeBudget, AFilterThatTakesLongerForMoreSamplesIsPaid) {
-  // 70 ms with 1e4 samples and a fifth of a microsecond for each further one, beside 1 for tracing it.
+  // 70 ms with 1e4 samples and a fifth of a microsecond for each further one up to 1e5, beside 1 for tracing it.
   const FrameCost cost{70, 0, 1e-3, 1e4, 0.2};
-  const double spp = affordable_spp(670, cost, 1e5, 0.01, 1e6);
-  EXPECT_NEAR(70 + 2e-4 * (1e5 * spp - 1e4) + 1e-3 * 1e5 * spp, 670, 1e-9);
+  const double few = affordable_spp(130, cost, 1e5, 0.01, 1e6);
+  EXPECT_LT(few, 1);
+  EXPECT_NEAR(70 + 2e-4 * (1e5 * few - 1e4) + 1e-3 * 1e5 * few, 130, 1e-9);
+  const double many = affordable_spp(670, cost, 1e5, 0.01, 1e6);
+  EXPECT_GT(many, 1);
+  EXPECT_NEAR(70 + 2e-4 * (1e5 - 1e4) + 1e-3 * 1e5 * many, 670, 1e-9);
+  EXPECT_NEAR(affordable_spp(188, cost, 1e5, 0.01, 1e6), 1, 1e-9);
+  EXPECT_NEAR(affordable_spp(500, {10, 0, 1e-3, 1e7, 0.2}, 1e5, 0.01, 1e6), 4.8,
+              1e-9);  // never less than no fixed cost
   const FrameCost next = cost_of(frame_of(5e5), cost, 100);
   EXPECT_EQ(next.samples, 5e5);
   EXPECT_EQ(next.filter_share, 0.2);
