@@ -108,8 +108,11 @@ FrameCost cost_of(const TimingRow& row, const FrameCost& known, double telling_m
 }
 
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next) {
-  return {0.5 * (known.fixed_ms + next.fixed_ms), 0.5 * (known.base_ms + next.base_ms),
-          0.5 * (known.sample_ms + next.sample_ms), 0.5 * (known.samples + next.samples),
+  const auto mean = [](double before, double now) {
+    return now < before ? 2 * before * now / (before + now) : 0.5 * (before + now);
+  };
+  return {mean(known.fixed_ms, next.fixed_ms), mean(known.base_ms, next.base_ms),
+          mean(known.sample_ms, next.sample_ms), 0.5 * (known.samples + next.samples),
           0.5 * (known.filter_share + next.filter_share)};
 }
 

@@ -41,7 +41,8 @@ FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamp
 // that was traced in less than `telling_ms`, and was expected to be, tells nothing of that, and what is known of
 // tracing stays.
 FrameCost cost_of(const TimingRow& row, const FrameCost& known, double telling_ms);
-// Half of what was known and half of what is new: a frame that was held up by chance counts for half.
+// Half of what was known and half of what is new: a frame that was held up by chance counts for half. The mean is that
+// of times where they grow, and of samples for a time where they shrink, so that what was held up is soon forgotten.
 FrameCost mean_cost(const FrameCost& known, const FrameCost& next);
 // Samples a pixel, between `least` and `most`, that leave the frame with `budget_ms`.
 double affordable_spp(double budget_ms, const FrameCost& cost, double pixels, double least, double most);

