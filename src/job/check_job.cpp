@@ -11,6 +11,7 @@
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/resolve.hpp"
 #include "job/outputs.hpp"
+#include "job/quality_defaults.hpp"
 #include "pipeline/adaptive_rates.hpp"
 
 namespace gazetrace {
@@ -242,7 +243,8 @@ void check_chunk(const JobSettings& job) {
 
 }  // namespace
 
-void check_job(const Job& whole, const JobSchema& schema) {
+void check_job(const Job& asked, const JobSchema& schema) {
+  const Job whole = with_quality_defaults(asked);
   const JobSettings& job = whole.settings;
   const std::vector<std::string> falloff_names = names_of_all(falloffs());
   const std::vector<std::string> filter_names = names_of_all(reconstruction_filters());

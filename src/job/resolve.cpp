@@ -16,6 +16,7 @@
 #include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
 #include "job/judged_frames.hpp"
+#include "job/quality_defaults.hpp"
 #include "job/saving.hpp"
 #include "job/scene.hpp"
 #include "job/scene_camera.hpp"
@@ -170,6 +171,11 @@ void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::in
   const LaterFrames later = differs                                            ? LaterFrames::all_differ
                             : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
                                                                                : LaterFrames::as_early_ones;
+  if (job.foveation.target.jod && length > 1 && !view_moves && job.accumulate.mode == AccumulateMode::off) {
+    resolved.decisions.emplace_back("accumulate",
+                                    "off; the view is at rest, and with `accumulate` two-sided frames share their "
+                                    "samples and take many times fewer for this quality");
+  }
   const std::int32_t reach = job.accumulate.mode == AccumulateMode::two_sided ? job.accumulate.window : 0;
   const std::int32_t group = reach > 0 && !view_moves ? frames_in_group(job.accumulate) : 1;
   const JudgedNumbers judged = judged_numbers(length, later, job.fps, group);
@@ -374,15 +380,16 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
     load_viewing(resolved);
     return resolved;
   }
-  check_job(job);
+  resolved.job = with_quality_defaults(job, &resolved.decisions);
+  check_job(resolved.job);
   if (options.tell_idle) {
-    resolved.warnings = idle_option_warnings(job);
+    resolved.warnings = idle_option_warnings(resolved.job);
   }
   append(resolved.warnings, job.warnings);
   if (options.scope == ResolveScope::render) {
-    check_frame_memory(job.settings);
+    check_frame_memory(resolved.job.settings);
   }
-  const FilterChoice filter = filter_of(job.settings);
+  const FilterChoice filter = filter_of(resolved.job.settings);
   resolved.job.settings.filter = filter.name;
   load_and_plan(options, resolved);
   if (!filter.reason.empty()) {

@@ -294,10 +294,34 @@ class Adaptive(harness.CliTest):
         self.assertEqual(flip.returncode, 2, flip.stderr)
         self.assertIn("moves", flip.stderr)
 
+    def test_a_stated_quality_names_what_nobody_has_named(self):
+        view = [*VIEW[:-3], *GAZE]
+        for target, fall_off, filter_name in (("--target-jod", "visible", "guided"), ("--target-relmse", "visible", "guided"),
+                                              ("--target-flip", "uniform", "none")):
+            quality = [target, {"--target-jod": "8", "--target-relmse": "0.02", "--target-flip": "0.1"}[target]]
+            told = self.run_ok("render", "box.gltf", *view, *quality, "-o", "open/f.exr", "--overwrite").stderr
+            self.assertIn(f"falloff: {fall_off}, since a quality is stated", told)
+            self.run_ok("render", "box.gltf", *view, *quality, "--falloff", fall_off, "--filter", filter_name, "-o", "named/f.exr",
+                        "--overwrite")
+            self.assertEqual(self.pictures("open"), self.pictures("named"), target)
+            config = self.record("open", "f.")["config_toml"]
+            self.assertIn(f'falloff = "{fall_off}"', config)
+        # What is named stays.
+        told = self.run_ok("render", "box.gltf", *view, "--falloff", "cortical", "--target-jod", "8", "-o", "cortical/f.exr").stderr
+        self.assertNotIn("since a quality", told)
+        self.assertIn('falloff = "cortical"', self.record("cortical", "f.")["config_toml"])
+
+    def test_a_view_at_rest_is_told_what_it_could_share(self):
+        view = [*VIEW[:-3], *GAZE, "--target-jod", "7", "--frames", "1-2"]
+        told = self.run_ok("render", "box.gltf", *view, "-o", "alone/f.####.exr").stderr
+        self.assertIn("accumulate: off; the view is at rest", told)
+        told = self.run_ok("render", "box.gltf", *view, "--accumulate", "two-sided", "-o", "shared/f.####.exr").stderr
+        self.assertNotIn("at rest, and with", told)
+
     def test_what_is_refused(self):
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet", "--overwrite"]
         for words, *arguments in [
-            (["--target-relmse", "visible"], "--target-relmse", "0.01"),
+            (["--target-relmse", "visible"], "--falloff", "regions", "--target-relmse", "0.01"),
             (["--target-relmse", "budget"], "--falloff", "visible", "--target-relmse", "0.1", "--budget-spp", "3"),
             (["--target-relmse"], "--falloff", "visible", "--target-relmse", "0"),
             (["--min-spp"], "--falloff", "visible", "--min-spp", "5", "--max-spp", "4"),
@@ -305,7 +329,8 @@ class Adaptive(harness.CliTest):
             (["--sample-range", "pilot"], "--falloff", "visible", "--sample-range", "0:2", "--filter", "none"),
             (["--budget-spp", "pilot"], "--falloff", "visible", "--budget-spp", "0.01"),
             (["--target-jod", "eye"], "--target-jod", "9"),
-            (["--target-jod", "regions"], *GAZE, "--target-jod", "9"),
+            (["--target-jod", "regions"], *GAZE, "--falloff", "regions", "--target-jod", "9"),
+            (["--target-jod", "regions"], *GAZE, "--preset", "paper", "--target-jod", "9"),
             (["--target-jod", "only-pixel"], *RAW, "--target-jod", "9", "--only-pixel", "3,4"),
             (["--target-jod", "density-map"], *GAZE, "--falloff", "map", "--density-map", "d.####.exr", "--target-jod", "9"),
             (["--target-jod", "contrast"], *GAZE, "--falloff", "cortical", "--contrast-strength", "1", "--target-jod", "9"),

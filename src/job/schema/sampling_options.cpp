@@ -250,7 +250,8 @@ void add_sampling_options(JobSchema& schema) {
   schema
       .value("--falloff", foveation(&FoveationSettings::falloff), "NAME", Touch::sampling,
              "How the sampling density falls off with eccentricity ('gazetrace list falloffs'); how pixels are filled "
-             "from the samples is --filter, which has a 'linear', too")
+             "from the samples is --filter, which has a 'linear', too. Where nothing names one, --target-jod and "
+             "--target-relmse take visible, and --target-flip uniform")
       .with(Trait::always_stated)
       .idle_when({without_any_gaze});
   schema
