@@ -111,9 +111,8 @@ FrameCost mean_cost(const FrameCost& known, const FrameCost& next) {
   const auto mean = [](double before, double now) {
     return now < before ? 2 * before * now / (before + now) : 0.5 * (before + now);
   };
-  return {mean(known.fixed_ms, next.fixed_ms), mean(known.base_ms, next.base_ms),
-          mean(known.sample_ms, next.sample_ms), 0.5 * (known.samples + next.samples),
-          0.5 * (known.filter_share + next.filter_share)};
+  return {mean(known.fixed_ms, next.fixed_ms), mean(known.base_ms, next.base_ms), mean(known.sample_ms, next.sample_ms),
+          0.5 * (known.samples + next.samples), 0.5 * (known.filter_share + next.filter_share)};
 }
 
 FrameCost with_slope(FrameCost cost, const TracedSamples& more, const TracedSamples& fewer) {
