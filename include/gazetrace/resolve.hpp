@@ -77,8 +77,10 @@ struct ResolvedJob {
   double load_s = 0;  // of scene and environment
 };
 
-// Throws Error(usage or input) for anything that is wrong with the job or with the files that it names, as far as the
-// scope goes. Writes nothing. For pictures that were rendered already, recorded_run.hpp finds the job.
+// Where a quality is stated (QualityTarget::jod, ::relmse or ::flip) and nothing names a fall-off, one is chosen that
+// can meet it, and `decisions` says so. Throws Error(usage or input) for anything that is wrong with the job or with
+// the files that it names, as far as the scope goes. Writes nothing. For pictures that were rendered already,
+// recorded_run.hpp finds the job.
 ResolvedJob resolve(const Job& job, const ResolveOptions& options = {});
 
 // The checks that need no input file: ranges, names, patterns, and options that exclude each other; and whether the

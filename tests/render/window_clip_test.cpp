@@ -121,13 +121,17 @@ JudgedWindows two_windows() {
   return windows;
 }
 
-TEST(WindowReference, SpendsWhatItIsToldAndLessAroundWhatCounts) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const JudgedWindows windows = two_windows();
-  const FrameRequest request = request_of(1);
+class WindowReferenceTest : public ::testing::Test {
+ protected:
+  const Scene scene_ = room();
+  PathTracer tracer_{scene_, threads(2)};
+  const JudgedWindows windows_ = two_windows();
+  const FrameRequest request_ = request_of(1);
+};
+
+TEST_F(WindowReferenceTest, SpendsWhatItIsToldAndLessAroundWhatCounts) {
   const FrameSettings settings = job_settings(1);
-  WindowReference reference(tracer, windows, {&request}, settings);
+  WindowReference reference(tracer_, windows_, {&request_}, settings);
   reference.refine(16);
   const std::uint64_t before = reference.stats().samples;
   reference.refine(48);
@@ -148,13 +152,9 @@ TEST(WindowReference, SpendsWhatItIsToldAndLessAroundWhatCounts) {
   EXPECT_NEAR(reference.rates().at(0)(15, 20), 0.25 * kOfCounted, 1e-5);
 }
 
-TEST(WindowReference, EachHalfHasASampleInEveryPixel) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const JudgedWindows windows = two_windows();
-  const FrameRequest request = request_of(1);
+TEST_F(WindowReferenceTest, EachHalfHasASampleInEveryPixel) {
   const FrameSettings settings = job_settings(1);
-  WindowReference reference(tracer, windows, {&request}, settings);
+  WindowReference reference(tracer_, windows_, {&request_}, settings);
   reference.refine(2);  // around what counts 0.5 in each half, and 2 where it counts
   constexpr double kOfCounted = (64 * 64 + 48 * 48) / (2048 + 0.25 * 4352);
   const double expected = 2 * (kOfCounted * 2048 + 4352);
@@ -162,16 +162,12 @@ TEST(WindowReference, EachHalfHasASampleInEveryPixel) {
 }
 
 // Light that is learned or clamped, filters, and rates are the job's alone.
-TEST(WindowReference, IsTheSameForAllJobs) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const JudgedWindows windows = two_windows();
-  const FrameRequest request = request_of(1);
+TEST_F(WindowReferenceTest, IsTheSameForAllJobs) {
   const FrameSettings job = job_settings(1);
   const FrameSettings plain = settings_of(1);
-  EXPECT_FALSE(raw(job, 16, "none").trace.learn_light);  // too little is learned of windows as small as these
-  WindowReference of_job(tracer, windows, {&request}, job);
-  WindowReference of_plain(tracer, windows, {&request}, plain);
+  EXPECT_FALSE(raw(job, 16, "none").trace.learn_light);  // too little is learned of windows_ as small as these
+  WindowReference of_job(tracer_, windows_, {&request_}, job);
+  WindowReference of_plain(tracer_, windows_, {&request_}, plain);
   of_job.refine(16);
   of_plain.refine(16);
   for (std::size_t w = 0; w < 2; ++w) {
@@ -180,22 +176,18 @@ TEST(WindowReference, IsTheSameForAllJobs) {
 }
 
 // That pixels have unlike numbers of samples, and more are added later, changes no mean: against uniform frames.
-TEST(WindowReference, ShowsTheLightThatUniformFramesShow) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const JudgedWindows windows = two_windows();
-  const FrameRequest request = request_of(1);
+TEST_F(WindowReferenceTest, ShowsTheLightThatUniformFramesShow) {
   for (std::size_t w = 0; w < 2; ++w) {
     Repeats by_rates;
     Repeats uniform;
     for (std::uint64_t seed = 1; seed <= 32; ++seed) {
       const FrameSettings settings = job_settings(seed);
-      WindowReference reference(tracer, windows, {&request}, settings);
+      WindowReference reference(tracer_, windows_, {&request_}, settings);
       reference.refine(16);
       reference.refine(32);
       by_rates.means.push_back(mean_luminance(reference.pictures().at(0).at(w)));
-      const FrameRequest part = part_of(request, windows.windows[w].traced);
-      uniform.means.push_back(mean_luminance(uniform_picture(tracer, part, 16, 1000 + seed)));
+      const FrameRequest part = part_of(request_, windows_.windows[w].traced);
+      uniform.means.push_back(mean_luminance(uniform_picture(tracer_, part, 16, 1000 + seed)));
     }
     EXPECT_LT(std::abs(welch_t(by_rates, uniform)), kCriticalT)
         << w << ": " << by_rates.mean() << ", " << uniform.mean();
@@ -205,31 +197,27 @@ TEST(WindowReference, ShowsTheLightThatUniformFramesShow) {
 
 // Against the truth: samples that are added in two steps are worth as much as all of them at once, raw and weighted as
 // they must be, and pictures that are as far off are as far off.
-TEST(WindowReference, ItsErrorIsThatOfItsSamplesAndIsKnown) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const JudgedWindows windows = two_windows();
-  const FrameRequest request = request_of(1);
+TEST_F(WindowReferenceTest, ItsErrorIsThatOfItsSamplesAndIsKnown) {
   for (std::size_t w = 0; w < 2; ++w) {
-    const JudgedWindow& window = windows.windows[w];
-    const FrameRequest part = part_of(request, window.traced);
-    const ImageRgb truth = uniform_picture(tracer, part, 1024, 77);
+    const JudgedWindow& window = windows_.windows[w];
+    const FrameRequest part = part_of(request_, window.traced);
+    const ImageRgb truth = uniform_picture(tracer_, part, 1024, 77);
     double at_once = 0;
     double in_steps = 0;
     double known = 0;
     double raw_error = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const FrameSettings settings = job_settings(seed);
-      WindowReference once(tracer, windows, {&request}, settings);
+      WindowReference once(tracer_, windows_, {&request_}, settings);
       once.refine(32);
-      WindowReference stepped(tracer, windows, {&request}, settings);
+      WindowReference stepped(tracer_, windows_, {&request_}, settings);
       stepped.refine(8);
       stepped.refine(32);
       at_once += squared_difference(once.pictures().at(0).at(w), truth, window);
       in_steps += squared_difference(stepped.pictures().at(0).at(w), truth, window);
       known += squared_difference(once.as_far_off().at(0).at(w), once.pictures().at(0).at(w), window);
       const double own_spp = 32 * static_cast<double>(once.rates().at(w)(20, 20));
-      raw_error += squared_difference(uniform_picture(tracer, part, own_spp, 900 + seed), truth, window);
+      raw_error += squared_difference(uniform_picture(tracer_, part, own_spp, 900 + seed), truth, window);
     }
     // A sequence of samples that is cut into parts loses something of what it has over independent ones.
     EXPECT_NEAR(in_steps / at_once, 1, 0.25) << w;
@@ -239,13 +227,9 @@ TEST(WindowReference, ItsErrorIsThatOfItsSamplesAndIsKnown) {
 }
 
 // A display would cut off what is twice as bright.
-TEST(WindowReference, WhatIsAsFarOffHasNoBrightSpecksInWhatCounts) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const JudgedWindows windows = two_windows();
-  const FrameRequest request = request_of(1);
+TEST_F(WindowReferenceTest, WhatIsAsFarOffHasNoBrightSpecksInWhatCounts) {
   const FrameSettings settings = job_settings(1);
-  WindowReference reference(tracer, windows, {&request}, settings);
+  WindowReference reference(tracer_, windows_, {&request_}, settings);
   reference.refine(2);
   const WindowPictures off = reference.as_far_off();
   int brighter_around = 0;
@@ -256,7 +240,7 @@ TEST(WindowReference, WhatIsAsFarOffHasNoBrightSpecksInWhatCounts) {
       for (int x = 0; x < mean.width_px; ++x) {
         const auto light = static_cast<double>(luminance(mean(x, y)));
         const auto other = static_cast<double>(luminance(off.at(0).at(w)(x, y)));
-        if (windows.windows[w].counts(x, y)) {
+        if (windows_.windows[w].counts(x, y)) {
           EXPECT_LE(other, 1.501 * light);
           darker += other < 0.499 * light ? 1 : 0;
         } else {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 namespace gazetrace {
@@ -47,7 +48,7 @@ TEST(RateLooks, LooksNearTheLastOneAreAveragedAndOthersAreNot) {
 }
 
 TEST(RateLooks, HowLooksDifferTellsHowWellTheirMeanIsKnown) {
-  // Mean 2, sum of squares 0.02 + 0 + 0.02 + ...: that of 1.9, 2, 2.1, over 3 - 1.
+  // The mean is 2, and the sum of squares 0.02, over 3 - 1.
   const RateLooks looks = of({{0, 1.9}, {0, 2}, {0, 2.1}});
   EXPECT_NEAR(looks.standard_deviation(), 0.1, 1e-12);
   EXPECT_NEAR(looks.standard_error(), 0.1 / std::sqrt(3), 1e-12);
