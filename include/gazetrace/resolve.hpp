@@ -26,10 +26,8 @@ namespace gazetrace {
 
 enum class ResolveScope {
   // How pictures of the job are looked at: the gaze log with its clock, the screen, and where the frame lies on it,
-  // which
-  // are in `gaze` and `plan_settings`. The plan stays empty, and scene, camera and outputs are not looked at. The
-  // screen
-  // is not checked, and stays empty where neither the job nor the log states one.
+  // which are in `gaze` and `plan_settings`. The plan stays empty, and scene, camera and outputs are not looked at. The
+  // screen is not checked, and stays empty where neither the job nor the log states one.
   viewing,
   // The plan alone. The scene is read only where the camera comes from it, or where the number of frames may (no
   // `frames`, a camera at rest, no gaze log), and may be missing where nothing needs it.

@@ -12,11 +12,11 @@ enum ExitCode : int {
 };
 
 inline constexpr const char* kExitCodesHelp =
-    "Exit codes: 0 done; 1 compared and over the threshold (reserved for comparisons); 2 usage or input, before any "
-    "picture; 3 failed while running; 4 interrupted, goes on with --resume.";
+    "Exit codes: 0 done; 1 compared and over the threshold (reserved for comparisons); 2 usage or input, or a stated "
+    "quality is out of reach, before any picture; 3 failed while running; 4 interrupted, goes on with --resume.";
 
 inline constexpr const char* kConfigHelp =
     "--config FILE reads any of these options from a TOML file (frames = \"1-100\"); what stands on the command line "
-    "wins, and 'gazetrace render --print-config' writes every option with its value.\n";
+    "wins. 'gazetrace render --print-config' writes every option of 'render' and 'plan' with its value.\n";
 
 }  // namespace gazetrace

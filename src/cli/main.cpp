@@ -104,8 +104,8 @@ int run(int argc, char** argv) {
 
   std::string config;
   app.add_option("--config", config,
-                 "A TOML file with options of 'render' or 'plan'; what stands on the command line wins ('gazetrace "
-                 "render --print-config' writes one)")
+                 "A TOML file with options of the command; what stands on the command line wins ('gazetrace render "
+                 "--print-config' writes one for 'render' and 'plan')")
       ->type_name("FILE");
 
   try {

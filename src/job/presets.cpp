@@ -33,7 +33,7 @@ const std::vector<Preset>& presets() {
        paper_settings("full-angle")},
       {"paper-radius", "the source paper, its angles as eccentricities", paper_settings("eccentricity")},
       {"default",
-       "what is taken when nothing is said",
+       "what is taken when nothing is said and no quality is stated",
        {{"falloff", "regions"},
         {"region-samples", "32,16,8"},
         {"region-blocks", "2,4"},

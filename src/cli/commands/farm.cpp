@@ -185,7 +185,7 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--program", settings.program, "gazetrace as the tasks find it; default: this one")->type_name("FILE");
   app.add_option("--then", settings.then,
                  "A command of the shell for when the sequence is whole, such as 'gazetrace video out/f.####.png "
-                 "film.mp4'; each waits for the one before")
+                 "-o film.mp4'; each waits for the one before")
       ->type_name("COMMAND");
   app.add_flag("--confine", settings.confine,
                "For a job by others: it may name no file outside of its folder or data set, and nor may its tasks");

@@ -177,7 +177,8 @@ OptionSchema<GazeFileSettings> gaze_file_schema() {
                "on the scene camera's picture");
   schema.value(
       "--gaze-eye", gaze_read(&GazeReadOptions::eye), choices<EyeChoice>(), Touch::gaze,
-      "Which gaze is taken of a log of both eyes; auto: its combined gaze, else the mean of both eyes by angle");
+      "Which gaze is taken of a log of both eyes; auto: its combined gaze, else the mean of both eyes by angle, or the "
+      "better eye where the two differ vertically by more than half a degree in the median");
   schema.value("--gaze-dominant", gaze_read(&GazeReadOptions::dominant_eye), choices<Eye>(), Touch::gaze,
                "The eye that --gaze-eye dominant takes");
   schema.value("--gaze-min-confidence", &GazeFileSettings::min_confidence, "SHARE", Touch::gaze,

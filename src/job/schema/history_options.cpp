@@ -22,7 +22,7 @@ void add_reproject_options(JobSchema& schema) {
   schema
       .value("--accumulate-hold", accumulate(&A::hold), "N", Touch::history,
              "two-sided, where nothing moves: N frames after each other show one sum, which is filtered once; 0: a "
-             "third of `accumulate-window`. More than `accumulate-window` + 1 counts as that")
+             "third of --accumulate-window. More than --accumulate-window + 1 counts as that")
       .within(0, 100)
       .idle_when({without_two_sided()});
   schema

@@ -163,7 +163,8 @@ void add_pilot_options(JobSchema& schema) {
   schema
       .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
              "visible: the lowest rate anywhere in the frame, in samples a pixel; with --target-jod, --target-flip "
-             "and --time-budget, of a frame")
+             "and --time-budget, of a frame. With --target-jod and --target-flip a frame never has less than 0.25, or "
+             "than 1 where uniform frames through 'none' or 'linear' are added up by --accumulate two-sided")
       .within(0, kMostSamples)
       .idle_when({without_rates_to_limit});
   schema
@@ -256,7 +257,8 @@ void add_sampling_options(JobSchema& schema) {
       .idle_when({without_any_gaze});
   schema
       .value("--spp", foveation(&FoveationSettings::uniform_spp), "N", Touch::sampling,
-             "Samples a pixel of uniform frames, and the full rate of density models; plan --counts compares with it")
+             "Samples a pixel of uniform frames, the full rate of density models, and the budget of 'visible' where no "
+             "other is given; plan --counts compares with it")
       .within(1, kMostSamples);
   add_region_options(schema);
   add_budget_options(schema);

@@ -26,8 +26,8 @@ void add_limit_options(JobSchema& schema) {
       .with(Trait::one_run);
   schema
       .value("--max-memory", &JobSettings::max_memory, "BYTES", Touch::scene,
-             "Refuses a scene that will take more memory ('gazetrace scene' tells), before it is loaded: 8G, 500M; 0: "
-             "three quarters of what the machine has")
+             "Refuses a scene that will take more memory, before it is loaded: 8G, 500M; 0: three quarters of what the "
+             "machine has. 'gazetrace scene FILE --estimate' says how much a scene will take")
       .decides_nothing();
   schema
       .value("--max-texture", limit(&SceneLimits::texture_side_px), "PX", Touch::scene,
