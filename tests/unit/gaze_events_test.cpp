@@ -130,6 +130,32 @@ TEST(GazeEvents, IvtMergesNeighboursAndDropsTheShort) {
   EXPECT_EQ(summary(detect_events(azimuths(c), settings)), "f0-48 ");
 }
 
+// Rows that a logger dropped are a break of the clock where the step over them exceeds 75 ms, even if fixations further
+// apart than that are merged.
+TEST(GazeEvents, IvtDoesNotMergeAcrossDroppedRows) {
+  EventSettings settings = plain_ivt();
+  settings.merge_gap_ns = 100'000'000;
+  settings.merge_angle_deg = 3;
+  const auto without_seven_rows = [](const std::vector<double>& a, std::size_t first, std::int64_t step_ns) {
+    GazeLog log = azimuths(a);
+    for (std::size_t i = 0; i < log.samples.size(); ++i) {
+      log.samples[i].t_ns = static_cast<std::int64_t>(i) * step_ns;
+    }
+    const auto begin = log.samples.begin() + static_cast<std::ptrdiff_t>(first);
+    log.samples.erase(begin, begin + 7);
+    return log;
+  };
+  // 90 Hz, at rest: the step over the missing rows is 89 ms.
+  const std::vector<double> rest(60, 0.0);
+  EXPECT_EQ(summary(detect_events(without_seven_rows(rest, 20, 11'111'111), settings)), "f0-19 f20-52 ");
+  // 100 Hz, a jump after 80 ms: the fixations around both are 100 ms apart.
+  std::vector<double> jump(60, 0.0);
+  jump[27] = 2;
+  EXPECT_EQ(summary(detect_events(without_seven_rows(jump, 20, 10'000'000), settings)), "f0-19 s20-21 f22-52 ");
+  // Without the missing rows the same jump is merged.
+  EXPECT_EQ(summary(detect_events(azimuths(jump), settings)), "f0-59 ");
+}
+
 // As in Tobii Studio's exports: eight samples of 120 Hz are a fixation of 67 ms.
 TEST(GazeEvents, AFixationLastsAStepForEachSample) {
   EventSettings settings = plain_ivt();

@@ -51,7 +51,10 @@ bool merge_neighbours(const GazeDirections& gaze, EyeEvents& events) {
   bool merged = false;
   Fixation before;
   bool has_before = false;
+  const std::int64_t break_ns = break_step_ns(median_step_ns(gaze.t_ns));
   for (const LabelRun& run : label_runs(events.labels, gaze.t_ns)) {
+    // What the eye did in a break of the clock is unknown, and runs end there in any case: nothing is merged across it.
+    has_before = has_before && gaze.t_ns[run.first] - gaze.t_ns[run.first - 1] <= break_ns;
     if (run.movement != EyeMovement::fixation) {
       // Lost samples do not count as a pause between two parts of a fixation.
       has_before = has_before && run.movement == EyeMovement::saccade;
@@ -86,7 +89,8 @@ void classify_ivt(const GazeDirections& gaze, EyeEvents& events) {
       events.labels[i] = speed[i] < events.settings.velocity_deg_s ? EyeMovement::fixation : EyeMovement::saccade;
     }
   }
-  // A fixation that has grown may reach the next one, so passes are repeated until there is nothing left to merge.
+  // A fixation that has grown may reach the next one, so passes are repeated until there is nothing left to merge. They
+  // come to an end, because every merging leaves fewer runs than there were.
   while (events.settings.merge_gap_ns > 0 && merge_neighbours(filled, events)) {
   }
   drop_short_fixations(gaze, events);
