@@ -152,6 +152,11 @@ bool read_chunk(std::uint16_t tag, Bytes content, std::vector<XdfStream>& stream
   }
   XdfStream& stream = stream_of(streams, id);
   if (tag == stream_header) {
+    // Samples that were read already are stored as the first header says. Another one is damage, and the same one again
+    // says nothing new.
+    if (!stream.header.empty()) {
+      return stream.header == content.rest();
+    }
     stream.header = content.rest();
     read_header(stream);
     return true;

@@ -127,6 +127,30 @@ TEST_F(GazeFormats, XdfOnTheRecordersClock) {
   EXPECT_EQ(log.samples[5].validity, GazeValidity::lost);
 }
 
+// A second header of the same stream, which promises more and wider channels than its samples have.
+TEST_F(GazeFormats, XdfHasOneHeaderAStream) {
+  const GazeLog log = read("t.xdf", gaze_xdf());
+  XdfBytes again;
+  again.bytes = gaze_xdf();
+  again.chunk(2, XdfBytes::pack(std::uint32_t{7}) +
+                     "<?xml version=\"1.0\"?><info><type>Gaze</type><channel_count>4000</channel_count>"
+                     "<nominal_srate>100</nominal_srate><channel_format>double64</channel_format><desc><channels>"
+                     "<channel><label>Screen_X</label></channel><channel><label>Screen_Y</label></channel>"
+                     "</channels></desc></info>");
+  const GazeLog mended = read("again.xdf", again.bytes);
+  EXPECT_THAT(mended.warnings.at(0), HasSubstr("1 damaged or cut off chunk; what could be read is used"));
+  ASSERT_EQ(mended.samples.size(), 40U);
+  EXPECT_EQ(mended.samples[39].u, 0.25 + 39.0 / 256);
+  EXPECT_EQ(mended.samples[39].t_ns, log.samples[39].t_ns);
+  // The same header twice contradicts nothing.
+  XdfBytes twice = xdf_with_header();
+  const std::string header_and_samples = gaze_xdf().substr(4);
+  twice.bytes += header_and_samples;
+  const GazeLog same = read("twice.xdf", twice.bytes);
+  EXPECT_TRUE(same.warnings.empty());
+  EXPECT_EQ(same.samples[39].t_ns, log.samples[39].t_ns);
+}
+
 // Twenty samples a hundredth of a second apart, without a word on their unit; every tenth is (x, y) of `tenth`.
 std::string xdf_without_unit(const Vec2f& most, const Vec2f& tenth) {
   XdfBytes xdf = xdf_with_header("");

@@ -204,6 +204,12 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   raw.declared.time_exponent = {9, Evidence::format, "doubles in the file, on the recorder's clock"};
   const double least = std::isnan(options.min_confidence) ? first.is_scene_camera ? 0.6 : 1e-9 : options.min_confidence;
   const std::vector<double> times_s = synchronized_times_s(stream);
+  if (stream.values.size() / stream.channels != times_s.size()) {
+    throw Error(ErrorKind::input, file.path,
+                fmt::format("its gaze stream has {} values for {} samples of {} channels", stream.values.size(),
+                            times_s.size(), stream.channels),
+                "record or export it again");
+  }
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const double* const values = stream.values.data() + i * stream.channels;
     const double t_ns = times_s[i] * 1e9;
