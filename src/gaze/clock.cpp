@@ -44,7 +44,12 @@ ClockFit fit_clock(const std::vector<ClockAnchor>& anchors) {
     }
   }
   const double offset = mean_video - fit.scale * mean_log;  // to the first anchor's video time
-  fit.offset_ns = origin.t_video_ns + std::llround(offset);
+  // 9e18 fits int64, and is farther than 285 years.
+  if (!(std::abs(offset) < 9e18) ||
+      __builtin_add_overflow(origin.t_video_ns, std::int64_t{std::llround(offset)}, &fit.offset_ns)) {
+    throw Error(ErrorKind::usage, "`gaze-anchor`", "the anchors lie so far apart that int64 nanoseconds do not reach",
+                "give anchors within the log and the video");
+  }
   for (const ClockAnchor& anchor : anchors) {
     const double left =
         since(anchor.t_video_ns, origin.t_video_ns) - (fit.scale * since(anchor.t_log_ns, origin.t_log_ns) + offset);

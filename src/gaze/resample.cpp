@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "gaze/angles.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -55,15 +56,6 @@ std::int64_t saturating_difference(std::int64_t a, std::int64_t b) {
     return a > b ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
   }
   return difference;
-}
-
-Vec3d slerp_directions(const Vec3d& a, const Vec3d& b, double s) {
-  const double angle = angle_between_rad(a, b);
-  const double sine = std::sin(angle);
-  if (!(sine > 1e-9)) {  // the same direction, or opposite ones, which no single arc joins
-    return s < 0.5 ? a : b;
-  }
-  return normalize(a * (std::sin((1.0 - s) * angle) / sine) + b * (std::sin(s * angle) / sine));
 }
 
 class Resampler {
@@ -179,7 +171,7 @@ class Resampler {
       result_.u = a.u * (1.0 - s) + b.u * s;
       result_.v = a.v * (1.0 - s) + b.v * s;
     } else {
-      result_.direction = slerp_directions(a.direction, b.direction, s);
+      result_.direction = between_directions(a.direction, b.direction, s);
     }
     return true;
   }
@@ -338,11 +330,16 @@ std::int64_t video_time_ns(const GazeLog& log, const GazeMapping& mapping, std::
   }
   const std::int64_t event = mapping.event_ns.value_or(log.samples.empty() ? 0 : log.samples.front().t_ns);
   const Int128 since = Int128{t_log_ns} - event;
-  // x87's 64 bits of mantissa hold every int64 exactly; the product is within half a nanosecond over 290 years.
-  const Int128 scaled =
-      mapping.scale == 1.0
-          ? since
-          : static_cast<Int128>(std::round(static_cast<long double>(since) * static_cast<long double>(mapping.scale)));
+  Int128 scaled = since;
+  if (mapping.scale != 1.0) {
+    // x87's 64 bits of mantissa hold every int64 exactly; the product is within half a nanosecond over 290 years.
+    const long double product = std::round(static_cast<long double>(since) * static_cast<long double>(mapping.scale));
+    // The offset may bring back what exceeds int64 by itself, but nothing that is beyond twice of it.
+    if (!(std::abs(product) < 0x1p64L)) {
+      beyond_int64();
+    }
+    scaled = static_cast<Int128>(product);
+  }
   const Int128 t = scaled + mapping.offset_ns;
   if (t > std::numeric_limits<std::int64_t>::max() || t < std::numeric_limits<std::int64_t>::min()) {
     beyond_int64();

@@ -50,9 +50,12 @@ ClockAnchor parse_anchor(const std::string& text, const GazeLog& log, std::int64
   DurationNs time;
   try {
     parse_value(place, kAnchor, time);
-    time.ns -= taken_off_ns;
   } catch (const Error&) {
-    time.ns = time_of_message(log, place);  // it is not a time but a message
+    return {time_of_message(log, place), video.ns};  // it is not a time but a message
+  }
+  if (__builtin_sub_overflow(time.ns, taken_off_ns, &time.ns)) {
+    throw Error(ErrorKind::usage, kAnchor, fmt::format("{} lies ages away from the log", place),
+                "give a time of the log's own clock");
   }
   return {time.ns, video.ns};
 }

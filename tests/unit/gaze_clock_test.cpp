@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "gazetrace/foveation.hpp"
@@ -51,6 +52,29 @@ TEST(GazeClock, ImpossibleAnchorsAreRefused) {
   EXPECT_THROW(fit_clock({{5, 0}, {5, 10}}), Error);
   EXPECT_THROW(fit_clock({{0, 10}, {10, 0}}), Error);
   EXPECT_THROW(fit_clock({}), Error);
+}
+
+TEST(GazeClock, TimesBeyondInt64AreRefused) {
+  // x = 0, -1, -2 s and y = 0, 0, -3 s: slope 1.5, and the line passes 0.5 s above the first anchor, the last time.
+  const std::int64_t last = std::numeric_limits<std::int64_t>::max();
+  EXPECT_THROW(fit_clock({{0, last}, {-1000 * kMs, last}, {-2000 * kMs, last - 3000 * kMs}}), Error);
+  EXPECT_EQ(fit_clock({{0, last}}).offset_ns, last);
+  GazeLog log;
+  GazeMapping mapping;
+  mapping.event_ns = 0;
+  for (const double scale : {1e11, 2e20, 1e30, 1.1e38, 1e300}) {
+    mapping.scale = scale;
+    for (const std::int64_t t : {std::int64_t{3}, std::int64_t{-3}, 1'000 * kMs, -1'000 * kMs, last, -last}) {
+      if (static_cast<double>(t) * scale > 0x1p63 || static_cast<double>(t) * scale < -0x1p63) {
+        EXPECT_THROW(video_time_ns(log, mapping, t), Error) << scale << " " << t;
+      }
+    }
+  }
+  // What exceeds int64 by itself and not with its offset is a time.
+  mapping.scale = 2;
+  mapping.offset_ns = -last;
+  const std::int64_t half = 5'000'000'000'000'000'000;
+  EXPECT_EQ(video_time_ns(log, mapping, half), half - last + half);
 }
 
 TEST(GazeClock, MessagesAreFoundByTheirText) {

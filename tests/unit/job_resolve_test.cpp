@@ -253,6 +253,16 @@ TEST_F(Resolve, AFallOffThatSavesNothingIsTold) {
   EXPECT_THAT(resolve(job, plan).warnings, Not(testing::Contains(HasSubstr("saves only"))));
 }
 
+TEST_F(Resolve, AnAnchorAgesAwayFromTheLogIsRefused) {
+  set_option(job_, "gaze-anchor", "-9000000000s=0s");
+  try {
+    resolve(job_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("`gaze-anchor`: -9000000000s lies ages away from the log"));
+  }
+}
+
 TEST_F(Resolve, StillsHaveRecordsOfTheirOwn) {
   Job job = job_;
   set_option(job, "frames", "1");
