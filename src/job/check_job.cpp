@@ -41,8 +41,8 @@ void check_registry_name(const char* option, const char* what, const std::string
   throw Error(ErrorKind::usage, option, unknown_name_message(what, name, known), is_other ? hint : "");
 }
 
-// This many screens away the eye looks along the screen, and squares of pixel coordinates are still finite.
-constexpr double kMaxGazeScreens = 1000;
+// Farther beside the screen than this nobody looks: such numbers are pixels that were taken for fractions.
+constexpr double kMaxGazeScreens = 3;
 
 void check_ranges(const JobSettings& job, const JobSchema& schema) {
   for (const OptionOf<JobSettings>& option : schema.options()) {
@@ -275,10 +275,11 @@ void check_job(const Job& asked, const JobSchema& schema) {
   check_sample_range(job);
   check_chunk(job);
   check_stage(job);
-  if (job.gaze_at && !(std::max(std::fabs(job.gaze_at->x), std::fabs(job.gaze_at->y)) <= kMaxGazeScreens)) {
+  const auto is_near = [](double place) { return place >= -kMaxGazeScreens && place <= 1 + kMaxGazeScreens; };
+  if (job.gaze_at && !(is_near(job.gaze_at->x) && is_near(job.gaze_at->y))) {
     throw Error(ErrorKind::usage, "`gaze-at`",
-                fmt::format("{},{} is more than {} screens away", job.gaze_at->x, job.gaze_at->y, kMaxGazeScreens),
-                "give fractions of the screen, 0..1 on it");
+                fmt::format("{},{} lies far outside of the screen", job.gaze_at->x, job.gaze_at->y),
+                "give fractions of it from its top left, such as 0.5,0.5");
   }
   gaze_steps_of(job.gaze_process);  // checks names and values of the steps
   if (job.only_pixel && (job.only_pixel->x >= job.size.width || job.only_pixel->y >= job.size.height)) {

@@ -2,6 +2,7 @@
 // How gaze enters a run: its clock, its processing, and its uncertainty.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,6 +24,31 @@ GazeLog fixed_gaze(const Vec2d& at) {
   sample.v = at.y;
   log.samples.push_back(sample);
   return log;
+}
+
+// Pixels that a log calls fractions would leave every frame to the periphery, without a word. Half of the samples
+// decide, for there may be marks of missing values among them; looking beside the screen is no mistake.
+void warn_of_pixels_as_fractions(GazeLog& log) {
+  constexpr double kFarScreens = 5;
+  if (log.kind != GazeKind::screen || log.conventions.unit.value != PositionUnit::fraction) {
+    return;
+  }
+  std::size_t usable = 0;
+  std::size_t far = 0;
+  Vec2d reach;
+  for (const GazeSample& sample : log.samples) {
+    if (is_usable(sample.validity)) {
+      ++usable;
+      far += std::max(std::fabs(sample.u), std::fabs(sample.v)) >= kFarScreens ? 1 : 0;
+      reach = {std::max(reach.x, std::fabs(sample.u)), std::max(reach.y, std::fabs(sample.v))};
+    }
+  }
+  if (far > usable / 2) {
+    log.warnings.push_back(
+        fmt::format("{}: u and v are stated as fractions of the screen, but reach {:.4g} and {:.4g}, which look like "
+                    "pixels; give `gaze-unit` px",
+                    log.source, reach.x, reach.y));
+  }
 }
 
 // `screen` is the screen on which the pictures are viewed; it describes the recording only where nothing else does.
@@ -150,6 +176,7 @@ std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_o
     return std::nullopt;
   }
   GazeLog log = read_job_gaze(job);
+  warn_of_pixels_as_fractions(log);
   if (!job.keep_ids) {
     LogWithoutTimesOfDay hidden = without_times_of_day(std::move(log));
     log = std::move(hidden.log);

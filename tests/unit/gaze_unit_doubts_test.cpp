@@ -51,6 +51,20 @@ TEST_F(GazeUnitDoubts, PixelsAreNoOtherUnit) {
                  "`gaze-unit` px `gaze-origin` center");
 }
 
+TEST_F(GazeUnitDoubts, AFewRowsTellPixelsFromFractions) {
+  expect_setting("# display_px 1920 1080\nt[ms],u,v\n0,960,540\n10,964,541\n20,955,538\n",
+                 "no fractions of the display but pixels", "`gaze-unit` px");
+  for (const std::string_view text :
+       {// Beside the display, a mark among places, and both sides of the corner: nothing that three rows could tell.
+        "t[ms],u,v\n0,1.3,0.5\n10,-0.4,2.1\n20,1.2,0.6\n", "t[ms],u,v\n0,0.5,0.5\n10,0.51,0.5\n20,-100,-100\n",
+        "t[ms],u,v\n0,-0.2,-0.2\n10,0,0.01\n20,0.2,0.2\n"}) {
+    for (const GazeFinding& finding : inspect(text).findings) {
+      EXPECT_NE(finding.code, "position-unit") << text;
+      EXPECT_NE(finding.code, "origin") << text;
+    }
+  }
+}
+
 TEST_F(GazeUnitDoubts, MillimetresAreNoCentimetresAndFractionsNeither) {
   expect_setting(all_over("cm", 0, 0, 530, 300), "no centimetres but millimetres", "`gaze-unit` mm");
   expect_setting(all_over("cm", 0, 0, 1, 1), "no centimetres but fractions", "`gaze-unit` fraction");

@@ -253,6 +253,23 @@ TEST_F(Resolve, AFallOffThatSavesNothingIsTold) {
   EXPECT_THAT(resolve(job, plan).warnings, Not(testing::Contains(HasSubstr("saves only"))));
 }
 
+TEST_F(Resolve, PixelsThatALogCallsFractionsAreTold) {
+  const auto warnings_of = [&](const std::string& rows) {
+    write_text_atomically(folder_ / "places.csv", "# gazetrace-gaze 1\nt[ns],u,v\n" + rows);
+    Job job = job_;
+    set_option(job, "gaze", folder_ / "places.csv");
+    set_option(job, "screen", "paper");
+    set_option(job, "size", "64x36");
+    return fmt::format("{}", fmt::join(resolve(job).warnings, "\n"));
+  };
+  EXPECT_THAT(warnings_of("0,955,538\n10000000,964,541\n20000000,0.5,-0.1\n"),
+              HasSubstr("places.csv: u and v are stated as fractions of the screen, but reach 964 and 541, which look "
+                        "like pixels; give `gaze-unit` px"));
+  // Beside the screen, and one mark of a missing value.
+  EXPECT_THAT(warnings_of("0,1.2,0.5\n10000000,-0.4,2\n20000000,-100,-100\n"), Not(HasSubstr("look like pixels")));
+  EXPECT_THAT(fmt::format("{}", fmt::join(resolve(job_).warnings, "\n")), Not(HasSubstr("look like pixels")));
+}
+
 TEST_F(Resolve, AnAnchorAgesAwayFromTheLogIsRefused) {
   set_option(job_, "gaze-anchor", "-9000000000s=0s");
   try {

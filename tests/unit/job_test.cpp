@@ -179,6 +179,22 @@ TEST(Job, RangesOfTheSchemaAreChecked) {
   EXPECT_EQ(refused("bounces", "1000"), "");
 }
 
+// Pixels in place of fractions would make all of the frame periphery. A place beside the screen is none of them.
+TEST(Job, AFixedGazeIsNearTheScreen) {
+  const auto error_at = [](const std::string& at) {
+    Job job;
+    set_option(job, "gaze-at", at);
+    return error_of([&] { check_job(job, job_schema()); });
+  };
+  EXPECT_THAT(error_at("960,540"), HasSubstr("`gaze-at`: 960,540 lies far outside of the screen; give fractions of it "
+                                             "from its top left, such as 0.5,0.5"));
+  EXPECT_THAT(error_at("0.5,4.5"), HasSubstr("far outside"));
+  EXPECT_THAT(error_at("-3.5,0.5"), HasSubstr("far outside"));
+  for (const char* const near : {"0.5,0.5", "-0.2,1.3", "-2.9,3.9"}) {
+    EXPECT_EQ(error_at(near), "") << near;
+  }
+}
+
 TEST(JobSchema, EveryOptionSaysWhatItTouchesAndReadsItsDefaultBack) {
   for (const OptionOf<JobSettings>& option : job_schema().options()) {
     EXPECT_TRUE(option.touches.any()) << option.name;

@@ -20,8 +20,9 @@ namespace {
 // The range of the middle 90 % of the values of usable rows.
 struct Extent {
   double low = 0, median = 0, high = 0;
+  bool is_of_few = false;
 };
-// Empty where there are only a few rows.
+// Empty where no row is usable.
 std::optional<Extent> extent_of(const RawRows& rows, double Vec3d::*coordinate) {
   std::vector<double> values;
   values.reserve(rows.size());
@@ -30,10 +31,12 @@ std::optional<Extent> extent_of(const RawRows& rows, double Vec3d::*coordinate) 
       values.push_back(row.at.*coordinate);
     }
   }
-  if (values.size() < 10) {
+  if (values.empty()) {
     return std::nullopt;
   }
-  return Extent{lower_quantile(values, 0.05), lower_quantile(values, 0.5), lower_quantile(values, 0.95)};
+  constexpr std::size_t kEnough = 10;
+  return Extent{lower_quantile(values, 0.05), lower_quantile(values, 0.5), lower_quantile(values, 0.95),
+                values.size() < kEnough};
 }
 
 bool is_known(const Vec2d& size) {
@@ -170,14 +173,19 @@ std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, 
     return std::nullopt;
   }
   const RawRows rows = measurable_rows(raw, c);
+  const PositionUnit unit = c.unit.value;
   const std::optional<Extent> x = extent_of(rows, &Vec3d::x);
   const std::optional<Extent> y = extent_of(rows, &Vec3d::y);
-  if (!x || !y) {
+  // A few rows tell pixels from fractions, since no eye rests many displays away. Their median does, since the extremes
+  // may be marks of missing values. All other tests need places all over the display.
+  const bool are_few = x && y && (x->is_of_few || y->is_of_few);
+  if (!x || !y || (are_few && unit != PositionUnit::fraction)) {
     return std::nullopt;
   }
-  const Positions p{*x, *y, std::max({-x->low, x->high, -y->low, y->high}),
-                    std::max(x->high - x->low, y->high - y->low)};
-  const PositionUnit unit = c.unit.value;
+  const Positions p{
+      *x, *y,
+      are_few ? std::max(std::abs(x->median), std::abs(y->median)) : std::max({-x->low, x->high, -y->low, y->high}),
+      std::max(x->high - x->low, y->high - y->low)};
   const std::string seen =
       fmt::format("90 % of x lie in {:.4g} .. {:.4g}, of y in {:.4g} .. {:.4g}", p.x.low, p.x.high, p.y.low, p.y.high);
   const bool is_place = unit == PositionUnit::px || unit == PositionUnit::fraction;
@@ -205,7 +213,7 @@ std::optional<GazeFinding> doubt_position_unit(const GazeUnderInspection& gaze, 
                        "statistics: " + seen + (better->unit == PositionUnit::automatic ? "" : read_so(gaze, other)),
                        better->setting};
   }
-  if (is_place && c.origin.value == PositionOrigin::top_left && raw.kind == GazeKind::screen &&
+  if (is_place && !are_few && c.origin.value == PositionOrigin::top_left && raw.kind == GazeKind::screen &&
       count_from_center(p, size)) {
     other.origin.value = PositionOrigin::center;
     return GazeFinding{
