@@ -14,8 +14,7 @@ void add_limit_options(JobSchema& schema) {
   schema
       .flag("--allow-outside", &JobSettings::allow_outside, Touch::scene,
             "The scene and a BIDS gaze log may lead to files outside of their folder, or of the data set that they "
-            "belong "
-            "to; give it for data that you trust")
+            "belong to; give it for data that you trust")
       .decides_nothing();
   schema
       .flag(
