@@ -5,29 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
-#include <unordered_map>
 
 #include "gazetrace/gaze_objects.hpp"
 #include "study/report/heat.hpp"
+#include "study/report/seen_surfaces.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr double kReach = 3;  // standard deviations
 constexpr int kGreys = 12;
 
-// A hit of a cone's ray, and how it spreads.
-struct Spot {
-  Vec3d at;
-  double sd_m = 0;
-  double seconds = 0;
-  std::uint32_t object = 0;
-};
-
-std::vector<Spot> spots_of(const GazeObjects& objects, double frame_s, double sigma_deg) {
-  std::vector<Spot> spots;
+std::vector<GazeSpot> spots_of(const GazeObjects& objects, double frame_s, double sigma_deg) {
+  std::vector<GazeSpot> spots;
   for (const FrameObjects& frame : objects.frames) {
     for (const RayHit& hit : frame.hits) {
       if (hit.object != 0) {
@@ -38,60 +28,6 @@ std::vector<Spot> spots_of(const GazeObjects& objects, double frame_s, double si
   }
   return spots;
 }
-
-// What the cells of a grid over the frame see, found again by where it is in the world.
-class SeenSurfaces {
- public:
-  SeenSurfaces(const std::vector<RayHit>& hits, double cell_m) : hits_(hits), cell_m_(cell_m) {
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      if (hits[i].object != 0) {
-        cells_[key(cell_of(hits[i].position_m))].push_back(static_cast<std::uint32_t>(i));
-      }
-    }
-  }
-
-  // Adds what a spot leaves at each place of its body that is seen.
-  void add(const Spot& spot, std::vector<double>& values) const {
-    const double reach_m = kReach * spot.sd_m;
-    const double peak = spot.seconds / (2 * kPi * spot.sd_m * spot.sd_m);
-    const std::array<std::int64_t, 3> low = cell_of(spot.at - Vec3d{reach_m, reach_m, reach_m});
-    const std::array<std::int64_t, 3> high = cell_of(spot.at + Vec3d{reach_m, reach_m, reach_m});
-    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const auto cell = cells_.find(key({x, y, z}));
-          if (cell == cells_.end()) {
-            continue;
-          }
-          for (const std::uint32_t i : cell->second) {
-            const Vec3d apart = hits_[i].position_m - spot.at;
-            const double squares = dot(apart, apart) / (spot.sd_m * spot.sd_m);
-            if (squares < kReach * kReach && hits_[i].object == spot.object) {
-              values[i] += peak * std::exp(-0.5 * squares);
-            }
-          }
-        }
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] std::array<std::int64_t, 3> cell_of(const Vec3d& at) const {
-    return {static_cast<std::int64_t>(std::floor(at.x / cell_m_)),
-            static_cast<std::int64_t>(std::floor(at.y / cell_m_)),
-            static_cast<std::int64_t>(std::floor(at.z / cell_m_))};
-  }
-  // Cells far apart may share a key: what is in them is looked at all the same, and is too far away.
-  static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
-    constexpr std::uint64_t kMask = (1U << 21U) - 1;
-    return (static_cast<std::uint64_t>(cell[0]) & kMask) << 42U | (static_cast<std::uint64_t>(cell[1]) & kMask) << 21U |
-           (static_cast<std::uint64_t>(cell[2]) & kMask);
-  }
-
-  const std::vector<RayHit>& hits_;
-  double cell_m_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
-};
 
 // Surfaces that are seen at a right angle are light. The normal comes from the places beside, where those lie on the
 // same body.
@@ -176,18 +112,18 @@ std::string scene_heat_svg(PathTracer& tracer, const FramePlan& plan, double fra
   }
   const std::vector<RayHit> hits = tracer.at({request.t_video_ns, request.t_video_ns})
                                        .first_hits(request.camera, request.width_px, request.height_px, places);
-  const std::vector<Spot> spots = spots_of(objects, frame_s, settings.sigma_deg);
+  const std::vector<GazeSpot> spots = spots_of(objects, frame_s, settings.sigma_deg);
   grid.values.assign(places.size(), 0.0);
   double seconds = 0;
   if (!spots.empty()) {
     std::vector<double> reaches;
-    for (const Spot& spot : spots) {
-      reaches.push_back(kReach * spot.sd_m);
+    for (const GazeSpot& spot : spots) {
+      reaches.push_back(GazeSpot::kReach * spot.sd_m);
       seconds += spot.seconds;
     }
     std::nth_element(reaches.begin(), reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2), reaches.end());
     const SeenSurfaces surfaces(hits, std::max(reaches[reaches.size() / 2], 1e-9));
-    for (const Spot& spot : spots) {
+    for (const GazeSpot& spot : spots) {
       surfaces.add(spot, grid.values);
     }
     grid.highest = *std::max_element(grid.values.begin(), grid.values.end());
