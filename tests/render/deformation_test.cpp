@@ -273,5 +273,36 @@ TEST(Deformation, AShapeBeyondNumbersIsAnErrorWithItsPlace) {
   }
 }
 
+// Two squares under a sun: at one second the first has turned, and the second is nowhere. The normals of the first must
+// not stay as they were made before the second was found to be wrong.
+TEST(Deformation, AnErrorLeavesNothingOfItsPose) {
+  Scene scene;
+  scene.materials = {diffuse_material({1, 1, 1})};
+  std::vector<Geometry> squares;
+  for (const std::uint16_t joint : {std::uint16_t{0}, std::uint16_t{1}}) {
+    const float x = joint == 0 ? 0.0F : 3.0F;
+    squares.push_back(quad({{{x - 1, -1, 0}, {x + 1, -1, 0}, {x + 1, 1, 0}, {x - 1, 1, 0}}}, 0));
+    squares.back().influences = {1, {joint, joint, joint, joint}, {1, 1, 1, 1}};
+  }
+  add_mesh(scene, squares);
+  PunctualLight sun;
+  sun.kind = LightKind::directional;
+  scene.lights = {sun};
+  deform_instance(scene, 0, [](std::int64_t t) {
+    const double angle = seconds(t);
+    return MeshPose{{},
+                    {make_affine({}, {0, std::sin(angle / 2), 0, std::cos(angle / 2)}, {1, 1, 1}),
+                     make_affine({1e30 * seconds(t), 0, 0}, {}, {1, 1, 1})}};
+  });
+  TraceSettings settings;
+  settings.max_bounces = 1;
+  settings.diffuse = DiffuseModel::matte;
+  const SamplingMap map = uniform_map(8, 8, 16);
+  PathTracer tracer(scene, threads(2));
+  EXPECT_THROW((void)tracer.at({kSecond, kSecond}), Error);
+  const SparseFrame frame = tracer.at({0, 0}).trace(flat_camera(0.25), 1, map, settings);
+  EXPECT_NEAR(mean_radiance(frame).y, 1 / kPi, 1e-4);
+}
+
 }  // namespace
 }  // namespace gazetrace

@@ -172,6 +172,8 @@ void RenderScene::deform_meshes(const Scene& scene, const std::optional<ShutterT
     const auto mesh_index = static_cast<std::size_t>(source.mesh);
     const std::vector<MeshShape> shapes = shapes_of(scene, scene.meshes[mesh_index], poses, threads_);
     const bool blurs_here = shapes.size() > 1;
+    // An error below leaves triangles of several poses: it must not look as if the mesh were in any of them.
+    deforming.poses.clear();
     ShapeWay& way = shape_ways[d];
     way.keys.assign(blurs_here ? shapes.size() : 0, {});
     for (std::uint32_t g = 0; g < deforming.geometry_count; ++g) {
