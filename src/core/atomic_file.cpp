@@ -86,7 +86,12 @@ class TemporaryFile {
       fail(final_path_, "cannot create the file", errno);
     }
     ::close(taken);
-    put_in_place();
+    try {
+      put_in_place();
+    } catch (...) {  // an empty file under the name would look as if another writer had made it
+      ::unlink(final_path_.c_str());
+      throw;
+    }
     return true;
   }
 

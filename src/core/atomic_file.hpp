@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes files so that they exist completely or not at all.
+// Writes files so that they exist completely or not at all, whenever the process is killed. Nothing is forced onto the
+// disk: after a loss of power, or a crash of the system, a file may be there that is empty or has gaps. Where that
+// matters, files are read back against their digests (WrittenFile).
 #pragma once
 
 #include <cstddef>

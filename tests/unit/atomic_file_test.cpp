@@ -5,12 +5,15 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <cstdio>
 #include <numeric>
 #include <string>
 #include <thread>
@@ -18,6 +21,31 @@
 
 #include "gazetrace/error.hpp"
 #include "support/temporary_folder.hpp"
+
+namespace {
+
+// The functions below stand in for the system's, so that a test can have a file system without links that fails to
+// rename.
+bool file_system_refuses = false;
+
+int refused(int error) {
+  errno = error;
+  return -1;
+}
+
+}  // namespace
+
+extern "C" int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept {
+  return file_system_refuses ? refused(EPERM)
+                             : static_cast<int>(::syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
+}
+extern "C" int link(const char* from, const char* to) noexcept {
+  return ::linkat(AT_FDCWD, from, AT_FDCWD, to, 0);
+}
+extern "C" int rename(const char* from, const char* to) noexcept {
+  return file_system_refuses ? refused(EIO)
+                             : static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
 
 namespace gazetrace {
 namespace {
@@ -125,6 +153,16 @@ TEST(AtomicFile, AFileThatIsMadeOnceHasOneWriter) {
     EXPECT_EQ(found, std::vector<std::string>(kWriters, std::string(5000, winner)));
     EXPECT_EQ(folder.names(), std::vector<std::string>{"borders.json"});
   }
+}
+
+TEST(AtomicFile, AFileThatCannotBePutInPlaceLeavesItsNameFree) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "borders.json";
+  file_system_refuses = true;
+  EXPECT_THROW((void)create_file_once(path, std::vector<std::byte>(5000)), Error);
+  file_system_refuses = false;
+  EXPECT_EQ(folder.names(), std::vector<std::string>());
+  EXPECT_TRUE(create_file_once(path, std::vector<std::byte>(5000)));
 }
 
 }  // namespace
