@@ -29,30 +29,41 @@ std::vector<float> half_gaussian(double sigma_px) {
   return weights;
 }
 
-// The weighted mean about place `at` of a line of `count` values; what lies beyond its ends has no weight.
+// The weighted mean about place `at` of a line of `count` values; what lies beyond its ends has no weight, nor have
+// values that are NaN. Of nothing else it is NaN.
 float mean_about(const float* values, std::size_t stride, int count, int at, const std::vector<float>& weights) {
   const int reach = static_cast<int>(weights.size()) - 1;
   float sum = 0;
   float total = 0;
   for (int k = std::max(0, at - reach); k <= std::min(count - 1, at + reach); ++k) {
-    const float weight = weights[static_cast<std::size_t>(std::abs(k - at))];
-    sum += weight * values[static_cast<std::size_t>(k) * stride];
-    total += weight;
+    const float value = values[static_cast<std::size_t>(k) * stride];
+    if (!std::isnan(value)) {
+      const float weight = weights[static_cast<std::size_t>(std::abs(k - at))];
+      sum += weight * value;
+      total += weight;
+    }
   }
   return sum / total;
 }
 
+// NaN where the luminance is not finite: such a pixel says nothing of its surroundings.
 ImageGray log_luminance(const ImageRgb& radiance, int threads) {
   double sum = 0;
+  std::size_t count = 0;
   for (const Vec3f& pixel : radiance.pixels) {
-    sum += luminance(pixel);
+    if (const float value = luminance(pixel); std::isfinite(value)) {
+      sum += value;
+      ++count;
+    }
   }
-  const double mean = sum / static_cast<double>(radiance.pixels.size());
+  const double mean = count > 0 ? sum / static_cast<double>(count) : 0;
   const auto darkest = std::max(static_cast<float>(kDarkest * mean), std::numeric_limits<float>::min());
   ImageGray result(radiance.width_px, radiance.height_px);
   parallel_for(static_cast<std::size_t>(radiance.height_px), threads, [&](std::size_t y) {
     for (int x = 0; x < radiance.width_px; ++x) {
-      result(x, static_cast<int>(y)) = std::log(std::max(luminance(radiance(x, static_cast<int>(y))), darkest));
+      const float value = luminance(radiance(x, static_cast<int>(y)));
+      result(x, static_cast<int>(y)) =
+          std::isfinite(value) ? std::log(std::max(value, darkest)) : std::numeric_limits<float>::quiet_NaN();
     }
   });
   return result;
@@ -101,7 +112,7 @@ ImageRgb enhance_contrast(ImageRgb radiance, const SamplingMap& map, double stre
     parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t row) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < width; ++x) {
-        if (map.regions[map.region(x, y)].block_px != block_px) {
+        if (map.regions[map.region(x, y)].block_px != block_px || std::isnan(logs(x, y))) {
           continue;
         }
         const float mean = mean_about(&across(x, 0), static_cast<std::size_t>(width), height, y, weights);

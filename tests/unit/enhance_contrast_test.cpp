@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "core/luminance.hpp"
@@ -137,6 +138,33 @@ TEST(EnhanceContrast, RefusesWhatMakesNoSense) {
   EXPECT_THROW(enhance_contrast(image, map_of_blocks(1, 2), -0.1), Error);
   EXPECT_THROW(enhance_contrast(image, map_of_blocks(1, 2), std::nan("")), Error);
   EXPECT_THROW(enhance_contrast(ImageRgb(2, 2), map_of_blocks(1, 2), 1), Error);
+}
+
+// As if such pixels lay beyond the border: they stay as they are, and an even neighbourhood stays even.
+TEST(EnhanceContrast, PixelsThatAreNoNumbersStayAndSpoilNoOthers) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  ImageRgb image = picture([](double) { return 0.5; });
+  const ImageRgb even = image;
+  image(300, 30) = {infinity, infinity, infinity};
+  image(310, 30) = {std::nanf(""), 1, 1};
+  for (int x = 400; x < 440; ++x) {  // farther than the Gaussian reaches
+    for (int y = 0; y < kHeight; ++y) {
+      image(x, y) = {1, -infinity, 1};
+    }
+  }
+  const ImageRgb out = enhance_contrast(image, map_of_blocks(4, 4), 1);
+  EXPECT_EQ(out(300, 30), image(300, 30));
+  EXPECT_TRUE(std::isnan(out(310, 30).x));
+  EXPECT_EQ(out(310, 30).y, 1);
+  for (std::size_t i = 0; i < out.pixels.size(); ++i) {
+    if (image.pixels[i] == even.pixels[i]) {
+      ASSERT_NEAR(out.pixels[i].y / even.pixels[i].y, 1, 1e-5) << i;
+    } else {
+      ASSERT_FALSE(std::isfinite(luminance(out.pixels[i]))) << i;
+    }
+  }
+  const ImageRgb nothing(kWidth, kHeight, {infinity, infinity, infinity});
+  EXPECT_EQ(enhance_contrast(nothing, map_of_blocks(4, 4), 1), nothing);
 }
 
 }  // namespace
