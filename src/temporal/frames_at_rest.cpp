@@ -17,13 +17,6 @@ std::uint8_t half_of(const SamplesOfFrame& one) {
   return static_cast<std::uint8_t>(one.frame & 1);
 }
 
-void add(const GuideSums& from, GuideSums& to) {
-  to.albedo += from.albedo;
-  to.normal += from.normal;
-  to.depth_m += from.depth_m;
-  to.hits += from.hits;
-}
-
 // Adds up the sums of one site after the other.
 class SiteAdder {
  public:
@@ -46,13 +39,13 @@ class SiteAdder {
       square += static_cast<double>(sparse.sum_square_luminance[site]);
       bright[half_of(one)] += luminance(light);
       count[half_of(one)] += sparse.count[site];
-      if (!out_.guides.empty()) {
-        add(sparse.guides[site], out_.guides[site]);
-      }
     }
     out_.sum[site] = to_float(sum);
     out_.sum_square_luminance[site] = saturated(square);
     out_.count[site] = count[0] + count[1];
+    if (!out_.guides.empty()) {
+      add_guides(site);
+    }
     if (!out_.light_groups.empty()) {
       add_light_groups(site);
     }
@@ -78,6 +71,23 @@ class SiteAdder {
     const std::size_t before = surfaces.size();
     sorter_.finish_site(out_.first_hits.empty() ? std::array<std::uint32_t, 2>{} : count, surfaces);
     out_.first_surface[site] = static_cast<std::uint32_t>(surfaces.size() - before);
+  }
+
+  void add_guides(std::size_t site) {
+    Vec3d albedo;
+    Vec3d normal;
+    double depth_m = 0;
+    GuideSums& to = out_.guides[site];
+    for (const SamplesOfFrame& one : frames_) {
+      const GuideSums& from = one.sparse->guides[site];
+      albedo += to_double(from.albedo);
+      normal += to_double(from.normal);
+      depth_m += static_cast<double>(from.depth_m);
+      to.hits += from.hits;
+    }
+    to.albedo = to_float(albedo);
+    to.normal = to_float(normal);
+    to.depth_m = saturated(depth_m);
   }
 
   void add_light_groups(std::size_t site) {

@@ -164,5 +164,31 @@ TEST(FramesAtRest, RatesMayDifferButNotBlocks) {
   EXPECT_FALSE(same_sites(looking_at(30), map_of(2)));
 }
 
+// 201 times a value that has no short binary form: the sum is that of whole numbers, rounded once.
+TEST(FramesAtRest, GuidesOfManyFramesAreRoundedOnce) {
+  const SamplingMap map = map_of(1);
+  SparseFrame one = frame_of(map, [](std::size_t) { return 1.0F; });
+  GuideSums guides;
+  guides.albedo = {0.1F, 0.7F, 0.3F};
+  guides.normal = {0.6F, -0.1F, 0.9F};
+  guides.depth_m = 12345.678F;
+  guides.hits = 1;
+  one.guides.assign(map.sites.size(), guides);
+  constexpr std::int32_t kFrames = 201;
+  std::vector<SamplesOfFrame> given;
+  for (std::int32_t k = 0; k < kFrames; ++k) {
+    given.push_back({k + 1, &map, &one});
+  }
+  const GuideCamera eye = camera();
+  const SamplesAtRest all = add_up(given, &eye, 2);
+  const auto times = [](float value) { return static_cast<float>(kFrames * static_cast<double>(value)); };
+  for (const GuideSums& sums : all.sparse.guides) {
+    EXPECT_EQ(sums.albedo, (Vec3f{times(0.1F), times(0.7F), times(0.3F)}));
+    EXPECT_EQ(sums.normal, (Vec3f{times(0.6F), times(-0.1F), times(0.9F)}));
+    EXPECT_EQ(sums.depth_m, times(12345.678F));
+    EXPECT_EQ(sums.hits, 201U);
+  }
+}
+
 }  // namespace
 }  // namespace gazetrace
