@@ -7,6 +7,19 @@
 #include "trace/rays/embree_types.hpp"
 
 namespace gazetrace {
+namespace {
+
+// Of a packet's first `count` lanes, as far as it has them, those for which `holds`.
+template <class Holds>
+std::uint64_t lanes_where(int count, const Holds& holds) {
+  std::uint64_t found = 0;
+  for (int lane = 0; lane < std::min(kPacket, count); ++lane) {
+    found += holds(lane) ? 1 : 0;
+  }
+  return found;
+}
+
+}  // namespace
 
 struct RayRecorder::Impl {
   struct Call {
@@ -77,7 +90,7 @@ std::uint64_t RayRecorder::replay(const RayScene& scene) const {
       if (call.occlusion) {
         RTCRay16 packet = source;
         query.occluded(top, valid, packet);
-        found += packet.tfar[0] < 0 ? 1 : 0;
+        found += lanes_where(call.count - first, [&](int lane) { return packet.tfar[lane] < 0; });
       } else {
         RTCRayHit16 packet;
         packet.ray = source;
@@ -86,7 +99,8 @@ std::uint64_t RayRecorder::replay(const RayScene& scene) const {
           packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
         }
         query.intersect(top, valid, packet);
-        found += packet.hit.geomID[0] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
+        found += lanes_where(call.count - first,
+                             [&](int lane) { return packet.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; });
       }
     }
   }
