@@ -123,6 +123,7 @@ struct JudgedFrames {
   std::vector<FrameRequest> around;  // further frames that those read, as FramePlan::around
   std::int32_t sequence_frames = 0;  // how many frames the whole sequence has; 1: a still
   bool view_moves = false;           // camera or scene
+  bool gaze_moves = false;           // it is that of a log, so that frames that are not judged may look elsewhere
 };
 
 struct FramePlan {

@@ -18,7 +18,7 @@ namespace gazetrace {
 // only on average over references: with 0.35, four seeds chose rates of 1.29 to 1.92 samples a pixel for 9 JOD of one
 // small view, with 0.1 of 1.44 to 1.61. The value is between the two: 0.1 would take about twice as many samples as
 // 0.15.
-constexpr double kMostOfReference = 0.15;
+constexpr double kMostOfReference = 0.25;
 // Of ClipRate::scatter_jod: if scores differ by more, more than one in five is further than 0.1 JOD from what was
 // stated.
 constexpr double kMostScatterJod = 0.08;

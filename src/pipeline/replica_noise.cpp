@@ -10,6 +10,7 @@
 #include "core/hash.hpp"
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
+#include "pipeline/discarded.hpp"
 #include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {
@@ -78,15 +79,11 @@ Image<std::uint8_t> rare_light(const std::array<ImageRgb, ReplicaNoise::kRenderi
 }  // namespace
 
 FrameSettings discarded_settings(const FrameSettings& settings, double spp, std::uint64_t tag) {
-  FrameSettings discarded = settings;
-  discarded.foveation.target = {};
-  discarded.accumulate.mode = AccumulateMode::off;
-  discarded.foveation.budget_samples.reset();
-  discarded.foveation.budget_spp = spp;
-  discarded.trace.seed = hash_combine(hash_combine(settings.trace.seed, kReplicaTag), tag);
-  discarded.trace.guides = false;
-  discarded.trace.only_pixel.reset();
-  return discarded;
+  FrameSettings own = discarded(settings, tag);
+  own.accumulate.mode = AccumulateMode::off;
+  own.foveation.budget_spp = spp;
+  own.trace.seed = hash_combine(hash_combine(settings.trace.seed, kReplicaTag), tag);
+  return own;
 }
 
 ReplicaNoise::ReplicaNoise(const std::array<ImageRgb, kRenderings>& pictures, int threads)

@@ -75,7 +75,8 @@ WindowClip::WindowClip(PathTracer& tracer, const JudgedFrames& judged, const Fra
       settings_(settings),
       color_(color),
       windows_(judged_windows(first().view, looked_at(judged), judged.view_moves)),
-      reference_(tracer, windows_, seen(judged), settings) {
+      reference_(tracer, windows_, seen(judged), settings,
+                 [this](const FrameRequest& request) { return light_of(request.frame); }) {
   for (const std::vector<FrameRequest>& run : judged_.runs) {
     for (const FrameRequest& request : run) {
       requests_.emplace(request.frame, &request);
@@ -150,7 +151,7 @@ bool WindowClip::is_steady() const {
            request.eye_speed_deg_s == first().eye_speed_deg_s && request.eye_in_saccade == first().eye_in_saccade;
   };
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
-  return !(settings_.foveation.falloff == "visible" && judged_.view_moves) &&
+  return !judged_.gaze_moves && !(settings_.foveation.falloff == "visible" && judged_.view_moves) &&
          std::all_of(judged_.runs.begin(), judged_.runs.end(), all_same) && all_same(judged_.around);
 }
 

@@ -26,6 +26,8 @@ class WindowClip {
  public:
   // Keeps references to all, which must outlive it. `settings` accumulate nothing, or AccumulateMode::two_sided.
   WindowClip(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings, const ColorPipeline& color);
+  WindowClip(const WindowClip&) = delete;
+  WindowClip& operator=(const WindowClip&) = delete;
 
   // The frames as they would be with `spp` samples a pixel on average. `round` chooses the samples.
   WindowPictures look(double spp, std::uint64_t round);

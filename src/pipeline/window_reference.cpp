@@ -73,8 +73,14 @@ std::vector<ImageGray> rates_in(const JudgedWindows& windows) {
 }  // namespace
 
 WindowReference::WindowReference(PathTracer& tracer, const JudgedWindows& windows,
-                                 std::vector<const FrameRequest*> views, const FrameSettings& settings)
-    : tracer_(tracer), windows_(windows), views_(std::move(views)), settings_(settings), rates_(rates_in(windows)) {}
+                                 std::vector<const FrameRequest*> views, const FrameSettings& settings,
+                                 LightOf light_of)
+    : tracer_(tracer),
+      windows_(windows),
+      views_(std::move(views)),
+      settings_(settings),
+      light_of_(std::move(light_of)),
+      rates_(rates_in(windows)) {}
 
 void WindowReference::add_samples(double spp, std::size_t half) {
   // Further samples are those of another seed.
@@ -88,6 +94,8 @@ void WindowReference::add_samples(double spp, std::size_t half) {
       own.foveation.falloff = "map";
       own.foveation.max_block_px = 1;
       own.foveation.budget_spp.reset();
+      own.trace.learn_light = settings_.trace.learn_light && light_of_ != nullptr;
+      own.light_of = light_of_;
       own.rates_of = [&](const FrameRequest&) {
         FrameRates rates{rates_[w], 0};
         for (float& rate : rates.spp.pixels) {

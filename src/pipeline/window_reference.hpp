@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "gazetrace/frame_renderer.hpp"
@@ -23,9 +25,13 @@ using WindowPictures = std::vector<std::vector<ImageRgb>>;
 
 class WindowReference {
  public:
-  // Keeps references to all, which must outlive it. `views`: frames that are each to have a reference.
+  // What the whole frame of a request has learned of its light.
+  using LightOf = std::function<std::shared_ptr<const LearnedLight>(const FrameRequest& request)>;
+
+  // Keeps references to all, which must outlive it. `views`: frames that are each to have a reference. Without
+  // `light_of` bounces follow the BSDF alone.
   WindowReference(PathTracer& tracer, const JudgedWindows& windows, std::vector<const FrameRequest*> views,
-                  const FrameSettings& settings);
+                  const FrameSettings& settings, LightOf light_of = {});
 
   // More samples: so many a pixel in all, a mean over the windows.
   void refine(double spp);
@@ -45,6 +51,7 @@ class WindowReference {
   const JudgedWindows& windows_;
   std::vector<const FrameRequest*> views_;
   const FrameSettings& settings_;
+  LightOf light_of_;
   std::vector<ImageGray> rates_;
   std::array<WindowPictures, 2> halves_;
   WindowPictures mean_;

@@ -161,7 +161,7 @@ TEST_F(WindowReferenceTest, EachHalfHasASampleInEveryPixel) {
   EXPECT_NEAR(static_cast<double>(reference.stats().samples), expected, 0.03 * expected);
 }
 
-// Light that is learned or clamped, filters, and rates are the job's alone.
+// Light that is clamped, filters, and rates are the job's alone, and windows learn nothing for themselves.
 TEST_F(WindowReferenceTest, IsTheSameForAllJobs) {
   const FrameSettings job = job_settings(1);
   const FrameSettings plain = settings_of(1);
@@ -193,6 +193,41 @@ TEST_F(WindowReferenceTest, ShowsTheLightThatUniformFramesShow) {
         << w << ": " << by_rates.mean() << ", " << uniform.mean();
     EXPECT_NEAR(by_rates.mean() / uniform.mean(), 1, 0.02) << w;
   }
+}
+
+// Bounces that follow what the whole frame has learned show the same light with less noise, where the job learns.
+TEST_F(WindowReferenceTest, FollowsWhatTheJobLearnsAndShowsTheSameLight) {
+  const LightLearning whole = tracer_.at({0, 0}).learn_light(request_.camera, kWidth, kHeight, settings_of(5).trace);
+  ASSERT_NE(whole.light, nullptr);
+  const auto light_of = [&](const FrameRequest&) { return whole.light; };
+  const JudgedWindow& window = windows_.windows[1];
+  const FrameRequest part = part_of(request_, window.traced);
+  const ImageRgb truth = uniform_picture(tracer_, part, 1024, 77);
+  Repeats with;
+  Repeats without;
+  double error_with = 0;
+  double error_without = 0;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    const FrameSettings settings = job_settings(seed);
+    WindowReference learned(tracer_, windows_, {&request_}, settings, light_of);
+    WindowReference plain(tracer_, windows_, {&request_}, settings);
+    learned.refine(32);
+    plain.refine(32);
+    with.means.push_back(mean_luminance(learned.pictures().at(0).at(1)));
+    without.means.push_back(mean_luminance(plain.pictures().at(0).at(1)));
+    error_with += squared_difference(learned.pictures().at(0).at(1), truth, window);
+    error_without += squared_difference(plain.pictures().at(0).at(1), truth, window);
+  }
+  EXPECT_LT(std::abs(welch_t(with, without)), kCriticalT) << with.mean() << ", " << without.mean();
+  EXPECT_NEAR(with.mean() / without.mean(), 1, 0.02);
+  EXPECT_LT(error_with / error_without, 0.9);
+  FrameSettings job = job_settings(1);
+  job.trace.learn_light = false;
+  WindowReference told(tracer_, windows_, {&request_}, job, light_of);
+  WindowReference plain(tracer_, windows_, {&request_}, job);
+  told.refine(4);
+  plain.refine(4);
+  EXPECT_TRUE(told.pictures().at(0).at(1).pixels == plain.pictures().at(0).at(1).pixels);
 }
 
 // Against the truth: samples that are added in two steps are worth as much as all of them at once, raw and weighted as
