@@ -115,15 +115,21 @@ void check_target(const JobSettings& job) {
                 "give the `screen`, or `screen-px` and `screen-ppd`");
   }
   const std::string filter = filter_of(job).name;
-  if (target.flip && (job.foveation.falloff != "uniform" || (filter != "none" && filter != "linear"))) {
+  if (target.flip && job.foveation.falloff != "uniform") {
     throw Error(ErrorKind::usage, option,
-                fmt::format("fall-off '{}' and filter '{}' may leave a bias, which its pilot does not see",
-                            job.foveation.falloff, filter),
-                "give `falloff` uniform and `filter` none, or a budget");
+                fmt::format("blocks and rates of fall-off '{}' may leave a bias, which its pilot does not see",
+                            job.foveation.falloff),
+                "give `falloff` uniform, or a budget");
+  }
+  if (target.flip && filter != "none" && filter != "linear") {
+    throw Error(ErrorKind::usage, option,
+                fmt::format("filter '{}' may leave a bias, which its pilot does not see", filter),
+                "give `filter` none or linear, or a budget");
   }
   if (job.foveation.falloff == "regions") {
-    throw Error(ErrorKind::usage, option, "the rates and blocks of `falloff` regions are not chosen by quality",
-                "give `falloff` visible or another model, or a budget");
+    throw Error(
+        ErrorKind::usage, option, "the rates and blocks of `falloff` regions are not chosen by quality",
+        "give `falloff` visible or another model (a preset that is named may have chosen regions), or a budget");
   }
   if (job.foveation.falloff == "map" &&
       frame_file_name(job.foveation.density_map, 1) != frame_file_name(job.foveation.density_map, 2)) {
@@ -235,6 +241,11 @@ void check_chunk(const JobSettings& job) {
                 job.chunk_frames > 0 ? "the length of chunks says how many there are" : "of how many chunks is it one?",
                 "give `chunk` K/N, or `chunk` K with `chunk-frames`");
   }
+  constexpr std::uint32_t kMostChunks = 1000000;
+  if (job.chunk && job.chunk->count > kMostChunks) {
+    throw Error(ErrorKind::usage, "`chunk`", fmt::format("{} chunks are more than {}", job.chunk->count, kMostChunks),
+                "give no more of them than there are frames");
+  }
   if (job.chunk && job.trace.samples) {
     throw Error(ErrorKind::usage, "`chunk`", "`sample-range` divides the samples, and this the frames",
                 "give one of them");
@@ -282,11 +293,6 @@ void check_job(const Job& asked, const JobSchema& schema) {
                 "give fractions of it from its top left, such as 0.5,0.5");
   }
   gaze_steps_of(job.gaze_process);  // checks names and values of the steps
-  if (job.only_pixel && (job.only_pixel->x >= job.size.width || job.only_pixel->y >= job.size.height)) {
-    throw Error(
-        ErrorKind::usage, "`only-pixel`",
-        fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height));
-  }
   const std::vector<std::string> progress_modes{"auto", "always", "never", "openjd", "json"};
   const bool has_descriptor = job.progress.starts_with("json:") && job.progress.size() > 5 &&
                               job.progress.find_first_not_of("0123456789", 5) == std::string::npos;
@@ -296,7 +302,6 @@ void check_job(const Job& asked, const JobSchema& schema) {
   }
   const OutputSettings output = output_settings(job);
   check_output_settings(output, job.frames && job.frames->frames.size() > 1);
-  check_display_image_size(output.display, job.size.width, job.size.height);
   check_output_folders(output, job.checkpoint);
 }
 

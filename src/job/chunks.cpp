@@ -77,8 +77,8 @@ std::vector<FrameChunk> balanced(const std::vector<std::int32_t>& frames, const 
   std::vector<FrameChunk> chunks;
   std::size_t begin = 0;
   double before = 0;
-  for (std::uint32_t k = 1; k <= count; ++k) {
-    const double wanted = whole * k / count;
+  for (std::size_t k = 1; k <= count; ++k) {
+    const double wanted = whole * static_cast<double>(k) / count;
     const std::size_t later = count - k;
     std::size_t end = begin;
     while (end < frames.size() &&

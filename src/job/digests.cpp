@@ -79,10 +79,6 @@ std::string digest_job(const JobSettings& job, const std::map<std::string, std::
   for (const std::string& path : density_files(job)) {
     parts.emplace_back("density map " + fs::path(path).filename().string(), digest_of(path));
   }
-  // A fixed gaze on a view at rest is judged as a still or, where frames are asked for, as a clip.
-  if ((job.foveation.target.jod || job.foveation.target.flip) && job.gaze.path.empty()) {
-    parts.emplace_back("judged as", job.frames ? "clip" : "still");
-  }
   parts.emplace_back("ocio file", existing({ocio_file(job)}).empty() ? ocio_file(job) : digest_of(ocio_file(job)));
   return digest_settings(parts);
 }

@@ -17,6 +17,10 @@ std::vector<std::int32_t> run_of(std::int32_t first, std::int32_t count) {
 
 }  // namespace
 
+bool sees_changes(const FrameRate& fps) {
+  return static_cast<double>(fps.numerator) > 4 * static_cast<double>(fps.denominator);
+}
+
 JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const FrameRate& fps, std::int32_t group) {
   JudgedNumbers judged;
   judged.sequence_frames = frames;
@@ -25,7 +29,8 @@ JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const Frame
     return judged;
   }
   const double rate = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
-  const auto taps = static_cast<std::int32_t>(temporal_filters(rate).sustained.size());
+  // Frames as slow as that are judged as stills, by FLIP.
+  const auto taps = sees_changes(fps) ? static_cast<std::int32_t>(temporal_filters(rate).sustained.size()) : 1;
   const std::int32_t first = std::min(frames, taps + 2);
   judged.runs.push_back(run_of(1, first));
   // A run tells of its last frames, two or a group: those before them are what the metric has in view.

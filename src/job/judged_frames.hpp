@@ -18,6 +18,9 @@ struct JudgedNumbers {
 // What later frames of a sequence look like, beside its early ones.
 enum class LaterFrames : std::uint8_t { as_early_ones, as_the_middle, all_differ };
 
+// Whether frames follow each other fast enough for FovVideoVDP to see changes: it needs two of them in 250 ms.
+bool sees_changes(const FrameRate& fps);
+
 // FovVideoVDP sees 250 ms at a time, and takes a sequence to have stood still before its first frame. So the first run
 // begins the sequence, and is two frames longer than that time: its last frames show what later ones look like, unless
 // these differ. Then a further run looks at the middle, or two look at the middle and at the end. `frames` is the

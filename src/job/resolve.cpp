@@ -15,12 +15,12 @@
 #include "job/choose_frames.hpp"
 #include "job/chunks.hpp"
 #include "job/gaze_inputs.hpp"
-#include "job/judged_frames.hpp"
+#include "job/judged_plan.hpp"
+#include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
 #include "job/saving.hpp"
 #include "job/scene.hpp"
 #include "job/scene_camera.hpp"
-#include "temporal/frames_at_rest.hpp"
 
 namespace gazetrace {
 namespace {
@@ -83,10 +83,6 @@ void check_screen(const PlanSettings& settings, const GazeLog* log) {
   }
 }
 
-bool moves(const Scene& scene) {
-  return !(scene.motions.empty() && scene.deformations.empty());
-}
-
 void load_scene_of(const JobSettings& job, const ResolveOptions& options, ResolvedJob& resolved) {
   if (job.scene.empty()) {
     throw Error(ErrorKind::usage, "", "no scene was given", "name a .gltf or .glb file");
@@ -145,65 +141,6 @@ void add_frames_around(const JobSettings& job, const CameraPath& camera, Resolve
   resolved.plan.frames.clear();
   for (FrameRequest& request : whole.frames) {
     (asked.contains(request.frame) ? resolved.plan.frames : resolved.plan.around).push_back(std::move(request));
-  }
-}
-
-// For a target in JOD or FLIP. The sequence is as long as the job is without `frames`; where nothing moves, it is a
-// still or, if there are `frames`, a second of rest.
-void add_judged_frames(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, const Scene* scene,
-                       ResolvedJob& resolved) {
-  const bool view_moves = !camera.is_static || (scene != nullptr && moves(*scene));
-  if (view_moves && job.foveation.target.flip) {
-    throw Error(ErrorKind::usage, "`target-flip`", "the view moves, and is only judged at rest",
-                "give a budget, or hold camera and scene still");
-  }
-  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
-  JobSettings whole = job;
-  whole.frames.reset();
-  std::string decision;
-  auto length = static_cast<std::int32_t>(choose_frames(whole, camera, log, taken_off_ns, scene, decision).size());
-  const bool differs = length > 1;  // in view or gaze
-  if (!differs && job.frames) {
-    length = static_cast<std::int32_t>(
-        std::max(1.0, std::round(static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator))));
-  }
-  // What is added up from both sides grows until a window is full.
-  const LaterFrames later = differs                                            ? LaterFrames::all_differ
-                            : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
-                                                                               : LaterFrames::as_early_ones;
-  if (job.foveation.target.jod && length > 1 && !view_moves && job.accumulate.mode == AccumulateMode::off) {
-    resolved.decisions.emplace_back("accumulate",
-                                    "off; the view is at rest, and with `accumulate` two-sided frames share their "
-                                    "samples and take many times fewer for this quality");
-  }
-  const std::int32_t reach = job.accumulate.mode == AccumulateMode::two_sided ? job.accumulate.window : 0;
-  const std::int32_t group = reach > 0 && !view_moves ? frames_in_group(job.accumulate) : 1;
-  const JudgedNumbers judged = judged_numbers(length, later, job.fps, group);
-  PlanSettings settings = resolved.plan_settings;
-  std::set<std::int32_t> all;
-  for (const std::vector<std::int32_t>& run : judged.runs) {
-    for (const std::int32_t frame : run) {
-      for (std::int32_t apart = -reach; apart <= reach; ++apart) {
-        if (apart == 0 || has_frame(camera, settings, std::int64_t{frame} + apart)) {
-          all.insert(frame + apart);
-        }
-      }
-    }
-  }
-  settings.frames.assign(all.begin(), all.end());
-  settings.most_frames_without_gaze = 0;  // they are chosen by their number, and may lie behind the log's end
-  FramePlan plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
-  JudgedFrames& frames = resolved.plan.judged;
-  frames.sequence_frames = judged.sequence_frames;
-  frames.view_moves = view_moves && judged.sequence_frames > 1;
-  frames.runs.resize(judged.runs.size());
-  for (FrameRequest& request : plan.frames) {
-    std::vector<FrameRequest>* to = &frames.around;
-    for (std::size_t k = 0; k < judged.runs.size(); ++k) {
-      const std::vector<std::int32_t>& run = judged.runs[k];
-      to = std::find(run.begin(), run.end(), request.frame) != run.end() ? &frames.runs[k] : to;
-    }
-    to->push_back(std::move(request));
   }
 }
 
@@ -278,6 +215,16 @@ void check_frame_memory(const JobSettings& job) {
   }
 }
 
+void check_frame_size(const JobSettings& job) {
+  if (job.only_pixel && (job.only_pixel->x >= job.size.width || job.only_pixel->y >= job.size.height)) {
+    throw Error(
+        ErrorKind::usage, "`only-pixel`",
+        fmt::format("{},{} lies outside {}x{}", job.only_pixel->x, job.only_pixel->y, job.size.width, job.size.height),
+        "pixels count from 0 at the top left");
+  }
+  check_display_image_size(output_settings(job).display, job.size.width, job.size.height);
+}
+
 // A single picture is the same for every frame.
 void check_density_maps(const FoveationSettings& foveation, const FramePlan& plan) {
   for (const std::vector<FrameRequest>* frames : {&plan.frames, &plan.around}) {
@@ -319,6 +266,10 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   resolved.gaze = gaze_of_job(job, taken_off_ns);
   const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
   follow_screen_shape(log, taken_off_ns, resolved);
+  check_frame_size(job);
+  if (options.scope == ResolveScope::render) {
+    check_frame_memory(job);
+  }
   {
     Decisions unused;
     check_screen(plan_settings(job, {1}, log, taken_off_ns, unused), log);
@@ -350,7 +301,9 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   }
   make_plan(job, camera, taken_off_ns, resolved);
   if (job.foveation.target.jod || job.foveation.target.flip) {
-    add_judged_frames(job, camera, taken_off_ns, scene, resolved);
+    const ProcessedGaze* steering = resolved.steering ? &*resolved.steering : nullptr;
+    resolved.plan.judged = plan_judged_frames(job, {camera, log, taken_off_ns, scene, steering}, resolved.plan_settings,
+                                              resolved.decisions);
   }
   const auto& aovs = job.exr.aovs;
   if (log == nullptr && std::find(aovs.begin(), aovs.end(), "eccentricity") != aovs.end()) {
@@ -386,9 +339,6 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
     resolved.warnings = idle_option_warnings(resolved.job);
   }
   append(resolved.warnings, job.warnings);
-  if (options.scope == ResolveScope::render) {
-    check_frame_memory(resolved.job.settings);
-  }
   const FilterChoice filter = filter_of(resolved.job.settings);
   resolved.job.settings.filter = filter.name;
   load_and_plan(options, resolved);
@@ -413,6 +363,12 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   if (options.scope != ResolveScope::plan) {
     resolved.input_digests = digest_job_files(settings);
     resolved.pipeline.settings_digest = digest_job(settings, resolved.input_digests);
+    // The same options choose other rates where a view at rest is judged as a still, and not as a clip.
+    if (const JudgedFrames& judged = resolved.plan.judged; !judged.runs.empty()) {
+      resolved.pipeline.settings_digest =
+          digest_settings({{"settings", resolved.pipeline.settings_digest},
+                           {"frames of what is judged", fmt::format("{}", judged.sequence_frames)}});
+    }
   }
   if (options.scope == ResolveScope::render) {
     resolved.history = starting_history(resolved.plan, resolved.pipeline, resolved.warnings);

@@ -82,4 +82,8 @@ Scene load_job_scene(const JobSettings& job, const std::function<void(std::size_
   return scene;
 }
 
+bool moves(const Scene& scene) {
+  return !(scene.motions.empty() && scene.deformations.empty());
+}
+
 }  // namespace gazetrace

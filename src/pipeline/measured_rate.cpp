@@ -96,7 +96,7 @@ ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const Fra
       throw Error(ErrorKind::usage, "`target-jod`",
                   fmt::format("{} JOD would take about {:.3g} samples a pixel, by what {} {} saw; `max-spp` is {:g}",
                               target, result.spp, result.rounds, result.rounds == 1 ? "look" : "looks", most),
-                  "ask for less, or raise `max-spp`");
+                  result.spp > least ? "ask for less, or raise `max-spp`" : "raise `max-spp`: fewer are not possible");
     }
     if (is_last) {
       result.settled = is_near;

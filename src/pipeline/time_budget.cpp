@@ -220,12 +220,14 @@ void TimeBudget::rehearse(const FrameRequest& request, const TemporalHistory& hi
   add_traces(few.samples, rehearsal_);
   add_traces(few.first_look, rehearsal_);
   cost_ = cost_of(row);
-  // Where the least that is allowed takes all of the time already, there is nothing to choose.
+  // Where the least that is allowed takes all of the time already, there is nothing to choose, and where more samples
+  // would not fit into it, the few must do.
   const bool is_spent = watch.elapsed_ms() > budget_ms_;
-  if (!is_spent) {
-    const double low_ms = few.times.trace_ms / std::max(1.0, static_cast<double>(few.samples.samples));
-    const double high = std::min(kMoreShare * budget_ms_ / (low_ms * pixels), kLeastMore * kMostRehearsal);
-    const TracedFrame more = FrameRenderer(tracer_, settings_at(std::max(high, kLeastMore * low))).trace(request);
+  const double low_ms = few.times.trace_ms / std::max(1.0, static_cast<double>(few.samples.samples));
+  const double wanted = std::min(kMoreShare * budget_ms_ / (low_ms * pixels), kLeastMore * kMostRehearsal);
+  const double high = std::min(std::max(wanted, kLeastMore * low), most);
+  if (high > low && watch.elapsed_ms() + high / low * few.times.trace_ms < budget_ms_) {
+    const TracedFrame more = FrameRenderer(tracer_, settings_at(high)).trace(request);
     add_traces(more.sparse.stats, rehearsal_);
     add_traces(more.first_look, rehearsal_);
     cost_ = with_slope(cost_, {more.times.trace_ms, static_cast<double>(more.sparse.stats.samples)},

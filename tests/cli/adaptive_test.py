@@ -319,7 +319,8 @@ class Adaptive(harness.CliTest):
         self.assertNotIn("at rest, and with", told)
 
     def test_what_is_refused(self):
-        render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet", "--overwrite"]
+        # A refusal leaves nothing behind that the next command would meet.
+        render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]
         for words, *arguments in [
             (["--target-relmse", "visible"], "--falloff", "regions", "--target-relmse", "0.01"),
             (["--target-relmse", "budget"], "--falloff", "visible", "--target-relmse", "0.1", "--budget-spp", "3"),
@@ -347,6 +348,10 @@ class Adaptive(harness.CliTest):
             (["--target-flip", "0.03"], *RAW, "--target-flip", "1"),
             (["--target-flip", "accumulate"], *RAW, "--target-flip", "0.05", "--accumulate", "running"),
             (["--target-flip", "--max-spp"], *RAW, "--target-flip", "0.001", "--max-spp", "0.1"),
+            (["--target-flip", "fall-off 'visible'"], *GAZE, "--falloff", "visible", "--filter", "none", "--target-flip", "0.05"),
+            (["--target-jod", "raise --max-spp: fewer"], *GAZE, "--filter", "guided", "--target-jod", "5", "--max-spp", "0.1"),
+            (["--target-jod", "--fps"], *RAW, "--target-jod", "9", "--fps", "3", "--frames", "1"),
+            (["--chunk", "4294967295"], "--chunk", "1/4294967295"),
             (["--time-budget", "unit"], "--time-budget", "2"),
             (["--time-budget", "seconds"], "--time-budget", "0s"),
             (["--time-budget", "budget"], "--time-budget", "1s", "--budget-spp", "3"),
@@ -363,6 +368,8 @@ class Adaptive(harness.CliTest):
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
                 for word in words:
                     self.assertIn(word, result.stderr)
+                left = [path.name for path in (self.folder / "x").glob("*")] if (self.folder / "x").exists() else []
+                self.assertEqual(left, [])
         counts = self.run_program("plan", "--counts", "--size", "64x40", "--falloff", "uniform", "--time-budget", "1s")
         self.assertEqual(counts.returncode, 2)
         self.assertIn("time", counts.stderr)

@@ -269,18 +269,6 @@ void make_folder(const std::string& folder) {
   }
 }
 
-std::ofstream open_csv(const std::string& path) {
-  std::ofstream csv;
-  if (!path.empty()) {
-    csv.open(path, std::ios::binary);
-    if (!csv) {
-      throw Error(ErrorKind::usage, path, "cannot be written", "check the folder");
-    }
-    csv << compare_csv_header();
-  }
-  return csv;
-}
-
 int run_compare(const CompareJob& job) {
   check_comparison(job.settings);
   const CompareInputs inputs = load_compare_inputs(job);
@@ -313,7 +301,7 @@ int run_compare(const CompareJob& job) {
   }
   Comparison comparison(settings, width, height);
   check_compare_outputs(job, inputs, settings.metrics);
-  std::ofstream csv = open_csv(job.csv);
+  std::string csv = compare_csv_header();
   make_folder(job.maps);
   std::vector<FrameScores> frames;
   for (std::size_t i = 0; i < inputs.frames.size(); ++i) {
@@ -325,15 +313,13 @@ int run_compare(const CompareJob& job) {
       write_maps(job, settings, pair, scores);
       scores.maps.clear();
     }
-    if (csv.is_open()) {
-      csv << compare_csv_rows(scores) << std::flush;
-    }
+    csv += compare_csv_rows(scores);
     if (!job.json.empty()) {
       frames.push_back(std::move(scores));
     }
   }
-  if (csv.is_open() && !csv) {
-    throw Error(ErrorKind::runtime, job.csv, "could not be written completely");
+  if (!job.csv.empty()) {
+    write_text_atomically(job.csv, csv);  // a table of some of the frames would look like one of all
   }
   const std::vector<SequenceScores> summary = comparison.summary();
   const CompareConditions conditions = conditions_of(job, inputs, reader, settings, width, height);

@@ -173,8 +173,10 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
 
   const auto begin = std::chrono::steady_clock::now();
   Progress progress(progress_style(job.progress, quiet), resolved.plan.frames.size());
+  bool any_done = false;
   PipelineObserver observer;
   observer.frame_done = [&](const TimingRow& row, bool skipped) {
+    any_done = true;
     progress.frame_done(row.frame, row.total_ms, skipped);
     events.frame_done(row.frame, row.total_ms, skipped);
   };
@@ -187,8 +189,19 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
   resolved.pipeline.trace.stop = [&] { return interruption.stop_now(); };
   keep_freed_memory();
-  const SequenceResult result =
-      render_sequence(tracer, resolved.plan, color, resolved.pipeline, observer, std::move(resolved.history));
+  const SequenceResult result = [&] {
+    try {
+      return render_sequence(tracer, resolved.plan, color, resolved.pipeline, observer, std::move(resolved.history));
+    } catch (const Error& error) {
+      // A stated quality may turn out to be out of reach before any picture was begun: then nothing is left behind, so
+      // that the same command can be given again with what the message advises.
+      if (error.kind() == ErrorKind::usage && !any_done && !job.resume && !files.empty()) {
+        std::error_code ignored;
+        std::filesystem::remove(files.front(), ignored);
+      }
+      throw;
+    }
+  }();
   progress.finish();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
