@@ -78,16 +78,17 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
       const std::size_t i = picture.radiance.index(x, y);
       Vec3f& radiance = picture.radiance.pixels[i];
       const KeptResidual kept = rows[region].at(x, luminance(radiance));
-      if (filtered) {
-        const Vec3f value = radiance + kept.radiance;
-        radiance = {std::max(value.x, 0.0F), std::max(value.y, 0.0F), std::max(value.z, 0.0F)};
-        picture.replica.pixels[i] += kept.replica;
+      if (!filtered) {
+        continue;
       }
+      const Vec3f value = radiance + kept.radiance;
+      radiance = {std::max(value.x, 0.0F), std::max(value.y, 0.0F), std::max(value.z, 0.0F)};
+      picture.replica.pixels[i] += kept.replica;
       if (of_light) {
         const float rest = kept.rest * kept.rest;
         picture.variance.pixels[i] = rest * picture.variance.pixels[i] + kept.variance;
         picture.error.pixels[i] = rest * picture.error.pixels[i] + kept.error;
-      } else if (filtered) {
+      } else {
         picture.first_hits_variance.pixels[i] = kept.variance;
         picture.first_hits_error.pixels[i] = kept.error;
       }

@@ -156,5 +156,41 @@ TEST(ReconstructGuidedBorders, PixelsOfOneExpectationAreAllSmoothedOrAllKept) {
   }
 }
 
+// Every other pixel expects enough samples. Their neighbours' means are surer than what surfaces say of them, so that
+// much is given back around the pixels that are kept; their own estimates must not know of it.
+TEST(ReconstructGuidedBorders, PixelsThatAreKeptKeepTheirNoiseToo) {
+  const Guides guides = wall();
+  SamplingMap map = map_about_the_middle(0, 1);
+  for (Site& site : map.sites) {
+    site.samples = (site.block_x + site.block_y) % 2 == 0 ? kPassThrough : kPassThrough / 2;
+  }
+  SparseFrame sparse = trace_planted(
+      map, guides, [](int x, int y) { return 1 + (x * 7 + y * 13) % 5; }, kPassThrough);
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    const auto n = static_cast<float>(map.sites[i].samples);
+    const float mean = sparse.sum[i].x / n;
+    sparse.sum_square_luminance[i] = n * (mean * mean + 0.01F);
+    sparse.half_difference[i] *= 1e-8F;
+  }
+  for (SurfaceSums& surface : sparse.surfaces) {
+    surface.half_difference *= 1e-6F;
+  }
+  const Frame none = reconstruct(sparse, map, "none", 1);
+  const Frame frame = guided(sparse, map, guides);
+  const PassThrough pass_through(map, kPassThrough);
+  int kept = 0;
+  for (std::size_t i = 0; i < map.sites.size(); ++i) {
+    if (!pass_through.needs_filtering(i)) {
+      ++kept;
+      for_each_pixel(map, map.sites[i], [&](int x, int y) {
+        EXPECT_EQ(frame.radiance(x, y), none.radiance(x, y));
+        EXPECT_EQ(frame.variance(x, y), none.variance(x, y)) << x << ',' << y;
+        EXPECT_EQ(frame.squared_error(x, y), none.variance(x, y)) << x << ',' << y;
+      });
+    }
+  }
+  EXPECT_EQ(kept, kSize * kSize / 2);
+}
+
 }  // namespace
 }  // namespace gazetrace
