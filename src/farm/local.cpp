@@ -170,10 +170,6 @@ class Runner {
   std::map<std::string, int> tries_;
 };
 
-}  // namespace
-
-namespace {
-
 bool is_a_chunk_running(const FarmPlan& plan) {
   const std::vector<TaskStatus> tasks = farm_status(plan).tasks;
   return std::any_of(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(plan.chunks.size()),

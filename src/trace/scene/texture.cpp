@@ -24,10 +24,6 @@ bool same_coordinates(const TextureRef& a, const TextureRef& b) {
   return a.uv_set == b.uv_set && a.has_transform == b.has_transform && (!a.has_transform || a.transform == b.transform);
 }
 
-}  // namespace
-
-namespace {
-
 const std::array<float, 256> kSrgbToLinear = srgb_table();
 const std::array<float, 256> kUnorm = [] {
   std::array<float, 256> table{};
@@ -66,10 +62,6 @@ inline Axis locate(float c, int size, TextureWrap wrap, bool nearest) {
   }
   return {low, high, nearest ? 0.0F : x - whole};
 }
-
-}  // namespace
-
-namespace {
 
 // Formats with two bytes per channel are rare, so their textures are read one at a time.
 [[gnu::noinline]] void read_deep_group(const TexelGroup& group, float u, float v, float level, TexelValues& out) {
