@@ -272,12 +272,8 @@ TEST_F(Resolve, PixelsThatALogCallsFractionsAreTold) {
 
 TEST_F(Resolve, AnAnchorAgesAwayFromTheLogIsRefused) {
   set_option(job_, "gaze-anchor", "-9000000000s=0s");
-  try {
-    resolve(job_);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("`gaze-anchor`: -9000000000s lies ages away from the log"));
-  }
+  EXPECT_THAT([&] { resolve(job_); },
+              testing::ThrowsMessage<Error>(HasSubstr("`gaze-anchor`: -9000000000s lies ages away from the log")));
 }
 
 TEST_F(Resolve, StillsHaveRecordsOfTheirOwn) {
