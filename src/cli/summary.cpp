@@ -32,7 +32,7 @@ constexpr std::array<Stage, 12> kStages{{{"plan", &TimingRow::plan_ms},
 
 struct Totals {
   std::array<double, kStages.size()> ms{};
-  std::uint64_t samples = 0, rays = 0, pixels = 0;
+  std::uint64_t samples = 0, pilot_samples = 0, rays = 0, pixels = 0;
   double trace_ms = 0;
   double peak_memory_mib = 0;
 };
@@ -46,6 +46,7 @@ Totals add_up(const SequenceResult& result) {
     // A pilot's samples and rays are among those of the row, and were traced in its own time.
     totals.trace_ms += row.trace_ms + (row.pilot_samples > 0 ? row.pilot_ms : 0);
     totals.samples += row.samples;
+    totals.pilot_samples += row.pilot_samples;
     totals.rays += row.rays_primary + row.rays_bounce + row.rays_shadow;
     totals.pixels += row.pixels;
     totals.peak_memory_mib = std::max(totals.peak_memory_mib, row.peak_memory_mib);
@@ -74,11 +75,18 @@ std::string summary_text(const SequenceResult& result, double wall_s) {
     text += fmt::format("{} {} {:.1f}", i == 0 ? "" : ",", kStages[i].name, totals.ms[i] / frames);
   }
   const double trace_s = totals.trace_ms * 1e-3;
-  text += fmt::format(
-      "\n{:.3f} samples a pixel, {:.2f} M samples/s and {:.2f} M rays/s while tracing, peak memory {:.0f} MiB\n",
-      per(static_cast<double>(totals.samples), static_cast<double>(totals.pixels)),
-      per(static_cast<double>(totals.samples) * 1e-6, trace_s), per(static_cast<double>(totals.rays) * 1e-6, trace_s),
-      totals.peak_memory_mib);
+  const auto pixels = static_cast<double>(totals.pixels);
+  for (const auto& [name, fact] : result.facts) {
+    text += fmt::format("\n{}: {}", name, fact);
+  }
+  text +=
+      fmt::format("\n{:.3f} samples a pixel", per(static_cast<double>(totals.samples - totals.pilot_samples), pixels));
+  if (totals.pilot_samples > 0) {
+    text += fmt::format(" and {:.3f} of pilots", per(static_cast<double>(totals.pilot_samples), pixels));
+  }
+  text += fmt::format(", {:.2f} M samples/s and {:.2f} M rays/s while tracing, peak memory {:.0f} MiB\n",
+                      per(static_cast<double>(totals.samples) * 1e-6, trace_s),
+                      per(static_cast<double>(totals.rays) * 1e-6, trace_s), totals.peak_memory_mib);
   return text;
 }
 
