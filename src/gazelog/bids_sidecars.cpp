@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/data_root.hpp"
+#include "core/list_folder.hpp"
 #include "core/text.hpp"
 
 namespace gazetrace {
@@ -23,10 +24,9 @@ bool contains_all(const std::vector<std::string>& all, const std::vector<std::st
 std::vector<std::string> files_in(const fs::path& folder) {
   std::vector<std::string> files;
   std::error_code code;
-  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
-    files.push_back(at->path().string());
+  for (const fs::path& path : list_folder(folder, code)) {
+    files.push_back(path.string());
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include "core/data_root.hpp"
+#include "core/list_folder.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/output.hpp"
@@ -26,9 +26,8 @@ std::vector<std::string> meanings(const std::string& pattern) {
   const fs::path folders = fs::path(pattern).parent_path();
   for (const fs::path& part : folders) {
     if (has_frame_number(part.string())) {
-      std::error_code missing;
-      for (const fs::directory_entry& entry : fs::directory_iterator(above.empty() ? "." : above, missing)) {
-        names.push_back(entry.path().string());
+      for (const fs::path& found : list_folder_if_there(above)) {
+        names.push_back(found.string());
       }
       break;
     }

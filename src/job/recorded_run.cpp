@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <system_error>
 
+#include "core/list_folder.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -44,7 +46,9 @@ std::vector<std::string> records_beside(const std::string& pattern) {
   const fs::path folder(folder_of_frames(pattern));
   std::vector<std::string> records;
   const auto add = [&](const fs::path& path) {
-    if (fs::is_regular_file(path) && std::find(records.begin(), records.end(), path.string()) == records.end()) {
+    std::error_code ignored;
+    if (fs::is_regular_file(path, ignored) &&
+        std::find(records.begin(), records.end(), path.string()) == records.end()) {
       records.push_back(path.string());
     }
   };
@@ -54,15 +58,12 @@ std::vector<std::string> records_beside(const std::string& pattern) {
   }
   add(folder / (fs::path(pattern).stem().string() + ".run.json"));
   add(folder / "run.json");
-  std::vector<fs::path> others;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().filename().string().ends_with(".run.json")) {
-      others.push_back(entry.path());
+  for (const fs::path& path : list_folder(folder, ignored)) {
+    if (path.filename().string().ends_with(".run.json")) {
+      add(path);
     }
   }
-  std::sort(others.begin(), others.end());
-  std::for_each(others.begin(), others.end(), add);
   return records;
 }
 

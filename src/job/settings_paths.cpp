@@ -7,7 +7,9 @@
 #include <array>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
+#include "core/list_folder.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -32,14 +34,11 @@ bool is_there(const fs::path& path) {
   }
   const std::string begin = name.substr(0, name.find_first_of("#%<"));
   const std::string end = path.extension().string();
-  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string found = entry.path().filename().string();
-    if (found.starts_with(begin) && found.ends_with(end)) {
-      return true;
-    }
-  }
-  return false;
+  const std::vector<fs::path> all = list_folder(path.parent_path(), ignored);
+  return std::any_of(all.begin(), all.end(), [&](const fs::path& one) {
+    const std::string found = one.filename().string();
+    return found.starts_with(begin) && found.ends_with(end);
+  });
 }
 
 // Where a settings file was named by its absolute path, what lies in the working folder keeps a relative name, so that

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <system_error>
 #include <vector>
 
+#include "core/list_folder.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -23,7 +25,8 @@ RunPart read_part(const std::filesystem::path& timing) {
   const std::string name = timing.filename().string();
   const std::string middle = name.substr(7, name.size() - 7 - 4);
   const std::string record_path = (timing.parent_path() / ("run." + middle + ".json")).string();
-  if (!std::filesystem::exists(record_path)) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(record_path, ignored)) {
     throw Error(ErrorKind::input, part.timing_path, "its run record " + record_path + " is missing",
                 "finish or remove this part");
   }
@@ -81,33 +84,28 @@ std::string name_of(const RunRecord& record) {
 }  // namespace
 
 std::vector<RunPart> read_run_parts(const std::string& directory) {
-  std::error_code error;
   std::vector<std::filesystem::path> paths, without_rows;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::filesystem::path& path : list_folder(directory)) {
+    const std::string name = path.filename().string();
     if (is_part_name(name)) {
-      paths.push_back(entry.path());
+      paths.push_back(path);
     } else if (name.starts_with("run.") && name.ends_with(".json") && name != "run.json") {
       // The record of a part that was ended before its table began is all that tells of its frames.
-      const auto timing = entry.path().parent_path() / ("timing." + name.substr(4, name.size() - 4 - 5) + ".csv");
-      if (!std::filesystem::exists(timing)) {
-        without_rows.push_back(entry.path());
+      const auto timing = path.parent_path() / ("timing." + name.substr(4, name.size() - 4 - 5) + ".csv");
+      std::error_code ignored;
+      if (!std::filesystem::exists(timing, ignored)) {
+        without_rows.push_back(path);
       }
     }
-  }
-  if (error) {
-    throw Error(ErrorKind::input, directory, "cannot be listed: " + error.message());
   }
   if (paths.empty()) {
     throw Error(ErrorKind::input, directory, "contains no parts of a run (timing.<part>.csv)",
                 "give the folder that the parts were rendered into");
   }
-  std::sort(paths.begin(), paths.end());
   std::vector<RunPart> parts;
   for (const auto& path : paths) {
     parts.push_back(read_part(path));
   }
-  std::sort(without_rows.begin(), without_rows.end());
   for (const auto& path : without_rows) {
     const std::string name = path.filename().string();
     RunPart& part = parts.emplace_back();

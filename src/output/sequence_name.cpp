@@ -13,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/list_folder.hpp"
 #include "gazetrace/output.hpp"
 
 namespace gazetrace {
@@ -121,8 +122,8 @@ std::optional<std::int32_t> frame_of(const std::string& pattern, const std::stri
 std::vector<std::int32_t> frames_in_folders(const std::string& pattern, const fs::path& folder) {
   std::vector<std::int32_t> frames;
   std::error_code problem;
-  for (const auto& entry : fs::directory_iterator(folder, problem)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& path : list_folder_if_there(folder)) {
+    const std::string name = path.filename().string();
     for (std::size_t at = name.find_first_of(kDigits); at != std::string::npos; at = name.find_first_of(kDigits, at)) {
       const std::size_t end = std::min(name.find_first_not_of(kDigits, at), name.size());
       std::int32_t frame = 0;
@@ -172,7 +173,7 @@ std::string folder_of_frames(const std::string& pattern) {
 
 std::vector<std::int32_t> find_frames(const std::string& pattern) {
   if (!has_frame_number(pattern)) {
-    if (!fs::is_regular_file(pattern)) {
+    if (std::error_code ignored; !fs::is_regular_file(pattern, ignored)) {
       throw Error(ErrorKind::input, pattern, "there is no such picture",
                   "name a picture, or a sequence as name.####.exr");
     }
@@ -180,12 +181,11 @@ std::vector<std::int32_t> find_frames(const std::string& pattern) {
   }
   const fs::path folder = fs::path(pattern).parent_path();
   std::vector<std::int32_t> frames;
-  std::error_code problem;
   if (const fs::path all = folder_of_frames(pattern); all != (folder.empty() ? fs::path(".") : folder)) {
     frames = frames_in_folders(pattern, all);
   }
-  for (const auto& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, problem)) {
-    const std::string path = (folder / entry.path().filename()).string();
+  for (const fs::path& found : list_folder_if_there(folder)) {
+    const std::string path = (folder / found.filename()).string();
     if (const auto frame = frame_of((folder / fs::path(pattern).filename()).string(), path)) {
       frames.push_back(*frame);
     }

@@ -27,6 +27,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/list_folder.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "pipeline/lock_state.hpp"
 
@@ -258,9 +259,9 @@ bool remove_dead(const std::string& path, const Holder& dead) {
 void sweep_up(const std::string& lock_path, const Holder& self) {
   const std::string begin = fmt::format("{}.{}.", fs::path(lock_path).filename().string(), self.host);
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder_of(lock_path), ignored)) {
-    const std::string path = entry.path().string();
-    if (entry.path().filename().string().starts_with(begin)) {
+  for (const fs::path& found : list_folder(folder_of(lock_path), ignored)) {
+    const std::string path = found.string();
+    if (found.filename().string().starts_with(begin)) {
       const std::optional<Holder> holder = read_lock(path);
       if (holder && !holder->machine.empty() && holder->machine == self.machine && !process_lives(*holder)) {
         ::unlink(path.c_str());
@@ -381,10 +382,10 @@ RunLock::RunLock(const RunRecord& record, const std::string& record_path,
     return;
   }
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string other = entry.path().string();
-    if (!entry.path().filename().string().starts_with(family + "run.") || !other.ends_with(".json.lock") ||
-        entry.path().filename() == fs::path(path).filename()) {
+  for (const fs::path& found : list_folder(folder, ignored)) {
+    const std::string other = found.string();
+    if (!found.filename().string().starts_with(family + "run.") || !other.ends_with(".json.lock") ||
+        found.filename() == fs::path(path).filename()) {
       continue;
     }
     const std::optional<Holder> holder = read_lock(other);

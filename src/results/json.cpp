@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "core/json_problem.hpp"
 #include "core/text.hpp"
@@ -459,8 +460,13 @@ std::string results_json(const Results& results) {
 
 Results read_results(const std::string& path) {
   namespace fs = std::filesystem;
-  const std::string file = fs::is_directory(path) ? (fs::path(path) / "results.json").string() : path;
-  if (!fs::is_regular_file(file)) {
+  std::error_code failed;
+  const std::string file = fs::is_directory(path, failed) ? (fs::path(path) / "results.json").string() : path;
+  const fs::file_type type = fs::status(file, failed).type();
+  if (type == fs::file_type::none) {
+    throw Error(ErrorKind::input, file, "cannot be opened: " + failed.message(), "check the path");
+  }
+  if (type != fs::file_type::regular) {
     throw Error(ErrorKind::input, file, "there is no such file", "name results.json of a sweep, or its folder");
   }
   Json json;

@@ -276,5 +276,17 @@ TEST(Results, ATableOfRowsWithoutScoresHasALineForEach) {
             std::count(csv.begin() + static_cast<std::ptrdiff_t>(line), csv.end(), ',') - 2);
 }
 
+// Names that the system does not even look up: as one error of the library, not one of the language's.
+TEST(Results, ANameThatCannotBeLookedUpIsAnErrorOfTheInput) {
+  const std::string name(5000, 'a');
+  try {
+    (void)read_results(name);
+    FAIL() << "was read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_THAT(error.what(), HasSubstr("cannot be opened"));
+  }
+}
+
 }  // namespace
 }  // namespace gazetrace
