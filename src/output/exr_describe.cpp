@@ -109,8 +109,10 @@ std::string gaze_header(const GazeAtTime& gaze) {
 // dropping numbers.
 void add_time_code(Imf::Header& header, const FrameHeader& frame) {
   constexpr std::int64_t kMostFrames = 30;
-  const std::int64_t rate =
-      (frame.fps.numerator + frame.fps.denominator / 2) / std::max<std::int64_t>(frame.fps.denominator, 1);
+  // Rounded; the sum of numerator and half the denominator may be beyond the largest number.
+  const std::int64_t denominator = std::max<std::int64_t>(frame.fps.denominator, 1);
+  const bool up = frame.fps.numerator % denominator >= denominator - denominator / 2;
+  const std::int64_t rate = frame.fps.numerator / denominator + (up ? 1 : 0);
   const bool in_pairs = rate > kMostFrames;
   if (rate < 1 || rate > 2 * kMostFrames || frame.frame < 1) {
     return;

@@ -17,10 +17,13 @@ constexpr double kLeastWindows = 12;
 constexpr double kShare = 0.05;
 constexpr std::size_t kMostFoveae = 12;                  // of a gaze that moves
 constexpr double kMostShare = 0.4;                       // beyond, the whole frame is traced
+constexpr double kFarthestPx = 1e9;                      // what an int can hold
 constexpr std::uint64_t kWindowTag = 0x57494e444f57ULL;  // "WINDOW"
 
+// A screen may be stated to have any number of pixels a degree.
 int on_grid(double px) {
-  return kDefaultMaxBlockPx * static_cast<int>(std::lround(px / kDefaultMaxBlockPx));
+  const double within = std::clamp(px, -kFarthestPx, kFarthestPx);
+  return kDefaultMaxBlockPx * static_cast<int>(std::lround(within / kDefaultMaxBlockPx));
 }
 
 // Of this side, as near to the middle as the grid of blocks and the frame allow.

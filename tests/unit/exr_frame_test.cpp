@@ -244,6 +244,9 @@ TEST(ExrFrame, TheTimeCodeCountsFrames) {
   EXPECT_EQ(code({60, 1}, 60), "00:00:00:29+");
   EXPECT_EQ(code({50, 1}, 53), "00:00:01:01");
   EXPECT_EQ(code({120, 1}, 53), "none");
+  EXPECT_EQ(code({47, 2}, 25), "00:00:01:00") << "23.5 counts as 24";
+  EXPECT_EQ(code({9223372036854775800, 384307168202282325}, 25), "00:00:01:00") << "24, by numbers that are too large";
+  EXPECT_EQ(code({9223372036854775807, 2}, 25), "none");
 }
 
 TEST(ExrFrame, GazeIsInTheHeaderAsNumbers) {

@@ -88,5 +88,16 @@ TEST(JudgedWindows, SmallFramesAreJudgedWhole) {
   EXPECT_EQ(chosen.share_of(view_of(160, 90, 12)), 1);
 }
 
+TEST(JudgedWindows, HaveTheirLargestSideWhateverAScreenIsSaidToBe) {
+  const JudgedWindows fine = judged_windows(view_of(3840, 2160, 1e3), {{400, 300}});
+  for (const double pixels_per_degree : {1e9, 1e18, 1e300}) {
+    const JudgedWindows chosen = judged_windows(view_of(3840, 2160, pixels_per_degree), {{400, 300}});
+    ASSERT_EQ(chosen.windows.size(), fine.windows.size()) << pixels_per_degree;
+    for (std::size_t k = 0; k < fine.windows.size(); ++k) {
+      EXPECT_EQ(chosen.windows[k].traced.width_px, fine.windows[k].traced.width_px) << pixels_per_degree;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gazetrace
