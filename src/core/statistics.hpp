@@ -17,6 +17,8 @@
 #include <limits>
 #include <vector>
 
+#include "gazetrace/image.hpp"
+
 namespace gazetrace {
 
 // Ranks start at 0, for the smallest of `count` values; `count` must not be 0, and `share` lies from 0 to 1.
@@ -67,6 +69,15 @@ inline double mean_of(const std::vector<double>& values) {
     sum += value;
   }
   return sum / static_cast<double>(values.size());
+}
+
+// The same of a picture's pixels, row after row, in double.
+inline double mean_of(const ImageGray& image) {
+  double sum = 0;
+  for (const float value : image.pixels) {
+    sum += static_cast<double>(value);
+  }
+  return sum / static_cast<double>(image.pixels.size());
 }
 
 // The standard error of a mean of at least two independent values: the root of the unbiased estimate of their variance

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "pipeline/noise_estimate.hpp"
 #include "pipeline/trace_counts.hpp"
@@ -44,14 +45,6 @@ double budget_spp_of(const FoveationSettings& foveation, const FrameRequest& req
 // Of the first pilot on a budget, in samples a pixel of its own.
 double first_pilot_spp(double spp, double cell_px) {
   return std::clamp(std::round(kFirstShare * spp * cell_px * cell_px), kLeastFirst, kMostFirst);
-}
-
-double mean_of(const ImageGray& image) {
-  double sum = 0;
-  for (const float value : image.pixels) {
-    sum += static_cast<double>(value);
-  }
-  return sum / static_cast<double>(image.pixels.size());
 }
 
 ImageGray clamped(const ImageGray& wanted, double scale, double least, double most) {

@@ -11,6 +11,7 @@
 
 #include "core/fast_math.hpp"
 #include "core/parallel.hpp"
+#include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
 #include "metrics/band_sensitivity.hpp"
 #include "metrics/pyramid.hpp"
@@ -136,18 +137,6 @@ ImageGray contrast_noise(const Band& band, const std::vector<BandError>& errors,
     }
   });
   return noise;
-}
-
-double mean_of_pixels(const ImageGray& image) {
-  double sum = 0;
-  for (int y = 0; y < image.height_px; ++y) {
-    double row = 0;
-    for (int x = 0; x < image.width_px; ++x) {
-      row += static_cast<double>(image(x, y));
-    }
-    sum += row;
-  }
-  return sum / static_cast<double>(image.pixels.size());
 }
 
 }  // namespace
@@ -302,9 +291,9 @@ struct VisibleErrorModel::Impl {
   [[nodiscard]] VisibleFrame pooled(const std::vector<BandMoments>& moments) const {
     VisibleFrame frame;
     for (const BandMoments& band : moments) {
-      frame.sustained.push_back(std::pow(mean_of_pixels(band.sustained), 1 / kPoolSpace));
+      frame.sustained.push_back(std::pow(mean_of(band.sustained), 1 / kPoolSpace));
       if (!band.transient.empty()) {
-        frame.transient.push_back(std::pow(mean_of_pixels(band.transient), 1 / kPoolSpace));
+        frame.transient.push_back(std::pow(mean_of(band.transient), 1 / kPoolSpace));
       }
     }
     frame.q = pooled_over_bands(frame.sustained, frame.transient);
@@ -387,7 +376,7 @@ VisibleFrame VisibleErrorModel::predict(const VisiblePicture& picture, const std
   if (want_density) {
     frame.density = impl_->collapsed(impl_->shares(moments, frame));
     // Interpolation between pixels of coarse bands keeps means up to what happens at the borders.
-    const double mean = mean_of_pixels(frame.density);
+    const double mean = mean_of(frame.density);
     const auto scale = static_cast<float>(mean > 0 ? frame.q / mean : 0);
     for (float& value : frame.density.pixels) {
       value *= scale;
@@ -423,7 +412,7 @@ ImageGray VisibleErrorModel::weights(const VisiblePicture& picture, const std::v
   for (std::size_t i = 0; i < weights.pixels.size(); ++i) {
     weights.pixels[i] = pow_fast(weights.pixels[i], 1 / kExponent) * shown.slope.pixels[i];
   }
-  const float least = kLeastWeight * static_cast<float>(mean_of_pixels(weights));
+  const float least = kLeastWeight * static_cast<float>(mean_of(weights));
   for (float& value : weights.pixels) {
     value = std::max(value, least);
   }

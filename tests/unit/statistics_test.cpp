@@ -105,5 +105,12 @@ TEST(Statistics, Correlations) {
   EXPECT_DOUBLE_EQ(correlation({0, 0, 1}, {0, 1, 1}), 0.5);
 }
 
+TEST(Statistics, TheMeanOfAPictureIsThatOfItsPixels) {
+  ImageGray image(3, 2);
+  image.pixels = {1, 2, 3, 4, 5, 16777216};  // in float the sum would lose the one
+  EXPECT_EQ(mean_of(image), (15.0 + 16777216.0) / 6);
+  EXPECT_TRUE(std::isnan(mean_of(ImageGray())));
+}
+
 }  // namespace
 }  // namespace gazetrace
