@@ -11,6 +11,7 @@
 
 #include "core/hash.hpp"
 #include "core/luminance.hpp"
+#include "core/statistics.hpp"
 #include "foveation/sites.hpp"
 #include "gazetrace/fovvideovdp.hpp"
 #include "pipeline/adaptive_rates.hpp"
@@ -32,14 +33,6 @@ constexpr double kPowerOfSquare = 0.9;
 constexpr std::size_t kStillRuns = 2;
 constexpr std::size_t kMostLightBytes = std::size_t{256} << 20U;  // of what frames have learned, kept at once
 constexpr std::uint64_t kPilots = 4;  // whose rates are averaged, where all frames share them
-
-double mean_rate(const ImageGray& image) {
-  double sum = 0;
-  for (const float value : image.pixels) {
-    sum += static_cast<double>(value);
-  }
-  return sum / static_cast<double>(image.pixels.size());
-}
 
 std::vector<Vec2d> looked_at(const JudgedFrames& judged) {
   std::vector<Vec2d> gazes;
@@ -280,7 +273,7 @@ ImageGray WindowClip::expected_spp(const FrameRequest& request, double spp, std:
     } else {
       rates = pilot_rates(request, own);
     }
-    own.foveation.budget_spp = mean_rate(rates);
+    own.foveation.budget_spp = mean_of(rates);
     MapContext context = map_context(request, own.trace.seed, settings_.threads);
     context.density = &rates;
     map = make_sampling_map(own.foveation, request.view, request.gaze_direction_render, context);
