@@ -266,6 +266,10 @@ void check_job(const Job& asked, const JobSchema& schema) {
     throw Error(ErrorKind::usage, "`density-map`", "the fall-off 'map' has no picture",
                 "name an EXR of samples a pixel");
   }
+  if (job.filter == "oidn" && std::find(filter_names.begin(), filter_names.end(), "oidn") == filter_names.end()) {
+    throw Error(ErrorKind::usage, "`filter`", "this build has no Open Image Denoise",
+                "build it where that library is found, or give guided");
+  }
   check_registry_name("`filter`", "filter", filter_of(job).name, filter_names, falloff_names,
                       "a fall-off has this name: give `falloff`");
   if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job).name, {}}).filter().blurs_blocks) {

@@ -274,6 +274,9 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
     Decisions unused;
     check_screen(plan_settings(job, {1}, log, taken_off_ns, unused), log);
   }
+  if (options.scope == ResolveScope::render) {
+    check_environment_file(job);
+  }
   CameraPath camera;
   std::string decision;
   const bool needs_scene = camera_needs_scene(job);

@@ -2,6 +2,8 @@
 // The scene of a run and the light around it.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
@@ -43,6 +45,17 @@ std::string set_environment(const JobSettings& job, Scene& scene) {
   }
   scene.environment = load_environment(wanted, job.environment_rotation_deg, job.environment_ev);
   return wanted;
+}
+
+void check_environment_file(const JobSettings& job) {
+  const std::string& wanted = job.environment;
+  const bool is_word = wanted == "none" || wanted == "auto" || wanted == "sky" || wanted == "soft-sky" ||
+                       wanted.starts_with("constant:");
+  std::error_code unknown;
+  if (!is_word && !std::filesystem::exists(wanted, unknown)) {
+    throw Error(ErrorKind::input, wanted, "there is no such environment",
+                "give `env` a .hdr or .exr file, sky, soft-sky, none or constant:R,G,B");
+  }
 }
 
 SceneReadOptions scene_read_options(const JobSettings& job) {

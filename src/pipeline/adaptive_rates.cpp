@@ -221,7 +221,7 @@ void check_pilot_budget(const FoveationSettings& settings, const FrameRequest& r
         fmt::format("the pilot of `falloff` visible takes {:.0f} samples of a frame of {} x {} pixels, the budget "
                     "is {:.0f}",
                     pilot, request.width_px, request.height_px, spp * pixels_of(request)),
-        "give more");
+        "give more, by `budget-spp` or, where nothing else is a budget, by `spp`");
   }
 }
 

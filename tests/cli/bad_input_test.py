@@ -25,6 +25,12 @@ class BadScenes(harness.CliTest):
     def test_missing_file(self):
         self.refuse("nowhere.gltf", ["nowhere.gltf"])
 
+    def test_a_missing_environment_is_told_before_the_scene_is_read(self):
+        self.write("box.gltf", json.dumps(harness.box_gltf()))
+        self.write("text.gltf", "{ this is not JSON")
+        for scene in ("box.gltf", "text.gltf"):
+            self.assert_refused(["render", scene, "--env", "nosuch.hdr", *OUT], ["nosuch.hdr", "--env", "soft-sky"])
+
     def test_folder_as_scene(self):
         (self.folder / "folder.gltf").mkdir()
         self.refuse("folder.gltf", ["folder.gltf"])

@@ -220,7 +220,7 @@ Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
       ->excludes("--counts");
   app.add_option("--chunks", arguments->chunks,
                  "How --chunk K/N divides the frames into N chunks: frames and samples of each; needs no scene")
-      ->check(CLI::Range(1U, 1000000U))
+      ->check(CLI::Range(1U, 1000000U).description(""))
       ->type_name("N");
   app.add_option("--rate-from", arguments->rate_from,
                  "A timing.csv of the same job on the same machine, for the minutes of --chunks")
