@@ -318,6 +318,14 @@ class Adaptive(harness.CliTest):
         told = self.run_ok("render", "box.gltf", *view, "--accumulate", "two-sided", "-o", "shared/f.####.exr").stderr
         self.assertNotIn("at rest, and with", told)
 
+    def test_a_refusal_leaves_an_earlier_run_as_it_was(self):
+        render = ["render", "box.gltf", "--size", "64x40", *RAW, "-o", "kept/f.####.exr", "--quiet", "--overwrite", "--frames", "1-2"]
+        self.run_ok(*render, "--spp", "1")
+        before = {path.name: path.read_bytes() for path in (self.folder / "kept").glob("*")}
+        refused = self.run_program(*render, "--target-jod", "9.99", "--max-spp", "1")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertEqual({path.name: path.read_bytes() for path in (self.folder / "kept").glob("*")}, before)
+
     def test_what_is_refused(self):
         # A refusal leaves nothing behind that the next command would meet.
         render = ["render", "box.gltf", "--size", "64x40", "-o", "x/x.exr", "--quiet"]

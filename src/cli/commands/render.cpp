@@ -18,6 +18,7 @@
 #include "cli/progress.hpp"
 #include "cli/run_events.hpp"
 #include "cli/summary.hpp"
+#include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
 
@@ -122,6 +123,16 @@ std::string pixel_report(const FrameRequest& request, const Frame& frame, const 
                      frame.variance(pixel.x, pixel.y));
 }
 
+// The record of an earlier run, or none where there was none.
+void put_back(const std::string& path, const std::string& record) {
+  if (!record.empty()) {
+    write_text_atomically(path, record);
+    return;
+  }
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+}
+
 void say_decisions(const ResolvedJob& resolved, const ColorPipeline& color, const PathTracer& tracer) {
   std::fprintf(stderr, "scene: %s, loaded in %.2f s\n", resolved.scene->source.c_str(), resolved.load_s);
   for (const auto& [name, text] : resolved.decisions) {
@@ -155,7 +166,11 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   loading.reset();
   interruption.frames_begin();
   RunRecord record = start_run_record(resolved, tracer, color, invocation.arguments);
+  std::string earlier_record;  // of the run whose outputs this one replaces
   if (!files.empty()) {
+    if (std::filesystem::exists(files.front())) {
+      earlier_record = read_text_file(files.front());
+    }
     if (job.resume) {
       warn_of_other_machine(files.front(), record, resolved.warnings);
       record.warnings = resolved.warnings;
@@ -193,11 +208,10 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
     try {
       return render_sequence(tracer, resolved.plan, color, resolved.pipeline, observer, std::move(resolved.history));
     } catch (const Error& error) {
-      // A stated quality may turn out to be out of reach before any picture was begun: then nothing is left behind, so
-      // that the same command can be given again with what the message advises.
-      if (error.kind() == ErrorKind::usage && !any_done && !job.resume && !files.empty()) {
-        std::error_code ignored;
-        std::filesystem::remove(files.front(), ignored);
+      // A stated quality may turn out to be out of reach before any picture was begun: then the folder is left as it
+      // was, so that the same command can be given again with what the message advises.
+      if (error.kind() == ErrorKind::usage && !any_done && !files.empty()) {
+        put_back(files.front(), earlier_record);
       }
       throw;
     }
