@@ -176,6 +176,7 @@ TEST(FramesAtRest, GuidesOfManyFramesAreRoundedOnce) {
   one.guides.assign(map.sites.size(), guides);
   constexpr std::int32_t kFrames = 201;
   std::vector<SamplesOfFrame> given;
+  given.reserve(kFrames);
   for (std::int32_t k = 0; k < kFrames; ++k) {
     given.push_back({k + 1, &map, &one});
   }
