@@ -284,6 +284,12 @@ void load_and_plan(const ResolveOptions& options, ResolvedJob& resolved) {
   if (!needs_scene) {
     camera = choose_camera(job, nullptr, log, taken_off_ns, decision);
     length_needs_scene = may_follow_scene(job, camera, log);
+    if (job.foveation.target.jod || job.foveation.target.flip) {
+      // The whole sequence is judged, whichever of its frames are wanted.
+      JobSettings whole = job;
+      whole.frames.reset();
+      length_needs_scene = length_needs_scene || may_follow_scene(whole, camera, log);
+    }
   }
   const bool asks_scene = (needs_scene || length_needs_scene) && !job.scene.empty();
   if (options.loaded == nullptr && (options.scope == ResolveScope::render || asks_scene)) {
