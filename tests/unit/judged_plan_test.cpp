@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "gazetrace/resolve.hpp"
@@ -111,6 +112,18 @@ TEST_F(JudgedPlan, ThePartsOfASequenceHaveOneDigestAndAStillHasAnother) {
   EXPECT_EQ(digest(""), digest("1-24"));
   glide("0.03");
   EXPECT_EQ(digest(""), digest("1"));  // the only frame that there is
+}
+
+// Finding a recorded run again loads no scene but where its animation says how long the sequence is.
+TEST_F(JudgedPlan, AnAnimatedSceneHasTheSameDigestWhenItIsRenderedAndWhenItIsFoundAgain) {
+  const std::string scene = GAZETRACE_SHARED_DIR "/scenes/small/AnimatedMorphCube/AnimatedMorphCube.gltf";
+  if (!std::filesystem::exists(scene)) {
+    GTEST_SKIP() << "the shared scenes are not there";
+  }
+  set_option(job_, "scene", scene);
+  set_option(job_, "frames", "1-2");
+  EXPECT_EQ(planned(ResolveScope::render).pipeline.settings_digest,
+            planned(ResolveScope::digests).pipeline.settings_digest);
 }
 
 TEST_F(JudgedPlan, DiscardedRenderingsTraceNoLayers) {
