@@ -167,13 +167,16 @@ def main():
     parser.add_argument("--error-size", default="192x108")
     parser.add_argument("--error-spp", type=int, default=64)
     parser.add_argument("--reference-spp", type=int, default=2048)
-    parser.add_argument("--seeds", type=int, default=8)
+    parser.add_argument("--seeds", default="8", help="pictures of each error; with --rates also one number for each rate")
     parser.add_argument("--steady-spp", type=int, default=64)
     parser.add_argument("--rates", help="samples a pixel, each with a table of its own, in place of --spp, --error-spp and --error-size")
     options = parser.parse_args()
     programs = options.programs.split(",")
     if unknown := [p for p in programs if p not in PROGRAMS]:
         parser.error(f"--programs: '{unknown[0]}' is none of {', '.join(PROGRAMS)}")
+    options.seeds = [int(seeds) for seeds in options.seeds.split(",")]
+    if len(options.seeds) not in (1, len(options.rates.split(",")) if options.rates else 1):
+        parser.error("--seeds: one number, or one for each of --rates")
     # With =, since a value may begin with a minus.
     view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
 
@@ -188,12 +191,17 @@ def main():
         times, own, shared, error_size = measure(programs, options, folder, view)
 
     target = sum(0.5**k for k in range(options.bounces + 1))
-    for rate in times:
+    for rate, seeds in zip(times, seeds_of(options, times)):
         timed = f"{rate} (others {options.steady_spp})" if options.rates else options.spp.replace(",", " and ")
         print(f"{pathlib.Path(options.scene).name}, {options.materials}, {options.bounces} bounces, {options.size}, "
               f"{options.rounds} rounds of {timed} spp; error at {error_size}, {rate} spp, "
-              f"reference {options.reference_spp} spp, {options.seeds} seeds; furnace {target}")
+              f"reference {options.reference_spp} spp, {seeds} seeds; furnace {target}")
         print_table(programs, times[rate], own[rate], shared[rate], shine)
+
+
+def seeds_of(options, rates):
+    """The number of pictures for each of the rates."""
+    return options.seeds if len(options.seeds) == len(rates) else options.seeds * len(rates)
 
 
 def measure_one_rate(programs, options, folder, view):
@@ -222,6 +230,7 @@ def measure_rates(programs, options, folder, view):
                 seconds, _ = open_programs[p].picture(spp, r)
                 for rate in [spp] if p.startswith("gazetrace") else rates:
                     times[rate][p].append(seconds / (width * height * spp) * 1e6)
+    print("times are measured, errors follow", file=sys.stderr, flush=True)
     picture = lambda p, spp, seed: read_picture(open_programs[p].picture(spp, seed)[1])
     own, shared = measure_errors(programs, options, rates, picture)
     for program in open_programs.values():
@@ -241,15 +250,15 @@ def opened(program, options, folder, view):
 def measure_errors(programs, options, rates, picture):
     """Errors of one sample, against each program's own reference and against the common one, by rate and program."""
     reference = {}
-    if options.seeds > 0:
+    if any(options.seeds):
         reference = {p: picture(p, options.reference_spp, 1000) for p in programs}
         common = sum(reference.values()) / len(programs)
     own = {rate: {p: [] for p in programs} for rate in rates}
     shared = {rate: {p: [] for p in programs} for rate in rates}
-    for rate in rates:
+    for rate, seeds in zip(rates, seeds_of(options, rates)):
         # What the reference's own noise adds: a share spp / reference spp of the picture's.
         noise = 1 + rate / options.reference_spp
-        for s in range(options.seeds):
+        for s in range(seeds):
             for p in programs:
                 x = picture(p, rate, 2000 + s)
                 own[rate][p].append(relative_mse(x, reference[p]) / noise * rate)
