@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
@@ -146,20 +147,6 @@ SamplingMap map_of_all(const std::vector<SamplesOfFrame>& frames) {
   return map;
 }
 
-// On entry first_surface holds the number of surfaces of each site.
-void join_surfaces(const SamplingMap& map, const std::vector<std::vector<SurfaceSums>>& of_tiles, SparseFrame& out) {
-  std::uint32_t total = 0;
-  for (std::uint32_t& first : out.first_surface) {
-    const std::uint32_t count = first;
-    first = total;
-    total += count;
-  }
-  out.surfaces.reserve(total);
-  for (std::size_t t = 0; t < map.tiles.size(); ++t) {
-    out.surfaces.insert(out.surfaces.end(), of_tiles[t].begin(), of_tiles[t].end());
-  }
-}
-
 }  // namespace
 
 std::int32_t frames_in_group(const AccumulateSettings& settings) {
@@ -211,7 +198,7 @@ SamplesAtRest add_up(const std::vector<SamplesOfFrame>& frames, const GuideCamer
       adder.add_site(site, surfaces[t]);
     }
   });
-  join_surfaces(all.map, surfaces, out);
+  join_surfaces(std::move(surfaces), out);
   return all;
 }
 

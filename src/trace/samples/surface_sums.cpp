@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/luminance.hpp"
 
@@ -84,6 +85,18 @@ void SurfaceSorter::finish_site(const std::array<std::uint32_t, 2>& samples, std
                    half_difference(s.albedo_of_half, samples)});
   }
   used_ = 0;
+}
+
+void join_surfaces(std::vector<std::vector<SurfaceSums>> parts, SparseFrame& out) {
+  std::uint32_t total = 0;
+  for (std::uint32_t& entry : out.first_surface) {
+    total += std::exchange(entry, total);
+  }
+  out.surfaces.reserve(total);
+  for (std::vector<SurfaceSums>& part : parts) {
+    out.surfaces.insert(out.surfaces.end(), part.begin(), part.end());
+    part = {};
+  }
 }
 
 }  // namespace gazetrace

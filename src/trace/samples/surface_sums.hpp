@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sorts the samples of a site by the surface that they hit.
+// Sorts the samples of a site by the surface that they hit, and puts the surfaces of all sites into a frame.
 #pragma once
 
 #include <algorithm>
@@ -104,5 +104,9 @@ class FirstHitSummer {
   double square_shift_ = 0;
   std::uint32_t blended_ = 0;
 };
+
+// Puts the surfaces of all sites into a frame, in the order of the sites: those of the parts, one after the other. On
+// entry SparseFrame::first_surface holds the number of surfaces of each site; empty: there are none.
+void join_surfaces(std::vector<std::vector<SurfaceSums>> parts, SparseFrame& out);
 
 }  // namespace gazetrace

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "trace/samples/site_summer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/luminance.hpp"
+#include "trace/samples/bad_samples.hpp"
+#include "trace/samples/sample_sums.hpp"
+
+namespace gazetrace {
+namespace {
+
+void add_guides(const GuideBatch& g, std::size_t i, SiteGuideSums& sums) {
+  sums.albedo_red.add(static_cast<double>(g.albedo_r[i]));
+  sums.albedo_green.add(static_cast<double>(g.albedo_g[i]));
+  sums.albedo_blue.add(static_cast<double>(g.albedo_b[i]));
+  sums.normal_x.add(static_cast<double>(g.normal_x[i]));
+  sums.normal_y.add(static_cast<double>(g.normal_y[i]));
+  sums.normal_z.add(static_cast<double>(g.normal_z[i]));
+  sums.depth_m.add(static_cast<double>(g.depth[i]));
+  ++sums.hits;
+}
+
+void add_light(const Vec3f& radiance, SiteSums& sums) {
+  sums.red.add(static_cast<double>(radiance.x));
+  sums.green.add(static_cast<double>(radiance.y));
+  sums.blue.add(static_cast<double>(radiance.z));
+  const double shone = luminance(to_double(radiance));
+  // Rounded to float, as all terms of an ExactSum must be. It saturates, since squares exceed float's range from a
+  // radiance of 1.8e19 on.
+  constexpr double kMost = std::numeric_limits<float>::max();
+  sums.square_luminance.add(static_cast<double>(static_cast<float>(std::min(shone * shone, kMost))));
+}
+
+void add_groups(const LightGroupBatch& batch, std::size_t i, std::array<Vec3d, kLightGroups>& sums) {
+  for (std::size_t group = 0; group < kLightGroups; ++group) {
+    sums[group] += to_double(batch.radiance[group].get(i));
+  }
+}
+
+SurfaceSorter sorter_for(const CameraRays& camera) {
+  const Vec3f& step = camera.placement().up_step;
+  return {std::sqrt(dot(step, step)), camera.is_perspective()};
+}
+
+}  // namespace
+
+SiteSummer::SiteSummer(const FrameContext& context, const SamplingMap& map, std::int32_t frame,
+                       std::uint32_t first_site, SparseFrame& out)
+    : frame_(frame),
+      surfaces_(context.settings.surfaces),
+      pass_through_(map, context.settings.pass_through_samples),
+      out_(out),
+      site_(first_site),
+      sorter_(sorter_for(*context.camera)) {}
+
+void SiteSummer::add(const Workspace& work, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (work.samples.site[i] != site_) {
+      finish_site();
+      site_ = work.samples.site[i];
+    }
+    ++sum_.light.count;
+    if (work.radiance.rejected[i] != 0) {
+      report(work.samples, i, "rejected ray");
+    }
+    if (!out_.guides.empty() && work.guides.hit[i] != 0) {
+      add_guides(work.guides, i, sum_.guides);
+    }
+    const Vec3f radiance{work.radiance.r[i], work.radiance.g[i], work.radiance.b[i]};
+    if (!is_finite(radiance)) {
+      ++range_.non_finite;
+      report(work.samples, i, "non-finite radiance");
+      continue;
+    }
+    add_light(radiance, sum_.light);
+    if (!out_.light_groups.empty()) {
+      add_groups(work.groups, i, sum_.groups);
+    }
+    halves_.add(luminance(to_double(radiance)), work.samples.half[i]);
+    if (surfaces_ && pass_through_.needs_filtering(site_)) {
+      sorter_.add(work.surfaces, i, to_double(radiance), work.samples.half[i]);
+      if (!out_.first_hits.empty()) {
+        first_hits_.add(work.surfaces, i, work.samples.half[i]);
+      }
+    }
+  }
+}
+
+SummedRange SiteSummer::finish() {
+  if (sum_.light.count > 0) {
+    finish_site();
+  }
+  return std::move(range_);
+}
+
+void SiteSummer::finish_site() {
+  store_rounded(sum_.light, out_.guides.empty() ? nullptr : &sum_.guides, site_, out_);
+  if (!out_.unrounded.sites.empty()) {
+    out_.unrounded.sites[site_] = sum_.light;
+  }
+  if (!out_.unrounded.guides.empty()) {
+    out_.unrounded.guides[site_] = sum_.guides;
+  }
+  for (std::size_t group = 0; group < kLightGroups && !out_.light_groups.empty(); ++group) {
+    out_.light_groups[site_].sum[group] = to_float(sum_.groups[group]);
+  }
+  sum_ = {};
+  if (!out_.half_difference.empty()) {
+    out_.half_difference[site_] = halves_.difference();
+  }
+  halves_ = {};
+  if (surfaces_) {
+    const std::size_t before = range_.surfaces.size();
+    sorter_.finish_site(first_hits_.samples(), range_.surfaces);
+    out_.first_surface[site_] = static_cast<std::uint32_t>(range_.surfaces.size() - before);
+  }
+  if (!out_.first_hits.empty()) {
+    out_.first_hits[site_] = first_hits_.finish_site();
+  }
+}
+
+void SiteSummer::report(const SampleBatch& samples, std::size_t slot, const char* what) {
+  keep_first(range_.bad, {frame_, samples.pixel_x[slot], samples.pixel_y[slot], samples.sample[slot], what});
+}
+
+}  // namespace gazetrace
