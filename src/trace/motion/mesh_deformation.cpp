@@ -139,10 +139,7 @@ std::uint32_t RenderScene::add_deforming(const Scene& scene, std::size_t scene_i
     if (mesh.geometries[g].triangles.empty()) {
       continue;
     }
-    geometries.push_back({static_cast<std::uint32_t>(triangles.size()), kNoId, static_cast<std::uint32_t>(g)});
-    const DeformedVertices& vertices = shape[parts.size()];
-    add_triangles(scene, mesh.geometries[g], &vertices, nullptr, parts.emplace_back());
-    check_positions(parts.back().positions, scene, mesh_index, g);
+    parts.push_back(add_geometry(scene, mesh_index, g, kNoId, &shape[parts.size()]));
   }
   deforming.geometry_count = static_cast<std::uint32_t>(parts.size());
   deforming.ray_mesh = rays->add_deforming_mesh(parts, options.mesh_update);

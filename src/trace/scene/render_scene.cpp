@@ -38,17 +38,45 @@ std::uint32_t triangle_count(const Mesh& mesh) {
   return static_cast<std::uint32_t>(count);
 }
 
-}  // namespace
+// How the instances of a scene use its meshes.
+struct MeshUses {
+  std::vector<char> baked;    // of each instance: a mesh in world space is made for it alone
+  std::vector<char> shared;   // of each mesh: instances refer to it
+  std::size_t triangles = 0;  // of all meshes that are made
+};
 
-void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, const DeformedVertices* shape,
-                                const Affine* to_world, RayGeometry& out) {
-  const auto material_index = static_cast<std::size_t>(geometry.material);
-  const ShadingMaterial& material = materials[material_index];
-  const TextureRef* shared = shared_coordinates(scene.materials[material_index]);
-  const bool extra = needs_extra(geometry, material, layered.of(static_cast<std::uint32_t>(material_index)));
+// A mesh that is used once is baked to world space, which saves the indirection of an instance.
+MeshUses uses_of_meshes(const Scene& scene) {
+  std::vector<std::uint32_t> count(scene.meshes.size(), 0);
+  for (const Instance& instance : scene.instances) {
+    ++count[static_cast<std::size_t>(instance.mesh)];
+  }
+  MeshUses uses;
+  uses.baked.resize(scene.instances.size(), 0);
+  uses.shared.resize(scene.meshes.size(), 0);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const auto mesh = static_cast<std::size_t>(instance.mesh);
+    if (instance.deformation >= 0) {
+      uses.triangles += triangle_count(scene.meshes[mesh]);
+      continue;
+    }
+    if (instance.motion < 0 && (count[mesh] == 1 || !can_be_instanced(instance.to_world))) {
+      uses.baked[i] = 1;
+      uses.triangles += triangle_count(scene.meshes[mesh]);
+    } else {
+      uses.shared[mesh] = 1;
+    }
+  }
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    uses.triangles += uses.shared[m] != 0 ? triangle_count(scene.meshes[m]) : 0;
+  }
+  return uses;
+}
 
-  out.alpha = material.alpha_mode != AlphaMode::opaque;
-  out.tag = static_cast<std::uint32_t>(triangles.size());
+// Vertices and corners as the ray library takes them.
+RayGeometry placed(const Geometry& geometry, const DeformedVertices* shape, const Affine* to_world) {
+  RayGeometry out;
   out.positions = shape != nullptr ? shape->positions : geometry.positions;
   out.triangles = geometry.triangles;
   if (to_world != nullptr) {
@@ -62,82 +90,59 @@ void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, co
       std::swap(t[1], t[2]);
     }
   }
-  const SurfaceVertices vertices{out.positions, shape != nullptr ? shape->normals : geometry.normals,
-                                 shape != nullptr ? shape->tangents : geometry.tangents, to_world};
-
-  for (const auto& corner : out.triangles) {
-    ShadingTriangle triangle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      triangle.uv[k] = transformed_uv(shared, geometry, corner[k]);
-    }
-    triangle.material_and_sign = static_cast<std::uint32_t>(material_index) << 1U;
-    shape_triangle(vertices, corner, triangle);
-    if (extra) {
-      TriangleExtra more;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = corner[k];
-        more.uv0[k] = vertex < geometry.uv0.size() ? geometry.uv0[vertex] : Vec2f{};
-        more.uv1[k] = vertex < geometry.uv1.size() ? geometry.uv1[vertex] : Vec2f{};
-        more.color[k] = vertex < geometry.colors.size() ? geometry.colors[vertex] : Vec4f{1, 1, 1, 1};
-      }
-      triangle.extra = static_cast<std::uint32_t>(extras.size());
-      extras.push_back(more);
-    }
-    triangles.push_back(triangle);
-  }
+  return out;
 }
+
+TriangleExtra extra_of(const Geometry& geometry, const std::array<std::uint32_t, 3>& corner) {
+  TriangleExtra extra;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = corner[k];
+    extra.uv0[k] = vertex < geometry.uv0.size() ? geometry.uv0[vertex] : Vec2f{};
+    extra.uv1[k] = vertex < geometry.uv1.size() ? geometry.uv1[vertex] : Vec2f{};
+    extra.color[k] = vertex < geometry.colors.size() ? geometry.colors[vertex] : Vec4f{1, 1, 1, 1};
+  }
+  return extra;
+}
+
+}  // namespace
 
 RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
     : materials(make_materials(scene)), layered(make_layered_materials(scene)), features(features_of(scene)) {
   const Stopwatch watch;
   const AlphaSource* alpha = this;
   rays = std::make_unique<RayScene>(options.threads, options.bvh_quality == BvhQuality::high, alpha);
-
-  std::vector<std::uint32_t> uses(scene.meshes.size(), 0);
-  for (const Instance& instance : scene.instances) {
-    ++uses[static_cast<std::size_t>(instance.mesh)];
-  }
-  // A mesh that is used once is baked to world space, which saves the indirection of an instance.
-  std::vector<char> baked(scene.instances.size(), 0);
-  std::vector<char> shared(scene.meshes.size(), 0);
-  std::size_t total = 0;
+  const MeshUses uses = uses_of_meshes(scene);
+  triangles.reserve(uses.triangles);
+  add_baked_meshes(scene, uses.baked);
+  first_instance_id = features.motion ? 0 : static_cast<std::uint32_t>(geometries.size());
+  const std::vector<InstancedMesh> meshes = add_shared_meshes(scene, uses.shared);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
-    const Instance& instance = scene.instances[i];
-    if (instance.deformation >= 0) {
-      total += triangle_count(scene.meshes[mesh]);
-      continue;
+    if (uses.baked[i] == 0) {
+      add_instance(scene, i, meshes[static_cast<std::size_t>(scene.instances[i].mesh)], options);
     }
-    baked[i] = instance.motion < 0 && (uses[mesh] == 1 || !can_be_instanced(instance.to_world)) ? 1 : 0;
-    total += baked[i] != 0 ? triangle_count(scene.meshes[mesh]) : 0;
-    shared[mesh] = static_cast<char>(shared[mesh] | (baked[i] == 0 ? 1 : 0));
   }
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    total += shared[m] != 0 ? triangle_count(scene.meshes[m]) : 0;
-  }
-  triangles.reserve(total);
+  rays->commit();
+  build_s = watch.elapsed_ms() * 1e-3;
+}
 
-  // Where something moves, everything that stands still is one mesh, so that a new frame rebuilds only the small BVH
-  // above.
+// Where something moves, everything that stands still is one mesh, so that a new frame rebuilds only the small BVH
+// above.
+void RenderScene::add_baked_meshes(const Scene& scene, const std::vector<char>& baked) {
   std::vector<RayGeometry> still;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     if (baked[i] == 0) {
       continue;
     }
-    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[i].mesh)];
-    for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
-      if (mesh.geometries[g].triangles.empty()) {
+    const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
+    for (std::size_t g = 0; g < scene.meshes[mesh].geometries.size(); ++g) {
+      if (scene.meshes[mesh].geometries[g].triangles.empty()) {
         continue;
       }
-      RayGeometry ray_geometry;
-      geometries.push_back(
-          {static_cast<std::uint32_t>(triangles.size()), static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(g)});
-      add_triangles(scene, mesh.geometries[g], nullptr, &scene.instances[i].to_world, ray_geometry);
-      check_positions(ray_geometry.positions, scene, static_cast<std::size_t>(scene.instances[i].mesh), g);
+      RayGeometry geometry = add_geometry(scene, mesh, g, static_cast<std::uint32_t>(i));
       if (features.motion) {
-        still.push_back(std::move(ray_geometry));
+        still.push_back(std::move(geometry));
       } else {
-        rays->add_geometry(ray_geometry);
+        rays->add_geometry(geometry);
       }
     }
   }
@@ -146,59 +151,89 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
     whole.scene_instance = kNoId;
     instances.push_back(whole);
     rays->add_instance(rays->add_mesh(still), ray_transform(Affine{}));
-    still.clear();
   }
-  first_instance_id = features.motion ? 0 : static_cast<std::uint32_t>(geometries.size());
+}
 
-  std::vector<std::uint32_t> mesh_id(scene.meshes.size(), kNoId);
-  std::vector<std::uint32_t> mesh_first_geometry(scene.meshes.size(), 0);
+std::vector<RenderScene::InstancedMesh> RenderScene::add_shared_meshes(const Scene& scene,
+                                                                       const std::vector<char>& shared) {
+  std::vector<InstancedMesh> meshes(scene.meshes.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     if (shared[m] == 0) {
       continue;
     }
-    mesh_first_geometry[m] = static_cast<std::uint32_t>(geometries.size());
+    meshes[m].first_geometry = static_cast<std::uint32_t>(geometries.size());
     std::vector<RayGeometry> parts;
     for (std::size_t g = 0; g < scene.meshes[m].geometries.size(); ++g) {
-      const Geometry& geometry = scene.meshes[m].geometries[g];
-      if (geometry.triangles.empty()) {
-        continue;
+      if (!scene.meshes[m].geometries[g].triangles.empty()) {
+        parts.push_back(add_geometry(scene, m, g));
       }
-      geometries.push_back({static_cast<std::uint32_t>(triangles.size()), kNoId, static_cast<std::uint32_t>(g)});
-      add_triangles(scene, geometry, nullptr, nullptr, parts.emplace_back());
-      check_positions(parts.back().positions, scene, m, g);
     }
-    mesh_id[m] = rays->add_mesh(parts);
+    meshes[m].ray_mesh = rays->add_mesh(parts);
   }
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    if (baked[i] != 0) {
-      continue;
-    }
-    const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
-    // A motion may begin with any transform; an instance that the ray library cannot handle is hidden until it can.
-    const bool usable = can_be_instanced(scene.instances[i].to_world);
-    const Affine to_world = usable ? scene.instances[i].to_world : Affine{};
-    ShadingInstance instance = shading_instance(to_world);
-    instance.first_geometry = mesh_first_geometry[mesh];
-    instance.scene_instance = static_cast<std::uint32_t>(i);
-    std::uint32_t ray_mesh = mesh_id[mesh];
-    if (scene.instances[i].deformation >= 0) {
-      instance.first_geometry = static_cast<std::uint32_t>(geometries.size());
-      ray_mesh = add_deforming(scene, i, static_cast<std::uint32_t>(instances.size()), options);
-      instance.flip = is_mirrored(scene.deformations[static_cast<std::size_t>(scene.instances[i].deformation)].rest)
-                          ? -instance.flip
-                          : instance.flip;
-    }
-    if (scene.instances[i].motion >= 0) {
-      moving_.push_back({static_cast<std::uint32_t>(instances.size()), static_cast<std::uint32_t>(i)});
-    }
-    instances.push_back(instance);
-    const std::uint32_t id = rays->add_instance(ray_mesh, ray_transform(to_world));
-    if (!usable) {
-      rays->place_instance(id, {});
-    }
+  return meshes;
+}
+
+void RenderScene::add_instance(const Scene& scene, std::size_t scene_instance, InstancedMesh mesh,
+                               const TracerOptions& options) {
+  const Instance& source = scene.instances[scene_instance];
+  // A motion may begin with any transform; an instance that the ray library cannot handle is hidden until it can.
+  const bool usable = can_be_instanced(source.to_world);
+  const Affine to_world = usable ? source.to_world : Affine{};
+  ShadingInstance instance = shading_instance(to_world);
+  const auto index = static_cast<std::uint32_t>(instances.size());
+  if (source.deformation >= 0) {
+    mesh.first_geometry = static_cast<std::uint32_t>(geometries.size());
+    mesh.ray_mesh = add_deforming(scene, scene_instance, index, options);
+    const MeshPose& rest = scene.deformations[static_cast<std::size_t>(source.deformation)].rest;
+    instance.flip = is_mirrored(rest) ? -instance.flip : instance.flip;
   }
-  rays->commit();
-  build_s = watch.elapsed_ms() * 1e-3;
+  instance.first_geometry = mesh.first_geometry;
+  instance.scene_instance = static_cast<std::uint32_t>(scene_instance);
+  if (source.motion >= 0) {
+    moving_.push_back({index, static_cast<std::uint32_t>(scene_instance)});
+  }
+  instances.push_back(instance);
+  const std::uint32_t id = rays->add_instance(mesh.ray_mesh, ray_transform(to_world));
+  if (!usable) {
+    rays->place_instance(id, {});
+  }
+}
+
+RayGeometry RenderScene::add_geometry(const Scene& scene, std::size_t mesh, std::size_t geometry,
+                                      std::uint32_t baked_instance, const DeformedVertices* shape) {
+  const Geometry& source = scene.meshes[mesh].geometries[geometry];
+  const Affine* to_world = baked_instance != kNoId ? &scene.instances[baked_instance].to_world : nullptr;
+  RayGeometry out = placed(source, shape, to_world);
+  out.alpha = materials[static_cast<std::size_t>(source.material)].alpha_mode != AlphaMode::opaque;
+  out.tag = static_cast<std::uint32_t>(triangles.size());
+  geometries.push_back({out.tag, baked_instance, static_cast<std::uint32_t>(geometry)});
+  add_triangles(scene, source,
+                {out.positions, shape != nullptr ? shape->normals : source.normals,
+                 shape != nullptr ? shape->tangents : source.tangents, to_world},
+                out.triangles);
+  check_positions(out.positions, scene, mesh, geometry);
+  return out;
+}
+
+void RenderScene::add_triangles(const Scene& scene, const Geometry& geometry, const SurfaceVertices& vertices,
+                                const std::vector<std::array<std::uint32_t, 3>>& corners) {
+  const auto material_index = static_cast<std::size_t>(geometry.material);
+  const TextureRef* shared = shared_coordinates(scene.materials[material_index]);
+  const bool extra =
+      needs_extra(geometry, materials[material_index], layered.of(static_cast<std::uint32_t>(material_index)));
+  for (const auto& corner : corners) {
+    ShadingTriangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.uv[k] = transformed_uv(shared, geometry, corner[k]);
+    }
+    triangle.material_and_sign = static_cast<std::uint32_t>(material_index) << 1U;
+    shape_triangle(vertices, corner, triangle);
+    if (extra) {
+      triangle.extra = static_cast<std::uint32_t>(extras.size());
+      extras.push_back(extra_of(geometry, corner));
+    }
+    triangles.push_back(triangle);
+  }
 }
 
 bool RenderScene::transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v, std::uint32_t key) const {

@@ -89,9 +89,23 @@ class RenderScene : private AlphaSource {
 
  private:
   bool transparent(std::uint32_t tag, std::uint32_t primitive, float u, float v, std::uint32_t key) const override;
-  // `shape` has the geometry's vertices as they are now; nullptr where they are those of the geometry.
-  void add_triangles(const Scene& scene, const Geometry& geometry, const DeformedVertices* shape,
-                     const Affine* to_world, RayGeometry& out);
+  // A mesh that instances refer to: in the ray library, and its first record in `geometries`.
+  struct InstancedMesh {
+    std::uint32_t ray_mesh = kNoId, first_geometry = 0;
+  };
+  // The meshes of the instances that are marked, in world space.
+  void add_baked_meshes(const Scene& scene, const std::vector<char>& baked);
+  // One entry for each mesh of the scene; only those that are marked are added.
+  std::vector<InstancedMesh> add_shared_meshes(const Scene& scene, const std::vector<char>& shared);
+  // An instance that is not baked; where it deforms, it brings a mesh of its own instead of this one.
+  void add_instance(const Scene& scene, std::size_t scene_instance, InstancedMesh mesh, const TracerOptions& options);
+  // Adds a geometry of a mesh to the tables above; returns what the ray library gets of it. It is put into world space
+  // for a `baked_instance` (index into Scene::instances). `shape` has the geometry's vertices as they are now; nullptr
+  // where they are those of the geometry.
+  RayGeometry add_geometry(const Scene& scene, std::size_t mesh, std::size_t geometry,
+                           std::uint32_t baked_instance = kNoId, const DeformedVertices* shape = nullptr);
+  void add_triangles(const Scene& scene, const Geometry& geometry, const SurfaceVertices& vertices,
+                     const std::vector<std::array<std::uint32_t, 3>>& corners);
   // Adds the mesh of an instance that deforms, at rest; returns the ray library's mesh.
   std::uint32_t add_deforming(const Scene& scene, std::size_t scene_instance, std::uint32_t instance,
                               const TracerOptions& options);
