@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/job_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "job/choose_frames.hpp"
+#include "job/chunks.hpp"
+#include "job/gaze_inputs.hpp"
+#include "job/plan_settings.hpp"
+
+namespace gazetrace {
+namespace {
+
+// Whether there are rates for a frame that nobody asked for.
+bool has_density_map(const FoveationSettings& foveation, std::int64_t frame) {
+  return foveation.falloff != "map" || !has_frame_number(foveation.density_map) ||
+         std::filesystem::exists(frame_file_name(foveation.density_map, static_cast<std::int32_t>(frame)));
+}
+
+// For accumulation from both sides: the frames that those of the plan read beside each other. They exist from frame 1
+// on and as far as the camera's path goes, whether or not they are rendered, so that a frame is the same in every run.
+void add_frames_around(const JobSettings& job, const CameraPath& camera, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  PlanSettings settings = resolved.plan_settings;
+  const std::set<std::int32_t> asked(settings.frames.begin(), settings.frames.end());
+  std::set<std::int32_t> all = asked;
+  for (const std::int32_t frame : asked) {
+    for (std::int32_t apart = -job.accumulate.window; apart <= job.accumulate.window; ++apart) {
+      const std::int64_t near = std::int64_t{frame} + apart;
+      if (has_frame(camera, settings, near) && has_density_map(job.foveation, near)) {
+        all.insert(frame + apart);
+      }
+    }
+  }
+  settings.frames.assign(all.begin(), all.end());
+  // What the eye did since the frame before is asked of neighbours, so that it is that of this plan.
+  FramePlan whole = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
+  resolved.plan.frames.clear();
+  for (FrameRequest& request : whole.frames) {
+    (asked.contains(request.frame) ? resolved.plan.frames : resolved.plan.around).push_back(std::move(request));
+  }
+}
+
+}  // namespace
+
+void keep_to_chunk(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  Decisions unused;
+  const FramePlan whole =
+      plan_frames(camera, log, plan_settings(job, resolved.frames, log, taken_off_ns, unused), nullptr);
+  ChosenChunk chosen = choose_chunk(job, whole);
+  resolved.frames = std::move(chosen.frames);
+  resolved.chunk_borders = std::move(chosen.borders);
+  resolved.decisions.emplace_back("chunk", chosen.decision);
+}
+
+void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t taken_off_ns, ResolvedJob& resolved) {
+  const GazeLog* log = resolved.gaze ? &*resolved.gaze : nullptr;
+  std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
+  planned.insert(planned.end(), resolved.frames.begin(), resolved.frames.end());
+  PlanSettings settings = plan_settings(job, planned, log, taken_off_ns, resolved.decisions);
+  if (log != nullptr) {
+    settings.uncertainty = gaze_uncertainty(job, *log);
+  }
+  if (log != nullptr && !job.gaze_at) {
+    settings.find_speed = job.foveation.retinal_velocity;
+    if (!job.gaze_process.empty()) {
+      resolved.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
+      resolved.decisions.emplace_back("gaze processing",
+                                      fmt::format("{}", fmt::join(resolved.steering->reports, "; ")));
+    }
+  }
+  resolved.plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
+  resolved.plan_settings = std::move(settings);
+  if (job.accumulate.mode == AccumulateMode::two_sided && job.accumulate.window > 0) {
+    add_frames_around(job, camera, resolved);
+  }
+  if (resolved.plan.ages && !job.gaze_at) {
+    resolved.decisions.emplace_back("effective gaze age", gaze_ages_text(*resolved.plan.ages));
+  }
+}
+
+}  // namespace gazetrace
