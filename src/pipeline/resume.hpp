@@ -38,8 +38,4 @@ struct ResumePlan {
 ResumePlan plan_resume(const FramePlan& plan, const PipelineSettings& settings, const RunPaths& paths,
                        const TemporalHistory& history);
 
-// history_text() of what each frame of the plan finds; empty texts where frames do not depend on each other.
-std::vector<std::string> expected_histories(const FramePlan& plan, const PipelineSettings& settings,
-                                            const TemporalHistory& history);
-
 }  // namespace gazetrace

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/unfinished_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/stopwatch.hpp"
+#include "core/text.hpp"
+#include "gazetrace/error.hpp"
+#include "output/written_file.hpp"
+#include "pipeline/sample_sums_file.hpp"
+#include "pipeline/timing_row.hpp"
+#include "pipeline/traced_file.hpp"
+
+namespace gazetrace {
+
+bool leaves_unfinished(const PipelineSettings& settings) {
+  return settings.trace.samples || settings.stage == SequenceStage::trace;
+}
+
+std::string unfinished_file_name(const PipelineSettings& settings, std::int32_t frame) {
+  const std::string& folder = settings.output.run_directory;
+  return settings.trace.samples ? samples_file_name(folder, frame, *settings.trace.samples)
+                                : traced_file_name(folder, frame);
+}
+
+std::string read_unfinished_digest(const PipelineSettings& settings, std::int32_t frame) {
+  const std::string path = unfinished_file_name(settings, frame);
+  return settings.trace.samples ? read_samples_digest(path) : read_traced_digest(path);
+}
+
+void save_unfinished(std::int32_t frame, const TracedFrame& traced, const PipelineSettings& settings, TimingRow& row,
+                     WrittenFiles& files) {
+  const Stopwatch watch;
+  const std::string path = unfinished_file_name(settings, frame);
+  WrittenFile file;
+  if (settings.trace.samples) {
+    file = save_samples(path, traced.sparse.unrounded, settings.settings_digest);
+    file.frame = frame;
+  } else {
+    add_prediction(traced.prediction, row);
+    file = save_traced(path, frame, traced, settings.settings_digest);
+  }
+  files.insert_or_assign(name_in_record(settings.output.run_directory, path), std::move(file));
+  row.write_ms += watch.elapsed_ms();
+}
+
+TracedFrame load_unfinished(const FrameRequest& request, const PipelineSettings& settings) {
+  const std::string path = traced_file_name(settings.output.run_directory, request.frame);
+  TracedFrame traced = load_traced(path, request.frame, settings.settings_digest);
+  if (traced.map.width_px != request.width_px || traced.map.height_px != request.height_px) {
+    throw Error(ErrorKind::input, path, "holds a frame of another size", "trace it again");
+  }
+  return traced;
+}
+
+void check_all_traced(const std::vector<std::int32_t>& frames, const PipelineSettings& settings) {
+  const std::string& folder = settings.output.run_directory;
+  std::vector<std::int32_t> missing;
+  for (const std::int32_t frame : frames) {
+    if (read_traced_digest(traced_file_name(folder, frame)) != settings.settings_digest) {
+      missing.push_back(frame);
+    }
+  }
+  if (!missing.empty()) {
+    throw Error(ErrorKind::input, folder,
+                fmt::format("{} frames are not traced under these settings: {}", missing.size(),
+                            bounded(format_frame_list(missing), 200)),
+                "trace them with `stage` trace");
+  }
+}
+
+}  // namespace gazetrace
