@@ -2,10 +2,7 @@
 #include "core/text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -76,10 +73,6 @@ std::optional<bool> utf16_without_mark(std::string_view text) {
     return std::nullopt;
   }
   return odd > even;
-}
-
-constexpr bool is_digit(char c) {
-  return c >= '0' && c <= '9';
 }
 
 }  // namespace
@@ -230,137 +223,6 @@ std::string_view cell_text(std::string_view cell, std::string& buffer) {
     cell = trim(cell);
   }
   return cell;
-}
-
-NumberStatus scaled_integer(std::string_view text, int exponent, std::int64_t& value) {
-  // A shortcut, since nearly all time stamps are short whole numbers.
-  constexpr std::array<std::int64_t, 10> kPowers{1,       10,        100,        1'000,       10'000,
-                                                 100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
-  if (exponent >= 0 && exponent < 10 && !text.empty() && text.size() <= 18 &&
-      std::all_of(text.begin(), text.end(), is_digit)) {
-    std::int64_t whole = 0;
-    for (const char c : text) {
-      whole = 10 * whole + (c - '0');
-    }
-    return __builtin_mul_overflow(whole, kPowers[static_cast<std::size_t>(exponent)], &value) ? NumberStatus::overflow
-                                                                                              : NumberStatus::ok;
-  }
-  bool negative = false;
-  if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
-    negative = text.front() == '-';
-    text.remove_prefix(1);
-  }
-  std::size_t end = 0;
-  std::size_t mark = std::string_view::npos;  // of the decimal point
-  for (; end < text.size(); ++end) {
-    if ((text[end] == '.' || text[end] == ',') && mark == std::string_view::npos) {
-      mark = end;
-    } else if (!is_digit(text[end])) {
-      break;
-    }
-  }
-  const std::string_view digits = text.substr(0, end);
-  const auto whole = static_cast<std::int64_t>(std::min(mark, end));
-  const auto count = static_cast<std::int64_t>(end) - (mark == std::string_view::npos ? 0 : 1);
-  if (count == 0) {
-    return NumberStatus::malformed;
-  }
-  std::int64_t shift = exponent;
-  if (end < text.size()) {
-    std::string_view power = text.substr(end + 1);
-    if ((text[end] != 'e' && text[end] != 'E') || power.empty()) {
-      return NumberStatus::malformed;
-    }
-    if (power.front() == '+') {
-      power.remove_prefix(1);
-    }
-    std::int32_t given = 0;
-    const auto [rest, status] = std::from_chars(power.data(), power.data() + power.size(), given);
-    if (rest != power.data() + power.size() || status == std::errc::invalid_argument) {
-      return NumberStatus::malformed;
-    }
-    if (status != std::errc{}) {
-      given = power.front() == '-' ? -1'000'000 : 1'000'000;
-    }
-    shift += given;
-  }
-  const auto digit = [&](std::int64_t i) -> std::uint64_t {
-    if (i >= count) {
-      return 0;
-    }
-    const std::int64_t at = i < whole ? i : i + 1;
-    return static_cast<std::uint64_t>(digits[static_cast<std::size_t>(at)] - '0');
-  };
-  // Digits [0, kept) make the integer, and the next one decides the rounding.
-  const std::int64_t kept = whole + shift;
-  const std::uint64_t limit = negative ? std::uint64_t{1} << 63U : (std::uint64_t{1} << 63U) - 1;
-  std::uint64_t magnitude = 0;
-  for (std::int64_t i = 0; i < kept; ++i) {
-    if (i >= count && magnitude == 0) {
-      break;
-    }
-    const std::uint64_t d = digit(i);
-    if (magnitude > (limit - d) / 10) {
-      return NumberStatus::overflow;
-    }
-    magnitude = magnitude * 10 + d;
-  }
-  if (kept >= 0 && kept < count && digit(kept) >= 5) {
-    if (magnitude == limit) {
-      return NumberStatus::overflow;
-    }
-    ++magnitude;
-  }
-  value = static_cast<std::int64_t>(negative ? 0 - magnitude : magnitude);
-  return NumberStatus::ok;
-}
-
-std::optional<double> number_from(std::string_view text) {
-  if (!text.empty() && text.front() == '+') {
-    text.remove_prefix(1);
-    if (!text.empty() && text.front() == '-') {
-      return std::nullopt;
-    }
-  }
-  double value = 0;
-  const auto [rest, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status == std::errc{} && rest == text.data() + text.size()) {
-    return std::isfinite(value) ? std::optional(value) : std::nullopt;
-  }
-  const std::size_t comma = text.find(',');
-  std::array<char, 64> copy{};
-  if (comma == std::string_view::npos || text.find('.') != std::string_view::npos || text.size() > copy.size()) {
-    return std::nullopt;
-  }
-  std::copy(text.begin(), text.end(), copy.begin());
-  copy[comma] = '.';
-  const char* const end = copy.data() + text.size();
-  const auto with_point = std::from_chars(copy.data(), end, value);
-  const bool good = with_point.ec == std::errc{} && with_point.ptr == end && std::isfinite(value);
-  return good ? std::optional(value) : std::nullopt;
-}
-
-std::optional<int> time_exponent(std::string_view unit) {
-  struct Spelling {
-    std::string_view text;
-    int exponent;
-  };
-  static constexpr std::array<Spelling, 26> kSpellings{{
-      {"s", 9},           {"sec", 9},          {"secs", 9},        {"second", 9},
-      {"seconds", 9},     {"in secs", 9},      {"ms", 6},          {"msec", 6},
-      {"millisecond", 6}, {"milliseconds", 6}, {"us", 3},          {"usec", 3},
-      {"\xC2\xB5s", 3},   {"\xCE\xBCs", 3},    {"microsecond", 3}, {"microseconds", 3},
-      {"100ns", 2},       {"100 ns", 2},       {"ns", 0},          {"nsec", 0},
-      {"nanosecond", 0},  {"nanoseconds", 0},  {"\xC2\xB5sec", 3}, {"\xCE\xBCsec", 3},
-      {"millis", 6},      {"nanos", 0},
-  }};
-  const std::string lower = to_lower(trim(unit));
-  for (const Spelling& spelling : kSpellings) {
-    if (lower == spelling.text) {
-      return spelling.exponent;
-    }
-  }
-  return std::nullopt;
 }
 
 // The bytes that a character of several begins and goes on with: The Unicode Standard 15.0, table 3-7.
