@@ -35,6 +35,18 @@ std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& opti
   return options.columns.time.empty() ? own : declared_column(table, options.columns.time, place);
 }
 
+std::size_t cells_up_to(std::initializer_list<std::optional<std::size_t>> columns) {
+  std::size_t cells = 0;
+  for (const std::optional<std::size_t>& column : columns) {
+    cells = std::max(cells, column ? *column + 1 : 0);
+  }
+  return cells;
+}
+
+double least_confidence(const GazeReadOptions& options, double own) {
+  return std::isnan(options.min_confidence) ? own : options.min_confidence;
+}
+
 void declare_places(RawGaze& raw, const PlaceSpace& space, const std::string& place) {
   Conventions& c = raw.declared;
   c.form = PlaceForm::position;
@@ -54,6 +66,10 @@ void declare_directions(RawGaze& raw, Concluded<std::string> columns, GazeAxes a
   c.axes = {axes, evidence, {}};
   raw.kind = GazeKind::direction;
   raw.place = place;
+}
+
+void add_message(RawGaze& raw, std::int64_t t_ns, std::string text, std::int64_t row) {
+  raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::move(text), row});
 }
 
 void WitnessTally::add(double x, double y, double witness_x, double witness_y) {
@@ -129,6 +145,18 @@ void LabelRuns::end() {
 
 void LabelRuns::finish(RawGaze& raw) {
   raw.events.insert(raw.events.end(), events_.begin(), events_.end());
+}
+
+void label_by_ids(TableRows& rows, const std::optional<std::size_t>& blink, const std::optional<std::size_t>& fixation,
+                  RawSample& sample, LabelRuns& runs) {
+  if (const std::string_view blink_id = rows.cell(blink); !is_missing(blink_id)) {
+    sample.validity = GazeValidity::blink;
+    runs.add(GazeEventType::blink, Eye::cyclopean, blink_id, sample.t_ns, sample.row);
+  } else if (const std::string_view id = rows.cell(fixation); !is_missing(id)) {
+    runs.add(GazeEventType::fixation, Eye::cyclopean, id, sample.t_ns, sample.row);
+  } else {
+    runs.end();
+  }
 }
 
 RawSample position_row(std::int64_t t_ns, std::int64_t row, Eye eye, const Vec2d& at, double pupil) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,12 @@ TimeScale declare_time(RawGaze& raw, const GazeReadOptions& options, std::string
 std::size_t time_column(const DelimitedTable& table, const GazeReadOptions& options, std::size_t own,
                         const std::string& place);
 
+// How many cells a row must have to hold all of these columns, of which a table may lack some.
+std::size_t cells_up_to(std::initializer_list<std::optional<std::size_t>> columns);
+
+// The confidence from which on a sample is used: the one that the user gave or, without one, the format's own.
+double least_confidence(const GazeReadOptions& options, double own);
+
 // How a format writes positions. Unit and origin may be automatic where the file does not state them.
 struct PlaceSpace {
   PositionUnit unit = PositionUnit::px;
@@ -42,6 +49,9 @@ void declare_directions(RawGaze& raw, Concluded<std::string> columns, GazeAxes a
 // A head's pose as written; `rotation` in degrees about x, y, z, applied in Unity's order z, x, y.
 Quatd quaternion_from_unity_euler_deg(const Vec3d& rotation);
 HeadPose head_pose_from_axes(std::int64_t t_ns, const Vec3d& position_m, const Quatd& orientation, GazeAxes axes);
+
+// Adds a text that the log has at one moment, such as a message of the experiment.
+void add_message(RawGaze& raw, std::int64_t t_ns, std::string text, std::int64_t row);
 
 // Gathers the correlations of a GazeWitness; rows where any of the four is not finite are left out.
 class WitnessTally {
@@ -71,6 +81,11 @@ class LabelRuns {
   std::string key_;
   bool open_ = false;
 };
+
+// Labels a row of Pupil Cloud by its `blink id` or, where it has none, its `fixation id`. During a blink the gaze that
+// the row states means nothing.
+void label_by_ids(TableRows& rows, const std::optional<std::size_t>& blink, const std::optional<std::size_t>& fixation,
+                  RawSample& sample, LabelRuns& runs);
 
 // A row with a position on a display, of a format that has no confidence. A pupil that is not above 0 is missing. Where
 // a coordinate is missing, the other one is taken for missing as well, and the eye is lost.

@@ -3,7 +3,6 @@
 // Time is in microseconds and places are in pixels from the top left; a sample with confidence 0 is lost.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/text.hpp"
@@ -97,8 +96,8 @@ RawGaze read_gaze_arff(const GazeFile& file, const GazeReadOptions& options) {
              Evidence::header, "%@METADATA");
   }
   const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, place);
-  const double least = std::isnan(options.min_confidence) ? 1e-9 : options.min_confidence;
-  TableRows rows(file, table, std::max({time, x, y, confidence.value_or(0)}) + 1);
+  const double least = least_confidence(options, 1e-9);
+  TableRows rows(file, table, cells_up_to({time, x, y, confidence}));
   while (rows.next()) {
     if (rows.cell(std::size_t{0}).starts_with('%')) {
       continue;

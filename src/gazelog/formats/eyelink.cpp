@@ -166,7 +166,7 @@ class AscReader {
     } else if (word(2) == "!CAL" && word(3) == "VALIDATION") {
       read_validation(t_ns);
     }
-    raw_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(text), line_});
+    add_message(raw_, t_ns, std::string(text), line_);
   }
 
   // Corners are inclusive: 0 0 1919 1079 is 1920 x 1080.

@@ -13,6 +13,62 @@
 #include "gazelog/recordings.hpp"
 
 namespace gazetrace {
+namespace {
+
+struct CloudColumns {
+  std::size_t time = 0, x = 0, y = 0;
+  std::optional<std::size_t> azimuth, elevation, worn, blink, fixation;
+};
+
+CloudColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+  const auto own_time = table.find("timestamp [ns]");
+  const auto x = table.find("gaze x [px]");
+  const auto y = table.find("gaze y [px]");
+  const auto azimuth = table.find("azimuth [deg]");
+  const auto elevation = table.find("elevation [deg]");
+  if (!own_time || !x || !y) {
+    throw Error(ErrorKind::input, place, "there are no columns 'timestamp [ns]', 'gaze x [px]' and 'gaze y [px]'",
+                "the columns are: " + column_listing(table));
+  }
+  if (options.frame == GazeFrame::head && (!azimuth || !elevation)) {
+    throw Error(ErrorKind::input, place, "it has no azimuth and elevation, only places on the scene picture",
+                "export again from a newer Pupil Cloud");
+  }
+  CloudColumns c{0, *x, *y, azimuth, elevation, table.find("worn"), table.find("blink id"), table.find("fixation id")};
+  c.time = time_column(table, options, *own_time, place);
+  return c;
+}
+
+// A row with the direction from the head, or else with the place on the scene camera's picture.
+RawSample sample_of(TableRows& rows, const CloudColumns& c, GazeKind kind, std::int64_t t_ns) {
+  const bool in_head = kind == GazeKind::direction;
+  RawSample sample = missing_row(t_ns, rows.line(), Eye::cyclopean);
+  sample.at = {rows.number(in_head ? *c.azimuth : c.x), rows.number(in_head ? *c.elevation : c.y), 0};
+  sample.validity = std::isnan(sample.at.x) || std::isnan(sample.at.y) ? GazeValidity::lost : GazeValidity::ok;
+  if (c.worn && rows.number(*c.worn) == 0) {
+    sample.validity = GazeValidity::lost;
+  }
+  return sample;
+}
+
+// The picture is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; the file does not say.
+void guess_picture_size(RawGaze& raw) {
+  double widest = 0;
+  for (const RawSample sample : raw.rows) {
+    widest = sample.at.x > widest && sample.at.x < 1600 ? sample.at.x : widest;
+  }
+  raw.picture_px = widest > 1100 ? Vec2d{1600, 1200} : Vec2d{1088, 1080};
+  add_note(raw, "picture size", fmt::format("{}x{} px", raw.picture_px->x, raw.picture_px->y), Evidence::statistics,
+           fmt::format("places reach {:.0f} px", widest));
+}
+
+void declare_angles(RawGaze& raw, const std::string& place) {
+  declare_directions(raw, {"azimuth [deg], elevation [deg]", Evidence::header}, GazeAxes::gl, Evidence::format, place);
+  raw.declared.form = PlaceForm::azimuth_elevation;
+  raw.declared.unit = {PositionUnit::deg, Evidence::header, {}};
+}
+
+}  // namespace
 
 double sniff_gaze_pupil_cloud(const GazeFile& file) {
   const std::string_view head = head_of(file, 4096);
@@ -27,81 +83,40 @@ double sniff_gaze_pupil_cloud(const GazeFile& file) {
 RawGaze read_gaze_pupil_cloud(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
-  const auto own_time = table.find("timestamp [ns]");
-  const auto x = table.find("gaze x [px]");
-  const auto y = table.find("gaze y [px]");
-  const auto azimuth = table.find("azimuth [deg]");
-  const auto elevation = table.find("elevation [deg]");
-  if (!own_time || !x || !y) {
-    throw Error(ErrorKind::input, place, "there are no columns 'timestamp [ns]', 'gaze x [px]' and 'gaze y [px]'",
-                "the columns are: " + column_listing(table));
-  }
-  if (options.frame == GazeFrame::head && (!azimuth || !elevation)) {
-    throw Error(ErrorKind::input, place, "it has no azimuth and elevation, only places on the scene picture",
-                "export again from a newer Pupil Cloud");
-  }
-  const auto worn = table.find("worn");
-  const auto blink = table.find("blink id");
-  const auto fixation = table.find("fixation id");
+  const CloudColumns c = find_columns(table, options, place);
   RawGaze raw;
   raw.way_out = "map gaze onto a surface in Pupil Cloud, or take directions from the head with `gaze-frame` head";
   raw.source = file.path;
   raw.format = "pupil-cloud";
   raw.clock = "UTC, from 1970";
   raw.kind = options.frame == GazeFrame::head ? GazeKind::direction : GazeKind::scene_camera;
-  const std::size_t time = time_column(table, options, *own_time, place);
-  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 0, Evidence::header, place);
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 0, Evidence::header, place);
   RecordingColumns recordings(table, options.columns.recording, {"recording id"});
   LabelRuns runs;
   WitnessTally angles;
-  TableRows rows(
-      file, table,
-      std::max(recordings.needed_cells(), std::max({time, *x, *y, azimuth.value_or(0), elevation.value_or(0),
-                                                    worn.value_or(0), blink.value_or(0), fixation.value_or(0)}) +
-                                              1));
+  TableRows rows(file, table,
+                 std::max(recordings.needed_cells(),
+                          cells_up_to({c.time, c.x, c.y, c.azimuth, c.elevation, c.worn, c.blink, c.fixation})));
   while (rows.next()) {
     rows.check_length();
     if (recordings.note(rows, raw)) {
       runs.end();
     }
-    RawSample sample = missing_row(rows.time_ns(time, scale), rows.line(), Eye::cyclopean);
-    if (raw.kind == GazeKind::scene_camera && azimuth && elevation) {
-      angles.add(rows.number(*x), rows.number(*y), rows.number(*azimuth), -rows.number(*elevation));
+    const std::int64_t t_ns = rows.time_ns(c.time, scale);
+    if (raw.kind == GazeKind::scene_camera && c.azimuth && c.elevation) {
+      angles.add(rows.number(c.x), rows.number(c.y), rows.number(*c.azimuth), -rows.number(*c.elevation));
     }
-    const bool in_head = raw.kind == GazeKind::direction;
-    sample.at = {rows.number(in_head ? *azimuth : *x), rows.number(in_head ? *elevation : *y), 0};
-    sample.validity = std::isnan(sample.at.x) || std::isnan(sample.at.y) ? GazeValidity::lost : GazeValidity::ok;
-    if (worn && rows.number(*worn) == 0) {
-      sample.validity = GazeValidity::lost;
-    }
-    const std::string_view blink_id = rows.cell(blink);
-    if (!is_missing(blink_id)) {
-      sample.validity = GazeValidity::blink;
-      runs.add(GazeEventType::blink, Eye::cyclopean, std::string(blink_id), sample.t_ns, sample.row);
-    } else if (const std::string_view id = rows.cell(fixation); !is_missing(id)) {
-      runs.add(GazeEventType::fixation, Eye::cyclopean, std::string(id), sample.t_ns, sample.row);
-    } else {
-      runs.end();
-    }
+    RawSample sample = sample_of(rows, c, raw.kind, t_ns);
+    label_by_ids(rows, c.blink, c.fixation, sample, runs);
     raw.rows.push_back(sample);
   }
   runs.finish(raw);
   angles.finish(raw, "azimuth and elevation");
   if (raw.kind == GazeKind::direction) {
-    declare_directions(raw, {"azimuth [deg], elevation [deg]", Evidence::header}, GazeAxes::gl, Evidence::format,
-                       place);
-    raw.declared.form = PlaceForm::azimuth_elevation;
-    raw.declared.unit = {PositionUnit::deg, Evidence::header, {}};
+    declare_angles(raw, place);
     return raw;
   }
-  // The picture is 1088 x 1080 for Invisible, 1600 x 1200 for Neon; the file does not say.
-  double widest = 0;
-  for (const RawSample sample : raw.rows) {
-    widest = sample.at.x > widest && sample.at.x < 1600 ? sample.at.x : widest;
-  }
-  raw.picture_px = widest > 1100 ? Vec2d{1600, 1200} : Vec2d{1088, 1080};
-  add_note(raw, "picture size", fmt::format("{}x{} px", raw.picture_px->x, raw.picture_px->y), Evidence::statistics,
-           fmt::format("places reach {:.0f} px", widest));
+  guess_picture_size(raw);
   declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, "gaze x [px], gaze y [px]"},
                  place);
   return raw;

@@ -114,7 +114,7 @@ RawGaze read_gaze_pupil_core(const GazeFile& file, const GazeReadOptions& option
                 "export again with the 3D gaze mapper, or a surface");
   }
   const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 9, Evidence::format, place);
-  const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
+  const double least = least_confidence(options, kLeastConfidence);
   const bool right_first = by_eye && eye_0_is_right(file, table, c, raw);
   TableRows rows(file, table, c.needed);
   WitnessTally points;

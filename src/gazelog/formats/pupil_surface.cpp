@@ -51,13 +51,11 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
   const std::size_t time_at = time_column(table, options, *time, place);
   const TimeScale scale = declare_time(raw, options, table.headings[time_at].text, cloud ? 0 : 9,
                                        cloud ? Evidence::header : Evidence::format, place);
-  const double least = std::isnan(options.min_confidence) ? kLeastConfidence : options.min_confidence;
+  const double least = least_confidence(options, kLeastConfidence);
   RecordingColumns recordings(table, options.columns.recording, {"recording id"});
   LabelRuns runs;
-  TableRows rows(
-      file, table,
-      std::max(recordings.needed_cells(),
-               std::max({time_at, *x, *y, confidence.value_or(0), blink.value_or(0), fixation.value_or(0)}) + 1));
+  TableRows rows(file, table,
+                 std::max(recordings.needed_cells(), cells_up_to({time_at, x, y, confidence, blink, fixation})));
   while (rows.next()) {
     rows.check_length();
     if (recordings.note(rows, raw)) {
@@ -75,14 +73,7 @@ RawGaze read_gaze_pupil_surface(const GazeFile& file, const GazeReadOptions& opt
     } else if (sample.confidence < least) {
       sample.validity = GazeValidity::low_confidence;
     }
-    if (const std::string_view blink_id = rows.cell(blink); !is_missing(blink_id)) {
-      sample.validity = GazeValidity::blink;
-      runs.add(GazeEventType::blink, Eye::cyclopean, std::string(blink_id), sample.t_ns, sample.row);
-    } else if (const std::string_view id = rows.cell(fixation); !is_missing(id)) {
-      runs.add(GazeEventType::fixation, Eye::cyclopean, std::string(id), sample.t_ns, sample.row);
-    } else {
-      runs.end();
-    }
+    label_by_ids(rows, blink, fixation, sample, runs);
     raw.rows.push_back(sample);
   }
   runs.finish(raw);

@@ -13,10 +13,16 @@
 namespace gazetrace {
 namespace {
 
-struct SmiColumns {
+struct SmiEye {
   Eye eye = Eye::left;
   std::size_t x = 0, y = 0;
   std::optional<std::size_t> pupil, validity, event;
+};
+
+struct SmiColumns {
+  std::size_t time = 0, type = 0;
+  std::optional<std::size_t> trial;
+  std::vector<SmiEye> eyes;
 };
 
 std::vector<double> numbers_after_colon(std::string_view line) {
@@ -58,8 +64,8 @@ void read_preamble_lines(const DelimitedTable& table, RawGaze& raw) {
   }
 }
 
-std::vector<SmiColumns> eye_columns(const DelimitedTable& table, const std::string& place) {
-  std::vector<SmiColumns> eyes;
+std::vector<SmiEye> find_eyes(const DelimitedTable& table, const std::string& place) {
+  std::vector<SmiEye> eyes;
   for (const auto& [letter, eye] : {std::pair("L", Eye::left), std::pair("R", Eye::right)}) {
     const auto column = [&table, side = letter](std::string_view name) {
       return table.find(fmt::format("{} {}", side, name));
@@ -79,6 +85,81 @@ std::vector<SmiColumns> eye_columns(const DelimitedTable& table, const std::stri
   return eyes;
 }
 
+SmiColumns find_columns(const DelimitedTable& table, const GazeReadOptions& options, const std::string& place) {
+  const auto own_time = table.find("Time");
+  const auto type = table.find("Type");
+  if (!own_time || !type) {
+    throw Error(ErrorKind::input, place, "there are no columns 'Time' and 'Type'", "is this an SMI export?");
+  }
+  std::vector<SmiEye> eyes = find_eyes(table, place);
+  const std::size_t time = time_column(table, options, *own_time, place);
+  return {time, *type, table.find("Trial"), std::move(eyes)};
+}
+
+std::size_t needed_cells(const SmiColumns& c) {
+  std::size_t needed = cells_up_to({c.time, c.type});
+  for (const SmiEye& eye : c.eyes) {
+    needed = std::max(needed, cells_up_to({eye.x, eye.y, eye.pupil, eye.validity, eye.event}));
+  }
+  return needed;
+}
+
+std::string position_headings(const DelimitedTable& table, const std::vector<SmiEye>& eyes) {
+  std::string headings;
+  for (const SmiEye& eye : eyes) {
+    headings += (headings.empty() ? "" : ", ") + table.headings[eye.x].text + ", " + table.headings[eye.y].text;
+  }
+  return headings;
+}
+
+std::string pupil_unit(const DelimitedTable& table, const std::vector<SmiEye>& eyes) {
+  std::string unit;
+  for (const SmiEye& eye : eyes) {
+    unit = eye.pupil ? table.headings[*eye.pupil].unit : unit;
+  }
+  return unit;
+}
+
+// The rows of one trial are a segment of the log. `trial` is the name of the one in which the row before was.
+void note_trial(RawGaze& raw, std::string& trial, std::string_view name, std::int64_t t_ns, std::int64_t row) {
+  if (name != trial) {
+    trial = name;
+    raw.events.push_back({GazeEventType::segment, Eye::cyclopean, t_ns, t_ns, "trial " + trial.substr(0, 20), row});
+    return;
+  }
+  // Messages may stand behind the segment's own event.
+  const auto segment = std::find_if(raw.events.rbegin(), raw.events.rend(),
+                                    [](const GazeEvent& event) { return event.type == GazeEventType::segment; });
+  if (segment != raw.events.rend()) {
+    segment->end_ns = t_ns;
+  }
+}
+
+RawSample sample_of(TableRows& rows, const SmiEye& eye, std::int64_t t_ns) {
+  const Vec2d at{rows.number(eye.x), rows.number(eye.y)};
+  const bool is_zero = at.x == 0 && at.y == 0;
+  RawSample sample = position_row(t_ns, rows.line(), eye.eye, is_zero ? Vec2d{kNan, kNan} : at, rows.number(eye.pupil));
+  if (eye.validity && rows.number(*eye.validity) == 0) {
+    sample.validity = GazeValidity::lost;
+  }
+  if (rows.cell(eye.event) == "Blink") {
+    sample.validity = GazeValidity::blink;
+  }
+  return sample;
+}
+
+void label_row(LabelRuns& runs, TableRows& rows, const SmiEye& eye, std::int64_t t_ns) {
+  const std::string_view event = rows.cell(eye.event);
+  if (event == "Fixation" || event == "Saccade" || event == "Blink") {
+    runs.add(event == "Fixation"  ? GazeEventType::fixation
+             : event == "Saccade" ? GazeEventType::saccade
+                                  : GazeEventType::blink,
+             eye.eye, event, t_ns, rows.line());
+  } else {
+    runs.end();
+  }
+}
+
 }  // namespace
 
 double sniff_gaze_smi(const GazeFile& file) {
@@ -92,84 +173,37 @@ double sniff_gaze_smi(const GazeFile& file) {
 RawGaze read_gaze_smi(const GazeFile& file, const GazeReadOptions& options) {
   const DelimitedTable table = open_table(file);
   const std::string place = place_of(file, table.header_line);
-  const auto own_time = table.find("Time");
-  const auto type = table.find("Type");
-  if (!own_time || !type) {
-    throw Error(ErrorKind::input, place, "there are no columns 'Time' and 'Type'", "is this an SMI export?");
-  }
+  const SmiColumns c = find_columns(table, options, place);
   RawGaze raw;
   raw.source = file.path;
   raw.format = "smi";
   raw.clock = "tracker";
+  raw.pupil_unit = pupil_unit(table, c.eyes);
   read_preamble_lines(table, raw);
-  const std::vector<SmiColumns> eyes = eye_columns(table, place);
-  const std::size_t time = time_column(table, options, *own_time, place);
-  const TimeScale scale = declare_time(raw, options, table.headings[time].text, 3, Evidence::format, place);
-  std::size_t needed = std::max(time, *type) + 1;
-  std::string columns;
-  for (const SmiColumns& eye : eyes) {
-    needed = std::max({needed, eye.x + 1, eye.y + 1, eye.pupil.value_or(0) + 1, eye.validity.value_or(0) + 1,
-                       eye.event.value_or(0) + 1});
-    columns += (columns.empty() ? "" : ", ") + table.headings[eye.x].text + ", " + table.headings[eye.y].text;
-    if (eye.pupil) {
-      raw.pupil_unit = table.headings[*eye.pupil].unit;
-    }
-  }
-  const auto trial_column = table.find("Trial");
+  const TimeScale scale = declare_time(raw, options, table.headings[c.time].text, 3, Evidence::format, place);
   std::string trial;
   LabelRuns runs;
-  TableRows rows(file, table, needed);
+  TableRows rows(file, table, needed_cells(c));
   while (rows.next()) {
-    const std::int64_t t_ns = rows.time_ns(time, scale);
-    if (rows.cell(*type) == "MSG") {
+    const std::int64_t t_ns = rows.time_ns(c.time, scale);
+    const std::string_view type = rows.cell(c.type);
+    if (type == "MSG") {
       // Free text in the fourth column.
-      raw.events.push_back(
-          {GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(rows.cell(std::size_t{3})), rows.line()});
-      continue;
-    }
-    if (rows.cell(*type) != "SMP") {
-      continue;
-    }
-    rows.check_length();
-    if (trial_column && rows.cell(*trial_column) != trial) {
-      trial = rows.cell(*trial_column);
-      raw.events.push_back(
-          {GazeEventType::segment, Eye::cyclopean, t_ns, t_ns, "trial " + trial.substr(0, 20), rows.line()});
-    } else if (trial_column && !raw.events.empty()) {
-      for (auto event = raw.events.rbegin(); event != raw.events.rend(); ++event) {
-        if (event->type == GazeEventType::segment) {
-          event->end_ns = t_ns;
-          break;
-        }
+      add_message(raw, t_ns, std::string(rows.cell(std::size_t{3})), rows.line());
+    } else if (type == "SMP") {
+      rows.check_length();
+      if (c.trial) {
+        note_trial(raw, trial, rows.cell(*c.trial), t_ns, rows.line());
       }
-    }
-    for (const SmiColumns& eye : eyes) {
-      const Vec2d at{rows.number(eye.x), rows.number(eye.y)};
-      const bool is_zero = at.x == 0 && at.y == 0;
-      RawSample sample =
-          position_row(t_ns, rows.line(), eye.eye, is_zero ? Vec2d{kNan, kNan} : at, rows.number(eye.pupil));
-      if (eye.validity && rows.number(*eye.validity) == 0) {
-        sample.validity = GazeValidity::lost;
+      for (const SmiEye& eye : c.eyes) {
+        raw.rows.push_back(sample_of(rows, eye, t_ns));
       }
-      const std::string_view event = rows.cell(eye.event);
-      if (event == "Blink") {
-        sample.validity = GazeValidity::blink;
-      }
-      if (eye.eye == eyes.front().eye) {
-        if (event == "Fixation" || event == "Saccade" || event == "Blink") {
-          runs.add(event == "Fixation"  ? GazeEventType::fixation
-                   : event == "Saccade" ? GazeEventType::saccade
-                                        : GazeEventType::blink,
-                   eye.eye, event, t_ns, rows.line());
-        } else {
-          runs.end();
-        }
-      }
-      raw.rows.push_back(sample);
+      label_row(runs, rows, c.eyes.front(), t_ns);
     }
   }
   runs.finish(raw);
-  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, columns}, place);
+  declare_places(raw, {PositionUnit::px, PositionOrigin::top_left, Evidence::header, position_headings(table, c.eyes)},
+                 place);
   return raw;
 }
 

@@ -64,10 +64,10 @@ void add_line(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, std::
 
 void add_event(const JsonLeaves& json, std::int64_t t_ns, std::int64_t row, RawGaze& raw) {
   if (json.number("vts") == 0.0) {
-    raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, "scene video starts", row});
+    add_message(raw, t_ns, "scene video starts", row);
   } else if (json.has("sig")) {
     const std::string text = fmt::format("sync port {} {}", json.text("dir"), json.text("sig"));
-    raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, text, row});
+    add_message(raw, t_ns, text, row);
   }
 }
 

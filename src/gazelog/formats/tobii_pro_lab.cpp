@@ -177,7 +177,7 @@ RawGaze read_gaze_tobii_pro_lab(const GazeFile& file, const GazeReadOptions& opt
     }
     const std::int64_t t_ns = rows.time_ns(c.time, scale);
     if (const std::string_view event = rows.cell(c.event); !event.empty()) {
-      raw.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, std::string(event), rows.line()});
+      add_message(raw, t_ns, std::string(event), rows.line());
     }
     if (c.sensor && rows.cell(*c.sensor) != "Eye Tracker") {
       ++others;

@@ -91,8 +91,7 @@ RawGaze read_gaze_tobii_sdk(const GazeFile& file, const GazeReadOptions& options
   const std::vector<SdkEye> eyes = find_eyes(table, place);
   std::size_t needed = time + 1;
   for (const SdkEye& eye : eyes) {
-    needed = std::max({needed, eye.x + 1, eye.y.value_or(0) + 1, eye.validity.value_or(0) + 1,
-                       eye.pupil.value_or(0) + 1, eye.pupil_validity.value_or(0) + 1});
+    needed = std::max(needed, cells_up_to({eye.x, eye.y, eye.validity, eye.pupil, eye.pupil_validity}));
   }
   TableRows rows(file, table, needed);
   while (rows.next()) {

@@ -156,7 +156,7 @@ class StudioReader {
     }
     const std::int64_t t_ns = rows_.time_ns(c_.time, scale_);
     if (!happened.empty()) {
-      raw_.events.push_back({GazeEventType::message, Eye::cyclopean, t_ns, t_ns, happened, rows_.line()});
+      add_message(raw_, t_ns, happened, rows_.line());
     }
     if (!is_sample) {
       return;

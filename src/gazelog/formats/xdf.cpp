@@ -40,7 +40,7 @@ void read_header(XdfStream& stream) {
   stream.nominal_rate_hz = rate > 0 && rate < 1e6 ? rate : 0;
 }
 
-std::vector<Channel> channels_of(const XdfStream& stream) {
+std::vector<Channel> channels_of(const XdfStream& stream, const std::string& path) {
   pugi::xml_document xml;
   xml.load_buffer(stream.header.data(), stream.header.size());
   std::vector<Channel> channels;
@@ -52,6 +52,10 @@ std::vector<Channel> channels_of(const XdfStream& stream) {
     const auto says = [&](std::string_view side) { return eye == side || label.find(side) != std::string::npos; };
     channel.eye = says("left") ? Eye::left : says("right") ? Eye::right : Eye::cyclopean;
     channels.push_back(std::move(channel));
+  }
+  if (channels.size() > stream.channels) {
+    throw Error(ErrorKind::input, path,
+                fmt::format("its header names {} channels and counts {}", channels.size(), stream.channels));
   }
   return channels;
 }
@@ -174,6 +178,75 @@ const XdfStream& gaze_stream(const std::vector<XdfStream>& streams, const std::s
   return *found;
 }
 
+// One gaze out of the values of a sample, one for each channel.
+RawSample sample_of(const double* values, const GazeChannels& gaze, std::int64_t t_ns, std::int64_t row) {
+  RawSample sample = missing_row(t_ns, row, gaze.eye);
+  const auto value = [&](const std::optional<std::size_t>& c) { return c ? values[*c] : kNan; };
+  if (gaze.is_direction) {
+    sample.at = {value(gaze.at[0]), value(gaze.at[1]), value(gaze.at[2])};
+    sample.validity = is_finite(sample.at) ? GazeValidity::ok : GazeValidity::lost;
+  } else if (const double x = value(gaze.at[0]), y = value(gaze.at[1]); std::isfinite(x) && std::isfinite(y)) {
+    sample.at.x = x;
+    sample.at.y = y;
+    sample.validity = GazeValidity::ok;
+  }
+  sample.confidence = static_cast<float>(value(gaze.confidence));
+  sample.pupil = static_cast<float>(value(gaze.pupil));
+  return sample;
+}
+
+void read_samples(RawGaze& raw, const XdfStream& stream, const std::vector<GazeChannels>& gazes, double least,
+                  const std::string& path) {
+  const std::vector<double> times_s = synchronized_times_s(stream);
+  if (stream.values.size() / stream.channels != times_s.size()) {
+    throw Error(ErrorKind::input, path,
+                fmt::format("its gaze stream has {} values for {} samples of {} channels", stream.values.size(),
+                            times_s.size(), stream.channels),
+                "record or export it again");
+  }
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    const double* const values = stream.values.data() + i * stream.channels;
+    const double t_ns = times_s[i] * 1e9;
+    if (!(std::abs(t_ns) < 9e18)) {
+      throw Error(ErrorKind::input, path, fmt::format("time {} s of sample {} is no time", times_s[i], i + 1));
+    }
+    for (const GazeChannels& gaze : gazes) {
+      RawSample sample = sample_of(values, gaze, std::llround(t_ns), static_cast<std::int64_t>(i) + 1);
+      if (sample.confidence < least && is_usable(sample.validity)) {
+        sample.validity = sample.confidence > 0 ? GazeValidity::low_confidence : GazeValidity::lost;
+      }
+      raw.rows.push_back(sample);
+    }
+  }
+}
+
+// Declares how the rows are meant, of which `gaze` is the first kind.
+void declare_gaze(RawGaze& raw, const GazeChannels& gaze, const std::vector<Channel>& channels,
+                  const GazeReadOptions& options, const std::string& path) {
+  const std::string columns = channels[*gaze.at[0]].label + ", " + channels[*gaze.at[1]].label;
+  if (gaze.is_direction) {
+    declare_directions(raw, {columns, Evidence::header}, GazeAxes::gl, Evidence::format, path);
+    return;
+  }
+  PlaceSpace space{PositionUnit::fraction,
+                   gaze.is_scene_camera ? PositionOrigin::bottom_left : PositionOrigin::top_left, Evidence::header,
+                   columns};
+  if (const auto unit = position_unit_from(channels[*gaze.at[0]].unit)) {
+    space.unit = *unit;
+    space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
+  } else if (!gaze.is_scene_camera) {
+    // Of all that the stream holds: what stands for missing values counts.
+    std::string evidence;
+    space.unit = guess_position_unit(raw.rows, evidence);
+    space.evidence = Evidence::statistics;
+    raw.directions_grow_up = options.columns.origin != PositionOrigin::top_left;  // that origin is a guess, too
+    raw.warnings.push_back(
+        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with `gaze-unit`", path,
+                    evidence, to_string(space.unit)));
+  }
+  declare_places(raw, space, path);
+}
+
 }  // namespace
 
 double sniff_gaze_xdf(const GazeFile& file) {
@@ -187,11 +260,7 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
   raw.clock = "LSL";
   const std::vector<XdfStream> streams = read_xdf(file.text, file.path, raw.damages, read_header);
   const XdfStream& stream = gaze_stream(streams, file.path);
-  const std::vector<Channel> channels = channels_of(stream);
-  if (channels.size() > stream.channels) {
-    throw Error(ErrorKind::input, file.path,
-                fmt::format("its header names {} channels and counts {}", channels.size(), stream.channels));
-  }
+  const std::vector<Channel> channels = channels_of(stream, file.path);
   const std::vector<GazeChannels> gazes = find_gazes(channels, options, file.path);
   const GazeChannels& first = gazes.front();
   if (first.is_scene_camera) {
@@ -202,66 +271,8 @@ RawGaze read_gaze_xdf(const GazeFile& file, const GazeReadOptions& options) {
                                      : GazeKind::screen;
   raw.nominal_rate_hz = stream.nominal_rate_hz;
   raw.declared.time_exponent = {9, Evidence::format, "doubles in the file, on the recorder's clock"};
-  const double least = std::isnan(options.min_confidence) ? first.is_scene_camera ? 0.6 : 1e-9 : options.min_confidence;
-  const std::vector<double> times_s = synchronized_times_s(stream);
-  if (stream.values.size() / stream.channels != times_s.size()) {
-    throw Error(ErrorKind::input, file.path,
-                fmt::format("its gaze stream has {} values for {} samples of {} channels", stream.values.size(),
-                            times_s.size(), stream.channels),
-                "record or export it again");
-  }
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const double* const values = stream.values.data() + i * stream.channels;
-    const double t_ns = times_s[i] * 1e9;
-    if (!(std::abs(t_ns) < 9e18)) {
-      throw Error(ErrorKind::input, file.path, fmt::format("time {} s of sample {} is no time", times_s[i], i + 1));
-    }
-    for (const GazeChannels& gaze : gazes) {
-      RawSample sample = missing_row(std::llround(t_ns), static_cast<std::int64_t>(i) + 1, gaze.eye);
-      const auto value = [&](const std::optional<std::size_t>& c) { return c ? values[*c] : kNan; };
-      if (raw.kind == GazeKind::direction) {
-        sample.at = {value(gaze.at[0]), value(gaze.at[1]), value(gaze.at[2])};
-        sample.validity = is_finite(sample.at) ? GazeValidity::ok : GazeValidity::lost;
-      } else {
-        sample.at.x = value(gaze.at[0]);
-        sample.at.y = value(gaze.at[1]);
-        sample.validity =
-            std::isfinite(sample.at.x) && std::isfinite(sample.at.y) ? GazeValidity::ok : GazeValidity::lost;
-        if (sample.validity == GazeValidity::lost) {
-          sample.at.x = sample.at.y = kNan;
-        }
-      }
-      sample.confidence = static_cast<float>(value(gaze.confidence));
-      sample.pupil = static_cast<float>(value(gaze.pupil));
-      if (sample.confidence < least && is_usable(sample.validity)) {
-        sample.validity = sample.confidence > 0 ? GazeValidity::low_confidence : GazeValidity::lost;
-      }
-      raw.rows.push_back(sample);
-    }
-  }
-  const std::string columns = channels[*first.at[0]].label + ", " + channels[*first.at[1]].label;
-  if (raw.kind == GazeKind::direction) {
-    declare_directions(raw, {columns, Evidence::header}, GazeAxes::gl, Evidence::format, file.path);
-    return raw;
-  }
-  PlaceSpace space{PositionUnit::fraction,
-                   first.is_scene_camera ? PositionOrigin::bottom_left : PositionOrigin::top_left, Evidence::header,
-                   columns};
-  const auto unit = position_unit_from(channels[*first.at[0]].unit);
-  if (unit) {
-    space.unit = *unit;
-    space.origin = *unit == PositionUnit::deg ? PositionOrigin::center : space.origin;
-  } else if (!first.is_scene_camera) {
-    // Of all that the stream holds: what stands for missing values counts.
-    std::string evidence;
-    space.unit = guess_position_unit(raw.rows, evidence);
-    space.evidence = Evidence::statistics;
-    raw.directions_grow_up = options.columns.origin != PositionOrigin::top_left;  // that origin is a guess, too
-    raw.warnings.push_back(
-        fmt::format("{}: guessed from its values ({}) that the positions are in {}; state it with `gaze-unit`",
-                    file.path, evidence, to_string(space.unit)));
-  }
-  declare_places(raw, space, file.path);
+  read_samples(raw, stream, gazes, least_confidence(options, first.is_scene_camera ? 0.6 : 1e-9), file.path);
+  declare_gaze(raw, first, channels, options, file.path);
   return raw;
 }
 
