@@ -14,7 +14,8 @@
 namespace gazetrace {
 
 inline constexpr double kPlotWidth = 640;
-inline constexpr double kPlotTop = 44;  // where axes begin: below a title of two lines
+// Where axes lie; above them is room for a title of two lines.
+inline constexpr double kPlotLeft = 84, kPlotRight = kPlotWidth - 26, kPlotTop = 44;
 
 // Maps values to picture coordinates on a linear or logarithmic scale.
 class PlotScale {

@@ -63,12 +63,14 @@ const char* event_color(const std::string& event) {
                                                       : "#bdbdbd";
 }
 
-}  // namespace
+// The runs of a family, frame by frame.
+struct FamilyOverTime {
+  std::vector<Series> times, scores;
+  std::vector<double> t_s;  // of all frames
+};
 
-std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, const ResultMetric& metric) {
-  std::vector<Series> times;
-  std::vector<Series> scores;
-  std::vector<double> t_s;
+FamilyOverTime family_over_time(const Results& data, const ResultRow& test, const std::string& metric) {
+  FamilyOverTime family;
   for (const ResultRow* const row : plotted_family(data, test)) {
     Series time{row, {}, {}};
     Series score{row, {}, {}};
@@ -76,77 +78,94 @@ std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, 
       time.t_s.push_back(frame.t_s);
       time.values.push_back(frame.time_s);
       score.t_s.push_back(frame.t_s);
-      score.values.push_back(frame_score(frame, metric.name));
-      t_s.push_back(frame.t_s);
+      score.values.push_back(frame_score(frame, metric));
+      family.t_s.push_back(frame.t_s);
     }
-    times.push_back(std::move(time));
-    scores.push_back(std::move(score));
+    family.times.push_back(std::move(time));
+    family.scores.push_back(std::move(score));
   }
-  const std::vector<double> all_times = present(times);
-  const std::vector<double> all_scores = present(scores);
-  if (all_times.empty() && all_scores.empty()) {
+  return family;
+}
+
+// What the eye did, from the time of a frame to that of the next, and the words for the colors.
+void draw_events(PlotSvg& svg, const std::vector<ResultFrame>& frames, const PlotScale& x, double top) {
+  constexpr double kHeight = 10;
+  std::vector<std::string> events;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const ResultFrame& frame = frames[i];
+    const double from = x.at(frame.t_s);
+    const double to = i + 1 < frames.size() ? x.at(frames[i + 1].t_s) : std::max(from + 4, kPlotRight);
+    svg.add(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:g}\" fill=\"{}\"/>", from, top,
+                        to - from, kHeight, event_color(frame.event)));
+    if (std::find(events.begin(), events.end(), frame.event) == events.end()) {
+      events.push_back(frame.event);
+    }
+  }
+  double left = kPlotLeft;
+  for (const std::string& event : events) {
+    svg.add(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"10\" height=\"10\" fill=\"{}\"/>", left, top + 16,
+                        event_color(event)));
+    svg.text(left + 14, top + 25, event == "none" ? "eye: not known" : "eye: " + event, "start", " font-size=\"11\"");
+    left += 120;
+  }
+}
+
+std::string time_svg(const FamilyOverTime& family, const ResultRow& test, const ResultMetric& metric,
+                     const std::string& title) {
+  constexpr double kMiddle = 190, kSecond = 214, kBottom = 380, kStrip = kBottom + 26;
+  std::vector<std::pair<ReportRole, std::string>> entries;
+  entries.reserve(family.times.size());
+  for (const Series& series : family.times) {
+    entries.emplace_back(report_role(series.row->role), series.row->label);
+  }
+  PlotSvg svg(kBottom + 78 + legend_height(entries.size()) + 26, title);
+  svg.title(title);
+  const std::vector<double> all_times = present(family.times);
+  const std::vector<double> all_scores = present(family.scores);
+  const PlotScale x(family.t_s, kPlotLeft, kPlotRight, false);
+  const PlotScale y_time(all_times, kMiddle, kPlotTop, wants_log(all_times), true);
+  const PlotScale y_score(all_scores, kBottom, kSecond, wants_log(all_scores), false);
+  svg.axes(x, y_time, kPlotLeft, kPlotTop, kPlotRight, kMiddle, "", "time of a frame [s]", false);
+  svg.axes(x, y_score, kPlotLeft, kSecond, kPlotRight, kBottom, "", metric_text(metric));
+  for (const Series& series : family.times) {
+    draw(svg, series, x, y_time);
+  }
+  for (const Series& series : family.scores) {
+    draw(svg, series, x, y_score);
+  }
+  draw_events(svg, test.frames, x, kStrip);
+  svg.text(kPlotRight, kStrip + 25, "video time [s]", "end");
+  const double end = svg.legend(entries, 24, kBottom + 74);
+  svg.text(24, end + 14, metric.is_lower_better ? "Lower is better in both." : "Below, higher is better.", "start",
+           " font-size=\"11\"");
+  return svg.str();
+}
+
+std::string time_csv(const FamilyOverTime& family, const ResultMetric& metric) {
+  std::string csv = "id,role,label,frame,t_s,event,time_s," + csv_cell(metric.name) + "\n";
+  for (const Series& series : family.times) {
+    for (const ResultFrame& frame : series.row->frames) {
+      csv += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(series.row->id), to_string(series.row->role),
+                         csv_cell(series.row->label), frame.index, csv_number(frame.t_s), csv_cell(frame.event),
+                         csv_number(frame.time_s), csv_number(frame_score(frame, metric.name)));
+    }
+  }
+  return csv;
+}
+
+}  // namespace
+
+std::optional<ReportPlot> time_plot(const Results& data, const ResultRow& test, const ResultMetric& metric) {
+  const FamilyOverTime family = family_over_time(data, test, metric.name);
+  if (present(family.times).empty() && present(family.scores).empty()) {
     return std::nullopt;
   }
   ReportPlot plot{"time", test.scene, test.gaze, metric.name, test.id, "", "", "", ""};
   plot.name = plot_file_name({"time", test.id, metric.name});
   plot.title =
       fmt::format("Speed and {} over time, {}: {}", metric.name, scene_gaze_text({test.scene, test.gaze}), test.label);
-
-  constexpr double kLeft = 84, kTop = kPlotTop, kMiddle = 190, kSecond = 214, kBottom = 380, kStrip = 10;
-  const double right = kPlotWidth - 26;
-  std::vector<std::pair<ReportRole, std::string>> entries;
-  entries.reserve(times.size());
-  for (const Series& series : times) {
-    entries.emplace_back(report_role(series.row->role), series.row->label);
-  }
-  PlotSvg svg(kBottom + 78 + legend_height(entries.size()) + 26, plot.title);
-  svg.title(plot.title);
-  const PlotScale x(t_s, kLeft, right, false);
-  const PlotScale y_time(all_times, kMiddle, kTop, wants_log(all_times), true);
-  const PlotScale y_score(all_scores, kBottom, kSecond, wants_log(all_scores), false);
-  svg.axes(x, y_time, kLeft, kTop, right, kMiddle, "", "time of a frame [s]", false);
-  svg.axes(x, y_score, kLeft, kSecond, right, kBottom, "", metric_text(metric));
-  for (const Series& series : times) {
-    draw(svg, series, x, y_time);
-  }
-  for (const Series& series : scores) {
-    draw(svg, series, x, y_score);
-  }
-  // What the eye did, from the time of a frame to that of the next.
-  std::vector<std::string> events;
-  const double strip = kBottom + 26;
-  for (std::size_t i = 0; i < test.frames.size(); ++i) {
-    const ResultFrame& frame = test.frames[i];
-    const double from = x.at(frame.t_s);
-    const double to = i + 1 < test.frames.size() ? x.at(test.frames[i + 1].t_s) : std::max(from + 4, right);
-    svg.add(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:g}\" fill=\"{}\"/>", from, strip,
-                        to - from, kStrip, event_color(frame.event)));
-    if (std::find(events.begin(), events.end(), frame.event) == events.end()) {
-      events.push_back(frame.event);
-    }
-  }
-  double event_x = kLeft;
-  for (const std::string& event : events) {
-    svg.add(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"10\" height=\"10\" fill=\"{}\"/>", event_x, strip + 16,
-                        event_color(event)));
-    svg.text(event_x + 14, strip + 25, event == "none" ? "eye: not known" : "eye: " + event, "start",
-             " font-size=\"11\"");
-    event_x += 120;
-  }
-  svg.text(right, strip + 25, "video time [s]", "end");
-  const double end = svg.legend(entries, 24, kBottom + 74);
-  svg.text(24, end + 14, metric.is_lower_better ? "Lower is better in both." : "Below, higher is better.", "start",
-           " font-size=\"11\"");
-  plot.svg = svg.str();
-
-  plot.csv = "id,role,label,frame,t_s,event,time_s," + csv_cell(metric.name) + "\n";
-  for (const Series& series : times) {
-    for (const ResultFrame& frame : series.row->frames) {
-      plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(series.row->id), to_string(series.row->role),
-                              csv_cell(series.row->label), frame.index, csv_number(frame.t_s), csv_cell(frame.event),
-                              csv_number(frame.time_s), csv_number(frame_score(frame, metric.name)));
-    }
-  }
+  plot.svg = time_svg(family, test, metric, plot.title);
+  plot.csv = time_csv(family, metric);
   return plot;
 }
 

@@ -10,6 +10,8 @@
 namespace gazetrace {
 namespace {
 
+constexpr double kParetoBottom = 350;  // of the axes
+
 struct Point {
   const ResultRow* row = nullptr;
   Interval time_s, score;
@@ -141,71 +143,43 @@ std::string front_words(const std::vector<Front>& fronts) {
   return lines > 0 ? "Broad line: Pareto front. " + bars : bars;
 }
 
-}  // namespace
-
-std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both, const ResultMetric& metric) {
-  const std::vector<Point> points = points_of(data, both, metric.name);
-  if (points.empty()) {
-    return std::nullopt;
-  }
-  ReportPlot plot{"pareto", both.scene, both.gaze, metric.name, "", "", "", "", ""};
-  plot.name = plot_file_name({"pareto", both.scene, both.gaze, metric.name});
-  plot.title = fmt::format("{} against time, {}", metric.name, scene_gaze_text(both));
-
-  std::vector<Interval> all_times;
-  std::vector<Interval> all_scores;
-  for (const Point& point : points) {
-    all_times.push_back(point.time_s);
-    all_scores.push_back(point.score);
-  }
-  const std::vector<double> times = plotted_range(all_times);
-  const std::vector<double> scores = plotted_range(all_scores);
-  constexpr double kLeft = 84, kTop = kPlotTop, kBottom = 350;
-  const double right = kPlotWidth - 26;
-  const PlotScale x(times, kLeft, right, wants_log(times));
-  const PlotScale y(scores, kBottom, kTop, wants_log(scores));
-  std::vector<std::pair<ReportRole, std::string>> entries;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    entries.emplace_back(report_role(points[i].row->role), fmt::format("{}  {}", i + 1, points[i].row->label));
-  }
-  PlotSvg svg(kBottom + 56 + legend_height(entries.size()) + 26, plot.title);
-  svg.title(plot.title);
-  svg.axes(x, y, kLeft, kTop, right, kBottom, "time of a frame [s]",
-           metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
+// The reference's own noise, where it lies within the axes.
+void draw_floors(PlotSvg& svg, const Results& data, const SceneGaze& both, const std::string& metric,
+                 const PlotScale& y) {
   const std::vector<const ResultReference*> scenes = find_references(data, both);
   for (const ResultReference* const scene : scenes) {
-    const std::optional<double> floor = find_floor(scene, both.gaze, metric.name, "whole");
-    if (floor && y.at(*floor) > kTop && y.at(*floor) < kBottom) {
+    const std::optional<double> floor = find_floor(scene, both.gaze, metric, "whole");
+    if (floor && y.at(*floor) > kPlotTop && y.at(*floor) < kParetoBottom) {
       svg.add(
           fmt::format("<path class=\"line\" stroke=\"#1c1c1c\" stroke-dasharray=\"2 4\" fill=\"none\" "
                       "d=\"M{:.1f} {:.1f}H{:.1f}\"/>",
-                      kLeft, y.at(*floor), right));
-      svg.text(right - 4, y.at(*floor) - 5, reference_text(*scene, scenes.size()) + " from itself", "end",
+                      kPlotLeft, y.at(*floor), kPlotRight));
+      svg.text(kPlotRight - 4, y.at(*floor) - 5, reference_text(*scene, scenes.size()) + " from itself", "end",
                " font-size=\"11\"");
     }
   }
-  const std::vector<Front> fronts = fronts_of(data, both, metric.name, points);
-  for (const Front& front : fronts) {
-    draw_front(front, x, y, svg);
+}
+
+// A mark with its intervals in time and in score.
+void draw_point(PlotSvg& svg, const Point& point, const PlotScale& x, const PlotScale& y) {
+  const ReportRole role = report_role(point.row->role);
+  const double px = x.at(point.time_s.mean);
+  const double py = y.at(point.score.mean);
+  const std::string open = fmt::format("class=\"role-{}\" stroke=\"{}\" fill=\"none\"", escaped(role.name), role.color);
+  if (point.time_s.low) {
+    svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}H{:.1f}\"/>", open, x.within(*point.time_s.low), py,
+                        x.within(*point.time_s.high)));
   }
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point& point = points[i];
-    const ReportRole role = report_role(point.row->role);
-    const double px = x.at(point.time_s.mean);
-    const double py = y.at(point.score.mean);
-    const std::string open =
-        fmt::format("class=\"role-{}\" stroke=\"{}\" fill=\"none\"", escaped(role.name), role.color);
-    if (point.time_s.low) {
-      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}H{:.1f}\"/>", open, x.within(*point.time_s.low), py,
-                          x.within(*point.time_s.high)));
-    }
-    if (point.score.low) {
-      svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}V{:.1f}\"/>", open, px, y.within(*point.score.low),
-                          y.within(*point.score.high)));
-    }
-    svg.mark(role, px, py);
+  if (point.score.low) {
+    svg.add(fmt::format("<path {} d=\"M{:.1f} {:.1f}V{:.1f}\"/>", open, px, y.within(*point.score.low),
+                        y.within(*point.score.high)));
   }
-  Labels labels({kLeft, kTop, right, kBottom});
+  svg.mark(role, px, py);
+}
+
+// The numbers of the points, by which the legend names them.
+void draw_numbers(PlotSvg& svg, const std::vector<Point>& points, const PlotScale& x, const PlotScale& y) {
+  Labels labels({kPlotLeft, kPlotTop, kPlotRight, kParetoBottom});
   for (const Point& point : points) {
     labels.keep_clear(x.at(point.time_s.mean), y.at(point.score.mean));
   }
@@ -214,21 +188,67 @@ std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both
     labels.put(x.at(point.time_s.mean), y.at(point.score.mean),
                std::to_string(i + 1) + (point.is_resolved ? "" : " (unresolved)"), svg);
   }
-  const double end = svg.legend(entries, 24, kBottom + 52);
-  svg.text(24, end + 16, front_words(fronts), "start", " font-size=\"11\"");
-  plot.svg = svg.str();
+}
 
-  plot.csv =
+std::string pareto_svg(const Results& data, const SceneGaze& both, const ResultMetric& metric,
+                       const std::vector<Point>& points, const std::vector<Front>& fronts, const std::string& title) {
+  std::vector<Interval> all_times;
+  std::vector<Interval> all_scores;
+  std::vector<std::pair<ReportRole, std::string>> entries;
+  for (const Point& point : points) {
+    all_times.push_back(point.time_s);
+    all_scores.push_back(point.score);
+    entries.emplace_back(report_role(point.row->role), fmt::format("{}  {}", entries.size() + 1, point.row->label));
+  }
+  const std::vector<double> times = plotted_range(all_times);
+  const std::vector<double> scores = plotted_range(all_scores);
+  const PlotScale x(times, kPlotLeft, kPlotRight, wants_log(times));
+  const PlotScale y(scores, kParetoBottom, kPlotTop, wants_log(scores));
+  PlotSvg svg(kParetoBottom + 56 + legend_height(entries.size()) + 26, title);
+  svg.title(title);
+  svg.axes(x, y, kPlotLeft, kPlotTop, kPlotRight, kParetoBottom, "time of a frame [s]",
+           metric_text(metric) + (metric.is_lower_better ? ", lower is better" : ", higher is better"));
+  draw_floors(svg, data, both, metric.name, y);
+  for (const Front& front : fronts) {
+    draw_front(front, x, y, svg);
+  }
+  for (const Point& point : points) {
+    draw_point(svg, point, x, y);
+  }
+  draw_numbers(svg, points, x, y);
+  const double end = svg.legend(entries, 24, kParetoBottom + 52);
+  svg.text(24, end + 16, front_words(fronts), "start", " font-size=\"11\"");
+  return svg.str();
+}
+
+std::string pareto_csv(const ResultMetric& metric, const std::vector<Point>& points, const std::vector<Front>& fronts) {
+  std::string csv =
       "number,id,role,label,time_s,time_s_low,time_s_high," + csv_cell(metric.name) + ",low,high,resolved,front\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     const bool on_front = std::any_of(fronts.begin(), fronts.end(), [&](const Front& front) {
       return std::find(front.points.begin(), front.points.end(), &point) != front.points.end();
     });
-    plot.csv += fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, csv_cell(point.row->id), to_string(point.row->role),
-                            csv_cell(point.row->label), csv_interval(point.time_s), csv_interval(point.score),
-                            point.is_resolved ? 1 : 0, on_front ? 1 : 0);
+    csv += fmt::format("{},{},{},{},{},{},{},{}\n", i + 1, csv_cell(point.row->id), to_string(point.row->role),
+                       csv_cell(point.row->label), csv_interval(point.time_s), csv_interval(point.score),
+                       point.is_resolved ? 1 : 0, on_front ? 1 : 0);
   }
+  return csv;
+}
+
+}  // namespace
+
+std::optional<ReportPlot> pareto_plot(const Results& data, const SceneGaze& both, const ResultMetric& metric) {
+  const std::vector<Point> points = points_of(data, both, metric.name);
+  if (points.empty()) {
+    return std::nullopt;
+  }
+  const std::vector<Front> fronts = fronts_of(data, both, metric.name, points);
+  ReportPlot plot{"pareto", both.scene, both.gaze, metric.name, "", "", "", "", ""};
+  plot.name = plot_file_name({"pareto", both.scene, both.gaze, metric.name});
+  plot.title = fmt::format("{} against time, {}", metric.name, scene_gaze_text(both));
+  plot.svg = pareto_svg(data, both, metric, points, fronts, plot.title);
+  plot.csv = pareto_csv(metric, points, fronts);
   return plot;
 }
 
