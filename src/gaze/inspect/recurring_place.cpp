@@ -110,13 +110,12 @@ std::vector<FrequentPlace> frequent_places(const RawRows& rows, bool has_three) 
   return frequent;
 }
 
-// A place that gaze reaches again and again, and by jumps from elsewhere. Beside the display a few such rows are
-// enough; elsewhere the place must hold a hundredth of the rows, and no other place may be like it.
-std::optional<RecurringPlace> find_mark(const RawGaze& raw, const Conventions& conventions,
-                                        const std::vector<FrequentPlace>& frequent) {
-  const RowSamples sample_of(raw, conventions);
+using VisitedPlaces = std::map<Place, Visits>;
+
+// The places that may be a mark, by where they lie as gaze, without any visit yet.
+VisitedPlaces candidates(const RowSamples& sample_of, const std::vector<FrequentPlace>& frequent) {
   const GazeKind kind = sample_of.kind();
-  std::map<Place, Visits> places;
+  VisitedPlaces places;
   for (const FrequentPlace& place : frequent) {
     const Vec3d at = place_of(sample_of(place.row), kind);
     const bool is_zero = place.raw.x == 0 && place.raw.y == 0 && place.raw.z == 0;  // zeros are counted separately
@@ -125,48 +124,63 @@ std::optional<RecurringPlace> find_mark(const RawGaze& raw, const Conventions& c
       places.try_emplace(key_of(at), Visits{.raw = place.raw, .is_beside = is_beside});
     }
   }
-  if (places.empty()) {
-    return std::nullopt;
+  return places;
+}
+
+// Where an eye is in a row.
+struct Stay {
+  std::optional<Vec3d> at;
+  Visits* visits = nullptr;  // to that place, where it is one of the candidates
+};
+
+// Counts the step between two rows that follow each other for both places.
+void count_step(const Stay& from, const Stay& to) {
+  if (!from.at || key_of(*from.at) == key_of(*to.at)) {
+    return;
   }
-  struct Last {
-    std::optional<Vec3d> at;
-    Visits* visits = nullptr;  // to the row's place, where that is one of the candidates
-  };
-  std::array<Last, 3> last_of_eye;
+  const Vec3d step = *to.at - *from.at;
+  const bool jumps = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)}) > kJump;
+  for (Visits* const visits : {from.visits, to.visits}) {
+    if (visits != nullptr) {
+      ++visits->moves;
+      visits->jumps += jumps ? 1 : 0;
+    }
+  }
+}
+
+VisitedPlaces with_visits(VisitedPlaces places, const RowSamples& sample_of, std::size_t rows) {
+  const GazeKind kind = sample_of.kind();
+  std::array<Stay, 3> last_of_eye;
   std::array<const Visits*, 3> was_at{};  // the same, with losses left out
-  for (std::size_t row = 0; row < raw.rows.size(); ++row) {
+  for (std::size_t row = 0; row < rows; ++row) {
     const GazeSample sample = sample_of(row);
     const auto eye = static_cast<std::size_t>(sample.eye);
-    Last& last = last_of_eye[eye];
     const Vec3d at = place_of(sample, kind);
     if (!is_usable(sample.validity) || !is_known(at)) {
-      last = {};
+      last_of_eye[eye] = {};
       continue;
     }
     const auto known = places.find(key_of(at));
-    const Last now{at, known == places.end() ? nullptr : &known->second};
+    const Stay now{at, known == places.end() ? nullptr : &known->second};
     if (now.visits != nullptr) {
       ++now.visits->rows;
       now.visits->times[eye] += was_at[eye] != now.visits ? 1 : 0;
     }
     was_at[eye] = now.visits;
-    if (last.at && key_of(*last.at) != key_of(at)) {
-      const Vec3d step = at - *last.at;
-      const bool jumps = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)}) > kJump;
-      for (Visits* const visits : {last.visits, now.visits}) {
-        if (visits != nullptr) {
-          ++visits->moves;
-          visits->jumps += jumps ? 1 : 0;
-        }
-      }
-    }
-    last = now;
+    count_step(last_of_eye[eye], now);
+    last_of_eye[eye] = now;
   }
+  return places;
+}
+
+// Beside the display a few rows are enough; elsewhere the place must hold a hundredth of the rows, and no other place
+// may be like it.
+std::optional<RecurringPlace> mark_among(const VisitedPlaces& places, std::size_t rows_in_log) {
   const Visits* beside = nullptr;
   const Visits* within = nullptr;
   std::size_t next_within_rows = 0;
   for (const auto& [at, visits] : places) {
-    if (!visits.look_like_a_mark(raw.rows.size())) {
+    if (!visits.look_like_a_mark(rows_in_log)) {
       continue;
     }
     const Visits*& most = visits.is_beside ? beside : within;
@@ -184,6 +198,18 @@ std::optional<RecurringPlace> find_mark(const RawGaze& raw, const Conventions& c
   }
   const Visits* const mark = beside != nullptr ? beside : within;
   return mark == nullptr ? std::nullopt : std::optional(RecurringPlace{mark->raw, mark->rows});
+}
+
+// A place that gaze reaches again and again, and by jumps from elsewhere.
+std::optional<RecurringPlace> find_mark(const RawGaze& raw, const Conventions& conventions,
+                                        const std::vector<FrequentPlace>& frequent) {
+  const RowSamples sample_of(raw, conventions);
+  VisitedPlaces places = candidates(sample_of, frequent);
+  if (places.empty()) {
+    return std::nullopt;
+  }
+  const std::size_t rows = raw.rows.size();
+  return mark_among(with_visits(std::move(places), sample_of, rows), rows);
 }
 
 }  // namespace
