@@ -179,15 +179,6 @@ void pixels_of_site(const SamplingMap& map, const Site& site, std::vector<PixelI
   });
 }
 
-ImageGray samples_per_pixel(const SamplingMap& map) {
-  ImageGray image(map.width_px, map.height_px);
-  for (const Site& site : map.sites) {
-    const auto value = static_cast<float>(static_cast<double>(site.samples) / site.pixels);
-    for_each_pixel(map, site, [&](int x, int y) { image(x, y) = value; });
-  }
-  return image;
-}
-
 ImageGray eccentricity_image(const PlanarView& view, const Vec3d& gaze_direction) {
   ImageGray image(view.width_px, view.height_px);
   for (int y = 0; y < view.height_px; ++y) {

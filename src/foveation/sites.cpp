@@ -207,15 +207,6 @@ class SiteBuilder {
 
 }  // namespace
 
-ImageGray expected_spp_of(const SamplingMap& map) {
-  ImageGray expected(map.width_px, map.height_px);
-  for (std::size_t i = 0; i < map.sites.size(); ++i) {
-    const auto value = static_cast<float>(map.expected(i) / map.sites[i].pixels);
-    for_each_pixel(map, map.sites[i], [&](int x, int y) { expected(x, y) = value; });
-  }
-  return expected;
-}
-
 SamplingMap map_from_layout(Layout layout) {
   return SiteBuilder(std::move(layout)).build();
 }

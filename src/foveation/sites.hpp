@@ -33,9 +33,6 @@ void for_each_pixel(const SamplingMap& map, const Site& site, const Visit& visit
   }
 }
 
-// Samples a pixel that every pixel of the frame expects: blocks share what theirs does.
-ImageGray expected_spp_of(const SamplingMap& map);
-
 // Divides a layout into sites, tile by tile, and adds up the totals.
 SamplingMap map_from_layout(Layout layout);
 

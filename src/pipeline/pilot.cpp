@@ -9,6 +9,7 @@
 
 #include "core/hash.hpp"
 #include "core/luminance.hpp"
+#include "foveation/site_images.hpp"
 #include "pipeline/frame_stages.hpp"
 
 namespace gazetrace {
@@ -27,14 +28,6 @@ SamplingMap pilot_map(const PlanarView& view, const ImageGray& rates, const MapC
   MapContext own = context;
   own.density = &rates;
   return make_sampling_map(settings, view, std::nullopt, own);
-}
-
-ImageGray expected_spp(const SamplingMap& map) {
-  ImageGray spp(map.width_px, map.height_px);
-  for (std::size_t i = 0; i < map.sites.size(); ++i) {
-    spp(map.sites[i].block_x, map.sites[i].block_y) = static_cast<float>(map.expected(i));
-  }
-  return spp;
 }
 
 ImageGray luminance_image(const ImageRgb& radiance) {
@@ -99,7 +92,7 @@ Pilot trace_pilot(const PosedScene& scene, const FrameRequest& request, const Fr
   pilot.radiance = frame.radiance;
   pilot.luminance = luminance_image(frame.radiance);
   pilot.squared_error = squared_error_of(frame);
-  pilot.spp = expected_spp(map);
+  pilot.spp = expected_spp_of(map);
   pilot.stats = std::move(sparse.stats);
   return pilot;
 }

@@ -12,7 +12,7 @@
 #include "core/hash.hpp"
 #include "core/luminance.hpp"
 #include "core/statistics.hpp"
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "gazetrace/fovvideovdp.hpp"
 #include "pipeline/adaptive_rates.hpp"
 #include "pipeline/clip_score.hpp"

@@ -2,9 +2,9 @@
 #include "reconstruct/block_window.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/parallel.hpp"
+#include "foveation/site_images.hpp"
 #include "reconstruct/block_bands.hpp"
 
 namespace gazetrace {
@@ -15,20 +15,9 @@ constexpr int kAround = 16;  // blocks; what is farther away from a region has n
 }  // namespace
 
 std::vector<BlockWindow> windows_of_regions(const SamplingMap& map) {
-  struct Extent {
-    int x = std::numeric_limits<int>::max(), y = std::numeric_limits<int>::max(), x_end = 0, y_end = 0;
-  };
-  std::vector<Extent> extents(map.regions.size());
-  for (const Site& site : map.sites) {
-    Extent& e = extents[site.region];
-    e.x = std::min<int>(e.x, site.block_x);
-    e.y = std::min<int>(e.y, site.block_y);
-    e.x_end = std::max(e.x_end, site.block_x + 1);
-    e.y_end = std::max(e.y_end, site.block_y + 1);
-  }
   std::vector<BlockWindow> windows;
-  for (std::size_t r = 0; r < extents.size(); ++r) {
-    const Extent& e = extents[r];
+  for (const BlockExtent& e : extents_of_blocks(map)) {
+    const std::size_t r = windows.size();
     const int block = map.regions[r].block_px;
     if (e.x_end == 0) {
       windows.push_back({r, block, 0, 0, 0, 0});

@@ -5,38 +5,28 @@
 #include <limits>
 
 #include "core/parallel.hpp"
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "reconstruct/filter.hpp"
 
 namespace gazetrace {
 namespace {
 
-struct BlockBounds {
-  int x0 = std::numeric_limits<int>::max(), y0 = std::numeric_limits<int>::max(), x1 = -1, y1 = -1;
-};
-
 // The blocks of each region and a ring around them, inside the frame.
 std::vector<CellGrid> empty_grids(const SamplingMap& map, bool guides) {
-  std::vector<BlockBounds> bounds(map.regions.size());
-  for (const Site& site : map.sites) {
-    BlockBounds& b = bounds[site.region];
-    b.x0 = std::min<int>(b.x0, site.block_x);
-    b.y0 = std::min<int>(b.y0, site.block_y);
-    b.x1 = std::max<int>(b.x1, site.block_x);
-    b.y1 = std::max<int>(b.y1, site.block_y);
-  }
+  const std::vector<BlockExtent> extents = extents_of_blocks(map);
   std::vector<CellGrid> grids(map.regions.size());
   for (std::size_t r = 0; r < grids.size(); ++r) {
     CellGrid& grid = grids[r];
     const int block = map.regions[r].block_px;
     grid.block_px = block;
-    if (block == 1 || bounds[r].x1 < 0) {
+    const BlockExtent& own = extents[r];
+    if (block == 1 || own.x == own.x_end) {
       continue;
     }
-    grid.x = std::max(bounds[r].x0 - 1, 0);
-    grid.y = std::max(bounds[r].y0 - 1, 0);
-    grid.width = std::min(bounds[r].x1 + 1, (map.width_px - 1) / block) - grid.x + 1;
-    grid.height = std::min(bounds[r].y1 + 1, (map.height_px - 1) / block) - grid.y + 1;
+    grid.x = std::max(own.x - 1, 0);
+    grid.y = std::max(own.y - 1, 0);
+    grid.width = std::min(own.x_end, (map.width_px - 1) / block) - grid.x + 1;
+    grid.height = std::min(own.y_end, (map.height_px - 1) / block) - grid.y + 1;
     const std::size_t cells = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
     grid.cells.resize(cells);
     grid.guides.resize(guides ? cells : 0);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -52,17 +52,6 @@ void for_each_neighbor(const SamplingMap& map, const Image<std::uint32_t>& site_
       }
     }
   }
-}
-
-Image<std::uint32_t> sites_of_pixels(const SamplingMap& map, int threads) {
-  Image<std::uint32_t> site_of_pixel(map.width_px, map.height_px);
-  parallel_for(map.tiles.size(), threads, [&](std::size_t t) {
-    const MapTile& tile = map.tiles[t];
-    for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-      for_each_pixel(map, map.sites[i], [&](int x, int y) { site_of_pixel(x, y) = static_cast<std::uint32_t>(i); });
-    }
-  });
-  return site_of_pixel;
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 
 namespace gazetrace {
 namespace {
@@ -36,22 +35,6 @@ SurfaceCell cell_of(const SurfaceSums& sums, float block_px, float pixel_m, bool
 
 std::uint32_t code_of_site(const SurfaceCells& cells, std::size_t site) {
   return cells.first[site] << 2U | (cells.first[site + 1] - cells.first[site]);
-}
-
-std::vector<BlockExtent> extents_of_blocks(const SamplingMap& map) {
-  constexpr int kFar = std::numeric_limits<std::uint16_t>::max() + 1;
-  std::vector<BlockExtent> extents(map.regions.size(), {kFar, kFar, 0, 0});
-  for (const Site& site : map.sites) {
-    BlockExtent& b = extents[site.region];
-    b.x = std::min<int>(b.x, site.block_x);
-    b.y = std::min<int>(b.y, site.block_y);
-    b.x_end = std::max(b.x_end, site.block_x + 1);
-    b.y_end = std::max(b.y_end, site.block_y + 1);
-  }
-  for (BlockExtent& b : extents) {
-    b = b.x < b.x_end ? b : BlockExtent{};
-  }
-  return extents;
 }
 
 void fill_from_middles(const SurfaceCells& cells, const SamplingMap& map, int block_px, int threads,

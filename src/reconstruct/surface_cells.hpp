@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "foveation/site_images.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/guides.hpp"
 #include "gazetrace/trace.hpp"
@@ -26,11 +27,6 @@ struct SurfaceCell {
   float replica = 0;      // of the error of `light`: see SurfaceSums::half_difference
   float error = 0;        // estimated squared error of `light`, what smoothing took from it included
   SurfaceKind kind = SurfaceKind::diffuse;
-};
-
-// On a region's grid: [x, x_end) x [y, y_end).
-struct BlockExtent {
-  int x = 0, y = 0, x_end = 0, y_end = 0;
 };
 
 // Which cells stand for each block of a region's grid: those of the region's own site in it, also where a border or the

@@ -8,7 +8,7 @@
 
 #include "core/luminance.hpp"
 #include "core/parallel.hpp"
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "gazetrace/motion.hpp"
 #include "temporal/same_camera.hpp"
 #include "trace/samples/surface_sums.hpp"
@@ -95,15 +95,7 @@ class OwnSurfaces {
         projection_(*own.camera, own.map->width_px, own.map->height_px),
         pixel_m_(std::sqrt(dot(camera.up_step, camera.up_step))),
         perspective_(camera.perspective),
-        site_of_pixel_(own.map->width_px, own.map->height_px) {
-    parallel_for(own.map->tiles.size(), threads, [&](std::size_t t) {
-      const MapTile& tile = own.map->tiles[t];
-      for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-        for_each_pixel(*own.map, own.map->sites[i],
-                       [&](int x, int y) { site_of_pixel_(x, y) = static_cast<std::uint32_t>(i); });
-      }
-    });
-  }
+        site_of_pixel_(sites_of_pixels(*own.map, threads)) {}
 
   // The own surface that `surface` of another view belongs to. `pixels`: side of the site that it was seen in.
   [[nodiscard]] std::uint32_t find(const Camera& other, const SurfaceSums& surface, float pixels) const {

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "gazetrace/temporal.hpp"
 #include "temporal/history_lookup.hpp"
 
@@ -19,12 +20,9 @@ inline constexpr double kLeastWorth = 1e-9;
 
 // Of each pixel, the side of the square that the samples of its site are spread over.
 inline ImageGray footprints_of(const SamplingMap& map) {
-  ImageGray footprint(map.width_px, map.height_px, 1.0F);
-  for (const Site& site : map.sites) {
-    const float side = std::sqrt(static_cast<float>(site.pixels));
-    for_each_pixel(map, site, [&](int x, int y) { footprint(x, y) = side; });
-  }
-  return footprint;
+  constexpr float kElsewhere = 1;
+  return image_of_sites(
+      map, [&](std::size_t i) { return std::sqrt(static_cast<float>(map.sites[i].pixels)); }, kElsewhere);
 }
 
 // The share that is kept of another frame's samples from frame to frame.
@@ -37,6 +35,14 @@ inline double share_kept_a_frame(const AccumulateSettings& settings) {
 inline double ratio_of_areas(const PastSums& past, double footprint_px) {
   const double coarseness = past.footprint_px / footprint_px;
   return std::max(1.0, coarseness * coarseness);
+}
+
+// AccumulateSettings::blend, where it is set: the worth of a past beside a frame of `count` samples becomes what gives
+// the frame that share.
+inline void scale_to_blend(const AccumulateSettings& settings, double count, PastSums& past) {
+  if (settings.blend > 0 && count > 0) {
+    scale_worth(past, count * (1 / settings.blend - 1) / past.count);
+  }
 }
 
 // Whether the eye has moved or was closed since the frame before, where that forbids taking anything across.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "gazetrace/foveation.hpp"
 #include "pipeline/frame_part.hpp"
 

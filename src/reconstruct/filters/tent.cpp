@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
-#include "foveation/sites.hpp"
+#include "foveation/site_images.hpp"
 #include "reconstruct/filter.hpp"
 
 namespace gazetrace {
@@ -20,15 +20,7 @@ namespace {
 class TentFilter {
  public:
   TentFilter(const FilterInput& input, Frame& frame)
-      : input_(input), frame_(frame), site_of_pixel_(input.map.width_px, input.map.height_px) {
-    parallel_for(input.map.tiles.size(), input.threads, [&](std::size_t t) {
-      const MapTile& tile = input.map.tiles[t];
-      for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-        for_each_pixel(input.map, input.map.sites[i],
-                       [&](int x, int y) { site_of_pixel_(x, y) = static_cast<std::uint32_t>(i); });
-      }
-    });
-  }
+      : input_(input), frame_(frame), site_of_pixel_(sites_of_pixels(input.map, input.threads)) {}
 
   void fill_site(std::size_t i) const {
     const SamplingMap& map = input_.map;
