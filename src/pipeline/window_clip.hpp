@@ -10,14 +10,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <vector>
 
 #include "gazetrace/color.hpp"
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/plan.hpp"
+#include "pipeline/around_windows.hpp"
 #include "pipeline/judged_windows.hpp"
+#include "pipeline/window_light.hpp"
+#include "pipeline/window_rates.hpp"
 #include "pipeline/window_reference.hpp"
 
 namespace gazetrace {
@@ -41,9 +42,9 @@ class WindowClip {
 
   // The rates of the fall-off `visible` by the last look, for this mean, where all frames are looked at alike: they can
   // share them. Empty for other fall-offs, and where view or gaze moves.
-  [[nodiscard]] ImageGray shared_rates(double spp) const;
+  [[nodiscard]] ImageGray shared_rates(double spp) const { return rates_.shared(spp); }
   // Whether the sampling of all frames follows from the same view and gaze.
-  [[nodiscard]] bool is_steady() const;
+  [[nodiscard]] bool is_steady() const { return rates_.is_steady(); }
   [[nodiscard]] const JudgedWindows& windows() const { return windows_; }
   [[nodiscard]] double share_of_frame() const;
   [[nodiscard]] double counted_px() const;  // of a frame
@@ -54,43 +55,25 @@ class WindowClip {
  private:
   [[nodiscard]] const FrameRequest& first_looked_at() const;
   [[nodiscard]] const FrameRequest& first() const { return judged_.runs.front().front(); }
-  // Samples a pixel that every pixel of a frame expects.
-  [[nodiscard]] ImageGray expected_spp(const FrameRequest& request, double spp, std::uint64_t round);
-  [[nodiscard]] ImageGray pilot_rates(const FrameRequest& request, FrameSettings settings);
-  // What the whole frame of this number learns of its light, which windows of it are rendered with.
-  [[nodiscard]] std::shared_ptr<const LearnedLight> light_of(std::int32_t frame);
   // One picture a judged frame.
   [[nodiscard]] std::vector<ImageRgb> look_at(std::size_t window, const FrameSettings& settings);
-  void render_around();
-  void show_around();
-  // The frame with these windows, as it is shown, cd/m2. `index` counts the judged frames.
-  [[nodiscard]] ImageGray shown(const std::vector<ImageRgb>& windows, std::size_t index) const;
+  // Appends what the frames of a plan show.
+  void render(const FramePlan& plan, const FrameSettings& settings, std::vector<ImageRgb>& pictures);
   [[nodiscard]] double measured_q(const JudgedFrames& judged, const WindowPictures& pictures) const;
-  // Of a judged frame: which of the references is its own, and which of the pictures around the windows.
+  // Of a judged frame: which of the references is its own.
   [[nodiscard]] std::size_t reference_of(std::size_t index) const { return judged_.view_moves ? index : 0; }
-  [[nodiscard]] std::size_t around_of(std::size_t index) const;
 
   PathTracer& tracer_;
   const JudgedFrames& judged_;
   const FrameSettings& settings_;
-  const ColorPipeline& color_;
-  TraceStats stats_;
-  std::map<std::int32_t, const FrameRequest*> requests_;  // of whole frames, all that windows are traced of
-  KnownLight last_light_;
-  std::map<std::int32_t, std::shared_ptr<const LearnedLight>> light_;  // by the frame
-  std::size_t light_bytes_ = 0;                                        // of all of them
+  TraceStats stats_;  // of all but the reference's samples
+  WindowLight light_;
   JudgedWindows windows_;
-  // What lies around the windows: of the first frame of each run or, at rest, of the first.
-  struct Around {
-    ImageRgb radiance;  // linear
-    double exposure_ev = 0;
-    ImageGray shown;  // cd/m2
-  };
-  std::vector<Around> around_;
+  WindowRates rates_;
+  AroundWindows around_;
   WindowReference reference_;
   std::vector<ImageGray> reference_shown_;  // cd/m2
   double reference_q_ = 0;
-  ImageGray shared_rates_;
 };
 
 }  // namespace gazetrace
