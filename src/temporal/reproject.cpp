@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/luminance.hpp"
-#include "core/parallel.hpp"
 #include "core/statistics.hpp"
 #include "gazetrace/temporal.hpp"
 #include "temporal/clip.hpp"
+#include "temporal/for_each_place.hpp"
 #include "temporal/history_lookup.hpp"
 #include "temporal/resampling_error.hpp"
 #include "temporal/residuals.hpp"
@@ -19,17 +19,139 @@
 namespace gazetrace {
 namespace {
 
-// Between the two passes over a frame, the next history holds only what was looked up of the past.
-void put(const PastSums& past, std::size_t i, TemporalHistory& next) {
-  next.radiance_sum.pixels[i] = past.radiance;
-  next.count_sum.pixels[i] = past.count;
-  next.variance_weight_sum.pixels[i] = past.variance;
-  next.surfaces.footprint_px.pixels[i] = static_cast<float>(past.footprint_px);
+// What is found of a frame's past before the frame is joined to it.
+struct FoundPast {
+  TemporalHistory next;       // its sums are those of the past alone until join() adds the frame
+  ImageGray residual_before;  // HistorySurfaces::residual of the frame before
+  ImageGray kept_between;     // share_kept_between_pixels()
+};
+
+void put(const PastSums& sums, std::size_t i, TemporalHistory& next) {
+  next.radiance_sum.pixels[i] = sums.radiance;
+  next.count_sum.pixels[i] = sums.count;
+  next.variance_weight_sum.pixels[i] = sums.variance;
+  next.surfaces.footprint_px.pixels[i] = static_cast<float>(sums.footprint_px);
 }
 
 PastSums past_at(const TemporalHistory& next, std::size_t i) {
   return {next.radiance_sum.pixels[i], next.count_sum.pixels[i], next.variance_weight_sum.pixels[i],
           static_cast<double>(next.surfaces.footprint_px.pixels[i])};
+}
+
+FoundPast nothing_found(const SurfaceMotion& motion, const ImageGray& footprint) {
+  const int width = footprint.width_px;
+  const int height = footprint.height_px;
+  FoundPast found;
+  found.next.radiance_sum = Image<Vec3d>(width, height);
+  found.next.count_sum = Image<double>(width, height);
+  found.next.variance_weight_sum = Image<double>(width, height);
+  found.next.surfaces = {motion.depth_m, motion.normal, motion.object, footprint, ImageGray(width, height)};
+  found.residual_before = ImageGray(width, height);
+  found.kept_between = ImageGray(width, height, 1.0F);
+  return found;
+}
+
+// `kept`: the share of the past that is kept from frame to frame.
+FoundPast find_past(const TemporalHistory& history, const Frame& frame, const SurfaceMotion& motion,
+                    const ImageGray& footprint, double kept, int threads) {
+  FoundPast found = nothing_found(motion, footprint);
+  const PixelProjection earlier_view(*history.camera, footprint.width_px, footprint.height_px);
+  for_each_place(frame, threads, [&](int, int, std::size_t i) {
+    PastSums past = look_up(history, earlier_view, motion, i);
+    if (!(past.count > 0)) {
+      return;
+    }
+    scale_worth(past, kept / ratio_of_areas(past, static_cast<double>(footprint.pixels[i])));
+    if (footprint.pixels[i] < kFullRatePx) {
+      found.kept_between.pixels[i] =
+          static_cast<float>(share_kept_between_pixels(past, frame, history.surfaces, motion, i));
+    }
+    if (shows_residual(frame, footprint, past, i)) {
+      found.next.surfaces.residual.pixels[i] = residual_of(frame, past, i);
+      found.residual_before.pixels[i] = static_cast<float>(past.residual);
+    }
+    put(past, i, found.next);
+  });
+  return found;
+}
+
+// What a frame says about the past of its pixels.
+struct PastJudge {
+  const Frame& frame;
+  const SurfaceMotion& motion;
+  const ImageGray& footprint;
+  const AccumulateSettings& settings;
+  Residuals residuals;
+  const ImageGray& kept_between;  // as FoundPast
+
+  // What is believed of the past of a pixel. Residuals and clipping both judge the past as it was found. Were one to
+  // judge what the other left of it, it would expect more noise of it, and see less.
+  [[nodiscard]] PastSums believed(PastSums past, int x, int y) const {
+    const std::size_t i = frame.radiance.index(x, y);
+    const auto count = static_cast<double>(frame.sample_count.pixels[i]);
+    const double lasting = residuals.before.pixels[i] != 0 ? residuals.share_kept(motion, count, past.count, x, y) : 1;
+    scale_worth(past, std::min(lasting, static_cast<double>(kept_between.pixels[i])));
+    if (settings.clip_sigmas > 0) {
+      clip(spread_around(frame, motion, x, y, footprint.pixels[i]), settings.clip_sigmas, past);
+    }
+    if (past.count < kLeastWorth) {
+      return {};
+    }
+    scale_to_blend(settings, count, past);
+    return past;
+  }
+};
+
+PastSums own_sums(const Frame& frame, const ImageGray& footprint, std::size_t i) {
+  const auto count = static_cast<double>(frame.sample_count.pixels[i]);
+  return {count * to_double(frame.radiance.pixels[i]), count,
+          count * count * static_cast<double>(frame.variance.pixels[i]), static_cast<double>(footprint.pixels[i])};
+}
+
+void add(const PastSums& past, PastSums& sums) {
+  const double total = sums.count + past.count;
+  sums.footprint_px = (sums.count * sums.footprint_px + past.count * past.footprint_px) / total;
+  sums.radiance += past.radiance;
+  sums.variance += past.variance;
+  sums.count = total;
+}
+
+// The images of a frame that accumulation changes.
+struct JoinedImages {
+  ImageRgb radiance;
+  ImageGray sample_count, variance;
+};
+
+// The judge's frame and what is believed of its past. `next` holds the past, and then the frame as well.
+JoinedImages join(const PastJudge& judge, TemporalHistory& next, int threads) {
+  const Frame& frame = judge.frame;
+  JoinedImages joined{frame.radiance, frame.sample_count, frame.variance};
+  for_each_place(frame, threads, [&](int x, int y, std::size_t i) {
+    PastSums sums = own_sums(frame, judge.footprint, i);
+    PastSums past = past_at(next, i);
+    if (past.count > 0) {
+      past = judge.believed(past, x, y);
+    }
+    if (past.count > 0) {
+      add(past, sums);
+      joined.radiance.pixels[i] = to_float(sums.radiance / sums.count);
+      joined.sample_count.pixels[i] = static_cast<float>(sums.count);
+      joined.variance.pixels[i] = static_cast<float>(sums.variance / (sums.count * sums.count));
+    }
+    put(sums, i, next);
+  });
+  return joined;
+}
+
+// Makes `next` the history after the frame; what is not of pixels goes on from the one before.
+void replace(TemporalHistory& history, TemporalHistory next, const FrameRequest& request) {
+  next.camera = request.camera;
+  next.t_video_ns = request.t_video_ns;
+  next.frames = history.frames + 1;
+  next.passed = std::move(history.passed);
+  next.smoothed_ev = history.smoothed_ev;
+  next.smoothed_ev_t_ns = history.smoothed_ev_t_ns;
+  history = std::move(next);
 }
 
 double median_depth_m(const ImageGray& depth_m) {
@@ -61,102 +183,21 @@ bool is_cut(const TemporalHistory& history, const Camera& camera, int width_px, 
 
 Frame reproject(Frame frame, const SamplingMap& map, const SurfaceMotion& motion, const FrameRequest& request,
                 const AccumulateSettings& settings, TemporalHistory& history, int threads) {
-  const int width = frame.radiance.width_px;
-  const int height = frame.radiance.height_px;
-  const bool alone = is_cut(history, request.camera, width, height) || eye_forbids(request, settings);
-  if (alone) {
+  if (is_cut(history, request.camera, frame.radiance.width_px, frame.radiance.height_px) ||
+      eye_forbids(request, settings)) {
     history.frames = 0;
   }
-  const PixelProjection earlier_view(alone ? request.camera : *history.camera, width, height);
   const ImageGray footprint = footprints_of(map);
-  const double kept = share_kept_a_frame(settings);
-
-  TemporalHistory next;
-  next.radiance_sum = Image<Vec3d>(width, height);
-  next.count_sum = Image<double>(width, height);
-  next.variance_weight_sum = Image<double>(width, height);
-  next.surfaces = {motion.depth_m, motion.normal, motion.object, footprint, ImageGray(width, height)};
-  ImageGray before(width, height);
-  ImageGray kept_between(width, height, 1.0F);
-  if (!alone) {
-    parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t row) {
-      const auto across = static_cast<std::size_t>(width);
-      for (std::size_t i = row * across; i < (row + 1) * across; ++i) {
-        PastSums past = look_up(history, earlier_view, motion, i);
-        if (!(past.count > 0)) {
-          continue;
-        }
-        scale_worth(past, kept / ratio_of_areas(past, static_cast<double>(footprint.pixels[i])));
-        if (footprint.pixels[i] < kFullRatePx) {
-          kept_between.pixels[i] =
-              static_cast<float>(share_kept_between_pixels(past, frame, history.surfaces, motion, i));
-        }
-        if (past.resampled && footprint.pixels[i] < kFullRatePx && frame.sample_count.pixels[i] >= kKnowsNoise) {
-          const double seen = luminance(to_double(frame.radiance.pixels[i]));
-          const double difference = luminance(past.radiance / past.count) - seen;
-          const double off = std::abs(difference) > kRounding * seen ? difference : 0;
-          next.surfaces.residual.pixels[i] = static_cast<float>(off);
-          before.pixels[i] = static_cast<float>(past.residual);
-        }
-        put(past, i, next);
-      }
-    });
-  }
-  const Residuals residuals{next.surfaces.residual, before, frame.variance};
-  ImageRgb radiance = frame.radiance;
-  ImageGray counts = frame.sample_count;
-  ImageGray variances = frame.variance;
-  parallel_for(static_cast<std::size_t>(height), threads, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < width; ++x) {
-      const std::size_t i = frame.radiance.index(x, y);
-      const auto count = static_cast<double>(frame.sample_count.pixels[i]);
-      const auto own_footprint = static_cast<double>(footprint.pixels[i]);
-      Vec3d sum = count * to_double(frame.radiance.pixels[i]);
-      double total = count;
-      double variance = count * count * static_cast<double>(frame.variance.pixels[i]);
-      PastSums past = past_at(next, i);
-      if (past.count > 0) {
-        // Both judge the past as it was found. Were one to judge what the other left of it, it would expect more noise
-        // of it, and see less.
-        const double lasting =
-            residuals.before.pixels[i] != 0 ? residuals.share_kept(motion, count, past.count, x, y) : 1;
-        scale_worth(past, std::min(lasting, static_cast<double>(kept_between.pixels[i])));
-        if (settings.clip_sigmas > 0) {
-          clip(spread_around(frame, motion, x, y, footprint.pixels[i]), settings.clip_sigmas, past);
-        }
-        if (past.count < kLeastWorth) {
-          past = {};
-        } else if (settings.blend > 0 && count > 0) {
-          scale_worth(past, count * (1 / settings.blend - 1) / past.count);
-        }
-      }
-      if (past.count > 0) {
-        sum += past.radiance;
-        total += past.count;
-        variance += past.variance;
-        radiance.pixels[i] = to_float(sum / total);
-        counts.pixels[i] = static_cast<float>(total);
-        variances.pixels[i] = static_cast<float>(variance / (total * total));
-      }
-      next.surfaces.footprint_px.pixels[i] =
-          past.count > 0 ? static_cast<float>((count * own_footprint + past.count * past.footprint_px) / total)
-                         : footprint.pixels[i];
-      next.radiance_sum.pixels[i] = sum;
-      next.count_sum.pixels[i] = total;
-      next.variance_weight_sum.pixels[i] = variance;
-    }
-  });
-  frame.radiance = std::move(radiance);
-  frame.sample_count = std::move(counts);
-  frame.variance = std::move(variances);
-  next.camera = request.camera;
-  next.t_video_ns = request.t_video_ns;
-  next.frames = history.frames + 1;
-  next.passed = std::move(history.passed);
-  next.smoothed_ev = history.smoothed_ev;
-  next.smoothed_ev_t_ns = history.smoothed_ev_t_ns;
-  history = std::move(next);
+  FoundPast found = history.frames > 0
+                        ? find_past(history, frame, motion, footprint, share_kept_a_frame(settings), threads)
+                        : nothing_found(motion, footprint);
+  const Residuals residuals{found.next.surfaces.residual, found.residual_before, frame.variance};
+  const PastJudge judge{frame, motion, footprint, settings, residuals, found.kept_between};
+  JoinedImages joined = join(judge, found.next, threads);
+  frame.radiance = std::move(joined.radiance);
+  frame.sample_count = std::move(joined.sample_count);
+  frame.variance = std::move(joined.variance);
+  replace(history, std::move(found.next), request);
   return frame;
 }
 

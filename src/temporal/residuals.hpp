@@ -2,11 +2,30 @@
 // What the past was off by, from frame to frame: whether it is noise or a bias that lasts.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+
+#include "core/luminance.hpp"
 #include "gazetrace/image.hpp"
 #include "gazetrace/motion.hpp"
 #include "gazetrace/temporal.hpp"
+#include "temporal/history_lookup.hpp"
+#include "temporal/worth.hpp"
 
 namespace gazetrace {
+
+// Whether the frame tells at this pixel by what its past is off: resampling has changed the past, and the frame has
+// samples enough in the pixel itself.
+inline bool shows_residual(const Frame& frame, const ImageGray& footprint_px, const PastSums& past, std::size_t pixel) {
+  return past.resampled && footprint_px.pixels[pixel] < kFullRatePx && frame.sample_count.pixels[pixel] >= kKnowsNoise;
+}
+
+// HistorySurfaces::residual of a past that was found: 0 also where no more than rounding is between the two.
+inline float residual_of(const Frame& frame, const PastSums& past, std::size_t pixel) {
+  const double seen = luminance(to_double(frame.radiance.pixels[pixel]));
+  const double difference = luminance(past.radiance / past.count) - seen;
+  return std::abs(difference) > kRounding * seen ? static_cast<float>(difference) : 0.0F;
+}
 
 // How far the past was off in two consecutive frames, at full rate. Noise differs from one to the other; the blur of
 // texture that was resampled does not.

@@ -8,24 +8,14 @@
 #include <utility>
 
 #include "core/luminance.hpp"
-#include "core/parallel.hpp"
 #include "temporal/clip.hpp"
+#include "temporal/for_each_place.hpp"
 #include "temporal/resampling_error.hpp"
 #include "temporal/residuals.hpp"
 #include "temporal/worth.hpp"
 
 namespace gazetrace {
 namespace {
-
-template <class Visit>
-void for_each_place(const Frame& frame, int threads, const Visit& visit) {
-  parallel_for(static_cast<std::size_t>(frame.radiance.height_px), threads, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
-    for (int x = 0; x < frame.radiance.width_px; ++x) {
-      visit(x, y, frame.radiance.index(x, y));
-    }
-  });
-}
 
 // Of different samples, so that variances are added.
 PastSums sum_of(const PastSums& a, const PastSums& b) {
@@ -106,10 +96,8 @@ Frame NeighbourSums::joined(const SurfaceMotion& motion) const {
   ImageGray off(width, height);
   for_each_place(frame_, threads_, [&](int, int, std::size_t i) {
     const PastSums both = sum_of(sides_[0].pixels[i], sides_[1].pixels[i]);
-    if (both.resampled && footprint_.pixels[i] < kFullRatePx && frame_.sample_count.pixels[i] >= kKnowsNoise) {
-      const double seen = luminance(to_double(frame_.radiance.pixels[i]));
-      const double difference = luminance(both.radiance / both.count) - seen;
-      off.pixels[i] = std::abs(difference) > kRounding * seen ? static_cast<float>(difference) : 0.0F;
+    if (shows_residual(frame_, footprint_, both, i)) {
+      off.pixels[i] = residual_of(frame_, both, i);
     }
   });
   const ImageGray nothing(width, height);
@@ -135,9 +123,7 @@ Frame NeighbourSums::joined(const SurfaceMotion& motion) const {
     if (!(found.count >= kLeastWorth)) {
       return;
     }
-    if (settings_.blend > 0 && count > 0) {
-      scale_worth(found, count * (1 / settings_.blend - 1) / found.count);
-    }
+    scale_to_blend(settings_, count, found);
     const double total = count + found.count;
     joined.radiance.pixels[i] = to_float((count * to_double(frame_.radiance.pixels[i]) + found.radiance) / total);
     joined.sample_count.pixels[i] = static_cast<float>(total);
