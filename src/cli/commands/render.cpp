@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/interruption.hpp"
 #include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
+#include "cli/output_locks.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_events.hpp"
+#include "cli/run_record_file.hpp"
 #include "cli/summary.hpp"
-#include "core/text.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
 
@@ -40,97 +41,16 @@ void check_asked_for_something(const JobSettings& job) {
   }
 }
 
-RunRecord record_with_flags(RunRecord record) {
-  record.warnings = with_flags(std::move(record.warnings));
-  for (auto& [name, text] : record.facts) {
-    text = with_flags(text);
-  }
-  return record;
+// Where lines of JSON go to stderr, people's text does not stand between them.
+bool is_quiet(const JobSettings& job, const RunEvents& events) {
+  return job.quiet || events.on_stderr();
 }
 
-// Embree and libm choose kernels by the machine: frames of two kinds of machine may differ in their last bits.
-void warn_of_other_machine(const std::string& record_path, const RunRecord& now, Warnings& warnings) {
-  if (!std::filesystem::exists(record_path)) {
-    return;
+void tell_warnings(const Warnings& warnings, RunEvents& events) {
+  if (!events.on_stderr()) {
+    print_warnings(warnings);
   }
-  RunRecord before;
-  try {
-    before = read_run_record(record_path);
-  } catch (const Error& error) {
-    warnings.push_back(error.what());
-    return;
-  }
-  if (before.instruction_set != now.instruction_set || before.build != now.build ||
-      before.ray_library != now.ray_library) {
-    warnings.push_back(
-        fmt::format("{}: the run so far was made by '{}, {}, {}', this one is '{}, {}, {}'; frames may "
-                    "differ in their last bits",
-                    record_path, before.build, before.instruction_set, before.ray_library, now.build,
-                    now.instruction_set, now.ray_library));
-  }
-}
-
-// The folder of a pattern's files, or of the folders that it makes for each frame.
-std::filesystem::path folder_of_pattern(const std::string& pattern) {
-  std::filesystem::path one = std::filesystem::path(frame_file_name(pattern, 1)).parent_path();
-  std::filesystem::path other = std::filesystem::path(frame_file_name(pattern, 2)).parent_path();
-  while (one != other) {
-    one = one.parent_path();
-    other = other.parent_path();
-  }
-  return one;
-}
-
-// Of the record, and of the pictures where they go: another run may write pictures of the same names beside a record
-// that lies elsewhere.
-std::vector<std::unique_ptr<RunLock>> lock_outputs(ResolvedJob& resolved, const std::vector<std::string>& files) {
-  if (files.empty()) {
-    return {};
-  }
-  RunRecord claim;
-  claim.frames = format_frame_list(resolved.frames);
-  if (resolved.pipeline.trace.samples) {
-    claim.samples = format_value(*resolved.pipeline.trace.samples);
-  }
-  const auto tell = [](const std::string& text) { print_warnings({text}); };
-  std::vector<std::unique_ptr<RunLock>> locks;
-  locks.push_back(std::make_unique<RunLock>(claim, files.front(), tell));
-  const std::string record_name = std::filesystem::path(files.front()).filename().string();
-  const OutputSettings& output = resolved.pipeline.output;
-  for (const std::string& pattern : {output.exr.pattern, output.display.pattern, output.map_pattern}) {
-    const bool has_pictures = claim.samples.empty() && resolved.pipeline.stage != SequenceStage::trace;
-    if (!pattern.empty() && has_pictures) {
-      const std::filesystem::path folder = folder_of_pattern(pattern);
-      const std::string name =
-          std::filesystem::path(pattern).lexically_relative(folder.empty() ? "." : folder).string();
-      const std::string family = "pictures." + digest_settings({{"pattern", name}}).substr(0, 8) + ".";
-      locks.push_back(std::make_unique<RunLock>(claim, (folder / record_name).string(), tell, family));
-    }
-  }
-  for (const std::unique_ptr<RunLock>& lock : locks) {
-    // Said to the person who waits, and not kept in the record, which may be published: it names a host.
-    print_warnings(lock->taken_over());
-  }
-  // Another run may have made frames while this one checked or waited.
-  prepare_outputs(resolved);
-  return locks;
-}
-
-std::string pixel_report(const FrameRequest& request, const Frame& frame, const PixelIndex& pixel) {
-  const Vec3f radiance = frame.radiance(pixel.x, pixel.y);
-  return fmt::format("frame {} pixel {},{}: radiance {} {} {}, samples {}, variance {}\n", request.frame, pixel.x,
-                     pixel.y, radiance.x, radiance.y, radiance.z, frame.sample_count(pixel.x, pixel.y),
-                     frame.variance(pixel.x, pixel.y));
-}
-
-// The record of an earlier run, or none where there was none.
-void put_back(const std::string& path, const std::string& record) {
-  if (!record.empty()) {
-    write_text_atomically(path, record);
-    return;
-  }
-  std::error_code ignored;
-  std::filesystem::remove(path, ignored);
+  events.warnings(warnings);
 }
 
 void say_decisions(const ResolvedJob& resolved, const ColorPipeline& color, const PathTracer& tracer) {
@@ -143,10 +63,79 @@ void say_decisions(const ResolvedJob& resolved, const ColorPipeline& color, cons
                static_cast<double>(tracer.memory().bvh_bytes) / 1048576.0, tracer.memory().build_s);
 }
 
+void tell_beginning(const ResolvedJob& resolved, const ColorPipeline& color, const PathTracer& tracer,
+                    RunEvents& events) {
+  const JobSettings& job = resolved.job.settings;
+  if (!events.on_stderr()) {
+    print_warnings(resolved.warnings);
+  }
+  events.begin(job.scene, format_frame_list(resolved.frames), resolved.frames.size(),
+               resolved.pipeline.settings_digest);
+  events.warnings(resolved.warnings);
+  if (!is_quiet(job, events)) {
+    say_decisions(resolved, color, tracer);
+  }
+}
+
+std::string pixel_report(const FrameRequest& request, const Frame& frame, const PixelIndex& pixel) {
+  const Vec3f radiance = frame.radiance(pixel.x, pixel.y);
+  return fmt::format("frame {} pixel {},{}: radiance {} {} {}, samples {}, variance {}\n", request.frame, pixel.x,
+                     pixel.y, radiance.x, radiance.y, radiance.z, frame.sample_count(pixel.x, pixel.y),
+                     frame.variance(pixel.x, pixel.y));
+}
+
+// What became known of frames while they were rendered.
+struct FramesSeen {
+  bool any_done = false;
+  std::string pixels;  // the reports on `only-pixel`
+};
+
+// All that it is given must outlive it.
+PipelineObserver observer_of(const JobSettings& job, Interruption& interruption, Progress& progress, RunEvents& events,
+                             FramesSeen& seen) {
+  PipelineObserver observer;
+  observer.frame_done = [&](const TimingRow& row, bool skipped) {
+    seen.any_done = true;
+    progress.frame_done(row.frame, row.total_ms, skipped);
+    events.frame_done(row.frame, row.total_ms, skipped);
+  };
+  if (job.only_pixel) {
+    observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double) {
+      seen.pixels += pixel_report(request, frame, *job.only_pixel);
+    };
+  }
+  observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
+  return observer;
+}
+
+// The record of a run that begins now, written where there are outputs.
+RunRecord begin_record(ResolvedJob& resolved, const PathTracer& tracer, const ColorPipeline& color,
+                       const Invocation& invocation, const RunRecordFile& file) {
+  RunRecord record = start_run_record(resolved, tracer, color, invocation.arguments);
+  if (resolved.job.settings.resume) {
+    file.warn_of_other_machine(record, resolved.warnings);
+    record.warnings = resolved.warnings;
+  }
+  file.write(record);
+  return record;
+}
+
+void say_interrupted(const ResolvedJob& resolved, const SequenceResult& result, const std::string& reason,
+                     const RunEvents& events) {
+  if (resolved.job.settings.progress == "openjd") {
+    std::printf("openjd_fail: interrupted by %s, %zu frames are left\n", reason.c_str(), result.left.size());
+    std::fflush(stdout);
+  }
+  if (!events.on_stderr()) {
+    std::fprintf(stderr, "gazetrace: interrupted by %s: %zu of %zu frames are done, %s left; go on with --resume\n",
+                 reason.c_str(), resolved.frames.size() - result.left.size(), resolved.frames.size(),
+                 bounded(format_frame_list(result.left), 200).c_str());
+  }
+}
+
 int run_render(const RenderArguments& arguments, const Invocation& invocation, RunEvents& events) {
   const JobSettings& job = arguments.job.settings;
-  const bool quiet = job.quiet || events.on_stderr();
-  const auto warn = [&](const Warnings& warnings) { events.on_stderr() ? void() : print_warnings(warnings); };
+  const bool quiet = is_quiet(job, events);
   check_asked_for_something(job);
   check_job(arguments.job);
   arguments.json.check();
@@ -165,43 +154,14 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   PathTracer tracer(*resolved.scene, tracer_options(job));
   loading.reset();
   interruption.frames_begin();
-  RunRecord record = start_run_record(resolved, tracer, color, invocation.arguments);
-  std::string earlier_record;  // of the run whose outputs this one replaces
-  if (!files.empty()) {
-    if (std::filesystem::exists(files.front())) {
-      earlier_record = read_text_file(files.front());
-    }
-    if (job.resume) {
-      warn_of_other_machine(files.front(), record, resolved.warnings);
-      record.warnings = resolved.warnings;
-    }
-    // Written now and at the end: a killed run has a record, too.
-    write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
-  }
-  warn(resolved.warnings);
-  events.begin(job.scene, format_frame_list(resolved.frames), resolved.frames.size(),
-               resolved.pipeline.settings_digest);
-  events.warnings(resolved.warnings);
-  if (!quiet) {
-    say_decisions(resolved, color, tracer);
-  }
+  const RunRecordFile record_file(files.empty() ? std::string() : files.front());
+  RunRecord record = begin_record(resolved, tracer, color, invocation, record_file);
+  tell_beginning(resolved, color, tracer, events);
 
   const auto begin = std::chrono::steady_clock::now();
   Progress progress(progress_style(job.progress, quiet), resolved.plan.frames.size());
-  bool any_done = false;
-  PipelineObserver observer;
-  observer.frame_done = [&](const TimingRow& row, bool skipped) {
-    any_done = true;
-    progress.frame_done(row.frame, row.total_ms, skipped);
-    events.frame_done(row.frame, row.total_ms, skipped);
-  };
-  std::string pixels;
-  if (job.only_pixel) {
-    observer.frame_ready = [&](const FrameRequest& request, const Frame& frame, double) {
-      pixels += pixel_report(request, frame, *job.only_pixel);
-    };
-  }
-  observer.stop_before_frame = [&](double frame_ms) { return interruption.stop_before_frame(frame_ms); };
+  FramesSeen seen;
+  const PipelineObserver observer = observer_of(job, interruption, progress, events, seen);
   resolved.pipeline.trace.stop = [&] { return interruption.stop_now(); };
   keep_freed_memory();
   const SequenceResult result = [&] {
@@ -210,8 +170,8 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
     } catch (const Error& error) {
       // A stated quality may turn out to be out of reach before any picture was begun: then the folder is left as it
       // was, so that the same command can be given again with what the message advises.
-      if (error.kind() == ErrorKind::usage && !any_done && !files.empty()) {
-        put_back(files.front(), earlier_record);
+      if (error.kind() == ErrorKind::usage && !seen.any_done) {
+        record_file.put_back();
       }
       throw;
     }
@@ -221,30 +181,20 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
 
   if (!files.empty()) {
     finish_run_record(record, result, resolved.plan, wall_s);
-    write_text_atomically(files.front(), run_record_json(record_with_flags(record)));
+    record_file.write(record);
     finish_files(files.front());
   }
-  warn(result_warnings(result, resolved.plan));
-  events.warnings(result_warnings(result, resolved.plan));
+  tell_warnings(result_warnings(result, resolved.plan), events);
   if (!quiet) {
     std::fputs(summary_text(result, wall_s).c_str(), stderr);
   }
-  arguments.json.print(pixels, [&] { return summary_json(result, resolved, wall_s); });
-  events.end(result.interrupted ? exit_interrupted : exit_done, result);
+  arguments.json.print(seen.pixels, [&] { return summary_json(result, resolved, wall_s); });
+  const int code = result.interrupted ? exit_interrupted : exit_done;
+  events.end(code, result);
   if (result.interrupted) {
-    if (job.progress == "openjd") {
-      std::printf("openjd_fail: interrupted by %s, %zu frames are left\n", interruption.reason().c_str(),
-                  result.left.size());
-      std::fflush(stdout);
-    }
-    if (!events.on_stderr()) {
-      std::fprintf(stderr, "gazetrace: interrupted by %s: %zu of %zu frames are done, %s left; go on with --resume\n",
-                   interruption.reason().c_str(), resolved.frames.size() - result.left.size(), resolved.frames.size(),
-                   bounded(format_frame_list(result.left), 200).c_str());
-    }
-    return exit_interrupted;
+    say_interrupted(resolved, result, interruption.reason(), events);
   }
-  return exit_done;
+  return code;
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The record of a run as a file. It is written when the run begins and when it ends, so that a killed run has one, too.
+#pragma once
+
+#include <string>
+
+#include "gazetrace/pipeline.hpp"
+
+namespace gazetrace {
+
+class RunRecordFile {
+ public:
+  // Keeps what an earlier run has left there. With an empty path nothing is read or written.
+  explicit RunRecordFile(std::string path);
+
+  // Embree and libm choose kernels by the machine: frames of two kinds of machine may differ in their last bits.
+  void warn_of_other_machine(const RunRecord& now, Warnings& warnings) const;
+  // Its texts name settings as the flags of the program.
+  void write(RunRecord record) const;
+  // Puts back the record of the earlier run, or none where there was none.
+  void put_back() const;
+
+ private:
+  std::string path_;
+  std::string earlier_;
+};
+
+}  // namespace gazetrace
