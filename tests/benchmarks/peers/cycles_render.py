@@ -94,6 +94,15 @@ def make_matte(material):
         links.new(shader, both.inputs[0])
         links.new(shine.outputs["Emission"], both.inputs[1])
         shader = both.outputs["Shader"]
+    alpha = source.inputs["Alpha"]
+    if alpha.links or alpha.default_value < 1:  # holes of leaves and chains; the importer has applied the cutoff
+        hole, part = nodes.new("ShaderNodeBsdfTransparent"), nodes.new("ShaderNodeMixShader")
+        part.inputs["Fac"].default_value = alpha.default_value
+        if alpha.links:
+            links.new(alpha.links[0].from_socket, part.inputs["Fac"])
+        links.new(hole.outputs["BSDF"], part.inputs[1])
+        links.new(shader, part.inputs[2])
+        shader = part.outputs["Shader"]
     links.new(shader, output.inputs["Surface"])
 
 
