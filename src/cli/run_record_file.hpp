@@ -22,7 +22,7 @@ class RunRecordFile {
 
  private:
   std::string path_;
-  std::string earlier_;
+  std::string earlier_;  // the earlier run's record; empty: there was none
 };
 
 }  // namespace gazetrace

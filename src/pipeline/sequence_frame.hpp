@@ -17,8 +17,9 @@ struct SequenceInputs {
 };
 
 // Makes a frame that is not skipped, by the stages that the run does. Its files are those of `result`, and its row
-// lacks what the choice of a rate took. Error(interrupted) leaves row, files and history as they were: a frame is given
-// up only while it is traced. Where the run leaves frames unfinished, what is returned is empty.
+// lacks what the choice of a rate took. Error(interrupted) leaves row and history as they were, and `result` without
+// files: a frame is given up only while it is traced. Where the run leaves frames unfinished, what is returned is
+// empty.
 RenderedFrame make_frame(const SequenceInputs& inputs, const FrameRequest& request, FrameWork work,
                          SequenceRenderer& renderer, TemporalHistory& history, TimingRow& row, SequenceResult& result);
 

@@ -15,6 +15,7 @@
 #include "trace/samples/bad_samples.hpp"
 #include "trace/samples/pixel_filter.hpp"
 #include "trace/samples/sample_list.hpp"
+#include "trace/samples/sample_sums.hpp"
 #include "trace/samples/site_ranges.hpp"
 #include "trace/samples/site_summer.hpp"
 #include "trace/samples/surface_sums.hpp"
@@ -23,15 +24,9 @@
 namespace gazetrace {
 namespace {
 
-SparseFrame empty_frame(const SamplingMap& map, const TraceSettings& settings) {
+SparseFrame untraced_frame(const SamplingMap& map, const TraceSettings& settings) {
   const std::size_t sites = map.sites.size();
-  SparseFrame out;
-  out.width_px = map.width_px;
-  out.height_px = map.height_px;
-  out.sum.resize(sites);
-  out.sum_square_luminance.resize(sites);
-  out.count.resize(sites);
-  out.guides.resize(settings.guides ? sites : 0);
+  SparseFrame out = empty_frame(map, settings.guides);
   out.light_groups.resize(settings.light_groups ? sites : 0);
   out.half_difference.resize(settings.halves ? sites : 0);
   out.unrounded.sites.resize(settings.samples ? sites : 0);
@@ -141,7 +136,7 @@ void add_stats(const RangeResult& range, TraceStats& stats) {
 SparseFrame trace_frame(const FrameContext& context, Kernel kernel, std::int32_t frame, const SamplingMap& map,
                         int threads) {
   const TraceSettings& settings = context.settings;
-  SparseFrame out = empty_frame(map, settings);
+  SparseFrame out = untraced_frame(map, settings);
   const RangeTracer tracer(context, kernel, frame, map, out);
   const std::vector<SiteRange> ranges = site_ranges(map, settings.only_pixel);
   std::vector<RangeResult> results(ranges.size());

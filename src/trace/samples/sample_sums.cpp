@@ -54,12 +54,8 @@ void add_sums(const SampleSums& from, SampleSums& to) {
   }
 }
 
-SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map) {
+SparseFrame empty_frame(const SamplingMap& map, bool guides) {
   const std::size_t sites = map.sites.size();
-  const bool guides = !sums.guides.empty();
-  if (sums.sites.size() != sites || (guides && sums.guides.size() != sites)) {
-    throw Error(ErrorKind::runtime, "samples", "the sums were not traced with this sampling map");
-  }
   SparseFrame out;
   out.width_px = map.width_px;
   out.height_px = map.height_px;
@@ -67,6 +63,16 @@ SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map) {
   out.sum_square_luminance.resize(sites);
   out.count.resize(sites);
   out.guides.resize(guides ? sites : 0);
+  return out;
+}
+
+SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map) {
+  const std::size_t sites = map.sites.size();
+  const bool guides = !sums.guides.empty();
+  if (sums.sites.size() != sites || (guides && sums.guides.size() != sites)) {
+    throw Error(ErrorKind::runtime, "samples", "the sums were not traced with this sampling map");
+  }
+  SparseFrame out = empty_frame(map, guides);
   for (std::size_t i = 0; i < sites; ++i) {
     store_rounded(sums.sites[i], guides ? &sums.guides[i] : nullptr, i, out);
   }

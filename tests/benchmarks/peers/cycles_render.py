@@ -95,11 +95,18 @@ def make_matte(material):
         links.new(shine.outputs["Emission"], both.inputs[1])
         shader = both.outputs["Shader"]
     alpha = source.inputs["Alpha"]
-    if alpha.links or alpha.default_value < 1:  # holes of leaves and chains; the importer has applied the cutoff
+    if alpha.links or alpha.default_value < 1:  # holes of leaves and chains
         hole, part = nodes.new("ShaderNodeBsdfTransparent"), nodes.new("ShaderNodeMixShader")
         part.inputs["Fac"].default_value = alpha.default_value
         if alpha.links:
-            links.new(alpha.links[0].from_socket, part.inputs["Fac"])
+            cover = alpha.links[0].from_socket
+            if material.blend_method == "CLIP":  # glTF's MASK: the importer leaves the cutoff to Blender's other renderer
+                cut = nodes.new("ShaderNodeMath")
+                cut.operation = "GREATER_THAN"
+                cut.inputs[1].default_value = material.alpha_threshold
+                links.new(cover, cut.inputs[0])
+                cover = cut.outputs["Value"]
+            links.new(cover, part.inputs["Fac"])
         links.new(hole.outputs["BSDF"], part.inputs[1])
         links.new(shader, part.inputs[2])
         shader = part.outputs["Shader"]

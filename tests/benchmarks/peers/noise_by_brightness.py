@@ -14,13 +14,12 @@ So the variance of the luminance over the seeds is divided here by what the prog
           by that of the first program
   own     the same with s and f of the program's own pictures
 
-Smoothed by a Gaussian, since single pixels of few pictures are noise themselves. Behind each ratio stands its standard error, by
-the jackknife over the seeds.
+Smoothed by a Gaussian, since single pixels of few pictures are noise themselves. Behind each ratio stands its standard error,
+by the jackknife over the seeds.
 """
 
 import argparse
 import pathlib
-import sys
 import tempfile
 
 import numpy as np
@@ -62,25 +61,13 @@ def standard_errors(shown):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene")
-    parser.add_argument("--gazetrace", default="build/release/bin/gazetrace")
-    parser.add_argument("--blender", default="blender")
-    parser.add_argument("--mitsuba-python", default=sys.executable, help="a Python that has mitsuba")
-    parser.add_argument("--programs", default="gazetrace-plain,cycles,mitsuba-llvm")
-    parser.add_argument("--env", default="none")
-    parser.add_argument("--eye", default="8,2,-0.3")
-    parser.add_argument("--target", default="-8,3,-0.3")
-    parser.add_argument("--yfov", default="50")
-    parser.add_argument("--bounces", type=int, default=3)
+    peers.add_view_arguments(parser, "gazetrace-plain,cycles,mitsuba-llvm")
     parser.add_argument("--size", default="192x108")
     parser.add_argument("--spp", type=int, default=16)
     parser.add_argument("--seeds", type=int, default=8)
     options = parser.parse_args()
     options.materials = "matte"
-    view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
-    programs = options.programs.split(",")
-    if unknown := [p for p in programs if p not in peers.PROGRAMS]:
-        parser.error(f"--programs: '{unknown[0]}' is none of {', '.join(peers.PROGRAMS)}")
+    programs, view = peers.programs_and_view(parser, options)
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

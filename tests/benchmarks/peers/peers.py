@@ -148,18 +148,33 @@ def furnace(program, options, folder):
     return read_picture(out).mean()
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_view_arguments(parser, programs):
+    """What is rendered, and by which programs."""
     parser.add_argument("scene")
     parser.add_argument("--gazetrace", default="build/release/bin/gazetrace")
     parser.add_argument("--blender", default="blender")
     parser.add_argument("--mitsuba-python", default=sys.executable, help="a Python that has mitsuba")
-    parser.add_argument("--programs", default="gazetrace,mitsuba-scalar,mitsuba-llvm,cycles")
+    parser.add_argument("--programs", default=programs)
     parser.add_argument("--env", default="none")
     parser.add_argument("--eye", default="8,2,-0.3")
     parser.add_argument("--target", default="-8,3,-0.3")
     parser.add_argument("--yfov", default="50")
     parser.add_argument("--bounces", type=int, default=3)
+
+
+def programs_and_view(parser, options):
+    """The programs by name, and the options of the view for each."""
+    programs = options.programs.split(",")
+    if unknown := [p for p in programs if p not in PROGRAMS]:
+        parser.error(f"--programs: '{unknown[0]}' is none of {', '.join(PROGRAMS)}")
+    # With =, since a value may begin with a minus.
+    view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
+    return programs, view
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_view_arguments(parser, "gazetrace,mitsuba-scalar,mitsuba-llvm,cycles")
     parser.add_argument("--materials", default="matte", choices=["matte", "principled"])
     parser.add_argument("--size", default="960x540", help="of the timed pictures")
     parser.add_argument("--spp", default="4,20", help="few and many samples a pixel of the timed pictures")
@@ -171,14 +186,10 @@ def main():
     parser.add_argument("--steady-spp", type=int, default=64)
     parser.add_argument("--rates", help="samples a pixel, each with a table of its own, in place of --spp, --error-spp and --error-size")
     options = parser.parse_args()
-    programs = options.programs.split(",")
-    if unknown := [p for p in programs if p not in PROGRAMS]:
-        parser.error(f"--programs: '{unknown[0]}' is none of {', '.join(PROGRAMS)}")
+    programs, view = programs_and_view(parser, options)
     options.seeds = [int(seeds) for seeds in options.seeds.split(",")]
     if len(options.seeds) not in (1, len(options.rates.split(",")) if options.rates else 1):
         parser.error("--seeds: one number, or one for each of --rates")
-    # With =, since a value may begin with a minus.
-    view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
 
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
