@@ -102,64 +102,7 @@ std::vector<std::int32_t> frames_of_others(const FramePlan& plan, const Pipeline
 RecordedHistory recorded_history(const FramePlan& plan, const PipelineSettings& settings,
                                  const TemporalHistory& history);
 
-// A run's claim to the files it writes: a file beside its record that says host, process and since when, and whose time
-// is renewed while the run lives. Runs of other parts in the folder hold it up only where their frames overlap.
-class RunLock {
- public:
-  // Error(runtime), since it will pass, where another run lives that writes some of these files. A lock that nobody
-  // holds any more is taken over; `waiting` is told where that takes a while to find out, since the other was on
-  // another machine.
-  // `family`: of several kinds of files in one folder, which do not hold each other up; begins the lock's name.
-  RunLock(const RunRecord& record, const std::string& record_path,
-          const std::function<void(const std::string& text)>& waiting = {}, const std::string& family = {});
-  ~RunLock();
-  RunLock(const RunLock&) = delete;
-  RunLock& operator=(const RunLock&) = delete;
-  // What became of earlier locks, in words.
-  [[nodiscard]] const Warnings& taken_over() const { return taken_over_; }
-
- private:
-  struct Heart;
-  Warnings taken_over_;
-  std::unique_ptr<Heart> heart_;
-};
-
-// Writes the history after a frame, to the bit, with the digest of the settings that it was made under. The file
-// appears under its name only when it is complete. Error(runtime) where it cannot be written.
-void save_checkpoint(const std::string& path, const TemporalHistory& history, const std::string& settings_digest);
-// Error(input) where save_checkpoint() would replace a whole checkpoint of other settings, or, for a run that does not
-// go on from an earlier one, a file that is none.
-void check_checkpoint_target(const std::string& path, const std::string& settings_digest, bool goes_on);
-// Error(input) for a file that is not a checkpoint, is damaged, or was made under other settings.
-TemporalHistory load_checkpoint(const std::string& path, const std::string& settings_digest);
-
 // Every file that rendering these frames would write, in order; run record and timing come first.
 std::vector<std::string> output_files(const PipelineSettings& settings, const std::vector<std::int32_t>& frames);
-
-// Why pictures cannot be made later from parts of the samples under these settings; empty: they can.
-std::string needs_all_samples(const PipelineSettings& settings);
-// Adds up the parts of the samples of every frame of the plan and writes what one run over all samples would have
-// written, to the bit, with timing.csv and run.json. `settings` are those of the parts, without `trace.samples`.
-// Error(input) for files of other settings, and where samples are missing or present twice.
-MergeResult merge_samples(const std::vector<RunPart>& parts, const FramePlan& plan, const ColorPipeline& color,
-                          const PipelineSettings& settings);
-// The sums of one frame's samples in a file, to the bit, in the manner of save_checkpoint and load_checkpoint.
-WrittenFile save_samples(const std::string& path, const SampleSums& sums, const std::string& settings_digest);
-SampleSums load_samples(const std::string& path, const std::string& settings_digest);
-
-// A traced frame in a file, to the bit, in the same manner; `frame` is its number.
-WrittenFile save_traced(const std::string& path, std::int32_t frame, const TracedFrame& traced,
-                        const std::string& settings_digest);
-TracedFrame load_traced(const std::string& path, std::int32_t frame, const std::string& settings_digest);
-
-// The scene file and every buffer and image it names, in the order of the file. Error(input) when the file is missing,
-// and where it names files outside of its data set, see SceneReadOptions.
-std::vector<std::string> scene_files(const std::string& path, bool allow_outside = false);
-// Content hash of each file. Error(input) for one that cannot be read.
-std::map<std::string, std::string> digest_files(const std::vector<std::string>& paths, int threads = 0);
-
-double peak_memory_mib();         // of this process so far
-std::string build_description();  // compiler and build type
-std::string instruction_set();    // what the library was compiled for
 
 }  // namespace gazetrace

@@ -2,7 +2,7 @@
 // gazetrace._core: the library, as little changed as possible. What users see is the package around it.
 #include "bind.hpp"
 #include "errors.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/build_info.hpp"
 #include "gazetrace/version.hpp"
 
 PYBIND11_MODULE(_core, module) {

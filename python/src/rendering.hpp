@@ -17,6 +17,7 @@
 
 #include "frame.hpp"
 #include "gazetrace/resolve.hpp"
+#include "gazetrace/run_lock.hpp"
 #include "threads.hpp"
 
 namespace gazetrace::python {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gazetrace/resolve.hpp"
+#include "gazetrace/run_lock.hpp"
 
 namespace gazetrace {
 

@@ -4,7 +4,8 @@
 
 #include <string>
 
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/error.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 

@@ -10,6 +10,7 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/resolve.hpp"
+#include "gazetrace/sample_parts.hpp"
 #include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
 #include "pipeline/adaptive_rates.hpp"

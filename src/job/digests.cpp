@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "gazetrace/input_digest.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/version.hpp"
 

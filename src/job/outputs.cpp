@@ -13,6 +13,7 @@
 #include <set>
 #include <system_error>
 
+#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 #include "job/changed_inputs.hpp"
 #include "job/chunks.hpp"

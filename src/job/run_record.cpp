@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "gazetrace/build_info.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/version.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/build_info.hpp"
 
 namespace gazetrace {
 

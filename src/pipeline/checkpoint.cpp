@@ -6,7 +6,7 @@
 #include <string>
 #include <system_error>
 
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/checkpoint.hpp"
 #include "pipeline/sealed_file.hpp"
 
 namespace gazetrace {

@@ -13,7 +13,7 @@
 #include "core/data_root.hpp"
 #include "core/file_digest.hpp"
 #include "core/parallel.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/input_digest.hpp"
 
 namespace gazetrace {
 namespace {

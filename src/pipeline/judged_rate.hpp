@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/color.hpp"
+#include "gazetrace/frame_renderer.hpp"
+#include "gazetrace/output.hpp"
 #include "pipeline/clip_rate.hpp"
 
 namespace gazetrace {

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/build_info.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "gazetrace/sample_parts.hpp"
 #include "output/aovs.hpp"
 #include "pipeline/frame_files.hpp"
 #include "pipeline/frame_stages.hpp"

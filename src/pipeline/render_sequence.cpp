@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "gazetrace/build_info.hpp"
+#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "output/aovs.hpp"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 #include "pipeline/file_journal.hpp"
 #include "pipeline/finished_frames.hpp"

@@ -28,7 +28,7 @@
 #include <utility>
 
 #include "core/list_folder.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/run_lock.hpp"
 #include "pipeline/lock_state.hpp"
 
 namespace gazetrace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/sample_parts.hpp"
 #include "pipeline/sealed_file.hpp"
 
 namespace gazetrace {

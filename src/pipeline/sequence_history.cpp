@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {

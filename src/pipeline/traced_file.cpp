@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/traced_frame_file.hpp"
 #include "pipeline/sealed_file.hpp"
 
 namespace gazetrace {

@@ -10,6 +10,8 @@
 #include "core/stopwatch.hpp"
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/sample_parts.hpp"
+#include "gazetrace/traced_frame_file.hpp"
 #include "output/written_file.hpp"
 #include "pipeline/sample_sums_file.hpp"
 #include "pipeline/timing_row.hpp"

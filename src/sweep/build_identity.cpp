@@ -8,7 +8,8 @@
 #include <string>
 
 #include "core/parallel.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/build_info.hpp"
+#include "gazetrace/input_digest.hpp"
 #include "sweep/state.hpp"
 
 namespace gazetrace {

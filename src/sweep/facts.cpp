@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "gazetrace/build_info.hpp"
 #include "gazetrace/version.hpp"
 #include "sweep/conclude.hpp"
 #include "sweep/model_gain_of_test.hpp"

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "core/stopwatch.hpp"
+#include "gazetrace/build_info.hpp"
 #include "sweep/pictures.hpp"
 #include "sweep/scorer.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gazetrace/build_info.hpp"
 #include "gazetrace/version.hpp"
 #include "sweep/conclude.hpp"
 #include "sweep/scorer.hpp"

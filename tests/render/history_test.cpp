@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/pipeline.hpp"
+#include "gazetrace/traced_frame_file.hpp"
 #include "render/tracer_scenes.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -15,14 +15,16 @@
 #include <vector>
 
 #include "core/image_io.hpp"
+#include "gazetrace/checkpoint.hpp"
 #include "gazetrace/compare.hpp"
 #include "gazetrace/farm.hpp"
 #include "gazetrace/gaze_aois.hpp"
 #include "gazetrace/job.hpp"
 #include "gazetrace/job_schema.hpp"
-#include "gazetrace/pipeline.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/results.hpp"
+#include "gazetrace/sample_parts.hpp"
+#include "gazetrace/traced_frame_file.hpp"
 #include "output/exr.hpp"
 #include "render/tracer_scenes.hpp"
 #include "support/reader_fuzz.hpp"

@@ -9,6 +9,9 @@
 
 #include "core/hash.hpp"
 #include "farm/engine.hpp"
+#include "gazetrace/checkpoint.hpp"
+#include "gazetrace/sample_parts.hpp"
+#include "gazetrace/traced_frame_file.hpp"
 #include "support/file_fuzz.hpp"
 #include "support/scene_seeds.hpp"
 #include "support/text_file.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gazetrace/error.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/run_lock.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gazetrace {

@@ -12,6 +12,7 @@
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/recorded_run.hpp"
+#include "gazetrace/sample_parts.hpp"
 
 namespace gazetrace {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
-#include "gazetrace/pipeline.hpp"
+#include "gazetrace/build_info.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/scene.hpp"
 #include "gazetrace/scene_contents.hpp"

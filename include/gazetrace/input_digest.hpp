@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which files a scene consists of, and what they contain.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace gazetrace {
+
+// The scene file and every buffer and image it names, in the order of the file. Error(input) when the file is missing,
+// and where it names files outside of its data set, see SceneReadOptions.
+std::vector<std::string> scene_files(const std::string& path, bool allow_outside = false);
+// Content hash of each file. Error(input) for one that cannot be read.
+std::map<std::string, std::string> digest_files(const std::vector<std::string>& paths, int threads = 0);
+
+}  // namespace gazetrace
