@@ -12,7 +12,8 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
               program's own, its noise taken out: mean over seeds, with a 95 % interval of that mean
   common      the same against one reference, the mean of all programs' converged pictures (matte materials only: there
               the models coincide; normal maps are taken out of the scene)
-  cost        us * own: time to a given error. The ratio column is that of gazetrace
+  cost        us * own: time to a given error
+  ratio       cost over that of the first program, usually gazetrace; (common): the same of us * common
   furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
 
 `gazetrace-plain` is gazetrace with --no-learn-light. What learned light gains depends on the size of the frame: measure errors
@@ -273,8 +274,20 @@ def measure_errors(programs, options, rates, picture):
             for p in programs:
                 x = picture(p, rate, 2000 + s)
                 own[rate][p].append(relative_mse(x, reference[p]) / noise * rate)
-                shared[rate][p].append(relative_mse(x, common) / (1 + (noise - 1) / len(programs)) * rate)
+                shared[rate][p].append(relative_mse(x, common) * rate)
+        shared[rate] = without_noise_of_mean(shared[rate], rate / options.reference_spp)
     return own, shared
+
+
+def without_noise_of_mean(errors, share):
+    """Errors per sample against the mean of all programs' references, without what the noise of that mean adds.
+
+    `share` is samples of a picture over samples of a reference. Of n programs with errors v, the mean of their references
+    adds share / n^2 * sum(v) to each. So the sum of what was measured is sum(v) * (1 + share / n), which gives sum(v).
+    """
+    n = len(errors)
+    total = sum(statistics.mean(v) for v in errors.values() if v) / (1 + share / n)
+    return {p: [x - share / n**2 * total for x in v] for p, v in errors.items()}
 
 
 def sample_us(program, options, folder, view, few, many, r):
@@ -289,15 +302,17 @@ def sample_us(program, options, folder, view, few, many, r):
 
 def print_table(programs, times, own, shared, shine):
     print(f"{'program':16}{'us':>8}{'least':>8}{'most':>8}{'own':>9}{'+-':>8}{'common':>9}{'+-':>8}{'cost':>9}{'ratio':>7}"
-          f"{'furnace':>9}")
+          f"{'(common)':>9}{'furnace':>9}")
     mean = lambda v: statistics.mean(v) if v else math.nan
     median = lambda v: statistics.median(v) if v else math.nan
     cost = {p: median(times[p]) * mean(own[p]) for p in programs}
+    common_cost = {p: median(times[p]) * mean(shared[p]) for p in programs}
     for p in programs:
         t = times[p] or [math.nan]
         print(f"{p:16}{median(times[p]):8.3f}{min(t):8.3f}{max(t):8.3f}{mean(own[p]):9.3f}"
               f"{interval(own[p]):8.3f}{mean(shared[p]):9.3f}{interval(shared[p]):8.3f}{cost[p]:9.3f}"
-              f"{cost[p] / cost[programs[0]]:7.2f}{shine[p]:9.4f}", flush=True)
+              f"{cost[p] / cost[programs[0]]:7.2f}{common_cost[p] / common_cost[programs[0]]:9.2f}{shine[p]:9.4f}",
+              flush=True)
 
 
 if __name__ == "__main__":
