@@ -34,7 +34,7 @@ std::vector<SiteResidual> residuals_of_sites(const FilterInput& input, const Sur
       const float share = 1.0F / static_cast<float>(map.sites[i].pixels);
       SiteResidual& residual = residuals[i];
       residual.radiance = input.values.value(i).radiance - share * mean;
-      residual.shown = share * luminance(mean);
+      residual.shown = share * mean;
       // Halves that are equal to the bit say nothing: one of them had no sample that is a number.
       if (input.values.count(i) > 1 && input.sparse.half_difference[i] != 0) {
         residual.replica = input.sparse.half_difference[i] - share * replica;

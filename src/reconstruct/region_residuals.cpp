@@ -13,20 +13,31 @@ namespace {
 constexpr int kBands = 3;
 constexpr float kMostShare = 4;  // of a block's residual, in a pixel that is much brighter than the rest of it
 constexpr float kMostLight = 1e18F;
+// Coarse bands change a block by this share of what it shows at most, unless its own samples say more. Beside a light,
+// coarse residuals are those of the light: without this limit they would make the wall around it black, or glow.
+constexpr float kMostChange = 0.1F;
 
 Vec3f radiance_of(const Channels<4>::Value& residual) {
   return {residual[0], residual[1], residual[2]};
 }
 
 // Also of sites without a residual.
-float shown_by_site(const SamplingMap& map, std::uint32_t site, const SiteResidual& residual,
+Vec3f shown_by_site(const SamplingMap& map, std::uint32_t site, const SiteResidual& residual,
                     const SurfacePicture& picture) {
-  if (residual.shown > 0) {
+  if (luminance(residual.shown) > 0) {
     return residual.shown;
   }
-  float sum = 0;
-  for_each_pixel(map, map.sites[site], [&](int x, int y) { sum += luminance(picture.radiance(x, y)); });
-  return sum / static_cast<float>(map.sites[site].pixels);
+  Vec3f sum;
+  for_each_pixel(map, map.sites[site], [&](int x, int y) { sum += picture.radiance(x, y); });
+  return (1.0F / static_cast<float>(map.sites[site].pixels)) * sum;
+}
+
+// What is kept of a residual, between what the block's own samples say and nothing, or a little beyond.
+float bounded(float kept, float shown, float own) {
+  return std::clamp(kept, std::min(-kMostChange * shown, own), std::max(kMostChange * shown, own));
+}
+Vec3f bounded(const Vec3f& kept, const Vec3f& shown, const Vec3f& own) {
+  return {bounded(kept.x, shown.x, own.x), bounded(kept.y, shown.y, own.y), bounded(kept.z, shown.z, own.z)};
 }
 
 // What is left of a residual far beyond its own samples' standard error is wrong with the picture, whatever is around
@@ -91,7 +102,7 @@ RegionResiduals::RegionResiduals(const FilterInput& input, const SmoothingSettin
       const std::uint32_t site = sites[index(x, y)];
       const SiteResidual& r = of_site[site];
       finer_.put(x, y, {r.radiance.x, r.radiance.y, r.radiance.z, r.replica});
-      const float shown = shown_by_site(input.map, site, r, picture);
+      const float shown = luminance(shown_by_site(input.map, site, r, picture));
       kept_[index(x, y)].shown = shown;
       doubt_[index(x, y)] =
           settings.residual_doubt * doubt_of_few(static_cast<float>(input.values.count(site)), settings);
@@ -102,8 +113,11 @@ RegionResiduals::RegionResiduals(const FilterInput& input, const SmoothingSettin
   for_each_row(window.height, threads_, [&](int y) {
     for (int x = 0; x < window_.width; ++x) {
       const std::uint32_t site = sites[index(x, y)];
-      keep_what_is_sure(of_site[site], input.values.value(site).variance, noise_[index(x, y)],
-                        static_cast<float>(input.values.count(site)), kept_[index(x, y)]);
+      const SiteResidual& own = of_site[site];
+      KeptResidual& kept = kept_[index(x, y)];
+      kept.radiance = bounded(kept.radiance, shown_by_site(input.map, site, own, picture), own.radiance);
+      keep_what_is_sure(own, input.values.value(site).variance, noise_[index(x, y)],
+                        static_cast<float>(input.values.count(site)), kept);
     }
   });
 }

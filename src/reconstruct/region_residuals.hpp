@@ -20,7 +20,7 @@ struct KeptResidual {
   float rest = 1;  // the share of the finest band that is not given back
   float variance = 0, error = 0;
   float replica = 0;  // of the error of what is given back
-  float shown = 0;    // as SiteResidual
+  float shown = 0;    // mean luminance of the picture
 };
 
 // The residuals of the blocks of one region, and what is kept of them.

@@ -86,7 +86,7 @@ class SampledFirstHits {
       });
       const float part = 1.0F / static_cast<float>(map_.sites[i].pixels);
       SiteResidual& residual = residuals[i];
-      residual.shown = part * luminance(mean);
+      residual.shown = part * mean;
       residual.radiance = seen.radiance - part * mean;
       // Halves that are equal to the bit say nothing: one of them may be empty.
       const bool has_halves = input_.values.count(i) > 1 && input_.sparse.half_difference[i] != 0;
