@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kSource = GAZETRACE_SOURCE_DIR;
+const fs::path source_folder = GAZETRACE_SOURCE_DIR;
 
 // The layers from the bottom up. A module may include modules of the layers below it, and itself.
-const std::vector<std::vector<std::string>> kLayers = {
+const std::vector<std::vector<std::string>> layers = {
     {"core"},
     {"display", "camera", "material", "gazelog", "gaze"},
     {"scene", "plan", "foveation"},
@@ -29,10 +29,10 @@ const std::vector<std::vector<std::string>> kLayers = {
     {"sweep", "report", "study", "video", "farm"},
     {"cli"},
 };
-const std::map<std::string, int> kLayer = [] {
+const std::map<std::string, int> layer_of = [] {
   std::map<std::string, int> layer;
-  for (std::size_t i = 0; i < kLayers.size(); ++i) {
-    for (const std::string& module : kLayers[i]) {
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    for (const std::string& module : layers[i]) {
       layer[module] = static_cast<int>(i);
     }
   }
@@ -40,7 +40,7 @@ const std::map<std::string, int> kLayer = [] {
 }();
 
 // Within a layer, the order of the data: what may be seen sideways.
-const std::set<std::pair<std::string, std::string>> kSideways = {
+const std::set<std::pair<std::string, std::string>> sideways = {
     {"gazelog", "display"},       // logs carry the geometry of their recording
     {"gaze", "gazelog"},          // what is done with gaze begins with a log
     {"gaze", "display"},          // gaze on a display is an angle
@@ -56,7 +56,7 @@ const std::set<std::pair<std::string, std::string>> kSideways = {
 };
 
 // The public headers of each module.
-const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
+const std::map<std::string, std::vector<std::string>> public_headers = {
     {"core", {"math", "image", "error", "version"}},
     {"display", {"display"}},
     {"camera", {"camera", "motion"}},
@@ -89,9 +89,9 @@ const std::map<std::string, std::vector<std::string>> kPublicHeaders = {
     {"video", {"video"}},
     {"farm", {"farm"}},
 };
-const std::map<std::string, std::string> kPublicHeader = [] {
+const std::map<std::string, std::string> module_of_header = [] {
   std::map<std::string, std::string> module_of;
-  for (const auto& [module, headers] : kPublicHeaders) {
+  for (const auto& [module, headers] : public_headers) {
     for (const std::string& header : headers) {
       module_of[header] = module;
     }
@@ -100,7 +100,7 @@ const std::map<std::string, std::string> kPublicHeader = [] {
 }();
 
 // Which files may meet which dependency.
-const std::vector<std::pair<std::string, std::string>> kDependency = {
+const std::vector<std::pair<std::string, std::string>> dependencies = {
     {R"(embree[34]/)", R"(src/trace/rays/embree(_\w+)?\.(hpp|cpp))"},
     {R"(tiny_gltf\.h)", R"(src/scene/gltf/document\.cpp)"},
     {R"(meshoptimizer\.h)", R"(src/scene/gltf/meshopt\.cpp)"},
@@ -121,7 +121,7 @@ const std::vector<std::pair<std::string, std::string>> kDependency = {
 std::vector<fs::path> sources(const std::vector<std::string>& folders) {
   std::vector<fs::path> found;
   for (const std::string& folder : folders) {
-    for (const auto& entry : fs::recursive_directory_iterator(kSource / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(source_folder / folder)) {
       const std::string extension = entry.path().extension().string();
       if (extension == ".hpp" || extension == ".cpp" || extension == ".def" || extension == ".inl") {
         found.push_back(entry.path());
@@ -139,14 +139,14 @@ struct Include {
 };
 
 std::vector<Include> includes_of(const fs::path& path) {
-  static const std::regex kInclude(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"])re");
+  static const std::regex include_line(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"])re");
   std::vector<Include> found;
   std::ifstream in(path);
   std::string text;
   for (int line = 1; std::getline(in, text); ++line) {
     std::smatch match;
-    if (std::regex_search(text, match, kInclude)) {
-      found.push_back({fs::relative(path, kSource).string(), line, match[2], match[1] == "\""});
+    if (std::regex_search(text, match, include_line)) {
+      found.push_back({fs::relative(path, source_folder).string(), line, match[2], match[1] == "\""});
     }
   }
   return found;
@@ -154,14 +154,14 @@ std::vector<Include> includes_of(const fs::path& path) {
 
 // "core", "cli", ... of a file of ours; empty for others.
 std::string module_of_file(const std::string& relative) {
-  static const std::regex kPublic(R"(include/gazetrace/([a-z_]+)\.hpp)");
-  static const std::regex kPrivate(R"(src/([a-z]+)/.*)");
+  static const std::regex public_path(R"(include/gazetrace/([a-z_]+)\.hpp)");
+  static const std::regex private_path(R"(src/([a-z]+)/.*)");
   std::smatch match;
-  if (std::regex_match(relative, match, kPublic)) {
-    const auto found = kPublicHeader.find(match[1]);
-    return found == kPublicHeader.end() ? "" : found->second;
+  if (std::regex_match(relative, match, public_path)) {
+    const auto found = module_of_header.find(match[1]);
+    return found == module_of_header.end() ? "" : found->second;
   }
-  return std::regex_match(relative, match, kPrivate) ? match[1].str() : "";
+  return std::regex_match(relative, match, private_path) ? match[1].str() : "";
 }
 
 std::string module_of_target(const Include& include) {
@@ -170,23 +170,23 @@ std::string module_of_target(const Include& include) {
   }
   const auto slash = include.target.find('/');
   const std::string first = include.target.substr(0, slash);
-  return include.quoted && slash != std::string::npos && kLayer.count(first) != 0 ? first : "";
+  return include.quoted && slash != std::string::npos && layer_of.count(first) != 0 ? first : "";
 }
 
 TEST(Architecture, IncludesGoOnlyDown) {
   for (const fs::path& path : sources({"include", "src"})) {
-    const std::string from = module_of_file(fs::relative(path, kSource).string());
+    const std::string from = module_of_file(fs::relative(path, source_folder).string());
     if (path.filename() == "version.hpp.in") {
       continue;
     }
-    ASSERT_TRUE(kLayer.count(from) != 0) << path << " belongs to no module of the layer table";
+    ASSERT_TRUE(layer_of.count(from) != 0) << path << " belongs to no module of the layer table";
     for (const Include& include : includes_of(path)) {
       const std::string to = module_of_target(include);
       if (to.empty() || to == from) {
         continue;
       }
-      const bool down = kLayer.at(to) < kLayer.at(from);
-      EXPECT_TRUE(down || kSideways.count({from, to}) != 0)
+      const bool down = layer_of.at(to) < layer_of.at(from);
+      EXPECT_TRUE(down || sideways.count({from, to}) != 0)
           << include.file << ":" << include.line << ": " << from << " may not include " << to << " (" << include.target
           << ")";
     }
@@ -196,7 +196,7 @@ TEST(Architecture, IncludesGoOnlyDown) {
 TEST(Architecture, EveryDependencyIsMetInItsPlace) {
   for (const fs::path& path : sources({"include", "src"})) {
     for (const Include& include : includes_of(path)) {
-      for (const auto& [pattern, place] : kDependency) {
+      for (const auto& [pattern, place] : dependencies) {
         if (std::regex_search(include.target, std::regex("^" + pattern))) {
           EXPECT_TRUE(std::regex_match(include.file, std::regex(place)))
               << include.file << ":" << include.line << ": " << include.target << " belongs into " << place;
@@ -219,7 +219,7 @@ TEST(Architecture, PublicHeadersNeedOnlyTheStandardLibrary) {
 
 TEST(Architecture, TheProgramUsesPublicHeadersOnly) {
   for (const fs::path& path : sources({"src"})) {
-    if (module_of_file(fs::relative(path, kSource).string()) != "cli") {
+    if (module_of_file(fs::relative(path, source_folder).string()) != "cli") {
       continue;
     }
     for (const Include& include : includes_of(path)) {
