@@ -7,7 +7,7 @@
 namespace gazetrace {
 
 double peak_memory_mib();         // of this process so far
-std::string build_description();  // compiler and build type
+std::string build_description();  // compiler, whether code is optimised, and whether assertions are on
 std::string instruction_set();    // what the library was compiled for
 
 }  // namespace gazetrace

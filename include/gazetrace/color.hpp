@@ -76,7 +76,7 @@ class ColorPipeline {
   void prepare(int width_px, int height_px, int bits, int threads = 0) const;
 
   [[nodiscard]] const std::vector<ViewInfo>& views() const;
-  [[nodiscard]] std::string description() const;  // "built-in: sRGB display, ACES 1.x SDR view"
+  [[nodiscard]] std::string description() const;  // such as "built-in: display sRGB, view ..."
 
  private:
   struct Impl;

@@ -42,7 +42,7 @@ inline constexpr std::int64_t kAfterSaccadeNs = 100'000'000;
 std::string_view to_string(GazeClass gaze_class);  // "fixation", "in-flight", "blink", "no-gaze", "unclassified"
 GazeClass gaze_class_of(const GazeAtTime& gaze);
 
-// The metrics of metrics.hpp, and those of whole sequences (compare/sequence_metrics.def).
+// The metrics of metrics.hpp, and those of whole sequences (src/compare/sequence_metrics.def).
 std::vector<MetricInfo> comparison_metrics();
 
 struct ComparisonSettings {
@@ -58,9 +58,8 @@ struct ComparisonSettings {
   bool want_maps = false;
 };
 // Error(usage) for pooling weights and other metrics than FovVideoVDP, and that names the setting whose value is out of
-// range: peak (above 0), contrast (above 1), ambient light (0
-// or more), reflectivity (0..1) and relmse's epsilon (above 0), all of them finite; and where code values are relative
-// and the room's light makes black as bright as white.
+// range: peak (above 0), contrast (above 1), ambient light (0 or more), reflectivity (0..1) and relmse's epsilon (above
+// 0), all of them finite; and where code values are relative and the room's light makes black as bright as white.
 void check_comparison(const ComparisonSettings& settings);
 // Computes what the settings leave empty of HDR-FLIP's exposures from this reference. Call it with the first frame,
 // since frames compare only with the same exposures. Does nothing unless hdr_flip is among the metrics.

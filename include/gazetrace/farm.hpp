@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job as tasks for many machines: an array that renders chunks of the frames, or of the samples, or measures chunks
-// of the rows of a sweep; what makes one of them; and what follows. Every engine runs the same tasks, by one script
-// that lies in the farm's folder.
+// Divides a job into tasks for many machines. The tasks of an array render chunks of the frames, or of the samples, or
+// measure chunks of the rows of a sweep; a last task joins what they made. Every engine runs the same tasks, by one
+// script that lies in the farm's folder.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ struct FarmSettings {
   bool confine = false;             // the job is by others: it and its tasks keep to its folder or data set
 };
 
-// What the chunks of a farm are of.
+// What is divided into chunks.
 enum class FarmKind : std::uint8_t { frames, samples, sweep };
 
 // What is to be done, for status, retry and every engine; farm.json in the farm's folder.
@@ -122,8 +122,8 @@ struct LocalSettings {
   std::function<void(const std::string& task, const std::string& what)> tell;  // "1", "begins"; "1", "exit code 0"
 };
 // Runs these chunks on this machine, and what follows once all chunks of the plan are done. Chunks that another such
-// process on this machine is at are left to it, and waited for. The last exit code that was not 0, or 0. A task that
-// ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
+// process on this machine is at are left to it, and waited for. Returns the last exit code that was not 0, else 0. A
+// task that ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
 int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings);
 
 }  // namespace gazetrace

@@ -100,8 +100,7 @@ double fovvideovdp_q(double jod);
 class FovVideoVdp {
  public:
   // Error(usage) for pictures of less than 8 pixels a side, for pooling weights of another size or that are no weights,
-  // and for frame rates so low that the temporal filter would
-  // have less than two taps.
+  // and for frame rates so low that the temporal filter would have less than two taps.
   FovVideoVdp(const FovVideoVdpSettings& settings, int width_px, int height_px);
   ~FovVideoVdp();
   FovVideoVdp(FovVideoVdp&&) noexcept;

@@ -145,8 +145,8 @@ class FrameRenderer {
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
   // Whether `known` is what the frame would learn of its light: its own, or that of a frame at rest with it.
   [[nodiscard]] bool knows_light(const KnownLight& known, const FrameRequest& request) const;
-  // Whether frames around a frame are read before its filter, surface by surface (temporal/moving_views.hpp): all that
-  // can move in the scene is the camera, the filter takes light surface by surface, and neither
+  // Whether frames around a frame are read before its filter, surface by surface (src/temporal/moving_views.hpp): all
+  // that can move in the scene is the camera, the filter takes light surface by surface, and neither
   // AccumulateSettings::blend nor ReconstructionSettings::pass_through_samples is set.
   [[nodiscard]] bool only_views_move() const;
   // Lets other frames read this one: fills in ReconstructedFrame::alone.

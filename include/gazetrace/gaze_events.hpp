@@ -106,9 +106,9 @@ struct EyeEvent {
   Vec3d direction{};
   double u = 0, v = 0;
   // For a saccade: the angle between where it begins and where it lands, the highest and the mean of the speeds at its
-  // samples (angular_speed_deg_s over EventSettings::velocity_window_ns), and the direction
-  // of its course (degrees, 0 to the right, 90 up). For a fixation: the peak speed, and dispersion_deg, the root mean
-  // square of the angle to its mean direction. NaN where a value does not apply.
+  // samples (angular_speed_deg_s over EventSettings::velocity_window_ns), and the direction of its course (degrees, 0
+  // to the right, 90 up). For a fixation: the peak speed, and dispersion_deg, the root mean square of the angle to its
+  // mean direction. NaN where a value does not apply.
   double amplitude_deg = 0, peak_velocity_deg_s = 0, mean_velocity_deg_s = 0, angle_deg = 0, dispersion_deg = 0;
   // Of an event that the log itself states, what the tracker says of it: begin and end may lie between samples.
   struct Stated {

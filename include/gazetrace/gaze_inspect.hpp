@@ -148,8 +148,8 @@ struct GazeUnderInspection {
   GazeLog log;
 };
 // Broken logs are mended where an option can mend them, and what was wrong becomes a finding. Of several recordings the
-// first one is taken. Gaze on a scene camera's
-// picture is accepted. Display sizes that nobody states are guessed, as `GazeReadOptions::guess_display` says.
+// first one is taken. Gaze on a scene camera's picture is accepted. Display sizes that nobody states are guessed, as
+// `GazeReadOptions::guess_display` says.
 GazeUnderInspection load_for_inspection(const std::string& path, GazeReadOptions read);
 GazeInspection inspect_gaze(const GazeUnderInspection& gaze, const GazeInspectOptions& options);
 

@@ -8,8 +8,8 @@
 
 namespace gazetrace {
 
-// The scene file and every buffer and image it names, in the order of the file. Error(input) when the file is missing,
-// and where it names files outside of its data set, see SceneReadOptions.
+// The scene file, then the buffers and then the images that it names and that exist, each once. Error(input) when the
+// scene file is missing, and where it names files outside of its data set (SceneReadOptions::allow_outside).
 std::vector<std::string> scene_files(const std::string& path, bool allow_outside = false);
 // Content hash of each file. Error(input) for one that cannot be read.
 std::map<std::string, std::string> digest_files(const std::vector<std::string>& paths, int threads = 0);

@@ -67,7 +67,8 @@ std::string option_text(const Job& job, const std::string& option, const JobSche
 void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy = {},
               PathsBegin paths = PathsBegin::beside_settings);
 Job job_from_toml(const std::string& text, const std::string& path);
-// Also throws Error(input) for a file that cannot be read. `confine`: for settings by others, see JobSettings::confine.
+// Also throws Error(input) for a file that cannot be read. `confine`: settings by others, whose files must
+// lie in the folder of the settings file or in the data set that it belongs to.
 Job load_job(const std::string& path, bool confine = false);
 std::string read_settings_file(const std::string& path);
 // Every option with its value, as TOML; reading the text gives the same settings. Its first line names `title`.

@@ -46,7 +46,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   ByteCount max_memory;  // 0: most_memory_bytes()
   SceneLimits limits;    // all but its memory
   bool allow_outside = false;
-  bool confine = false;
+  bool confine = false;  // as for load_job()
 
   // Scene camera
   std::string camera;

@@ -261,7 +261,7 @@ std::vector<BadFile> find_bad_files(const std::string& directory, const WrittenF
 std::vector<BadFile> find_bad_files(const std::vector<RunPart>& parts, int threads = 0);
 // Error(input) that counts bad files, and names the first of them and their frames; nothing where there are none.
 void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& bad);
-// Whether these are parts of the samples, for merge_samples() of pipeline.hpp, rather than parts of the frames.
+// Whether these are parts of the samples, for merge_samples() of sample_parts.hpp, rather than parts of the frames.
 // Error(input) where both occur.
 bool are_parts_of_samples(const std::vector<RunPart>& parts);
 

@@ -5,33 +5,31 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gazetrace/color.hpp"
+#include "gazetrace/error.hpp"
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/output.hpp"
 #include "gazetrace/plan.hpp"
-#include "gazetrace/scene.hpp"
 #include "gazetrace/temporal.hpp"
 #include "gazetrace/trace.hpp"
 
 namespace gazetrace {
 
 // Which stages of a frame a run does. Where frames depend on those before them, many machines can trace at the same
-// time and write what they found (save_traced()); one run then finishes all frames in their order, with the bits of a
-// run that does both.
+// time and write what they found (traced_frame_file.hpp); one run then finishes all frames in their order, with the
+// bits of a run that does both.
 enum class SequenceStage : std::uint8_t { whole, trace, finish };
 
 // What every frame is made with, and what becomes of the frames.
 struct PipelineSettings : FrameSettings {
   OutputSettings output;  // without any pattern nothing is written, not even timing and run record
   FrameRate fps;
-  // Of everything that decides about pixels, except which frames there are and how a sequence was cut into parts: what
-  // a frame found of history is in its own header.
+  // The digest of all that decides about pixels, but not of which frames there are or how the sequence was divided.
+  // What history a frame had is in the header of that frame's picture.
   std::string settings_digest;
   // History (accumulation, smoothed exposure) that is kept in files and taken up again.
   std::string checkpoint;             // a file for the history after the last frame; empty: none
@@ -39,7 +37,7 @@ struct PipelineSettings : FrameSettings {
   std::string resume_from;            // a checkpoint whose last frame comes before the plan's first; empty: no history
   std::int32_t preroll = 0;           // so many frames at the plan's beginning are rendered for their history alone
   // The plan is a part of a longer sequence: timing.csv and run.json carry the range of frames in their names. With
-  // `trace.samples` it is a part of the samples: their sums are written instead of pictures, for merge_samples().
+  // `trace.samples` it is a part of the samples: their sums are written instead of pictures (sample_parts.hpp).
   bool is_part = false;
   SequenceStage stage = SequenceStage::whole;
 };
@@ -50,11 +48,13 @@ bool needs_history(const PipelineSettings& settings);
 // Called from the rendering thread. Any of them may be empty.
 struct PipelineObserver {
   std::function<void(const FrameRequest&)> frame_begins;
-  // The dense linear frame after accumulation and its exposure in stops, before anything is written.
+  // The finished linear frame and its exposure in stops, before its files are written; also for frames that are
+  // rendered for their history alone.
   std::function<void(const FrameRequest&, const Frame&, double exposure_ev)> frame_ready;
+  // `skipped`: no file was written, since it was there already or the frame was rendered for its history alone.
   std::function<void(const TimingRow&, bool skipped)> frame_done;
-  // After frame_done, for each frame with a row of its own: everything that was found out about it, to be moved out
-  // where it is to outlive the call. Not called where frames are only traced or are parts of the samples.
+  // Called after frame_done for frames that were not skipped, with everything that was found out about the frame, to be
+  // moved out where it is to outlive the call. Not called where frames are only traced or are parts of the samples.
   std::function<void(const FrameRequest&, RenderedFrame&&, const TimingRow&)> take_frame;
   // Asked before a frame, with the mean time of those before it, ms (0: there was none): true ends the sequence there.
   // TraceSettings::stop gives up a frame in the middle.

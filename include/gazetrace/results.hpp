@@ -66,8 +66,8 @@ struct PublishedSpeedUp {
   std::string source;
 };
 
-// One measured setting: a test, or a row that stands beside a test. Times are seconds a frame, of plan, trace, guides,
-// reconstruct, temporal and upscaling.
+// One measured setting: a test, or a row that stands beside a test. Times are seconds a frame, of plan, learning,
+// pilot, trace, guides, reconstruct, temporal and upscaling.
 struct ResultRow {
   std::string id, scene, gaze, label;
   RowRole role = RowRole::test;
@@ -184,7 +184,7 @@ struct Results {
   std::string methods;  // a paragraph with every setting; if empty, results_methods() makes a plainer one
 };
 
-// The text of results.json. Both directions follow one description of the fields in results/json.cpp. The file carries
+// The text of results.json. Both directions follow one description of the fields. The file carries
 // its version as its "format".
 std::string results_json(const Results& results);
 // A results file, or a folder with results.json. Error(input) for a file of another version, and with the place in the

@@ -12,13 +12,14 @@
 namespace gazetrace {
 
 // A run's claim to the files it writes: a file beside its record that says host, process and since when, and whose time
-// is renewed while the run lives. Runs of other parts in the folder hold it up only where their frames overlap.
+// is renewed while the run lives. Runs of other parts of the frames hold it up only where their frames overlap, and
+// runs of other parts of the samples never.
 class RunLock {
  public:
-  // Error(runtime), since it will pass, where another run lives that writes some of these files. A lock that nobody
-  // holds any more is taken over; `waiting` is told where that takes a while to find out, since the other was on
-  // another machine.
-  // `family`: of several kinds of files in one folder, which do not hold each other up; begins the lock's name.
+  // Error(runtime) where a living run writes some of these files, so that it helps to try again later, and where the
+  // lock cannot be written. A lock that nobody holds any more is taken over; `waiting` is told where that takes a while
+  // to find out, since the other was on another machine. `family` begins the lock's name. Locks of different families
+  // do not hold each other up, so that one folder can have several kinds of files.
   RunLock(const RunRecord& record, const std::string& record_path,
           const std::function<void(const std::string& text)>& waiting = {}, const std::string& family = {});
   ~RunLock();

@@ -174,7 +174,7 @@ struct SceneReadOptions {
   std::function<void(std::size_t done, std::size_t total)> progress;
   SceneLimits limits;
   // The scene may name files outside of its data set. Otherwise buffers and pictures must lie, symbolic links followed,
-  // in the scene's folder or in the data set that it belongs to, see core/data_root.hpp.
+  // in the scene's folder or in the data set that it belongs to, see src/core/data_root.hpp.
   bool allow_outside = false;
 };
 

@@ -188,8 +188,8 @@ struct SparseFrame {
   std::vector<SurfaceSums> surfaces;
   std::vector<std::uint32_t> first_surface;
   // Of each surface, how many samples of other frames are in SurfaceSums::reflected, ::square and ::half_difference,
-  // which are brought to the surface's own count and albedo (temporal/moving_views.hpp). A site without samples then
-  // may have a surface whose count of 1 stands for one of theirs. Empty: none.
+  // which are brought to the surface's own count and albedo (src/temporal/moving_views.hpp). A site without samples
+  // then may have a surface whose count of 1 stands for one of theirs. Empty: none.
   std::vector<std::uint32_t> samples_of_others;
   // Of each site that filters change, beside its surfaces; empty unless TraceSettings::surfaces.
   std::vector<FirstHitSums> first_hits;
@@ -292,10 +292,10 @@ class PosedScene {
   [[nodiscard]] SparseFrame trace(const Camera& camera, std::int32_t frame, const SamplingMap& map,
                                   const TraceSettings& settings) const;
 
-  // Traces one path for every eight pixels, at most 65536, and learns from them for each place from where light
-  // arrives (Müller, Gross and Novák, "Practical Path Guiding for Efficient Light-Transport Simulation", 2017). The
-  // result depends on the pose, the arguments and the seed, not on what is traced with it: frames between which nothing
-  // moves learn the same.
+  // Traces up to one path for every eight pixels, at most 65536: first 4096 of them, and the others only where those
+  // promise a gain. Learns from them for each place from where light arrives (Müller, Gross and Novák, "Practical Path
+  // Guiding for Efficient Light-Transport Simulation", 2017). The result depends on the pose, the arguments and the
+  // seed, not on what is traced with it: frames between which nothing moves learn the same.
   [[nodiscard]] LightLearning learn_light(const Camera& camera, int width_px, int height_px,
                                           const TraceSettings& settings) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A frame that was traced on one machine, in a file that another finishes it from.
+// A traced frame in a file: one machine traces it, another reads the file and finishes the frame.
 #pragma once
 
 #include <cstdint>

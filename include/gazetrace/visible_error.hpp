@@ -69,8 +69,7 @@ ErrorSpectrum low_pass_error(double sigma_px);
 // white noise *before* the cut. The frequency is radial, in cycles per degree.
 ErrorSpectrum cut_error(double below_cpd, double factor, double pixels_per_degree);
 // What the bands of a sample of the error hold, for example of half the difference of two independent halves of the
-// samples. The sample should be divided by the picture's luminance; its mean and its border are left
-// out.
+// samples. The sample should be divided by the picture's luminance; its mean and its border are left out.
 ErrorSpectrum measured_spectrum(const ImageGray& error, int threads = 0);
 
 // An error that has several causes is a list of these; they are independent of each other, and their variances add up

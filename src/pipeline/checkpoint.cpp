@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "gazetrace/checkpoint.hpp"
+#include "gazetrace/error.hpp"
 #include "pipeline/sealed_file.hpp"
 
 namespace gazetrace {

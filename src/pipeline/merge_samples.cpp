@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gazetrace/build_info.hpp"
+#include "gazetrace/error.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "gazetrace/sample_parts.hpp"
 #include "output/aovs.hpp"

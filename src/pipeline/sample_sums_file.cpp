@@ -28,6 +28,9 @@ SampleSums load_samples(const std::string& path, const std::string& settings_dig
   reader(sums.sites);
   reader(sums.guides);
   reader.finish();
+  if (!sums.guides.empty() && sums.guides.size() != sums.sites.size()) {
+    reader.fail();
+  }
   return sums;
 }
 

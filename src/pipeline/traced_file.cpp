@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "gazetrace/error.hpp"
 #include "gazetrace/traced_frame_file.hpp"
 #include "pipeline/sealed_file.hpp"
 

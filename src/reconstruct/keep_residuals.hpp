@@ -15,8 +15,8 @@ namespace gazetrace {
 // bands, each twice as coarse as the one before, and of every band the share (q - v) / q is added to the picture: q is
 // the mean square of the residual around the pixel, and v that of a replica of its noise, the difference of the halves
 // (SparseFrame::half_difference) less what the picture has of it. Where that is in doubt, the share is what it is on
-// average over a wider neighbourhood. No block is changed by more than a tenth of its light and by more than what its
-// own samples say, whichever is larger. With more and more samples v falls to 0, and the picture becomes the samples'
+// average over a wider neighbourhood. No block is changed by more than the larger of two amounts: a tenth of its light,
+// and what its own samples say. With more and more samples v falls to 0, and the picture becomes the samples'
 // own mean. Pixels that PassThrough keeps are not changed.
 void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
                     const Image<std::uint32_t>& site_of_pixel, SurfacePicture& picture);

@@ -32,7 +32,7 @@ Vec3f shown_by_site(const SamplingMap& map, std::uint32_t site, const SiteResidu
   return (1.0F / static_cast<float>(map.sites[site].pixels)) * sum;
 }
 
-// What is kept of a residual, between what the block's own samples say and nothing, or a little beyond.
+// `kept`: of a residual, by all bands together. `own`: the residual by the block's own samples.
 float bounded(float kept, float shown, float own) {
   return std::clamp(kept, std::min(-kMostChange * shown, own), std::max(kMostChange * shown, own));
 }

@@ -18,7 +18,7 @@ struct SweepFrameRun {
 
 // One rendering of all frames of a row.
 struct SweepRun {
-  double time_s = 0;  // mean time of a frame: plan, trace, guides, reconstruct, temporal, upscaling
+  double time_s = 0;  // mean time of a frame; what counts is said at ResultRow in gazetrace/results.hpp
   // Mean time of a frame for exposure, view and writing its pictures. Known only of the repeat whose pictures are kept.
   std::optional<double> output_s;
   double samples = 0, rays = 0, pixels = 0;  // sums over all frames

@@ -107,8 +107,9 @@ TEST(ReconstructGuided, EvenLightOnTextureGivesTheTextureExactly) {
   }
 }
 
-// A lamp shows only half of what the guides say, and the samples are sure of it. Smoothed over blocks this would be
-// many times the light of the wall beside it, of which its own samples say that nothing is wrong.
+// A lamp shows only half of what the guides say. Its samples are sure of that for all of its blocks together, but not
+// from one block to the next, so that it is kept smoothed over blocks: many times the light of the wall beside it, of
+// which its own samples say that nothing is wrong.
 TEST(ReconstructGuided, WhatIsWrongWithALightIsNotTakenFromWhatIsBesideIt) {
   constexpr int kLampBlock = 8;
   constexpr float kWall = 0.5F;

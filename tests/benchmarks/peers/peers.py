@@ -13,11 +13,12 @@ Every program renders the same glTF, camera, light, bounces and samples. In one 
   common      the same against one reference, the mean of all programs' converged pictures (matte materials only: there
               the models coincide; normal maps are taken out of the scene)
   cost        us * own: time to a given error
-  ratio       cost over that of the first program, usually gazetrace; (common): the same of us * common
+  ratio       cost over that of the first program, usually gazetrace
+  (common)    the same ratio of us * common
   furnace     radiance inside a closed box of albedo 1/2 that shines 1: 1 + 1/2 + ... + 2^-bounces if paths are equally long
 
-`gazetrace-plain` is gazetrace with --no-learn-light. What learned light gains depends on the size of the frame: measure errors
-at the size of the timed pictures.
+`gazetrace-plain` is gazetrace with --no-learn-light. What learned light gains depends on the size of the frame: measure
+errors at the size of the timed pictures.
 
 With --rates 1,4,16,64 a table for each rate instead: `us` is the time per sample of a picture of so many samples a pixel,
 what gazetrace learns from included, and the error is that of such a picture, at the size of the timed ones. For Mitsuba
@@ -49,12 +50,16 @@ PROGRAMS = ("gazetrace", "gazetrace-plain", "cycles", *VARIANTS)
 
 def read_picture(path):
     if path.suffix == ".npy":
-        return np.load(path).astype(np.float64)
-    import OpenEXR
+        picture = np.load(path)
+    else:
+        import OpenEXR
 
-    channels = OpenEXR.File(str(path)).channels()
-    picture = channels["RGB"].pixels if "RGB" in channels else np.dstack([channels[c].pixels for c in "RGB"])
-    return np.asarray(picture, np.float64)[:, :, :3]
+        channels = OpenEXR.File(str(path)).channels()
+        picture = channels["RGB"].pixels if "RGB" in channels else np.dstack([channels[c].pixels for c in "RGB"])
+        picture = picture[:, :, :3]
+    if not np.isfinite(picture).all():
+        sys.exit(f"{path}: a pixel is not finite, so that no mean of errors exists")
+    return np.asarray(picture, np.float64)
 
 
 def command(program, options, scene, out, size, spp, seed, view):
@@ -168,6 +173,8 @@ def programs_and_view(parser, options):
     programs = options.programs.split(",")
     if unknown := [p for p in programs if p not in PROGRAMS]:
         parser.error(f"--programs: '{unknown[0]}' is none of {', '.join(PROGRAMS)}")
+    if len(set(programs)) < len(programs):
+        parser.error("--programs: name each program once")
     # With =, since a value may begin with a minus.
     view = [f"--env={options.env}", f"--eye={options.eye}", f"--target={options.target}", f"--yfov={options.yfov}"]
     return programs, view
@@ -185,7 +192,8 @@ def main():
     parser.add_argument("--reference-spp", type=int, default=2048)
     parser.add_argument("--seeds", default="8", help="pictures of each error; with --rates also one number for each rate")
     parser.add_argument("--steady-spp", type=int, default=64)
-    parser.add_argument("--rates", help="samples a pixel, each with a table of its own, in place of --spp, --error-spp and --error-size")
+    parser.add_argument("--rates",
+                        help="samples a pixel, with a table for each, in place of --spp, --error-spp and --error-size")
     options = parser.parse_args()
     programs, view = programs_and_view(parser, options)
     options.seeds = [int(seeds) for seeds in options.seeds.split(",")]
@@ -263,7 +271,8 @@ def measure_errors(programs, options, rates, picture):
     """Errors of one sample, against each program's own reference and against the common one, by rate and program."""
     reference = {}
     if any(options.seeds):
-        reference = {p: picture(p, options.reference_spp, 1000) for p in programs}
+        # Each with a seed of its own: the two variants of gazetrace may trace the very same paths with the same one.
+        reference = {p: picture(p, options.reference_spp, 1000 + k) for k, p in enumerate(programs)}
         common = sum(reference.values()) / len(programs)
     own = {rate: {p: [] for p in programs} for rate in rates}
     shared = {rate: {p: [] for p in programs} for rate in rates}
@@ -284,10 +293,14 @@ def without_noise_of_mean(errors, share):
 
     `share` is samples of a picture over samples of a reference. Of n programs with errors v, the mean of their references
     adds share / n^2 * sum(v) to each. So the sum of what was measured is sum(v) * (1 + share / n), which gives sum(v).
+    It is taken out seed by seed, so that the scatter over the seeds is that of the result.
+
+    This assumes independent references, errors that fall as 1 / samples, and programs that converge to the same picture:
+    where they do not, a part of the difference between them is taken for noise.
     """
     n = len(errors)
-    total = sum(statistics.mean(v) for v in errors.values() if v) / (1 + share / n)
-    return {p: [x - share / n**2 * total for x in v] for p, v in errors.items()}
+    totals = [sum(of_seed) / (1 + share / n) for of_seed in zip(*errors.values())]
+    return {p: [x - share / n**2 * total for x, total in zip(v, totals)] for p, v in errors.items()}
 
 
 def sample_us(program, options, folder, view, few, many, r):
