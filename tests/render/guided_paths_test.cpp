@@ -73,7 +73,7 @@ std::shared_ptr<const LearnedLight> learned_nonsense() {
     for (const Vec3f& normal :
          {Vec3f{0, 1, 0}, Vec3f{0, -1, 0}, Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 0, 1}, Vec3f{0, 0, -1}}) {
       const bool bright = toward.x + 0.3F * toward.z > 0.8F * std::sin(7 * place.x);
-      records.push_back({place, normal, toward, 0.08F, bright ? 1.0F : 0.01F, i});
+      records.push_back({place, normal, toward, 0.08F, 0.08F, bright ? 1.0F : 0.01F, i});
     }
   }
   return std::make_shared<const LearnedLight>(records, 1);

@@ -46,7 +46,8 @@ std::vector<LearningRecord> records_of_floor(std::uint32_t count, const Light& l
     const float angle = uniform(random) * static_cast<float>(2 * kPi);
     const Vec3f direction{radius * std::cos(angle), std::sqrt(1 - radius * radius), radius * std::sin(angle)};
     const Vec3f position = corner + Vec3f{uniform(random), 0.0F, uniform(random)};
-    records.push_back({position, {0, 1, 0}, direction, direction.y / static_cast<float>(kPi), light(direction), i});
+    const float pdf = direction.y / static_cast<float>(kPi);
+    records.push_back({position, {0, 1, 0}, direction, pdf, pdf, light(direction), i});
   }
   return records;
 }
@@ -156,11 +157,49 @@ TEST(LearnedLight, TheShareIsNearTheBestThereIs) {
   EXPECT_TRUE(learned.pays());
   EXPECT_TRUE(learned.promises());
   double best = std::numeric_limits<double>::infinity();
-  for (const double share : {0.0, 0.25, 0.5, 0.75}) {
+  for (const double share : {0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
     best = std::min(best, moment(share));
   }
   EXPECT_LE(moment(static_cast<double>(learned.share(cell))), 1.05 * best);
   EXPECT_LT(best, 0.5 * moment(0));
+}
+
+// Paths that follow what earlier ones have found bring directions of another density than the BSDF's.
+template <class Light>
+std::vector<LearningRecord> records_of_guided_paths(const Light& light) {
+  std::vector<LearningRecord> records = records_of_floor(50000, light);
+  std::mt19937 random(9);
+  for (LearningRecord& record : records) {
+    if (record.path % 8 != 0) {  // evenly over the half sphere
+      record.direction = random_direction(random);
+      record.direction.y = std::fabs(record.direction.y);
+    }
+    record.bsdf_pdf = record.direction.y / static_cast<float>(kPi);
+    record.pdf = 0.125F * record.bsdf_pdf + 0.875F / static_cast<float>(2 * kPi);
+    record.radiance = light(record.direction);
+  }
+  return records;
+}
+
+TEST(LearnedLight, GuidedPathsTeachWhatOthersTeach) {
+  const LearnedLight others(records_of_floor(50000, light_of_window), 1);
+  const LearnedLight guided(records_of_guided_paths(light_of_window), 1);
+  const std::int32_t cell = guided.cell_at({0.5F, 0, 0.5F}, {0, 1, 0});
+  ASSERT_EQ(cell, others.cell_at({0.5F, 0, 0.5F}, {0, 1, 0}));
+  EXPECT_EQ(guided.share(cell), others.share(cell));
+  double apart = 0;
+  for (std::size_t bin = 0; bin < kDirectionBins; ++bin) {
+    const Vec3f direction = direction_in({bin / kSectors, bin % kSectors}, {0.5F, 0.5F});
+    apart += std::fabs(static_cast<double>(guided.table(cell).pdf(direction) - others.table(cell).pdf(direction)));
+  }
+  EXPECT_LT(apart * kSphere / kDirectionBins, 0.2);
+}
+
+// The table is better than what these paths followed, and no better than the BSDF.
+TEST(LearnedLight, ATableIsJudgedBesideTheBsdf) {
+  const LearnedLight learned(records_of_guided_paths([](const Vec3f&) { return 1.0F; }), 1);
+  EXPECT_FALSE(learned.pays());
+  EXPECT_FALSE(learned.promises());
 }
 
 TEST(LearnedLight, EvenLightIsNotWorthATable) {
@@ -234,7 +273,7 @@ TEST(LearnedLight, ThreadsMakeNoDifference) {
     const Vec3f direction = random_direction(random);
     Vec3f normal = random_direction(random);
     normal = dot(normal, direction) < 0 ? normal * -1.0F : normal;
-    records.push_back({random_direction(random), normal, direction, 0.1F, light_of_window(direction), i});
+    records.push_back({random_direction(random), normal, direction, 0.1F, 0.1F, light_of_window(direction), i});
   }
   const LearnedLight one(records, 1);
   const LearnedLight four(records, 4);

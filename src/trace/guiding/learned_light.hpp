@@ -23,6 +23,7 @@ struct LearningRecord {
   Vec3f position, normal;  // of the surface that it left; the normal is the shading normal
   Vec3f direction;         // of unit length
   float pdf = 0;           // with which the direction was drawn, over solid angle
+  float bsdf_pdf = 0;      // what the BSDF alone would have had; `pdf` where no table took part
   float radiance = 0;      // luminance that arrived along it
   std::uint32_t path = 0;  // paths of even and of odd number judge each other's tables
 };
@@ -53,7 +54,7 @@ class LearnedLight {
   [[nodiscard]] const DirectionTable& table(std::int32_t cell) const noexcept {
     return tables_[static_cast<std::size_t>(cell)];
   }
-  // How much of the choice of a diffuse direction the table should have, 0 .. 0.75: what would have had the least
+  // How much of the choice of a diffuse direction the table should have, 0 .. 0.9: what would have had the least
   // variance for the paths that did not make the table.
   [[nodiscard]] float share(std::int32_t cell) const noexcept { return shares_[static_cast<std::size_t>(cell)]; }
 

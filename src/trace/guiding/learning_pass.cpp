@@ -77,13 +77,13 @@ class LearningPaths {
   LearningPaths(FrameContext context, Kernel kernel, int width_px, int height_px, int threads)
       : context_(std::move(context)), kernel_(kernel), width_px_(width_px), height_px_(height_px), threads_(threads) {
     context_.records_bounces = true;
-    context_.learned = nullptr;
     context_.settings.guides = context_.settings.surfaces = context_.settings.light_groups = false;
     context_.settings.samples = kAllSamples;  // rays one by one: the same hits whichever rays are traced together
   }
 
-  // About so many more of them, spread evenly. `round` chooses their scrambling.
-  void trace(double about, std::uint64_t round) {
+  // About so many more of them, spread evenly. `round` chooses their scrambling, and `so_far` is what they follow.
+  void trace(double about, std::uint64_t round, const LearnedLight& so_far) {
+    context_.learned = so_far.pays() ? &so_far : nullptr;
     const std::uint64_t seed = hash_combine(hash_combine(context_.settings.seed, kLearningTag), round);
     const Grid grid = grid_of(about, width_px_, height_px_);
     const std::uint64_t paths = grid.columns * grid.rows;
@@ -133,10 +133,10 @@ LightLearning learn_light(const FrameContext& context, Kernel kernel, int width_
   const double paths = std::min(kMostLearningPaths, static_cast<double>(width_px) * height_px / kPixelsPerLearningPath);
   const double glimpse = std::min(kGlimpsePaths, paths);
   LearningPaths learning(context, kernel, width_px, height_px, threads);
-  learning.trace(glimpse, 0);
+  learning.trace(glimpse, 0, {});
   LearnedLight learned = learning.learned();
   if (paths > glimpse && learned.promises()) {
-    learning.trace(paths - glimpse, 1);
+    learning.trace(paths - glimpse, 1, learned);
     learned = learning.learned();
   }
   return {learned.pays() ? std::make_shared<const LearnedLight>(std::move(learned)) : nullptr, learning.paths()};

@@ -60,6 +60,7 @@ inline void PathKernel<kFeatures, kDiffuse>::mix_densities(std::size_t count, co
   ChunkHits& chunk = work_.chunk;
   for (std::size_t i = 0; i < count; ++i) {
     const float share = chunk.table_share[i];
+    chunk.next_bsdf_pdf[i] = chunk.next_pdf[i];
     if (!(share > 0)) {
       continue;
     }

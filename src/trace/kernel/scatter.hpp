@@ -28,7 +28,8 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
     key[i] = work_.samples.key[slot];
     index[i] = work_.samples.index[slot];
   }
-  const bool lit = frame_.lights->any();
+  // What a first surface sees of the lights teaches nothing of its bounces.
+  const bool lit = frame_.lights->any() && !(frame_.records_bounces && vertex == 0);
   const bool bounces = vertex + 1 < frame_.settings.max_bounces || frame_.last_ray_finds_light;
   fill_2d(key, index, count, dimension_of(vertex, BounceDimension::select), select);
   if (lit) {
@@ -37,21 +38,25 @@ inline void PathKernel<kFeatures, kDiffuse>::scatter_chunk(int vertex, const Pat
   if (bounces) {
     fill_2d(key, index, count, dimension_of(vertex, BounceDimension::bsdf_uv), bsdf_uv);
   }
-  std::array<LightSample, kChunk> lights;
-  if (lit) {
-    std::array<Vec3f, kChunk> positions;
-    std::array<Vec3f, kChunk> normals;
-    std::array<float, kChunk> choice;
+  std::array<Vec3f, kChunk> positions;
+  std::array<Vec3f, kChunk> normals;
+  if (frame_.lights->any()) {
     for (std::size_t i = 0; i < count; ++i) {
       normals[i] = lit_side(i);
       positions[i] = lit_point(i, normals[i]);
-      choice[i] = select[i].x;
     }
     if (frame_.lights->depends_on_place()) {
       for (std::size_t i = 0; i < count; ++i) {
         work_.chunk.lit_point.set(i, positions[i]);
         work_.chunk.lit_normal.set(i, normals[i]);
       }
+    }
+  }
+  std::array<LightSample, kChunk> lights;
+  if (lit) {
+    std::array<float, kChunk> choice;
+    for (std::size_t i = 0; i < count; ++i) {
+      choice[i] = select[i].x;
     }
     frame_.lights->sample_many(count, positions.data(), normals.data(), light_uv.data(), choice.data(), lights.data());
   }
@@ -257,10 +262,12 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
   if (frame_.records_bounces && vertex < kRecordedBounces) {
-    work_.bounces.push_back({{chunk.position.get(i), chunk.shading.get(i), direction, chunk.next_pdf[i], 0.0F, 0U},
-                             luminance(weight),
-                             0.0F,
-                             static_cast<std::uint32_t>(slot)});
+    const float bsdf_pdf = frame_.learned != nullptr ? chunk.next_bsdf_pdf[i] : chunk.next_pdf[i];
+    work_.bounces.push_back(
+        {{chunk.position.get(i), chunk.shading.get(i), direction, chunk.next_pdf[i], bsdf_pdf, 0.0F, 0U},
+         luminance(weight),
+         0.0F,
+         static_cast<std::uint32_t>(slot)});
   }
   if (frame_.lights->depends_on_place()) {
     state.lit_point.set(n, chunk.lit_point.get(i));
