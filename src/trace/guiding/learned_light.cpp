@@ -235,7 +235,8 @@ LearnedLight::LearnedLight(const std::vector<LearningRecord>& records, int threa
   for (std::size_t i = 0; i < records.size(); ++i) {
     const LearningRecord& record = records[i];
     const float light = record.radiance * std::max(0.0F, dot(record.normal, record.direction));
-    if (!(record.pdf > 0) || !std::isfinite(record.pdf) || !(light >= 0) || !std::isfinite(light)) {
+    if (!(record.pdf > 0) || !std::isfinite(record.pdf) || !(record.bsdf_pdf > 0) || !std::isfinite(record.bsdf_pdf) ||
+        !(light >= 0) || !std::isfinite(light)) {
       continue;
     }
     std::uint64_t key = facing_of(record.normal);

@@ -96,7 +96,7 @@ struct ChunkHits {
   // whether the direction is the table's.
   ChunkArray<std::int32_t> cell;
   ChunkArray<float> table_share;
-  ChunkArray<float> next_bsdf_pdf;  // density of the BSDF alone towards `next`
+  ChunkArray<float> next_bsdf_pdf;  // density of the BSDF alone towards `next`; where the table has a share
   ChunkArray<std::uint8_t> by_table;
   // Of camera rays' hits, what the diffuse lobe has of light_f_cos and next_weight, 0..1; only with light groups.
   ChunkVec3 light_diffuse, next_diffuse;

@@ -60,10 +60,10 @@ inline void PathKernel<kFeatures, kDiffuse>::mix_densities(std::size_t count, co
   ChunkHits& chunk = work_.chunk;
   for (std::size_t i = 0; i < count; ++i) {
     const float share = chunk.table_share[i];
-    chunk.next_bsdf_pdf[i] = chunk.next_pdf[i];
     if (!(share > 0)) {
       continue;
     }
+    chunk.next_bsdf_pdf[i] = chunk.next_pdf[i];
     const DirectionTable& table = frame_.learned->table(chunk.cell[i]);
     if (lights != nullptr && lights[i].valid && bounces) {
       chunk.light_pdf[i] = (1.0F - share) * chunk.light_pdf[i] + share * table.pdf(lights[i].direction);
