@@ -248,9 +248,14 @@ TEST(LearnedLight, NothingAndBadRecords) {
     record = good.front();
     record.pdf = bad;
     records.push_back(record);
+    record = good.front();
+    record.bsdf_pdf = bad;
+    records.push_back(record);
   }
   records.push_back(good.front());
   records.back().pdf = 0;
+  records.push_back(good.front());
+  records.back().bsdf_pdf = 0;
   const LearnedLight learned(records, 1);
   const LearnedLight expected(good, 1);
   ASSERT_EQ(learned.cell_count(), expected.cell_count());
