@@ -7,10 +7,10 @@
 //     + (1 - metallic) base colour / pi * s(o) s(i) * shape(o, i)                       (albedo_tables.hpp explains s)
 //         shape = 1 (Lambert) or (1 + t (1-o.z)^5) (1 + t (1-i.z)^5), t = roughness (1 + o.i) - 0.5
 //         (Burley, "Physically Based Shading at Disney", 2012, section 5.3, with 2 cos^2 theta_d = 1 + o.i)
-// A white surface reflects exactly the light it receives, up to the interpolation of the tables (bsdf_test states the
-// bound). Burley's own lobe loses light at grazing angles on smooth surfaces and gains light on rough ones; s removes
-// both and keeps the angular shape. DiffuseModel::matte is base colour / pi alone. Directions point away from the
-// surface; z is the shading normal.
+// A white surface reflects exactly the light it receives, up to the interpolation of the tables (bsdf_furnace_test
+// states the bound). Burley's own lobe loses light at grazing angles on smooth surfaces and gains light on rough ones;
+// s removes both and keeps the angular shape. DiffuseModel::matte is base colour / pi alone. Directions point away from
+// the surface; z is the shading normal.
 #pragma once
 
 #include "core/luminance.hpp"

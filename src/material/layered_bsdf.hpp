@@ -11,7 +11,7 @@
 // Every part has its own repeated scattering, so that each is white by itself where its colours are white.
 // lobes/layering.hpp says how much light a layer leaves for what is below it. The BSDF is reciprocal:
 // f / (index on o's side)^2 is symmetric.
-// Energy: layered_bsdf_test and layered_furnace_test state the bounds, and what films of high index lose. Anisotropic
+// Energy: layered_albedo_test and layered_furnace_test state the bounds, and what films of high index lose. Anisotropic
 // facets have tables of their own (lobes/anisotropic_albedo.hpp), and their diffuse light is Lambertian; the repeated
 // scattering of a body (lobes/dielectric_albedo.hpp) remains isotropic, at their mean roughness. White glass of any
 // strength returns 0.98 to 1.01 of the light as a sheet, but 0.64 to 1.27 as a body near its horizon. Left out are

@@ -231,7 +231,8 @@ TEST(Furnace, AWhiteSphereIsInvisible) {
         TraceSettings settings;
         settings.diffuse = diffuse;
         const Vec3d mean = mean_radiance(tracer.at_rest().trace(camera_at({2, 3, 4}, {0, 0, 0}, 15), 1, map, settings));
-        // The tables' interpolation error (bsdf_test states 5e-3 for one angle; over all angles it averages out).
+        // The tables' interpolation error (bsdf_furnace_test states 5e-3 for one angle; over all angles it averages
+        // out).
         EXPECT_NEAR(mean.y, 1, 2e-3) << roughness << ' ' << metallic << ' ' << static_cast<int>(diffuse);
       }
     }

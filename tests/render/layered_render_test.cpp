@@ -68,7 +68,7 @@ struct Furnace {
   double bound;
 };
 
-// A white sphere in a white room must be invisible. The bounds that layered_bsdf_test states for one event and one
+// A white sphere in a white room must be invisible. The bounds that layered_albedo_test states for one event and one
 // angle average out over the angles of the sphere, but light passes bodies several times.
 TEST(LayeredFurnace, AWhiteSphereIsInvisible) {
   std::vector<Furnace> furnaces;

@@ -47,7 +47,7 @@ TEST(TracerLight, AWhiteGlowingBoxAddsOneForEveryBounce) {
       settings.light_sampling = LightSampling::bsdf_only;
       const Vec3d mean =
           mean_radiance(tracer.at_rest().trace(camera_at({0.2, 0.3, 0.4}, {1, 0.5, -1}), 1, map, settings));
-      // The albedo tables' interpolation error (2e-3 an event, bsdf_test) is all that is left.
+      // The albedo tables' interpolation error (2e-3 an event, bsdf_furnace_test) is all that is left.
       EXPECT_NEAR(mean.y, 1 + bounces, 2e-3 * bounces * (bounces + 1) / 2 + 1e-6) << bounces;
       settings.light_sampling = LightSampling::mis;
       const Vec3d mixed =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Furnaces over the parameters of one extension, and over pairs of extensions: what white surfaces return of even light
-// from all around. layered_bsdf_test has one point of each; the bounds here are the extremes of the sweeps, rounded
+// from all around. layered_albedo_test has one point of each; the bounds here are the extremes of the sweeps, rounded
 // outwards, and say how far the model is from exact.
 #include <gtest/gtest.h>
 
