@@ -111,6 +111,31 @@ TEST(GuidedPaths, MeansDoNotChange) {
   }
 }
 
+// Paths may also hit emitters, whose densities are not those of the sky, end by roulette, and pass through a curtain.
+TEST(GuidedPaths, MeansDoNotChangeUnderLamps) {
+  Scene scene = room(true, false);
+  scene.environment = {};
+  scene.materials.push_back(diffuse_material({0.5F, 0.5F, 0.5F}, {9, 8, 7}));
+  scene.materials.push_back(diffuse_material({0.3F, 0.8F, 0.3F}));
+  scene.materials.back().base_color.w = 0.4F;
+  scene.materials.back().alpha_mode = AlphaMode::blend;
+  add_mesh(scene, {quad({{{-1, 2.9F, -1}, {0, 2.9F, -1}, {0, 2.9F, 1}, {-1, 2.9F, 1}}}, 2),
+                   quad({{{-2.9F, 0.2F, 1}, {-2.9F, 0.2F, 0.6F}, {-2.9F, 0.9F, 0.6F}, {-2.9F, 0.9F, 1}}}, 2),
+                   quad({{{-2, 2, -2}, {2, 2, -2}, {2, 2, 2}, {-2, 2, 2}}}, 3)});
+  PathTracer tracer(scene, threads(2));
+  const SamplingMap map = uniform_map(24, 16, 64);
+  TraceSettings settings;
+  settings.max_bounces = 6;
+  const Repeats plain = repeat(tracer, map, settings);
+  settings.russian_roulette = true;
+  for (const std::shared_ptr<const LearnedLight>& light : {learn(tracer, settings), learned_nonsense()}) {
+    settings.learned = light;
+    const Repeats guided = repeat(tracer, map, settings);
+    EXPECT_LT(std::fabs(welch_t(plain, guided)), kCriticalT) << plain.mean() << " " << guided.mean();
+    EXPECT_LT(std::sqrt(guided.variance_of_mean()), 0.01 * guided.mean()) << "too noisy to mean anything";
+  }
+}
+
 TEST(GuidedPaths, LessNoiseInARoom) {
   const Scene scene = room(false, false);
   PathTracer tracer(scene, threads(2));

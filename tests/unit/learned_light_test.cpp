@@ -170,7 +170,7 @@ std::vector<LearningRecord> records_of_guided_paths(const Light& light) {
   std::vector<LearningRecord> records = records_of_floor(50000, light);
   std::mt19937 random(9);
   for (LearningRecord& record : records) {
-    if (record.path % 8 != 0) {  // evenly over the quarter sphere on one side
+    if (random() % 8 != 0) {  // evenly over the quarter sphere on one side
       record.direction = random_direction(random);
       record.direction.x = -std::fabs(record.direction.x);
       record.direction.y = std::fabs(record.direction.y);

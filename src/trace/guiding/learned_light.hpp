@@ -5,8 +5,8 @@
 //
 // A cell is a cube of space for surfaces that face about one way. Its table is a density over the sphere: the root of
 // the second moment of what arrives, times the cosine (Rath et al., "Variance-Aware Path Guiding", 2020). A cell that
-// has seen few paths is drawn towards the larger cell that it is in, and the largest one towards even light, so that no
-// density is ever zero and means stay unbiased whatever was learned.
+// has seen few paths is drawn towards the larger cell that it is in, and the largest one towards even light. Means stay
+// unbiased whatever was learned, since the BSDF always keeps at least a tenth of the choice.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct LearningRecord {
   Vec3f direction;         // of unit length
   float pdf = 0;           // with which the direction was drawn, over solid angle
   float bsdf_pdf = 0;      // what the BSDF alone would have had; `pdf` where no table took part
-  float radiance = 0;      // luminance that arrived along it
+  float radiance = 0;  // luminance that arrived along it, with the weight that MIS gave to what light samples find too
   std::uint32_t path = 0;  // paths of even and of odd number judge each other's tables
 };
 

@@ -59,11 +59,12 @@ void keep(const Workspace& work, std::uint64_t first, std::vector<LearningRecord
   for (const BounceFound& bounce : work.bounces) {
     const std::size_t slot = bounce.slot;
     const float end = luminance(Vec3f{work.radiance.r[slot], work.radiance.g[slot], work.radiance.b[slot]});
-    if (work.radiance.rejected[slot] != 0 || !(bounce.throughput > 0)) {
+    const float found = end - bounce.shone_before;
+    if (work.radiance.rejected[slot] != 0 || !(bounce.throughput > 0) || !std::isfinite(found)) {
       continue;
     }
     LearningRecord record = bounce.record;
-    record.radiance = std::max(0.0F, end - bounce.shone_before) / bounce.throughput;
+    record.radiance = std::max(0.0F, found) / bounce.throughput;
     record.path = static_cast<std::uint32_t>(first + slot);
     if (std::isfinite(record.radiance)) {
       out.push_back(record);

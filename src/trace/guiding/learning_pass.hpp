@@ -12,7 +12,7 @@ namespace gazetrace {
 // on the part of them that is traced. How well a frame learns follows from their number, whatever its size: with 65,536
 // of them the variance of Sponza's hall falls to 0.48, with a quarter to 0.60, with four times as many to 0.46.
 inline constexpr double kPixelsPerLearningPath = 8, kMostLearningPaths = 65536;
-// By the first few it is seen whether a scene has anything to learn; the others follow what these have found.
+// The first few show whether a scene has anything to learn; the others follow what these have found.
 inline constexpr double kGlimpsePaths = 4096;
 
 LightLearning learn_light(const FrameContext& context, Kernel kernel, int width_px, int height_px, int threads);

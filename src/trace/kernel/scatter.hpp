@@ -262,7 +262,7 @@ inline void PathKernel<kFeatures, kDiffuse>::take_bsdf_sample(int vertex, std::s
   state.b[n] = weight.z;
   state.pdf[n] = chunk.next_pdf[i];
   if (frame_.records_bounces && vertex < kRecordedBounces) {
-    const bool mixed = frame_.learned != nullptr && chunk.table_share[i] > 0;  // never of layered materials
+    const bool mixed = frame_.learned != nullptr && chunk.table_share[i] > 0;  // layered materials have a share of 0
     const float bsdf_pdf = mixed ? chunk.next_bsdf_pdf[i] : chunk.next_pdf[i];
     work_.bounces.push_back(
         {{chunk.position.get(i), chunk.shading.get(i), direction, chunk.next_pdf[i], bsdf_pdf, 0.0F, 0U},
