@@ -2,8 +2,8 @@
 // Directions that follow what the frame has learned of its light: a share of all directions is drawn from the table of
 // the hit's cell, as large as the cell's own share times the probability of the diffuse lobe. The BSDF, both lobes in
 // their proportion, keeps the rest, and all densities are those of the mixture.
-// Taking the share from the diffuse lobe alone, and judging tables beside that lobe, was tried: 4 and 7 % more variance
-// in San Miguel's court, 7 and 5 % in Lost Empire (1 and 4 samples a pixel), 3 % less in Sponza.
+// Taking the share from the diffuse lobe alone, and judging tables beside that lobe, was measured and not kept: more
+// variance in San Miguel and Lost Empire (tests/benchmarks/book/light.md).
 #pragma once
 
 #include <algorithm>
