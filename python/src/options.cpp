@@ -5,6 +5,7 @@
 #include <pybind11/stl.h>
 
 #include "bind.hpp"
+#include "gazetrace/former_options.hpp"
 #include "gazetrace/job.hpp"
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/metric_options.hpp"
@@ -43,8 +44,22 @@ py::list described(const OptionList& options) {
   return list;
 }
 
+// The option that a keyword names and that is no more; empty: it is none.
+std::string former_of(const std::string& keyword) {
+  for (const FormerOption& former : former_options()) {
+    if (keyword_of(former.option) == keyword && job_schema().find(former.option) == nullptr) {
+      return former.option;
+    }
+  }
+  return {};
+}
+
 // An empty list takes away what was given to an option that may be given several times.
 void set_by_keyword(Job& job, const std::string& keyword, const std::vector<std::string>& values) {
+  if (const std::string former = former_of(keyword); !former.empty()) {
+    set_option(job, former, values);
+    return;
+  }
   const std::string name = option_of(keyword, job_schema().list());
   const OptionOf<JobSettings>& option = *job_schema().find(name);
   if (values.empty() && option.shape == OptionShape::repeated) {

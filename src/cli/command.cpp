@@ -10,6 +10,7 @@
 
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/former_options.hpp"
 
 namespace gazetrace {
 namespace {
@@ -26,6 +27,30 @@ std::string flags_of(const Option& flag) {
   return flag.flags + (flag.is_on_by_default() ? ",!--no-" + flag.name : "");
 }
 
+using SetOption = std::function<void(const std::string& option, const std::vector<std::string>& values)>;
+
+// Renamed options that are no longer in the schema. They come before the others, which therefore win, and no help has
+// them.
+void bind_former_options(CLI::App& app, const SetOption& set) {
+  for (const FormerOption& former : former_options()) {
+    const std::string flag = "--" + former.option;
+    if (former.kind != FormerKind::renamed || job_schema().find(former.option) != nullptr ||
+        app.get_option_no_throw(flag) != nullptr) {
+      continue;
+    }
+    if (former.takes_value) {
+      app.add_option(flag,
+                     [set, name = former.option](const CLI::results_t& results) {
+                       set(name, results);
+                       return true;
+                     })
+          ->group("");
+    } else {
+      app.add_flag_function(flag, [set, name = former.option](std::int64_t) { set(name, {"true"}); })->group("");
+    }
+  }
+}
+
 }  // namespace
 
 void bind_options(CLI::App& app, const OptionList& options, const TakeOption& take) {
@@ -36,6 +61,7 @@ void bind_options(CLI::App& app, const OptionList& options, const TakeOption& ta
       option = app.add_flag_function(
           flags_of(*described),
           [take, described](std::int64_t count) { take(*described, {count > 0 ? "true" : "false"}); }, described->help);
+      option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // CLI11 adds flags up
     } else {
       option = app.add_option(
           described->flags,
@@ -56,9 +82,12 @@ void bind_options(CLI::App& app, const OptionList& options, const TakeOption& ta
 }
 
 void bind_job_options(CLI::App& app, Job& job) {
-  bind_options(app, job_schema().list(), [&job](const Option& option, const std::vector<std::string>& values) {
-    set_option(job, option.name, values, {Origin::given, "the command line", {}});
-  });
+  const auto set = [&job](const std::string& option, const std::vector<std::string>& values) {
+    set_option(job, option, values, {Origin::given, "the command line", {}});
+  };
+  bind_former_options(app, set);
+  bind_options(app, job_schema().list(),
+               [set](const Option& option, const std::vector<std::string>& values) { set(option.name, values); });
 }
 
 void read_job_config(Job& job, const std::string& command, const std::string& path) {

@@ -35,7 +35,9 @@ CommandWords words_of(const CLI::App& app, const std::vector<std::string>& above
   words.path.push_back(app.get_name());
   words.summary = app.get_description();
   for (const CLI::Option* option : app.get_options()) {
-    words.options.push_back(words_of(*option));
+    if (!option->get_group().empty()) {  // those without are hidden
+      words.options.push_back(words_of(*option));
+    }
   }
   if (&app != &program && app.get_footer().find("--config") != std::string::npos) {
     words.options.push_back(words_of(*program.get_option("--config")));

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/former_options.hpp"
 #include "gazetrace/option_schema.hpp"
 #include "gazetrace/version.hpp"
 
@@ -55,32 +57,70 @@ std::vector<std::string> names_within(const CLI::App& app) {
   return names;
 }
 
-// CLI11's message, with the nearest name where an option is unknown.
+std::vector<std::string> flags_of(const CLI::App& command) {
+  std::vector<std::string> flags{"--config"};
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      if (!option->get_group().empty()) {  // those without are hidden
+        flags.push_back("--" + name);
+      }
+    }
+  }
+  return flags;
+}
+
+// What to say of an option that the command does not have, or that stands before it.
+std::string unknown_option_text(const std::string& flag, const CLI::App& command, const std::string& words) {
+  const std::vector<std::string> known = flags_of(command);
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  if (is_known(flag)) {
+    return "'" + flag + "' stands before the command; write it after: '" + words + " " + flag + " ...'";
+  }
+  const FormerOption* former = flag.starts_with("--") ? find_former_option(flag.substr(2), "") : nullptr;
+  // What other programs call the options of a job means nothing to a command that has others.
+  if (former != nullptr && (former->kind != FormerKind::elsewhere || is_known("--spp"))) {
+    if (const std::optional<std::string> refusal = refusal_of(*former)) {
+      return flag + ": " + *refusal;
+    }
+  }
+  return unknown_among_many("option", flag, known);
+}
+
+// What nobody took, such as the name of a command that does not exist; empty: CLI11's own message is better.
+std::string unknown_word_text(const CLI::App& app, const CLI::App* command, const std::string& words) {
+  const std::vector<std::string> commands = names_within(command == nullptr ? app : *command);
+  for (const std::string& word : app.remaining(true)) {
+    const std::string name = word.substr(0, word.find('='));
+    if (commands.empty() && word.starts_with('-')) {
+      return unknown_option_text(name, *command, words);
+    }
+    if (!commands.empty()) {
+      return command == nullptr ? unknown_among_many("command", name, commands)
+                                : unknown_name_message("command", name, commands);
+    }
+  }
+  return {};
+}
+
+// CLI11's message, or a better one where a word is unknown.
 std::string parse_error_text(const CLI::App& app, const CLI::ParseError& error) {
   std::string words = "gazetrace";
   const CLI::App* command = innermost(chosen_command(app), words);
-  const std::vector<std::string> commands = names_within(command == nullptr ? app : *command);
-  std::string text = error.what();
-  for (const std::string& word : app.remaining(true)) {
-    if (!word.starts_with('-') && commands.empty()) {
-      continue;
-    }
-    std::vector<std::string> known = commands;
-    if (commands.empty()) {
-      for (const CLI::Option* option : command->get_options()) {
-        for (const std::string& name : option->get_lnames()) {
-          known.push_back("--" + name);
-        }
-      }
-      known.emplace_back("--config");
-    }
-    const std::string name = word.substr(0, word.find('='));
-    text = commands.empty()     ? unknown_among_many("option", name, known)
-           : command == nullptr ? unknown_among_many("command", name, known)
-                                : unknown_name_message("command", name, known);
-    break;
+  const std::string unknown = unknown_word_text(app, command, words);
+  return (unknown.empty() ? std::string(error.what()) : unknown) + "; see '" + words + " --help'";
+}
+
+// Whether help was asked for of a command that does not exist: 'gazetrace study --help'.
+bool names_no_command(const CLI::App& app) {
+  std::string words;
+  const CLI::App* command = innermost(chosen_command(app), words);
+  if (command != nullptr && names_within(*command).empty()) {
+    return false;
   }
-  return text + "; see '" + words + " --help'";
+  const std::vector<std::string> rest = app.remaining(true);
+  return std::any_of(rest.begin(), rest.end(), [](const std::string& word) { return !word.starts_with('-'); });
 }
 
 int run(int argc, char** argv) {
@@ -89,6 +129,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.fallthrough(false);
   app.footer(kExitCodesHelp);
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);  // scripts append what they change
 
   const Invocation invocation{{argv, argv + argc}};
   std::map<std::string, Command> commands;
@@ -113,6 +154,9 @@ int run(int argc, char** argv) {
     std::reverse(words.begin(), words.end());  // as CLI11 takes a vector
     app.parse(std::move(words));
   } catch (const CLI::Success& help_or_version) {
+    if (names_no_command(app)) {
+      return report(parse_error_text(app, CLI::ExtrasError(app.remaining(true))), exit_bad_input);
+    }
     print_result("");
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {

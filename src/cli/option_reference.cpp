@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "gazetrace/former_options.hpp"
 
 namespace gazetrace {
 namespace {
@@ -77,6 +81,36 @@ std::string option_section(const Option& option) {
   return text + "\n";
 }
 
+// "--mode fast", and what is said of it.
+using FormerLine = std::pair<std::string, std::string>;
+
+std::vector<FormerLine> former_lines() {
+  std::vector<FormerLine> lines;
+  for (const FormerOption& former : former_options()) {
+    std::string now = refusal_of(former).value_or("");
+    if (former.kind == FormerKind::renamed) {
+      for (const auto& [option, value] : former.replacements) {
+        now += fmt::format("{}`{}`{}{}", now.empty() ? "" : " ", option, value.empty() ? "" : " ", value);
+      }
+      now += "; " + former.reason;
+    }
+    const std::string given = former.value.empty() && former.takes_value ? "*" : former.value;
+    lines.emplace_back(fmt::format("--{}{}{}", former.option, given.empty() ? "" : " ", given), with_flags(now));
+  }
+  return lines;
+}
+
+std::string former_options_as_markdown() {
+  std::string text =
+      "\n## Former options\n\nWhat took the place of options that are no more, and what other programs call "
+      "differently "
+      "(`gazetrace help former-options`).\nA `*` is the value that was given.\n\n| option | now |\n| --- | --- |\n";
+  for (const auto& [option, now] : former_lines()) {
+    text += fmt::format("| `{}` | {} |\n", option, escaped(now));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string options_as_markdown(const JobSchema& schema) {
@@ -88,6 +122,14 @@ std::string options_as_markdown(const JobSchema& schema) {
       text += "\n## " + group + "\n";
     }
     text += option_section(*option);
+  }
+  return text + former_options_as_markdown();
+}
+
+std::string former_options_as_text() {
+  std::string text;
+  for (const auto& [option, now] : former_lines()) {
+    text += fmt::format("{:<28}  {}\n", option, now);
   }
   return text;
 }

@@ -16,4 +16,7 @@ std::string options_as_text(const JobSchema& schema);
 // The same facts as on the page, as a JSON array.
 std::string options_as_json(const JobSchema& schema);
 
+// What took the place of options that are no more.
+std::string former_options_as_text();
+
 }  // namespace gazetrace

@@ -11,7 +11,6 @@
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/output.hpp"
 #include "job/settings_paths.hpp"
-#include "job/toml_values.hpp"
 
 namespace gazetrace {
 namespace {
@@ -67,17 +66,10 @@ void check_confined(const Option& option, const std::vector<std::string>& values
   }
 }
 
-void check_confined(const std::string& text, const std::string& path) {
+void check_confined(const std::string& text, const std::string& path, const std::string& remedy) {
   const OptionList options = job_schema().list();
-  for (const auto& [key, node] : parse_toml(text, path).members) {
-    // The reader of settings says it better where there is no such option.
-    if (const Option* option = find_option(options, key)) {
-      std::vector<std::string> values = toml_values(node, *option, path);
-      for (std::string& value : values) {
-        value = located_file(*option, value, path).value;
-      }
-      check_confined(*option, values, path, toml_place(path, node));
-    }
+  for (const TomlSetting& setting : read_toml_settings(text, path, options, remedy)) {
+    check_confined(*find_option(options, setting.name), setting.values, path, setting.place);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/former_options.hpp"
 #include "job/confine.hpp"
 #include "job/preset_by_name.hpp"
 
@@ -56,6 +57,25 @@ void set_one(Job& job, const OptionOf<JobSettings>& option, const std::vector<st
   job.sources[option.name] = source;
 }
 
+void set_current(Job& job, const std::string& name, const std::vector<std::string>& values, const OptionSource& source,
+                 const std::string& place, const JobSchema& schema) {
+  const OptionOf<JobSettings>& option = option_named(schema, name);
+  const std::string named = place.empty() ? "`" + name + "`" : place;
+  if (values.empty() || (values.size() > 1 && option.shape != OptionShape::repeated)) {
+    throw Error(ErrorKind::usage, named, fmt::format("takes one value, not {}", values.size()));
+  }
+  set_one(job, option, values, source, named);
+  if (name != kPresetOption) {
+    return;
+  }
+  const Preset& preset = preset_by_name(values.front(), named);
+  const OptionSource of_preset{source.origin == Origin::file ? Origin::preset_of_file : Origin::preset, source.place,
+                               preset.name};
+  for (const auto& [set, value] : preset.settings) {
+    set_one(job, option_named(schema, set), {value}, of_preset, named);
+  }
+}
+
 }  // namespace
 
 std::string to_string(const OptionSource& source) {
@@ -78,21 +98,13 @@ bool Job::is_given(const std::string& option) const {
 
 void set_option(Job& job, const std::string& name, const std::vector<std::string>& values, const OptionSource& source,
                 const std::string& place, const JobSchema& schema) {
-  const OptionOf<JobSettings>& option = option_named(schema, name);
   const std::string named = place.empty() ? "`" + name + "`" : place;
-  if (values.empty() || (values.size() > 1 && option.shape != OptionShape::repeated)) {
-    throw Error(ErrorKind::usage, named, fmt::format("takes one value, not {}", values.size()));
+  const CurrentOptions current = current_options(name, values, ErrorKind::usage, named);
+  if (!current.notice.empty()) {
+    job.warnings.push_back((place.empty() ? "" : place + ": ") + current.notice);
   }
-  if (name != kPresetOption) {
-    set_one(job, option, values, source, named);
-    return;
-  }
-  const Preset& preset = preset_by_name(values.front(), named);
-  set_one(job, option, values, source, named);
-  const OptionSource of_preset{source.origin == Origin::file ? Origin::preset_of_file : Origin::preset, source.place,
-                               preset.name};
-  for (const auto& [set, value] : preset.settings) {
-    set_one(job, option_named(schema, set), {value}, of_preset, named);
+  for (const auto& [option, texts] : current.settings) {
+    set_current(job, option, texts, source, place, schema);
   }
 }
 
@@ -110,7 +122,7 @@ std::string option_text(const Job& job, const std::string& option, const JobSche
 
 void add_toml(Job& job, const std::string& text, const std::string& path, const std::string& remedy, PathsBegin paths) {
   if (job.settings.confine) {
-    check_confined(text, path);
+    check_confined(text, path, remedy);
   }
   for (const TomlSetting& setting : read_toml_settings(text, path, job_schema().list(), remedy, paths)) {
     if (!setting.warning.empty()) {

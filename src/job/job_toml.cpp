@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "gazetrace/error.hpp"
+#include "gazetrace/former_options.hpp"
 #include "gazetrace/option_schema.hpp"
 #include "job/settings_paths.hpp"
 #include "job/toml_values.hpp"
@@ -79,6 +80,13 @@ std::string toml_value(const Option& option, const std::vector<std::string>& val
   return text + "]";
 }
 
+// Values of a former option, which were read without knowing what takes its place.
+std::vector<std::string> values_for(const Option& option, const std::vector<std::string>& values) {
+  return option.shape == OptionShape::repeated || values.size() < 2
+             ? values
+             : std::vector{fmt::format("{}", fmt::join(values, ","))};
+}
+
 std::string wrapped_comment(const std::string& text) {
   constexpr std::size_t kColumns = 100;
   std::string result;
@@ -117,21 +125,29 @@ std::vector<std::string> toml_values(const TomlNode& node, const Option& option,
   return {fmt::format("{}", fmt::join(values, ","))};
 }
 
-std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
-                                            const std::string& remedy, PathsBegin paths) {
+std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node, const OptionList& options,
+                                       const std::string& path, const std::string& remedy, PathsBegin paths) {
+  const std::string place = toml_place(path, node);
+  const Option* const present = find_option(options, key);
+  if (present == nullptr && find_former_option(key, {}) == nullptr) {
+    throw Error(ErrorKind::input, place, unknown_among_many("key", key, names_of(options)), remedy);
+  }
+  Option former;
+  former.shape = OptionShape::repeated;  // takes any values
+  const CurrentOptions current = current_options(key, toml_values(node, present != nullptr ? *present : former, path),
+                                                 ErrorKind::input, place + ": " + key);
   std::vector<TomlSetting> settings;
-  for (const auto& [key, node] : parse_toml(text, path).members) {
-    const std::string place = toml_place(path, node);
-    const Option* option = find_option(options, key);
+  for (const auto& [name, values] : current.settings) {
+    const Option* option = find_option(options, name);
     if (option == nullptr) {
-      throw Error(ErrorKind::input, place, unknown_among_many("key", key, names_of(options)), remedy);
+      throw Error(ErrorKind::input, place + ": " + key, "means nothing here", remedy);
     }
-    TomlSetting setting{key, toml_values(node, *option, path), place, {}};
-    if (setting.values.empty()) {
+    if (values.empty()) {
       continue;  // an empty array sets nothing
     }
+    TomlSetting setting{name, values_for(*option, values), place, {}};
     try {
-      option->check(setting.values, place + ": " + key);
+      option->check(setting.values, place + ": " + name);
     } catch (const Error& error) {
       throw Error(ErrorKind::input, "", error.what());
     }
@@ -139,10 +155,25 @@ std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::
       if (paths == PathsBegin::beside_settings) {
         LocatedFile file = located_file(*option, value, path);
         value = std::move(file.value);
-        setting.warning = file.warning.empty() ? setting.warning : place + ": " + key + ": " + file.warning;
+        setting.warning = file.warning.empty() ? setting.warning : place + ": " + name + ": " + file.warning;
       }
     }
     settings.push_back(std::move(setting));
+  }
+  if (!current.notice.empty() && !settings.empty()) {
+    std::string& warning = settings.front().warning;
+    warning = place + ": " + current.notice + (warning.empty() ? "" : "; " + warning);
+  }
+  return settings;
+}
+
+std::vector<TomlSetting> read_toml_settings(const std::string& text, const std::string& path, const OptionList& options,
+                                            const std::string& remedy, PathsBegin paths) {
+  std::vector<TomlSetting> settings;
+  for (const auto& [key, node] : parse_toml(text, path).members) {
+    for (TomlSetting& setting : toml_settings(key, node, options, path, remedy, paths)) {
+      settings.push_back(std::move(setting));
+    }
   }
   return settings;
 }

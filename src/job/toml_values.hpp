@@ -13,4 +13,10 @@ namespace gazetrace {
 // path:line.
 std::vector<std::string> toml_values(const TomlNode& node, const Option& option, const std::string& path);
 
+// What a key sets: one option, or those that took the place of a former one; nothing for an empty array. Throws as
+// read_toml_settings() does.
+std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node, const OptionList& options,
+                                       const std::string& path, const std::string& remedy,
+                                       PathsBegin paths = PathsBegin::beside_settings);
+
 }  // namespace gazetrace

@@ -38,23 +38,7 @@ class RenderOptions {
  public:
   explicit RenderOptions(const JobSchema& schema) : options_(schema.list()) {}
 
-  [[nodiscard]] const Option& find(const std::string& key, const std::string& place,
-                                   const std::vector<std::string>& also = {}) const {
-    std::vector<std::string> known = also;
-    for (const Option* option : options_) {
-      if (is_allowed(*option)) {
-        known.push_back(option->name);
-      }
-    }
-    const Option* option = find_option(options_, key);
-    if (option == nullptr) {
-      refuse(place, unknown_among_many("key", key, known), "'gazetrace render --print-config' lists every option");
-    }
-    if (!is_allowed(*option)) {
-      refuse(place, fmt::format("'{}' has no place in a sweep", key), "leave it out");
-    }
-    return *option;
-  }
+  [[nodiscard]] const Option& find(const std::string& name) const { return *find_option(options_, name); }
   // The names of those that decide whose gaze is used.
   [[nodiscard]] std::vector<std::string> gaze_sources() const {
     std::vector<std::string> names;
@@ -65,26 +49,27 @@ class RenderOptions {
     }
     return names;
   }
-  // The text of a value that the option takes.
-  [[nodiscard]] Assignment assignment(const std::string& key, const TomlNode& node, const std::string& path,
-                                      const std::vector<std::string>& also = {}) const {
+  // Adds what a key sets, as text that its options take. `also`: keys that are known beside the options.
+  void add(const std::string& key, const TomlNode& node, const std::string& path, const std::vector<std::string>& also,
+           std::vector<Assignment>& assignments) const {
     const std::string place = toml_place(path, node);
-    const Option& option = find(key, place, also);
-    Assignment result{key, toml_values(node, option, path), place, {}};
-    if (result.values.empty()) {
+    std::vector<Option> others(also.size());
+    OptionList known = options_;
+    for (std::size_t i = 0; i < also.size(); ++i) {
+      others[i].name = also[i];
+      known.push_back(&others[i]);
+    }
+    const std::vector<TomlSetting> settings =
+        toml_settings(key, node, known, path, "'gazetrace render --print-config' lists every option");
+    if (settings.empty()) {
       refuse(place, fmt::format("'{}' is empty", key), "give a value, or leave it out");
     }
-    try {
-      option.check(result.values, place + ": " + key);
-    } catch (const Error& error) {
-      throw Error(ErrorKind::input, "", error.what());
+    for (const TomlSetting& setting : settings) {
+      if (!is_allowed(find(setting.name))) {
+        refuse(place, fmt::format("'{}' has no place in a sweep", key), "leave it out");
+      }
+      assignments.push_back({setting.name, setting.values, place, setting.warning});
     }
-    for (std::string& value : result.values) {
-      LocatedFile file = located_file(option, value, path);
-      value = std::move(file.value);
-      result.warning = file.warning.empty() ? result.warning : place + ": " + key + ": " + file.warning;
-    }
-    return result;
   }
 
  private:
@@ -150,7 +135,7 @@ std::vector<SweepFileScene> read_named(const TomlNode& root, const std::string& 
         continue;
       }
       const auto found = short_names.find(key);
-      one.options.push_back(options.assignment(found == short_names.end() ? key : found->second, value, path, also));
+      options.add(found == short_names.end() ? key : found->second, value, path, also, one.options);
     }
     if (one.name.empty() || one.name.find('/') != std::string::npos) {
       refuse(one.place, fmt::format("a [[{}]] needs a name without slashes", name), "add name = \"...\"");
@@ -190,12 +175,16 @@ void add_option(const std::string& key, const TomlNode& node, const RenderOption
     setting.resolution_scale = read_scale(node, path);
     return;
   }
-  const Option& option = options.find(key, place, {kScale});
-  if (is_of_scene(option) || option.is(Trait::gaze_source)) {
-    refuse(place, fmt::format("'{}' does not vary between the rows of a scene", key),
-           option.is(Trait::gaze_source) ? "give it in a [[gaze]]" : "give it in [common] or a [[scene]]");
+  std::vector<Assignment> added;
+  options.add(key, node, path, {kScale}, added);
+  for (Assignment& assignment : added) {
+    const Option& option = options.find(assignment.option);
+    if (is_of_scene(option) || option.is(Trait::gaze_source)) {
+      refuse(place, fmt::format("'{}' does not vary between the rows of a scene", key),
+             option.is(Trait::gaze_source) ? "give it in a [[gaze]]" : "give it in [common] or a [[scene]]");
+    }
+    setting.options.push_back(std::move(assignment));
   }
-  setting.options.push_back(options.assignment(key, node, path, {kScale}));
 }
 
 std::string label_of(const SweepFileSetting& setting) {
@@ -301,7 +290,7 @@ void read_reference(const TomlNode& root, const RenderOptions& options, SweepFil
       alone.members.push_back({key, value});
       read_table(own, alone, file.reference, file);
     } else {
-      file.reference.options.push_back(options.assignment(key, value, file.path, names_of(own.list())));
+      options.add(key, value, file.path, names_of(own.list()), file.reference.options);
     }
   }
   if (file.reference.scramblings < 4 || file.reference.scramblings % 2 != 0 || file.reference.scramblings > 1024) {
@@ -413,7 +402,7 @@ SweepFile read_sweep_file(const std::string& path, const JobSchema& schema) {
   if (const TomlNode* common = root.find("common")) {
     checked_kind(*common, TomlNode::Kind::table, path, "'common' is a table; write [common]");
     for (const auto& [key, value] : common->members) {
-      file.common.push_back(options.assignment(key, value, path));
+      options.add(key, value, path, {}, file.common);
     }
   }
   file.scenes = read_named(root, "scene", options, {{"path", "scene"}, {"environment", "env"}}, {"scene"}, path);

@@ -6,12 +6,19 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/option_reference.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
 namespace {
 
+constexpr const char* kFormerOptions = "former-options";
+
 int run_help(const CLI::App& program, const std::vector<std::string>& words) {
+  if (words == std::vector<std::string>{kFormerOptions}) {
+    print_result(former_options_as_text());
+    return exit_done;
+  }
   const CLI::App* found = &program;
   std::string name = program.get_name();
   for (const std::string& word : words) {
@@ -22,6 +29,9 @@ int run_help(const CLI::App& program, const std::vector<std::string>& words) {
       next = command->get_name() == word ? command : next;
     }
     if (next == nullptr) {
+      if (found == &program) {
+        known.emplace_back(kFormerOptions);
+      }
       throw Error(ErrorKind::usage, "help", unknown_name_message("command", word, known));
     }
     found = next;
@@ -36,7 +46,9 @@ int run_help(const CLI::App& program, const std::vector<std::string>& words) {
 
 Command add_help_command(CLI::App& app, const Invocation& /*invocation*/) {
   const auto words = std::make_shared<std::vector<std::string>>();
-  app.add_option("command", *words, "Such as render or gaze inspect; default: the list of all")->type_name("COMMAND");
+  app.add_option("command", *words,
+                 "Such as render or gaze inspect; default: the list of all. former-options: what took their place")
+      ->type_name("COMMAND");
   return {[words, &app] { return run_help(*app.get_parent(), *words); }, {}};
 }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options that are no more, and what stands in their place: old settings files and scripts are understood for one
+// version, or told what to do.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gazetrace/error.hpp"
+
+namespace gazetrace {
+
+enum class FormerKind : std::uint8_t {
+  renamed,    // still understood
+  gone,       // refused
+  elsewhere,  // the name that other programs have for an option; refused
+};
+
+// An option and its values, as a settings file names it: without dashes.
+using OptionText = std::pair<std::string, std::vector<std::string>>;
+
+struct FormerOption {
+  FormerKind kind = FormerKind::gone;
+  std::string option;                                             // "mode"
+  std::string value;                                              // of which alone the row speaks; empty: of all
+  bool takes_value = false;                                       // on the command line, and not a flag
+  std::vector<std::pair<std::string, std::string>> replacements;  // options and values; "*" or empty: the given values
+  std::string reason;                                             // why, or what to do instead
+};
+
+// A row of the table: former_option(FormerKind::renamed, "--old *", "--new *", "it says more").
+FormerOption former_option(FormerKind kind, const std::string& before, const std::string& now,
+                           const std::string& reason);
+// src/job/schema/renamed_options.def, made once and never changed.
+const std::vector<FormerOption>& former_options();
+
+// The first row that speaks of this option with this value; nullptr: there is none.
+const FormerOption* find_former_option(const std::string& option, const std::string& value,
+                                       const std::vector<FormerOption>& table = former_options());
+// Whether a row refuses the option; the text then says why: "this option is gone; use `spp`".
+std::optional<std::string> refusal_of(const FormerOption& former);
+
+// Settings that may have former names or values, as they are called now.
+struct CurrentOptions {
+  std::vector<OptionText> settings;  // those that were given, where no row speaks of them
+  std::string notice;                // which option stands for which, and why; empty: nothing was renamed
+};
+// Throws Error(kind, place, ...) for options and values that are refused.
+CurrentOptions current_options(const std::string& option, const std::vector<std::string>& values, ErrorKind kind,
+                               const std::string& place, const std::vector<FormerOption>& table = former_options());
+
+}  // namespace gazetrace

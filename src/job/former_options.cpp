@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gazetrace/former_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace gazetrace {
+namespace {
+
+constexpr const char* kGivenValue = "*";
+
+// "--sampling density --density *" as options with their values.
+std::vector<std::pair<std::string, std::string>> options_in(const std::string& text) {
+  std::vector<std::pair<std::string, std::string>> options;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (word.starts_with("--")) {
+      options.emplace_back(word.substr(2), "");
+    } else {
+      options.back().second = word;
+    }
+  }
+  return options;
+}
+
+std::vector<FormerOption> table_of_this_version() {
+  return {
+#define GAZETRACE_RENAMED(before, now, why) former_option(FormerKind::renamed, before, now, why),
+#define GAZETRACE_GONE(before, instead) former_option(FormerKind::gone, before, "", instead),
+#define GAZETRACE_ELSEWHERE(name, here) former_option(FormerKind::elsewhere, name, "", here),
+#include "job/schema/renamed_options.def"
+#undef GAZETRACE_RENAMED
+#undef GAZETRACE_GONE
+#undef GAZETRACE_ELSEWHERE
+  };
+}
+
+// "`mode` fast"
+std::string in_words(const std::string& option, const std::string& value) {
+  return fmt::format("`{}`{}{}", option, value.empty() ? "" : " ", value);
+}
+
+}  // namespace
+
+FormerOption former_option(FormerKind kind, const std::string& before, const std::string& now,
+                           const std::string& reason) {
+  const auto [option, value] = options_in(before).at(0);
+  return {kind, option, value == kGivenValue ? "" : value, !value.empty(), options_in(now), reason};
+}
+
+const std::vector<FormerOption>& former_options() {
+  static const std::vector<FormerOption> table = table_of_this_version();
+  return table;
+}
+
+const FormerOption* find_former_option(const std::string& option, const std::string& value,
+                                       const std::vector<FormerOption>& table) {
+  const auto found = std::find_if(table.begin(), table.end(), [&](const FormerOption& row) {
+    return row.option == option && (row.value.empty() || row.value == value);
+  });
+  return found == table.end() ? nullptr : &*found;
+}
+
+std::optional<std::string> refusal_of(const FormerOption& former) {
+  switch (former.kind) {
+    case FormerKind::renamed:
+      return std::nullopt;
+    case FormerKind::gone:
+      break;
+    case FormerKind::elsewhere:
+      return fmt::format("there is no such option; {}", former.reason);
+  }
+  return former.value.empty() ? fmt::format("this option is gone; {}", former.reason)
+                              : fmt::format("'{}' is gone; {}", former.value, former.reason);
+}
+
+CurrentOptions current_options(const std::string& option, const std::vector<std::string>& values, ErrorKind kind,
+                               const std::string& place, const std::vector<FormerOption>& table) {
+  const FormerOption* former = find_former_option(option, values.empty() ? "" : values.front(), table);
+  if (former == nullptr) {
+    return {{{option, values}}, {}};
+  }
+  if (const std::optional<std::string> refusal = refusal_of(*former)) {
+    throw Error(kind, place, *refusal);
+  }
+  CurrentOptions current;
+  std::vector<std::string> words;
+  for (const auto& [name, value] : former->replacements) {
+    const bool is_given_value = value.empty() || value == kGivenValue;
+    current.settings.emplace_back(name, is_given_value ? values : std::vector{value});
+    words.push_back(in_words(name, is_given_value && !former->takes_value ? "" : current.settings.back().second.at(0)));
+  }
+  current.notice =
+      fmt::format("{} is now {}; {}", in_words(option, former->value), fmt::join(words, " "), former->reason);
+  return current;
+}
+
+}  // namespace gazetrace

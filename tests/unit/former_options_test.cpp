@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Old names of options: what the table says fits the options that there are, and what is renamed is understood wherever
+// options are read.
+#include "gazetrace/former_options.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "gazetrace/job.hpp"
+
+namespace gazetrace {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+std::vector<FormerOption> two_modes() {
+  return {former_option(FormerKind::renamed, "--mode fast", "--spp 2 --bounces 1", "it says more"),
+          former_option(FormerKind::gone, "--mode slow", "", "give a higher `spp`"),
+          former_option(FormerKind::renamed, "--mode *", "--spp *", "one number is enough"),
+          former_option(FormerKind::renamed, "--quick", "--russian-roulette", "the field calls it so"),
+          former_option(FormerKind::elsewhere, "--rays", "", "the number of samples a pixel is `spp`")};
+}
+
+CurrentOptions now(const std::string& option, const std::string& value) {
+  return current_options(option, {value}, ErrorKind::usage, "here", two_modes());
+}
+
+std::string refusal(const std::string& option, const std::string& value) {
+  try {
+    (void)now(option, value);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(FormerOptions, ARenamedOptionBecomesTheOnesThatTookItsPlace) {
+  EXPECT_THAT(now("mode", "7").settings, ElementsAre(Pair("spp", ElementsAre("7"))));
+  EXPECT_THAT(now("mode", "fast").settings,
+              ElementsAre(Pair("spp", ElementsAre("2")), Pair("bounces", ElementsAre("1"))));
+  EXPECT_THAT(now("quick", "false").settings, ElementsAre(Pair("russian-roulette", ElementsAre("false"))));
+  EXPECT_EQ(now("mode", "fast").notice, "`mode` fast is now `spp` 2 `bounces` 1; it says more");
+  EXPECT_EQ(now("quick", "true").notice, "`quick` is now `russian-roulette`; the field calls it so");
+}
+
+TEST(FormerOptions, WhatNoRowSpeaksOfStaysAsItIs) {
+  EXPECT_THAT(now("size", "64x36").settings, ElementsAre(Pair("size", ElementsAre("64x36"))));
+  EXPECT_EQ(now("size", "64x36").notice, "");
+}
+
+TEST(FormerOptions, WhatIsGoneIsRefusedWithWhatToUseInstead) {
+  EXPECT_EQ(refusal("mode", "slow"), "here: 'slow' is gone; give a higher `spp`");
+  EXPECT_EQ(refusal("rays", "5"), "here: there is no such option; the number of samples a pixel is `spp`");
+}
+
+// Each row of the table of this version, held against the options of this version.
+TEST(FormerOptions, TheTableFitsTheOptions) {
+  std::set<std::string> rows;
+  for (const FormerOption& former : former_options()) {
+    const std::string row = former.option + " " + former.value;
+    SCOPED_TRACE(row);
+    EXPECT_TRUE(rows.insert(row).second) << "there are two rows";
+    EXPECT_FALSE(former.reason.empty());
+    EXPECT_FALSE(former.reason.ends_with('.'));
+    EXPECT_TRUE(!former.value.empty() || job_schema().find(former.option) == nullptr) << "it is an option still";
+    EXPECT_EQ(former.replacements.empty(), former.kind != FormerKind::renamed);
+    for (const auto& [name, value] : former.replacements) {
+      const OptionOf<JobSettings>* option = job_schema().find(name);
+      ASSERT_NE(option, nullptr) << "there is no option " << name;
+      if (!value.empty() && value != "*") {
+        EXPECT_NO_THROW(option->check({value}, name)) << value;
+      }
+    }
+  }
+}
+
+TEST(FormerOptions, AJobAndItsFileAreToldOfThem) {
+  const auto error_of = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_THAT(error_of([] {
+                Job job;
+                set_option(job, "samples", "5");
+              }),
+              HasSubstr("`samples`: there is no such option; the number of samples a pixel is `spp`"));
+  EXPECT_THAT(error_of([] { job_from_toml("\nsamples = 5\n", "job.toml"); }),
+              HasSubstr("job.toml:2: samples: there is no such option; the number of samples a pixel is `spp`"));
+}
+
+}  // namespace
+}  // namespace gazetrace
