@@ -418,7 +418,7 @@ TEST_F(GazeRead, WritingAndReadingKeepsEveryBit) {
   EXPECT_THROW(write_gaze_csv(GazeLog{}, files_.path("no/such/folder.csv")), Error);
 }
 
-TEST(GazeFormats, AreListedOnceEach) {
+TEST(GazeFormatList, NamesEachOnce) {
   std::vector<std::string> names;
   for (const GazeFormatInfo& format : gaze_formats()) {
     names.push_back(format.name);
