@@ -60,13 +60,8 @@ Rendering::Rendering(Job job, std::shared_ptr<const Scene> scene, Threads& threa
   prepare_outputs(resolved_);
   files_ = output_files(resolved_.pipeline, resolved_.frames);
   if (!files_.empty()) {
-    RunRecord claim;
-    claim.frames = format_frame_list(resolved_.frames);
-    if (resolved_.pipeline.trace.samples) {
-      claim.samples = format_value(*resolved_.pipeline.trace.samples);
-    }
-    lock_ = std::make_unique<RunLock>(claim, files_.front());
-    warnings_ = lock_->taken_over();
+    lock_ = lock_outputs(resolved_.pipeline, resolved_.frames);
+    warnings_ = lock_.warnings();
     prepare_outputs(resolved_);  // another run may have made frames meanwhile
   }
   tracer_.emplace(scene_ ? *scene_ : *resolved_.scene, tracer_options(settings));
@@ -91,7 +86,7 @@ void Rendering::run() {
     failure_ = std::current_exception();
   }
   tracer_.reset();
-  lock_.reset();
+  lock_ = {};
   const std::lock_guard guard(mutex_);
   ended_ = true;
   changed_.notify_all();

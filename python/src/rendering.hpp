@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "frame.hpp"
+#include "gazetrace/output_lock.hpp"
 #include "gazetrace/resolve.hpp"
-#include "gazetrace/run_lock.hpp"
 #include "threads.hpp"
 
 namespace gazetrace::python {
@@ -58,7 +58,7 @@ class Rendering {
   std::shared_ptr<ColorPipeline> color_;
   ResolvedJob resolved_;
   std::vector<std::string> files_;
-  std::unique_ptr<RunLock> lock_;
+  OutputLock lock_;
   std::optional<PathTracer> tracer_;
   RunRecord record_;
   Warnings warnings_;

@@ -14,9 +14,9 @@
 #include "core/file_lock.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/output_lock.hpp"
 #include "output/written_file.hpp"
 #include "pipeline/file_journal.hpp"
-#include "pipeline/lock_state.hpp"
 
 namespace gazetrace {
 namespace {

@@ -76,7 +76,7 @@ const std::map<std::string, std::vector<std::string>> public_headers = {
     {"metrics", {"metrics", "fovvideovdp", "flicker"}},
     {"visible", {"visible_error", "model_gain"}},
     {"pipeline",
-     {"build_info", "checkpoint", "frame_renderer", "input_digest", "pipeline", "run_lock", "sample_parts",
+     {"build_info", "checkpoint", "frame_renderer", "input_digest", "output_lock", "pipeline", "sample_parts",
       "traced_frame_file"}},
     {"compare", {"compare"}},
     {"results", {"results"}},

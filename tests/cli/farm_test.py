@@ -444,7 +444,8 @@ class Engines(FarmFiles):
         first = subprocess.Popen([harness.PROGRAM, "farm", "slow.toml", "--chunks", "2", "--processes", "2", "--threads", "1",
                                   "--retries", "0"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(first.kill)
-        while not (self.folder / "out/run.4-6.json.lock").exists() and first.poll() is None:
+        lock = self.folder / "out/.gazetrace.lock"
+        while not (lock.exists() and "--chunk 2/2" in lock.read_text()) and first.poll() is None:
             time.sleep(0.002)
         held = renderers(self.folder, harness.PROGRAM)[2]
         os.kill(held, signal.SIGSTOP)

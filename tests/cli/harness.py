@@ -134,8 +134,9 @@ class CliTest(unittest.TestCase):
         return lines[0]
 
     def files(self, folder="."):
+        """Without those that stay where runs have been, to be locked."""
         root = self.folder / folder
-        return sorted(str(path.relative_to(root)) for path in root.rglob("*") if path.is_file())
+        return sorted(str(path.relative_to(root)) for path in root.rglob("*") if path.is_file() and path.name != ".gazetrace.lock")
 
     def pictures(self, folder):
         root = self.folder / folder

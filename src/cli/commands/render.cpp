@@ -15,12 +15,12 @@
 #include "cli/interruption.hpp"
 #include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
-#include "cli/output_locks.hpp"
 #include "cli/progress.hpp"
 #include "cli/run_events.hpp"
 #include "cli/run_record_file.hpp"
 #include "cli/summary.hpp"
 #include "gazetrace/error.hpp"
+#include "gazetrace/output_lock.hpp"
 #include "gazetrace/resolve.hpp"
 
 namespace gazetrace {
@@ -148,7 +148,9 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
   ResolvedJob resolved = resolve(arguments.job, resolving);
   prepare_outputs(resolved);
   const std::vector<std::string> files = output_files(resolved.pipeline, resolved.frames);
-  const std::vector<std::unique_ptr<RunLock>> locks = lock_outputs(resolved, files);
+  const OutputLock lock = lock_outputs(resolved.pipeline, resolved.frames);
+  prepare_outputs(resolved);  // another run may have made frames until then
+  resolved.warnings.insert(resolved.warnings.end(), lock.warnings().begin(), lock.warnings().end());
 
   loading->building_tree();
   PathTracer tracer(*resolved.scene, tracer_options(job));
