@@ -246,7 +246,7 @@ class Sweep(harness.CliTest):
         """examples/paper.toml, small: its settings, samples and the table beside what was printed."""
         scene = harness.SHARED / "scenes/sponza/Sponza.gltf"
         if not scene.is_file():
-            self.skipTest("no Sponza beside the project")
+            self.skipTest("Sponza is not here")
         text = (harness.SOURCE / "examples/paper.toml").read_text()
         parts = re.split(r"\n(?=\[)", text)
         dropped = ('name = "lost', 'name = "san', 'name = "side', 'name = "corner', 'scene = "lost', 'scene = "san')

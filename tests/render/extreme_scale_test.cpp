@@ -156,7 +156,7 @@ TEST(ExtremeScale, GeneratedSceneOfAllScales) {
   const std::string path =
       std::string(GAZETRACE_SHARED_DIR) + "/scenes/small/gen-extreme-scales/gen-extreme-scales.gltf";
   if (!std::filesystem::exists(path)) {
-    GTEST_SKIP() << path << " is not there";
+    GTEST_SKIP() << path << " is not here";
   }
   Scene scene = load_scene(path);
   ASSERT_EQ(scene.warnings.size(), 1U);  // the one that is flat

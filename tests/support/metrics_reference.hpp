@@ -32,5 +32,5 @@ inline ImageRgb reference_code(const std::string& path) {
 
 #define GAZETRACE_SKIP_WITHOUT_METRICS_REFERENCE()                                         \
   if (!std::filesystem::exists(gazetrace::metrics_reference_folder() / "expected.json")) { \
-    GTEST_SKIP() << "no " << gazetrace::metrics_reference_folder();                        \
+    GTEST_SKIP() << gazetrace::metrics_reference_folder() << " is not here";               \
   }

@@ -108,9 +108,9 @@ class Conversion : public ::testing::TestWithParam<const char*> {
   static std::string sample() { return std::string(GAZETRACE_SHARED_DIR) + "/gaze-samples/" + GetParam(); }
 };
 
-#define SKIP_WITHOUT_SAMPLE()                                                \
-  if (!std::filesystem::exists(sample())) {                                  \
-    GTEST_SKIP() << sample() << " is not there: real recordings are needed"; \
+#define SKIP_WITHOUT_SAMPLE()                   \
+  if (!std::filesystem::exists(sample())) {     \
+    GTEST_SKIP() << sample() << " is not here"; \
   }
 
 TEST_P(Conversion, ToCsvAndBack) {

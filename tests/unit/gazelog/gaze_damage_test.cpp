@@ -89,7 +89,7 @@ TEST(GazeDamage, TruncatedAndFlippedRecordings) {
     }
   }
   if (tried == 0) {
-    GTEST_SKIP() << "no recordings beside the project";
+    GTEST_SKIP() << "the folder of real recordings is not here";
   }
 }
 

@@ -118,7 +118,7 @@ TEST_F(JudgedPlan, ThePartsOfASequenceHaveOneDigestAndAStillHasAnother) {
 TEST_F(JudgedPlan, AnAnimatedSceneHasTheSameDigestWhenItIsRenderedAndWhenItIsFoundAgain) {
   const std::string scene = GAZETRACE_SHARED_DIR "/scenes/small/AnimatedMorphCube/AnimatedMorphCube.gltf";
   if (!std::filesystem::exists(scene)) {
-    GTEST_SKIP() << "the shared scenes are not there";
+    GTEST_SKIP() << "the folder of real scenes is not here";
   }
   set_option(job_, "scene", scene);
   set_option(job_, "frames", "1-2");

@@ -10,7 +10,6 @@
 #include <limits>
 #include <random>
 
-#include "core/fast_math.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
 
@@ -239,21 +238,6 @@ TEST(MapStatistics, NegativeValuesAndMargins) {
   EXPECT_EQ(statistics.min, -2);
   EXPECT_EQ(statistics.quantiles[2], 0);
   EXPECT_DOUBLE_EQ(statistics.mean, -1.0 / 3);
-}
-
-TEST(FastMath, PowerAndItsParts) {
-  std::mt19937 random(9);
-  std::uniform_real_distribution<double> exponent(-30, 30);
-  for (int i = 0; i < 100000; ++i) {
-    const auto x = static_cast<float>(std::exp2(exponent(random)));
-    const double exact = std::log2(static_cast<double>(x));
-    ASSERT_NEAR(log2_fast(x), exact, 2e-7 + 1e-7 * std::fabs(exact)) << x;
-    const auto y = static_cast<float>(exponent(random));
-    const double power = std::exp2(static_cast<double>(y));
-    ASSERT_NEAR(exp2_fast(y), power, 2e-7 * power) << y;
-  }
-  EXPECT_EQ(pow_fast(0.0F, 0.7F), 0.0F);
-  EXPECT_EQ(pow_fast(1.0F, 0.3F), 1.0F);
 }
 
 // Values of SMPTE ST 2084 as ITU-R BT.2408 and BT.2100 print them: 58 % is 203 cd/m2, 75 % 1000, to their whole

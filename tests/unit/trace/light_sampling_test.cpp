@@ -143,39 +143,6 @@ TEST(Environment, SamplesCarryTheirOwnRadianceAndDensity) {
   EXPECT_LE(edges, 4) << "only on the very edge of a cell";
 }
 
-TEST(Environment, ManyAtOnceAreTheSameAsOneByOne) {
-  Scene scene;
-  scene.environment.radiance = ImageRgb(50, 20);
-  for (std::uint32_t i = 0; i < 1000; ++i) {
-    scene.environment.radiance.pixels[i] = {static_cast<float>(hash32(i)), 1, 0};
-  }
-  const LightSampler lights(scene);
-  constexpr std::size_t kCount = 150;
-  std::vector<Vec2f> u(kCount);
-  std::vector<float> select(kCount);
-  std::vector<Vec3f> directions(kCount);
-  const std::vector<Vec3f> zeros(kCount);
-  const std::vector<Vec3f> normals(kCount, kUp);
-  for (std::uint32_t i = 0; i < kCount; ++i) {
-    u[i] = sample_2d(kKey, i, 2);
-    select[i] = sample_1d(kKey, i, 3);
-    directions[i] = normalize(Vec3f{u[i].x - 0.5F, u[i].y - 0.5F, select[i] - 0.5F});
-  }
-  std::vector<LightSample> samples(kCount);
-  std::vector<LightSampler::EnvironmentHit> hits(kCount);
-  lights.sample_many(kCount, zeros.data(), normals.data(), u.data(), select.data(), samples.data());
-  lights.environment_many(directions.data(), kCount, hits.data());
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const LightSample one = lights.sample({}, kUp, u[i], select[i]);
-    EXPECT_EQ(one.direction, samples[i].direction);
-    EXPECT_EQ(one.radiance, samples[i].radiance);
-    EXPECT_EQ(one.pdf, samples[i].pdf);
-    EXPECT_EQ(one.valid, samples[i].valid);
-    EXPECT_EQ(lights.environment(directions[i]).radiance, hits[i].radiance);
-    EXPECT_EQ(lights.environment(directions[i]).pdf, hits[i].pdf);
-  }
-}
-
 TEST(Environment, AConstantIsUniform) {
   const Environment environment = constant_environment({2, 2, 2});
   const EnvironmentSampler sampler(environment);
