@@ -54,16 +54,14 @@ struct FalloffParameters {
   FalloffTable table;                                   // table
 };
 
-// A quality, or a time, from which the number of samples follows. At most one of the members is given; it takes the
-// place of a budget. `relmse` is for the fall-off `visible`, whose pilot predicts it. From the others render_sequence()
-// makes a budget: from `jod` one for all frames, of any fall-off but `regions`; from `flip` one for all frames, which
-// are uniform; from `time_s` one for each frame of any fall-off. A FrameRenderer alone does not see them.
+// A quality from which the number of samples follows. At most one of the members is given; it takes the place of a
+// budget. From `relmse` a FrameRenderer makes the rates of each frame; it is for the fall-off `visible`, whose pilot
+// predicts it. From `jod` render_sequence() makes one budget for all frames, of any fall-off but `regions`; a
+// FrameRenderer alone does not see it.
 struct QualityTarget {
   std::optional<double> relmse;  // mean over the frame of squared error over (squared luminance + 0.01)
   std::optional<double> jod;     // of the whole sequence by FovVideoVDP, up to 10
-  std::optional<double> flip;    // mean FLIP of its frames as stills, 0..1
-  std::optional<double> time_s;  // wall time of a frame, its files included, in seconds; frames depend on the machine
-  [[nodiscard]] bool is_given() const { return relmse || jod || flip || time_s; }
+  [[nodiscard]] bool is_given() const { return relmse || jod; }
 };
 
 constexpr int kDefaultMaxBlockPx = 16;
@@ -89,8 +87,8 @@ struct FoveationSettings {
   // Of the fall-off `map`: the file that MapContext::density is read from, or a pattern of files with a place for the
   // frame's number (frame_file_name()).
   std::string density_map;
-  // Of the fall-off `visible`: the least and the most samples a pixel of any place. Of targets from which one rate
-  // follows: of the whole frame.
+  // Of the fall-off `visible`: the least and the most samples a pixel of any place. Of QualityTarget::jod: of the whole
+  // frame.
   double min_spp = 0.0625, max_spp = 65536;
   QualityTarget target;
   // A budget replaces the rates above: any fall-off is scaled so that a frame has this many samples, per pixel on

@@ -143,8 +143,6 @@ class FrameRenderer {
   [[nodiscard]] std::optional<Guides> guides(const FrameRequest& request) const;
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
-  // Whether `known` is what the frame would learn of its light: its own, or that of a frame at rest with it.
-  [[nodiscard]] bool knows_light(const KnownLight& known, const FrameRequest& request) const;
   // Whether frames around a frame are read before its filter, surface by surface (src/temporal/moving_views.hpp): all
   // that can move in the scene is the camera, the filter takes light surface by surface, and neither
   // AccumulateSettings::blend nor ReconstructionSettings::pass_through_samples is set.
@@ -161,6 +159,8 @@ class FrameRenderer {
   [[nodiscard]] RenderedFrame finish(const FrameRequest& request, TracedFrame traced, TemporalHistory& history) const;
 
  private:
+  // Whether `known` is what the frame would learn of its light: its own, or that of a frame at rest with it.
+  [[nodiscard]] bool knows_light(const KnownLight& known, const FrameRequest& request) const;
   // Adds the paths that it takes to `stats`.
   [[nodiscard]] std::shared_ptr<const LearnedLight> learned_light(const PosedScene& scene, const FrameRequest& request,
                                                                   KnownLight& known, TraceStats& stats) const;

@@ -131,7 +131,7 @@ struct FramePlan {
   // Further frames in ascending order, none of them among `frames`, that are traced only because those read them
   // (AccumulateMode::two_sided).
   std::vector<FrameRequest> around;
-  JudgedFrames judged;                       // for QualityTarget::jod and ::flip
+  JudgedFrames judged;                       // for QualityTarget::jod
   std::optional<GazeAges> ages;              // empty: no frame has gaze from a log
   std::int64_t gaze_latency_ns = 0;          // that of the settings
   std::vector<std::string> gaze_processing;  // what was done to the log that steers, one line per step

@@ -128,8 +128,6 @@ class JobOptions(TypedDict, total=False):
     max_block: Value | None
     density_floor: Value | None
     target_jod: Value | None
-    target_flip: Value | None
-    time_budget: Value | None
     falloff_normalisation: Value | None
     falloff_ramp: Value | Sequence[Value] | None
     falloff_mar_slope: Value | None

@@ -98,15 +98,8 @@ void check_rates(const FoveationSettings& settings) {
   if (!target.is_given()) {
     return;
   }
-  const std::string_view place = target.relmse ? "`target-relmse`"
-                                 : target.jod  ? "`target-jod`"
-                                 : target.flip ? "`target-flip`"
-                                               : "`time-budget`";
-  require(int{target.relmse.has_value()} + int{target.jod.has_value()} + int{target.flip.has_value()} +
-                  int{target.time_s.has_value()} ==
-              1,
-          place, "there are several targets",
-          "give one of `target-relmse`, `target-jod`, `target-flip` and `time-budget`");
+  const std::string_view place = target.relmse ? "`target-relmse`" : "`target-jod`";
+  require(!target.relmse || !target.jod, place, "there are several targets", "give `target-relmse` or `target-jod`");
   require(by_pilot || !target.relmse, place, "the fall-off '" + settings.falloff + "' does not know a frame's error",
           "give `falloff` visible");
   require(!settings.budget_spp && !settings.budget_samples, place, "there is a budget, too",
@@ -114,12 +107,8 @@ void check_rates(const FoveationSettings& settings) {
   if (target.jod) {
     require(*target.jod > 0 && *target.jod < 10, place, shown(*target.jod) + " JOD are not possible",
             "give more than 0 and less than 10, such as 9.5");
-  } else if (target.flip) {
-    require(*target.flip > 0 && *target.flip < 1, place, "a mean FLIP of " + shown(*target.flip) + " is not possible",
-            "give more than 0 and less than 1, such as 0.03");
   } else {
-    require_positive(place, target.relmse ? *target.relmse : *target.time_s,
-                     target.relmse ? "a relative squared error" : "seconds a frame");
+    require_positive(place, *target.relmse, "a relative squared error");
   }
 }
 

@@ -101,31 +101,13 @@ void check_history_options(const JobSettings& job) {
 }
 
 void check_target(const JobSettings& job) {
-  const QualityTarget& target = job.foveation.target;
-  if (!target.jod && !target.flip) {
+  if (!job.foveation.target.jod) {
     return;
   }
-  const char* const option = target.jod ? "`target-jod`" : "`target-flip`";
-  const bool has_gaze = !job.gaze.path.empty() || job.gaze_at;
-  if (target.jod && !has_gaze) {
+  const char* const option = "`target-jod`";
+  if (job.gaze.path.empty() && !job.gaze_at) {
     throw Error(ErrorKind::usage, option, "what is seen depends on where the eye looks",
                 "give `gaze` or `gaze-at`, and the `screen`");
-  }
-  if (target.flip && !has_gaze && !screen_geometry(job.screen)) {
-    throw Error(ErrorKind::usage, option, "what is seen depends on how many pixels a degree has",
-                "give the `screen`, or `screen-px` and `screen-ppd`");
-  }
-  const std::string filter = filter_of(job).name;
-  if (target.flip && job.foveation.falloff != "uniform") {
-    throw Error(ErrorKind::usage, option,
-                fmt::format("blocks and rates of fall-off '{}' may leave a bias, which its pilot does not see",
-                            job.foveation.falloff),
-                "give `falloff` uniform, or a budget");
-  }
-  if (target.flip && filter != "none" && filter != "linear") {
-    throw Error(ErrorKind::usage, option,
-                fmt::format("filter '{}' may leave a bias, which its pilot does not see", filter),
-                "give `filter` none or linear, or a budget");
   }
   if (job.foveation.falloff == "regions") {
     throw Error(
@@ -153,31 +135,6 @@ void check_target(const JobSettings& job) {
         ErrorKind::usage, option,
         "only what `accumulate` two-sided adds up at rest is known beforehand, without `accumulate-blend` and resets",
         "give `accumulate` two-sided, leave it out, or give a budget");
-  }
-}
-
-// What is refused depends on the same frame being made twice, or on a frame having a time of its own.
-void check_time_budget(const JobSettings& job) {
-  if (!job.foveation.target.time_s) {
-    return;
-  }
-  PipelineSettings history;
-  history.accumulate = job.accumulate;
-  history.exposure = job.exposure;
-  history.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
-  if (job.resume && uses_history(history)) {
-    throw Error(ErrorKind::usage, "`time-budget`",
-                "frames that depend on those before them cannot be resumed: made again, those before would be others",
-                "leave `resume` out, or give `budget-spp`");
-  }
-  if (job.accumulate.mode == AccumulateMode::two_sided) {
-    throw Error(ErrorKind::usage, "`time-budget`",
-                "frames that are read by those around them have no time of their own",
-                "give `budget-spp`, or another `accumulate`");
-  }
-  if (job.only_pixel) {
-    throw Error(ErrorKind::usage, "`time-budget`", "with `only-pixel` a single pixel is traced, and takes no time",
-                "give `budget-spp`");
   }
 }
 
@@ -219,11 +176,8 @@ void check_stage(const JobSettings& job) {
   if (job.trace.samples) {
     refuse("`sample-range` leaves sums, which `merge` finishes");
   }
-  if (job.foveation.target.jod || job.foveation.target.flip) {
+  if (job.foveation.target.jod) {
     refuse("the rate needs a pilot of the sequence");
-  }
-  if (job.foveation.target.time_s) {
-    refuse("`time-budget` counts the whole time of a frame, which is spent in two places");
   }
   if (job.only_pixel) {
     refuse("only one pixel is traced");
@@ -287,7 +241,6 @@ void check_job(const Job& asked, const JobSchema& schema) {
   check_ranges(job, schema);
   check_history_options(job);
   check_target(job);
-  check_time_budget(job);
   check_sample_range(job);
   check_chunk(job);
   check_stage(job);

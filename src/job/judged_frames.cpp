@@ -29,8 +29,7 @@ JudgedNumbers judged_numbers(std::int32_t frames, LaterFrames later, const Frame
     return judged;
   }
   const double rate = static_cast<double>(fps.numerator) / static_cast<double>(fps.denominator);
-  // Frames as slow as that are judged as stills, by FLIP.
-  const auto taps = sees_changes(fps) ? static_cast<std::int32_t>(temporal_filters(rate).sustained.size()) : 1;
+  const auto taps = static_cast<std::int32_t>(temporal_filters(rate).sustained.size());
   const std::int32_t first = std::min(frames, taps + 2);
   judged.runs.push_back(run_of(1, first));
   // A run tells of its last frames, two or a group: those before them are what the metric has in view.

@@ -65,14 +65,9 @@ std::vector<std::int32_t> frames_to_plan(const JudgedNumbers& judged, std::int32
 
 JudgedFrames plan_judged_frames(const JobSettings& job, const ViewInputs& inputs, PlanSettings plan,
                                 Decisions& decisions) {
-  const QualityTarget& target = job.foveation.target;
   const bool view_moves = !inputs.camera.is_static || (inputs.scene != nullptr && moves(*inputs.scene));
-  if (view_moves && target.flip) {
-    throw Error(ErrorKind::usage, "`target-flip`", "the view moves, and is only judged at rest",
-                "give a budget, or hold camera and scene still");
-  }
   const SequenceLength length = sequence_length(job, inputs);
-  if (target.jod && length.frames > 1 && !sees_changes(job.fps)) {
+  if (length.frames > 1 && !sees_changes(job.fps)) {
     throw Error(ErrorKind::usage, "`target-jod`",
                 fmt::format("{:g} frames a second are too few for its measure, which looks at what changes within a "
                             "quarter of a second",
@@ -83,7 +78,7 @@ JudgedFrames plan_judged_frames(const JobSettings& job, const ViewInputs& inputs
   const LaterFrames later = length.differs                                     ? LaterFrames::all_differ
                             : job.accumulate.mode == AccumulateMode::two_sided ? LaterFrames::as_the_middle
                                                                                : LaterFrames::as_early_ones;
-  if (target.jod && length.frames > 1 && !view_moves && job.accumulate.mode == AccumulateMode::off) {
+  if (length.frames > 1 && !view_moves && job.accumulate.mode == AccumulateMode::off) {
     decisions.emplace_back("accumulate",
                            "off; the view is at rest, and with `accumulate` two-sided frames share their samples and "
                            "take many times fewer for this quality");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans the frames by which a stated quality (QualityTarget::jod, ::flip) is judged before a sequence is rendered.
+// Plans the frames by which a stated quality (QualityTarget::jod) is judged before a sequence is rendered.
 #pragma once
 
 #include <cstdint>

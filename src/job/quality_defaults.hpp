@@ -7,8 +7,7 @@
 namespace gazetrace {
 
 // Rates of the default fall-off, `regions`, are given and do not follow from a quality. Where neither options nor a
-// preset name a fall-off, `target-jod` and `target-relmse` take `visible`, and `target-flip`, which knows frames
-// without bias alone, takes uniform frames without a filter. Choices are added to `decisions`, if there are any.
+// preset name a fall-off, it is `visible`. The choice is added to `decisions`, if there are any.
 Job with_quality_defaults(Job job, Decisions* decisions = nullptr);
 
 }  // namespace gazetrace

@@ -27,7 +27,7 @@ void append(Warnings& to, const Warnings& from) {
 }
 
 bool judges_sequence(const JobSettings& job) {
-  return job.foveation.target.jod || job.foveation.target.flip;
+  return job.foveation.target.jod.has_value();
 }
 
 void load_viewing(ResolvedJob& resolved) {
@@ -112,10 +112,7 @@ CameraPath load_camera_and_scene(const ResolveOptions& options, const GazeLog* l
 }
 
 std::string sampling_without_gaze(const FoveationSettings& foveation) {
-  const QualityTarget& target = foveation.target;
-  const std::string rate = target.time_s              ? "as many samples as `time-budget` allows"
-                           : target.is_given()        ? "as many samples as the stated quality takes"
-                           : foveation.budget_spp     ? fmt::format("{} samples a pixel", *foveation.budget_spp)
+  const std::string rate = foveation.budget_spp       ? fmt::format("{} samples a pixel", *foveation.budget_spp)
                            : foveation.budget_samples ? fmt::format("{} samples in all", *foveation.budget_samples)
                                                       : fmt::format("{} samples", foveation.uniform_spp);
   return rate + " everywhere: there is no gaze";
@@ -249,11 +246,6 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
   load_and_plan(options, resolved);
   if (!filter.reason.empty()) {
     resolved.decisions.emplace_back("filter", filter.name + ", because " + filter.reason);
-  }
-  if (resolved.job.settings.foveation.target.time_s) {
-    resolved.warnings.emplace_back(
-        "`time-budget`: how many samples frames have depends on the machine and on what else it does; another run "
-        "makes other pictures");
   }
   set_pipeline(options.scope, resolved);
   if (options.scope != ResolveScope::plan) {

@@ -73,9 +73,6 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
   if (settings.accumulate.mode == AccumulateMode::two_sided) {
     record.facts["causal"] = "false";  // frames use others that come after them
   }
-  if (settings.foveation.target.time_s) {
-    record.facts["reproducible"] = "false";  // how many samples a frame has follows from what they took
-  }
   record.facts["state"] = "running";
   return record;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rate of a sequence that is to reach QualityTarget::jod or ::flip: one budget for all of its frames.
+// The rate of a sequence that is to reach QualityTarget::jod: one budget for all of its frames. It is found by
+// rendering windows of the sequence (window_clip.hpp) at one rate after the other.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +10,7 @@
 #include "gazetrace/color.hpp"
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/image.hpp"
+#include "gazetrace/output.hpp"
 #include "gazetrace/plan.hpp"
 
 namespace gazetrace {
@@ -24,23 +25,22 @@ constexpr double kMostOfReference = 0.25;
 constexpr double kMostScatterJod = 0.08;
 
 struct ClipRate {
-  double spp = 0;  // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
-  std::optional<double> predicted_jod, predicted_flip;  // of the sequence, at this rate: what was asked for
-  TraceStats pilot;                                     // samples that were discarded
-  int rounds = 0;                                       // of pilots, or looks at windows
-  int frames = 0;                                       // renderings of judged frames, by pilots alone
-  bool is_least = false;                                // fewer samples are not possible
-  // The last pilot or look was near enough to the rate; else the prediction is extrapolated far.
+  double spp = 0;            // samples a pixel, a mean over the frame: FoveationSettings::budget_spp
+  double predicted_jod = 0;  // of the sequence, at this rate
+  TraceStats discarded;      // all samples of the looks
+  double ms = 0;             // what the choice took
+  int looks = 0;
+  bool is_least = false;  // fewer samples are not possible
+  // The last look was near enough to the rate; else the prediction is extrapolated far.
   bool settled = true;
-  // Of windows: samples a pixel of their reference, a mean over what is traced of them (what counts has more), and what
-  // is seen of its own error as a part of what is seen of the frames' in the last look.
+  // Samples a pixel of the reference, a mean over what is traced of it (what counts has more), and what is seen of its
+  // own error as a part of what is seen of the frames' in the last look.
   double reference_spp = 0, reference_share = 0;
-  // Of looks: the standard deviation of what one rendering of the judged frames scores, at this rate. A still's score
-  // differs as much, that of a sequence by less, since it has more frames than are judged. 0: not known.
+  // The standard deviation of what one rendering of the judged frames scores, at this rate. A still's score differs as
+  // much, that of a sequence by less, since it has more frames than are judged. 0: not known.
   double scatter_jod = 0;
-  bool looked_at_whole = false;
-  double summed_frames = 1;  // how many frames at most are added up for one
-  std::string how;           // what was looked at
+  bool looked_at_whole = false;  // the whole frame is the window
+  std::string looked_at;         // in words
   // FrameRates::spp of every frame; empty: each has a pilot, or none.
   ImageGray rates;
 
@@ -48,17 +48,15 @@ struct ClipRate {
   [[nodiscard]] std::vector<std::string> doubts() const;  // sentences for warnings: why the quality may be missed
 };
 
-// Whether the error of frames is in a replica of their noise: single pixels of uniform frames that nothing smooths.
-bool is_noise_alone(const FrameSettings& settings);
-
-// For frames whose error is noise alone, by pilots (replica_clip.hpp) at lower rates. Each says what would be seen if
-// its squared error were smaller, and that falls as one over the rate. A function of the judged frames, settings and
-// seed alone. Error(usage) where the target would take more than FoveationSettings::max_spp.
+// A function of the judged frames, settings and seed alone, but for the time that it takes. Error(usage) where the
+// target would take more than FoveationSettings::max_spp.
 ClipRate clip_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
                    const ColorPipeline& color);
 
-// For all others, measured in windows (window_clip.hpp). Only for QualityTarget::jod. Error(usage) as above.
-ClipRate measured_rate(PathTracer& tracer, const JudgedFrames& judged, const FrameSettings& settings,
-                       const ColorPipeline& color);
+// The settings with the rate in the place of the target.
+FrameSettings with_rate(FrameSettings settings, const ClipRate& rate);
+
+// Every row states what is expected of the sequence, and the first one counts what the choice took.
+void add_rate(const ClipRate& rate, bool is_first, TimingRow& row);
 
 }  // namespace gazetrace

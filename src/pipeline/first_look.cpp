@@ -90,12 +90,6 @@ ImageGray contrast_multiplier(const ImageGray& contrast, double strength) {
   return multiplier;
 }
 
-double first_look_spp(const FrameRequest& request) {
-  const PlanarView view = small_view(request);
-  return static_cast<double>(kSpp) * view.width_px * view.height_px /
-         (static_cast<double>(request.width_px) * request.height_px);
-}
-
 FoveationSettings less_first_look(const FoveationSettings& settings, const FrameRequest& request) {
   const bool in_all = settings.budget_samples.has_value();
   if (!in_all && !settings.budget_spp) {

@@ -21,9 +21,6 @@ struct FirstLook {
 FirstLook trace_first_look(const PosedScene& scene, const FrameRequest& request, const TraceSettings& settings,
                            double strength);
 
-// What that takes, in samples a pixel of the frame.
-double first_look_spp(const FrameRequest& request);
-
 // The settings for the frame itself: from a budget the samples of the first look are subtracted, since they count among
 // the frame's. Other settings are unchanged. Error(usage) for a budget that leaves nothing.
 FoveationSettings less_first_look(const FoveationSettings& settings, const FrameRequest& request);

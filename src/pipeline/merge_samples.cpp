@@ -125,11 +125,8 @@ std::string needs_all_samples(const PipelineSettings& settings) {
   if (layer_settings(settings.output.exr).any()) {
     return "some of the AOVs are found by rays of their own, and what joins the parts traces none";
   }
-  if (settings.foveation.target.jod || settings.foveation.target.flip) {
+  if (settings.foveation.target.jod) {
     return "the rate needs a pilot of the sequence";
-  }
-  if (settings.foveation.target.time_s) {
-    return "the rate follows from what samples take, which no two parts have alike";
   }
   if (settings.foveation.contrast_strength > 0) {
     return "the sampling map needs a first look at the frame";

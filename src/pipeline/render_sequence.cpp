@@ -3,6 +3,7 @@
 // history and the log of the run outlive a frame.
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,8 +15,8 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/pipeline.hpp"
 #include "output/aovs.hpp"
+#include "pipeline/clip_rate.hpp"
 #include "pipeline/file_journal.hpp"
-#include "pipeline/judged_rate.hpp"
 #include "pipeline/resume.hpp"
 #include "pipeline/sequence_frame.hpp"
 #include "pipeline/sequence_history.hpp"
@@ -138,8 +139,8 @@ void tell(const PipelineObserver& observer, const FrameRequest& request, bool sk
 }
 
 // All frames of the plan in order, until the sequence is asked to stop.
-void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, SequenceRenderer& renderer, JudgedRate& judged,
-                 TemporalHistory& history, RunLog& log, SequenceResult& result) {
+void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, SequenceRenderer& renderer,
+                 const std::optional<ClipRate>& rate, TemporalHistory& history, RunLog& log, SequenceResult& result) {
   const FramePlan& plan = inputs.plan;
   const PipelineObserver& observer = inputs.observer;
   CheckpointFile checkpoint(inputs.settings, resume.writes_checkpoint);
@@ -165,8 +166,8 @@ void make_frames(const SequenceInputs& inputs, const ResumePlan& resume, Sequenc
         break;
       }
       if (work == FrameWork::render) {
-        if (!leaves_unfinished(inputs.settings)) {
-          judged.enter(row);
+        if (rate) {
+          add_rate(*rate, result.rows.empty(), row);
         }
         log.add(row, result);
       }
@@ -206,30 +207,29 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
   result.warnings = resume.warnings;
 
   FrameSettings own = frame_settings(settings, color);
-  JudgedRate judged;
-  if ((own.foveation.target.jod || own.foveation.target.flip) && !to_make.empty()) {
+  std::optional<ClipRate> rate;
+  if (own.foveation.target.jod && !to_make.empty()) {
     result.interrupted =
-        is_asked_to_stop(observer, 0) || !is_completed([&] { judged.choose(tracer, plan.judged, color, own); });
-    if (!result.interrupted) {
-      result.facts.emplace_back("rate", judged.text());
-      judged.warn(result.warnings);
-    }
+        is_asked_to_stop(observer, 0) || !is_completed([&] { rate = clip_rate(tracer, plan.judged, own, color); });
+  }
+  if (rate) {
+    own = with_rate(std::move(own), *rate);
+    result.facts.emplace_back("rate", rate->text());
+    const std::vector<std::string> doubts = rate->doubts();
+    result.warnings.insert(result.warnings.end(), doubts.begin(), doubts.end());
   }
 
-  SequenceRenderer renderer(tracer, own, plan, {to_render.begin(), to_render.end()}, settings.output);
+  SequenceRenderer renderer(tracer, std::move(own), plan, {to_render.begin(), to_render.end()});
   RunLog log{TimingLog(paths.timing, resume.kept_rows), FileJournal(paths.record, resume.kept_files)};
   if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
     const FrameRequest& first = plan.frames.front();
     color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
   }
   if (!result.interrupted) {
-    make_frames({plan, color, settings, observer}, resume, renderer, judged, history, log, result);
+    make_frames({plan, color, settings, observer}, resume, renderer, rate, history, log, result);
   }
   if (result.interrupted) {
     result.left = frames_left(to_render, result.rows);
-  }
-  if (const std::string warning = renderer.warning(); !warning.empty()) {
-    result.warnings.push_back(warning);
   }
   log.timing.finish();
   result.files = log.journal.files();

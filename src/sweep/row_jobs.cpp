@@ -54,7 +54,7 @@ void check_reference_has_no_target(const Job& reference, const std::vector<Assig
   if (!reference.settings.foveation.target.is_given()) {
     return;
   }
-  constexpr std::array kTargets{"target-relmse", "target-jod", "target-flip", "time-budget"};
+  constexpr std::array kTargets{"target-relmse", "target-jod"};
   for (const Assignment& given : options) {
     if (is_among(kTargets, given.option)) {
       throw Error(ErrorKind::input, given.place, fmt::format("a reference cannot follow '{}'", given.option),

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Does a stated quality come out? Clips are rendered by `--target-jod` or `--target-flip`, and measured against a reference.
+"""Does a stated quality come out? Clips are rendered by `--target-jod`, and measured against a reference.
 
-  stated_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--metric jod|flip] [--targets 8.5,9]
+  stated_quality.py GAZETRACE OUT_FOLDER --scene "NAME FILE OPTIONS" [--scene ...] [--targets 8.5,9]
                     [--filters none] [--falloffs uniform] [--gazes "0.5,0.5 0.25,0.6"] [--size 256x144] [--ppd 28]
                     [--frames 24] [--reference-spp 4096] [--seed 1] [--with "--accumulate two-sided --accumulate-window 11"]
                     [--pyfvvdp]
 
 OPTIONS are those of `gazetrace render`. Views are at rest, so that one reference stands for all frames; it is rendered in
 two halves of other seeds, and what the halves score against each other, as a still, is printed. Every line is a pair of clip and
-target: JOD or mean FLIP stated, predicted and measured by `gazetrace compare`, by how much that is off (FLIP: in parts of what was
-stated), the rate, and the share of the pilot in the time of all frames. Pictures that OUT_FOLDER holds already are used again; a line is printed as soon as it is measured.
-The last lines count the pairs within 0.1 and 0.2 JOD, or within 5 and 10 % of FLIP. It needs the Python packages numpy and OpenEXR.
+target: JOD stated, predicted and measured by `gazetrace compare`, by how much that is off, the rate, and the share of the choice
+in the time of all frames. Pictures that OUT_FOLDER holds already are used again; a line is printed as soon as it is measured.
+The last lines count the pairs within 0.1 and 0.2 JOD. It needs the Python packages numpy and OpenEXR.
 
 `--with` is for further options of all renderings but the reference. `--pyfvvdp` lets the authors' program judge (the Python package
 pyfvvdp, with a PyTorch for the CPU): what is counted is then its score, and that of `gazetrace compare` stands beside it. Both see
@@ -36,9 +36,6 @@ def run(*arguments):
     if done.returncode != 0:
         raise RuntimeError(done.stderr.strip().splitlines()[-1] if done.stderr else f"{arguments[:2]}: {done.returncode}")
     return done.stdout
-
-
-METRICS = {"jod": "fovvideovdp", "flip": "flip"}
 
 
 class Bench:
@@ -74,7 +71,7 @@ class Bench:
 
     def score(self, reference, test, gaze, frames, exposure):
         scores = self.out / "scores.json"
-        run(self.asked.program, "compare", reference / "f.####.exr", test / "f.####.exr", "--metrics", METRICS[self.asked.metric], "--fps",
+        run(self.asked.program, "compare", reference / "f.####.exr", test / "f.####.exr", "--metrics", "fovvideovdp", "--fps",
             "24", "--frames", frames, "--anyway", *self.screen, "--gaze-at", gaze, "--exposure", exposure, *self.view(),
             "--overwrite", "--json", scores)
         return json.loads(scores.read_text())["sequence"][0]["scores"][0]["value"]
@@ -127,13 +124,13 @@ def exposure_of(scene):
 
 def judge(bench, name, scene, gaze, falloff, filter_name, target):
     asked = bench.asked
-    folder = bench.out / name / f"{asked.metric}-{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
+    folder = bench.out / name / f"jod-{gaze.replace(',', '_')}-{falloff}-{filter_name}-{target}"
     bench.render(folder, scene, gaze, "--frames", f"1-{asked.frames}", "--falloff", falloff, "--filter", filter_name,
-                 f"--target-{asked.metric}", target, "--seed", str(asked.seed), *shlex.split(asked.options), *bench.view())
+                 "--target-jod", target, "--seed", str(asked.seed), *shlex.split(asked.options), *bench.view())
     with open(folder / "timing.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     rate = json.loads((folder / "run.json").read_text())["facts"]["rate"]
-    predicted = float(re.search(r"expected to reach (?:a mean FLIP of )?([\d.e-]+)", rate)[1])
+    predicted = float(re.search(r"expected to reach ([\d.e-]+)", rate)[1])
     whole = sum(float(row["total_ms"]) for row in rows)
     pilot = sum(float(row["pilot_ms"]) for row in rows)
     reference = bench.reference(name, scene)
@@ -147,7 +144,6 @@ def main():
     parser.add_argument("program")
     parser.add_argument("out")
     parser.add_argument("--scene", action="append", required=True)
-    parser.add_argument("--metric", choices=METRICS, default="jod")
     parser.add_argument("--targets", default="8.5,9")
     parser.add_argument("--filters", default="none")
     parser.add_argument("--falloffs", default="uniform")
@@ -169,7 +165,7 @@ def main():
         name, *scene = shlex.split(text)
         bench.reference(name, scene)
         floor = bench.score(*(bench.out / name / f"half{k}" for k in range(2)), "0.5,0.5", "1", exposure_of(scene))
-        print(f"{name}: the halves of the reference score {floor:.4g} {asked.metric.upper()} against each other, as a still")
+        print(f"{name}: the halves of the reference score {floor:.4g} JOD against each other, as a still")
         for gaze in asked.gazes.split():
             for falloff in asked.falloffs.split(","):
                 for filter_name in asked.filters.split(","):
@@ -181,13 +177,13 @@ def main():
                             print(f"{place} {problem}", flush=True)
                             continue
                         judged = measured if theirs is None else theirs
-                        error = judged - float(target) if asked.metric == "jod" else judged / float(target) - 1
+                        error = judged - float(target)
                         off.setdefault(filter_name, []).append(error)
                         pilots.append(pilot)
                         print(f"{place}{predicted:10.4g}{measured:9.4g}{error:+7.3f}{spp:9.2f}{pilot:7.1%}"
                               + ("" if theirs is None else f"{theirs:9.4g}"), flush=True)
     for filter_name, values in off.items():
-        bounds = (0.1, 0.2) if asked.metric == "jod" else (0.05, 0.1)
+        bounds = (0.1, 0.2)
         near = [sum(abs(v) <= most for v in values) for most in bounds]
         print(f"{filter_name}: {near[0]} of {len(values)} within {bounds[0]}, {near[1]} within {bounds[1]}; mean "
               f"{statistics.fmean(values):+.3f}")

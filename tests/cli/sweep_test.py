@@ -301,7 +301,7 @@ class Sweep(harness.CliTest):
             ("at = [0.2, 0.5]", "", None, ["looks nowhere"]),
             ("spp = 16", "spp = 16\nscramblings = 3", None, ["scramblings"]),
             ("spp = 16", "spp = 16\nseed = 1", None, ["seeds", "reference"]),
-            ("spp = 16", 'time-budget = "1s"', "spp = 16", ["a reference cannot follow 'time-budget'"]),
+            ("spp = 16", "target-jod = 9", "spp = 16", ["a reference cannot follow 'target-jod'"]),
             ('"flip", "fov', '"flop", "fov', None, ["did you mean 'flip'"]),
             ('quality = ["flip=0.05", "fovvideovdp=9.5"]', 'quality = ["ssim=0.9"]', None, ["ssim"]),
             ("region-samples = [[16, 4, 4], [8, 2, 1]]", 'gaze-offset = ["0s", "100ms"]', None, ["looks elsewhere", "[[gaze]]"]),

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How samples are distributed. The ranges that are stated here are checked by check_foveation(), whose messages say
 // more.
-#include <cmath>
-#include <vector>
-
 #include "job/schema/idle_rules.hpp"
 #include "job/schema/parts.hpp"
 
@@ -162,15 +159,13 @@ void add_pilot_options(JobSchema& schema) {
   };
   schema
       .value("--min-spp", foveation(&F::min_spp), "SAMPLES", Touch::sampling,
-             "visible: the lowest rate anywhere in the frame, in samples a pixel; with --target-jod, --target-flip "
-             "and --time-budget, of a frame. With --target-jod and --target-flip a frame never has less than 0.25, or "
-             "than 1 where uniform frames through 'none' or 'linear' are added up by --accumulate two-sided")
+             "visible: the lowest rate anywhere in the frame, in samples a pixel; with --target-jod, of a frame, which "
+             "never has less than 0.25")
       .within(0, kMostSamples)
       .idle_when({without_rates_to_limit});
   schema
       .value("--max-spp", foveation(&F::max_spp), "SAMPLES", Touch::sampling,
-             "visible: the highest rate anywhere in the frame, in samples a pixel; with --target-jod, --target-flip "
-             "and --time-budget, of a frame")
+             "visible: the highest rate anywhere in the frame, in samples a pixel; with --target-jod, of a frame")
       .above(0, kMostSamples)
       .idle_when({without_rates_to_limit});
   schema
@@ -182,28 +177,6 @@ void add_pilot_options(JobSchema& schema) {
       .need("`falloff` visible");
 }
 
-// Settings hold seconds; what is read and written is a duration with its unit.
-void add_time_budget(JobSchema& schema) {
-  OptionOf<JobSettings>& option = schema.value(
-      "--time-budget", at(&JobSettings::foveation, &FoveationSettings::target, &QualityTarget::time_s), "DURATION",
-      Touch::sampling,
-      "As many samples as make a frame take this long, its pilot, filter and files included: the best picture for the "
-      "time, with any --falloff. It depends on the machine and is not reproducible; excludes budgets");
-  option.assign = [](JobSettings& job, const auto& values, const auto& place) {
-    DurationNs time;
-    parse_value(values.at(0), place, time);
-    job.foveation.target.time_s = static_cast<double>(time.ns) * 1e-9;
-  };
-  option.check = [](const auto& values, const auto& place) {
-    DurationNs time;
-    parse_value(values.at(0), place, time);
-  };
-  option.values = [](const JobSettings& job) {
-    const std::optional<double>& time_s = job.foveation.target.time_s;
-    return time_s ? std::vector{format_value(DurationNs{std::llround(*time_s * 1e9)})} : std::vector<std::string>();
-  };
-}
-
 void add_target_options(JobSchema& schema) {
   using F = FoveationSettings;
   schema
@@ -213,13 +186,6 @@ void add_target_options(JobSchema& schema) {
              "fewer samples")
       .within(0, 10)
       .need("gaze and another `falloff` than regions");
-  schema
-      .value("--target-flip", at(&JobSettings::foveation, &F::target, &QualityTarget::flip), "ERROR", Touch::sampling,
-             "Uniform frames without a filter, of a view at rest: as many samples as a pilot expects it to take until "
-             "the mean FLIP of a frame is no more, as 'gazetrace compare' measures it")
-      .within(0, 1)
-      .need("`screen`, `falloff` uniform and `filter` none");
-  add_time_budget(schema);
 }
 
 void add_term_options(JobSchema& schema) {
@@ -252,7 +218,7 @@ void add_sampling_options(JobSchema& schema) {
       .value("--falloff", foveation(&FoveationSettings::falloff), "NAME", Touch::sampling,
              "How the sampling density falls off with eccentricity ('gazetrace list falloffs'); how pixels are filled "
              "from the samples is --filter, which has a 'linear', too. Where nothing names one, --target-jod and "
-             "--target-relmse take visible, and --target-flip uniform")
+             "--target-relmse take visible")
       .with(Trait::always_stated)
       .idle_when({without_any_gaze});
   schema

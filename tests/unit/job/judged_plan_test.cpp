@@ -8,7 +8,7 @@
 #include <string>
 
 #include "gazetrace/resolve.hpp"
-#include "pipeline/replica_noise.hpp"
+#include "pipeline/discarded.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gazetrace {
@@ -84,14 +84,10 @@ TEST_F(JudgedPlan, AStillAtTheEndOfItsPathIsJudgedByExamplesOfItsOneFrame) {
   }
 }
 
-TEST_F(JudgedPlan, FramesTooSlowForJodAreJudgedByFlip) {
+TEST_F(JudgedPlan, FramesTooSlowForTheMeasureAreRefused) {
   set_option(job_, "fps", "4");
   set_option(job_, "frames", "1-10");
   EXPECT_THAT(refusal(), AllOf(HasSubstr("`target-jod`: 4 frames a second"), HasSubstr("higher `fps`")));
-  job_.settings.foveation.target = {};
-  set_option(job_, "target-flip", "0.05");
-  EXPECT_EQ(refusal(), "");
-  EXPECT_EQ(judged().sequence_frames, 4);
 }
 
 TEST_F(JudgedPlan, ThePartsOfASequenceHaveOneDigestAndAStillHasAnother) {
@@ -130,10 +126,9 @@ TEST_F(JudgedPlan, DiscardedRenderingsTraceNoLayers) {
   FrameSettings settings;
   settings.layers.light = settings.layers.forward = true;
   settings.exposure.smoothing_s = 1;
-  const FrameSettings discarded = discarded_settings(settings, 4, 1);
-  EXPECT_FALSE(discarded.layers.light || discarded.layers.forward);
-  EXPECT_EQ(discarded.exposure.smoothing_s, 0);
-  EXPECT_EQ(discarded.foveation.budget_spp, 4);
+  const FrameSettings own = discarded(settings, 1);
+  EXPECT_FALSE(own.layers.light || own.layers.forward);
+  EXPECT_EQ(own.exposure.smoothing_s, 0);
 }
 
 // A frame whose size follows from its screen: what is asked of single pixels is checked against that size.

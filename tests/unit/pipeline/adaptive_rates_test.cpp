@@ -11,7 +11,6 @@
 #include "gazetrace/error.hpp"
 #include "pipeline/adaptive_rates.hpp"
 #include "pipeline/noise_estimate.hpp"
-#include "pipeline/time_budget.hpp"
 
 namespace gazetrace {
 namespace {
@@ -101,140 +100,16 @@ TEST(RatesBetween, WhereNothingIsWantedOrLimitsForbidItRatesAreEven) {
   }
 }
 
-TimingRow frame_of(double samples) {
-  TimingRow row;
-  row.plan_ms = 1;
-  row.guides_ms = 20;
-  row.reconstruct_ms = 30;
-  row.temporal_ms = 4;
-  row.exposure_ms = 1;
-  row.layers_ms = 1;
-  row.color_ms = 3;
-  row.write_ms = 10;
-  row.samples = static_cast<std::uint64_t>(samples);
-  row.trace_ms = samples * 1e-3;
-  return row;
-}
-
-TEST(TimeBudget, WhatSamplesLeaveOfAFramesTimeIsItsFixedCost) {
-  const FrameCost cost = cost_of(frame_of(5e5));
-  EXPECT_DOUBLE_EQ(cost.sample_ms, 1e-3);
-  EXPECT_DOUBLE_EQ(cost.fixed_ms, 70);
-  // With what is left of 570 ms, the frame would have its samples again.
-  EXPECT_DOUBLE_EQ(affordable_spp(570, cost, 1e5, 0.01, 1e6), 5);
-}
-
-TEST(TimeBudget, SamplesOfAPilotAreNotPaidTwice) {
-  TimingRow row = frame_of(5e5);
-  row.pilot_samples = 100000;  // which are among the samples
-  row.samples += row.pilot_samples;
-  row.pilot_ms = 112;  // 100 of it for samples
-  const FrameCost cost = cost_of(row);
-  EXPECT_DOUBLE_EQ(cost.sample_ms, 1e-3);
-  EXPECT_DOUBLE_EQ(cost.fixed_ms, 82);
-  EXPECT_DOUBLE_EQ(affordable_spp(682, cost, 1e5, 0.01, 1e6), 6);
-  row.pilot_ms = 50;  // cheaper than the frame's own: never less than no fixed cost
-  EXPECT_DOUBLE_EQ(cost_of(row).fixed_ms, 70);
-  row.pilot_ms = 0;  // a first look, whose time is part of trace_ms
-  EXPECT_DOUBLE_EQ(cost_of(row).sample_ms, 500.0 / 6e5);
-  row.learn_ms = 25;  // which no sample pays, and which is no fixed cost: the next frame may know the light already
-  row.learning_paths = 65536;
-  EXPECT_DOUBLE_EQ(cost_of(row).sample_ms, 500.0 / 6e5);
-  EXPECT_DOUBLE_EQ(cost_of(row).fixed_ms, 70);
-}
-
-TEST(TimeBudget, AFrameThatTookTwiceAsLongMakesTracingTwiceAsDear) {
-  const TimingRow row = frame_of(5e5);  // 500 ms, expected were 250
-  const FrameCost cost = cost_of(row, {1, 50, 4e-4}, 100);
-  EXPECT_DOUBLE_EQ(cost.fixed_ms, 70);
-  EXPECT_DOUBLE_EQ(cost.base_ms, 100);
-  EXPECT_DOUBLE_EQ(cost.sample_ms, 8e-4);
-}
-
-// A first frame of which a rehearsal left next to nothing once made the next one twice as long.
-TEST(TimeBudget, AFrameOfHardlyAnySamplesTellsNothingOfTheirCost) {
-  TimingRow row = frame_of(5e5);
-  row.pilot_samples = 100000;
-  row.samples += row.pilot_samples;
-  row.pilot_ms = 112;  // 40 of it for samples, by what they are known to cost
-  const FrameCost cost = cost_of(row, {1, 50, 4e-4}, 1.01 * row.trace_ms);
-  EXPECT_DOUBLE_EQ(cost.fixed_ms, 142);
-  EXPECT_DOUBLE_EQ(cost.base_ms, 50);
-  EXPECT_DOUBLE_EQ(cost.sample_ms, 4e-4);
-}
-
-// Or a rehearsal that was held up would leave all frames with hardly any samples.
-TEST(TimeBudget, AFrameThatWasExpectedToTraceForLongTellsThatItDidNot) {
-  FrameCost known{70, 50, 2e-2};  // samples cost a twentieth of that
-  const TimingRow row = frame_of(2e4);
-  ASSERT_DOUBLE_EQ(row.trace_ms, 20);
-  const FrameCost cost = cost_of(row, known, 60);
-  EXPECT_NEAR(cost.sample_ms, 2e-2 * 20 / 450, 1e-12);
-  // Next to nothing is left of it after six.
-  double spp = 0;
-  for (int frame = 0; frame < 6; ++frame) {
-    spp = affordable_spp(600, known, 1e5, 1.0 / 16, 1e6);
-    known = mean_cost(known, cost_of(frame_of(1e5 * spp), known, 60));
-  }
-  EXPECT_NEAR(spp, 5.3, 0.2);
-}
-
-TEST(TimeBudget, ASampleCostsWhatMoreOfThemTakeLonger) {
-  // 20 ms and 1 microsecond a sample.
-  const FrameCost cost = with_slope({50, 0, 1.2e-3}, {120, 1e5}, {45, 2.5e4});
-  EXPECT_NEAR(cost.sample_ms, 1e-3, 1e-12);
-  EXPECT_NEAR(cost.base_ms, 20, 1e-9);
-  EXPECT_NEAR(affordable_spp(1070, cost, 1e5, 0.01, 1e6), 10, 1e-9);
-  // Where chance has the fewer take longer, or the more no longer, nobody believes it.
-  EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {130, 2.5e4}).sample_ms, 0.4 * 1.2e-3, 1e-12);
-  EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {0, 2.5e4}).sample_ms, 1.2e-3, 1e-12);
-  EXPECT_NEAR(with_slope({50, 0, 0}, {120, 1e5}, {0, 2.5e4}).base_ms, 0, 1e-9);
-}
-
-TEST(TimeBudget, AFilterThatTakesLongerForMoreSamplesIsPaid) {
-  // 70 ms with 1e4 samples and a fifth of a microsecond for each further one up to 1e5, beside 1 for tracing it.
-  const FrameCost cost{70, 0, 1e-3, 1e4, 0.2};
-  const double few = affordable_spp(130, cost, 1e5, 0.01, 1e6);
-  EXPECT_LT(few, 1);
-  EXPECT_NEAR(70 + 2e-4 * (1e5 * few - 1e4) + 1e-3 * 1e5 * few, 130, 1e-9);
-  const double many = affordable_spp(670, cost, 1e5, 0.01, 1e6);
-  EXPECT_GT(many, 1);
-  EXPECT_NEAR(70 + 2e-4 * (1e5 - 1e4) + 1e-3 * 1e5 * many, 670, 1e-9);
-  EXPECT_NEAR(affordable_spp(188, cost, 1e5, 0.01, 1e6), 1, 1e-9);
-  EXPECT_NEAR(affordable_spp(500, {10, 0, 1e-3, 1e7, 0.2}, 1e5, 0.01, 1e6), 4.8,
-              1e-9);  // never less than no fixed cost
-  const FrameCost next = cost_of(frame_of(5e5), cost, 100);
-  EXPECT_EQ(next.samples, 5e5);
-  EXPECT_EQ(next.filter_share, 0.2);
-  // As many samples again leave as much time again.
-  EXPECT_NEAR(affordable_spp(570, next, 1e5, 0.01, 1e6), 5, 1e-9);
-}
-
-TEST(TimeBudget, RatesKeepTheirLimits) {
-  const FrameCost cost{60, 40, 1e-3};
-  EXPECT_DOUBLE_EQ(affordable_spp(99, cost, 1e4, 0.5, 64), 0.5);  // not even the fixed cost
-  EXPECT_DOUBLE_EQ(affordable_spp(1e9, cost, 1e4, 0.5, 64), 64);
-  EXPECT_DOUBLE_EQ(affordable_spp(1e9, {0, 0, 0}, 1e4, 0.5, 64), 64);  // nothing was measured
-  EXPECT_DOUBLE_EQ(affordable_spp(99, cost, 1e4, 8, 4), 4);
-  const FrameCost mean = mean_cost(cost, {300, 10, 3e-3});
-  EXPECT_DOUBLE_EQ(mean.fixed_ms, 180);
-  EXPECT_DOUBLE_EQ(mean.base_ms, 16);  // which became less: 2 / (1 / 40 + 1 / 10)
-  EXPECT_DOUBLE_EQ(mean.sample_ms, 2e-3);
-}
-
-TEST(TimeBudget, TheLeastRateLeavesMoreThanThePilot) {
+TEST(PilotBudget, MustLeaveMoreThanThePilot) {
   FrameRequest request;
   request.width_px = 64;
   request.height_px = 40;
   FoveationSettings settings;
   settings.falloff = "visible";
-  settings.budget_spp = least_budget_spp(settings, request);
+  settings.budget_spp = 1.25 * least_pilot_spp(request);
   EXPECT_NO_THROW(check_pilot_budget(settings, request));
-  settings.budget_spp = 0.75 * *settings.budget_spp;
+  settings.budget_spp = 0.95 * least_pilot_spp(request);
   EXPECT_THROW(check_pilot_budget(settings, request), Error);
-  settings.falloff = "uniform";
-  settings.min_spp = 3;
-  EXPECT_EQ(least_budget_spp(settings, request), 3);
 }
 
 }  // namespace
