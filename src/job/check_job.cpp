@@ -13,7 +13,7 @@
 #include "gazetrace/sample_parts.hpp"
 #include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
-#include "pipeline/adaptive_rates.hpp"
+#include "pipeline/quality/adaptive_rates.hpp"
 
 namespace gazetrace {
 namespace {

@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/adaptive_rates.hpp"
 #include "pipeline/first_look.hpp"
 #include "pipeline/frame_layers.hpp"
 #include "pipeline/frame_stages.hpp"
+#include "pipeline/quality/adaptive_rates.hpp"
 #include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {

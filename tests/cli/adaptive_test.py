@@ -111,7 +111,7 @@ class Adaptive(harness.CliTest):
                         f"{folder}/f.####.exr")
 
         def samples(folder):
-            return int(self.rows(folder)[0]["samples"])
+            return int(self.rows(folder)[1]["samples"])  # the first row counts the choice, too
 
         both = ["--accumulate", "two-sided", "--accumulate-window", "4"]
         clip("whole", "1-6", *both)

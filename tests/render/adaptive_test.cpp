@@ -13,7 +13,7 @@
 #include "core/luminance.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/frame_renderer.hpp"
-#include "pipeline/pilot.hpp"
+#include "pipeline/quality/pilot.hpp"
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Windows of frames by which a stated quality is judged.
-#include "pipeline/window_clip.hpp"
+#include "pipeline/quality/window_clip.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "core/luminance.hpp"
 #include "gazetrace/color.hpp"
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "render/tracer_scenes.hpp"
 #include "render/tracer_statistics.hpp"
 

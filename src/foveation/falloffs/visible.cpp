@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rates that follow from a pilot of the frame (pipeline/adaptive_rates.hpp), which has limits of its own for them.
-// Blocks are for places with less than two samples a pixel only: their light is known by the pixel, unlike that of
-// models which take detail away on purpose.
+// The rates that follow from a pilot of the frame (pipeline/quality/adaptive_rates.hpp), which has limits of its own
+// for them. Blocks are for places with less than two samples a pixel only: their light is known by the pixel, unlike
+// that of models which take detail away on purpose.
 #include "foveation/falloff.hpp"
 
 namespace gazetrace {

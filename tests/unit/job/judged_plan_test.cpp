@@ -8,7 +8,7 @@
 #include <string>
 
 #include "gazetrace/resolve.hpp"
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gazetrace {

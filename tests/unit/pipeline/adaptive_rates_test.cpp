@@ -9,8 +9,8 @@
 #include <random>
 
 #include "gazetrace/error.hpp"
-#include "pipeline/adaptive_rates.hpp"
-#include "pipeline/noise_estimate.hpp"
+#include "pipeline/quality/adaptive_rates.hpp"
+#include "pipeline/quality/visible_noise.hpp"
 
 namespace gazetrace {
 namespace {

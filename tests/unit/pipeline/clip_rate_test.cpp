@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run says of a rate that was chosen for a stated quality.
-#include "pipeline/clip_rate.hpp"
+#include "pipeline/quality/clip_rate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

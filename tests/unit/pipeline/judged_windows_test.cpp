@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which windows of a frame are judged, and for how much of it they stand.
-#include "pipeline/judged_windows.hpp"
+#include "pipeline/quality/judged_windows.hpp"
 
 #include <gtest/gtest.h>
 

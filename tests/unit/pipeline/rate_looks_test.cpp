@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What looks at several rates say of others.
-#include "pipeline/rate_looks.hpp"
+#include "pipeline/quality/rate_looks.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/window_reference.hpp"
+#include "pipeline/quality/window_reference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "core/hash.hpp"
 #include "core/luminance.hpp"
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {

@@ -9,8 +9,8 @@
 
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/plan.hpp"
-#include "pipeline/judged_windows.hpp"
-#include "pipeline/window_light.hpp"
+#include "pipeline/quality/judged_windows.hpp"
+#include "pipeline/quality/window_light.hpp"
 
 namespace gazetrace {
 

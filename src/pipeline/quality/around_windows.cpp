@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/around_windows.hpp"
+#include "pipeline/quality/around_windows.hpp"
 
 #include <cstdint>
 #include <utility>
 
 #include "gazetrace/fovvideovdp.hpp"
-#include "pipeline/clip_score.hpp"
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/clip_score.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {

@@ -16,7 +16,7 @@
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/image.hpp"
 #include "gazetrace/plan.hpp"
-#include "pipeline/judged_windows.hpp"
+#include "pipeline/quality/judged_windows.hpp"
 
 namespace gazetrace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/discarded.hpp"
 
 #include "core/hash.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/window_rates.hpp"
+#include "pipeline/quality/window_rates.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -7,8 +7,8 @@
 #include "core/hash.hpp"
 #include "core/statistics.hpp"
 #include "foveation/site_images.hpp"
-#include "pipeline/adaptive_rates.hpp"
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/adaptive_rates.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/judged_windows.hpp"
+#include "pipeline/quality/judged_windows.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/window_clip.hpp"
+#include "pipeline/quality/window_clip.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/hash.hpp"
-#include "pipeline/clip_score.hpp"
-#include "pipeline/discarded.hpp"
 #include "pipeline/frame_window.hpp"
+#include "pipeline/quality/clip_score.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "pipeline/trace_counts.hpp"
 
 namespace gazetrace {
@@ -122,9 +122,7 @@ void WindowClip::refine(double spp) {
 
 double WindowClip::measured_q(const JudgedFrames& judged, const WindowPictures& pictures) const {
   const auto reference = [&](std::size_t index) -> const ImageGray& { return reference_shown_[reference_of(index)]; };
-  const auto frame = [&](const FrameRequest&, std::size_t index) {
-    return around_.shown(pictures[index % pictures.size()], index);
-  };
+  const auto frame = [&](std::size_t index) { return around_.shown(pictures[index % pictures.size()], index); };
   const bool fills = settings_.accumulate.mode == AccumulateMode::two_sided && settings_.accumulate.window > 0;
   return clip_q(judged, reference, frame, {settings_.frames_per_second, fills, windows_.weights, settings_.threads});
 }

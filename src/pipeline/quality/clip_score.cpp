@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/clip_score.hpp"
+#include "pipeline/quality/clip_score.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -52,7 +52,7 @@ double clip_q(const JudgedFrames& judged, const ReferenceFrame& reference, const
   for (const std::vector<FrameRequest>& run : judged.runs) {
     FovVideoVdp metric(metric_settings, view.width_px, view.height_px);
     for (std::size_t i = 0; i < run.size(); ++i, ++index) {
-      const ImageGray seen = shown(run[i], index);
+      const ImageGray seen = shown(index);
       const std::optional<Vec2d> gaze = looked_at_px(run[i]);
       // Where a window still fills, the first run stands for itself alone.
       const bool fills = settings.fills && judged.runs.size() > 1 && &run == &judged.runs.front();

@@ -15,11 +15,11 @@
 #include "gazetrace/color.hpp"
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/plan.hpp"
-#include "pipeline/around_windows.hpp"
-#include "pipeline/judged_windows.hpp"
-#include "pipeline/window_light.hpp"
-#include "pipeline/window_rates.hpp"
-#include "pipeline/window_reference.hpp"
+#include "pipeline/quality/around_windows.hpp"
+#include "pipeline/quality/judged_windows.hpp"
+#include "pipeline/quality/window_light.hpp"
+#include "pipeline/quality/window_rates.hpp"
+#include "pipeline/quality/window_reference.hpp"
 
 namespace gazetrace {
 

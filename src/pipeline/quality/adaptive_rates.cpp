@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/adaptive_rates.hpp"
+#include "pipeline/quality/adaptive_rates.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,8 @@
 
 #include "core/statistics.hpp"
 #include "gazetrace/error.hpp"
-#include "pipeline/noise_estimate.hpp"
+#include "pipeline/quality/visible_noise.hpp"
 #include "pipeline/trace_counts.hpp"
-#include "pipeline/visible_noise.hpp"
 
 namespace gazetrace {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/window_light.hpp"
+#include "pipeline/quality/window_light.hpp"
 
 #include <utility>
 #include <vector>
 
 #include "core/hash.hpp"
-#include "pipeline/discarded.hpp"
+#include "pipeline/quality/discarded.hpp"
 #include "trace/guiding/learned_light.hpp"
 
 namespace gazetrace {

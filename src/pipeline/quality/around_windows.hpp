@@ -8,8 +8,8 @@
 #include "gazetrace/color.hpp"
 #include "gazetrace/frame_renderer.hpp"
 #include "gazetrace/plan.hpp"
-#include "pipeline/judged_windows.hpp"
-#include "pipeline/window_reference.hpp"
+#include "pipeline/quality/judged_windows.hpp"
+#include "pipeline/quality/window_reference.hpp"
 
 namespace gazetrace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/clip_rate.hpp"
+#include "pipeline/quality/clip_rate.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include "core/stopwatch.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/fovvideovdp.hpp"
-#include "pipeline/adaptive_rates.hpp"
-#include "pipeline/rate_looks.hpp"
+#include "pipeline/quality/adaptive_rates.hpp"
+#include "pipeline/quality/rate_looks.hpp"
+#include "pipeline/quality/window_clip.hpp"
 #include "pipeline/timing_row.hpp"
 #include "pipeline/trace_counts.hpp"
-#include "pipeline/window_clip.hpp"
 
 namespace gazetrace {
 namespace {

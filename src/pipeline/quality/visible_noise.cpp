@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/visible_noise.hpp"
+#include "pipeline/quality/visible_noise.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
 
-#include "pipeline/noise_estimate.hpp"
+#include "core/parallel.hpp"
 
 namespace gazetrace {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr double kEpsilon = 0.01;      // that of the metric relmse
 constexpr double kWindowPixels = 25;   // of pooled()
 constexpr double kPriorSamples = 100;  // about the kurtosis of path-traced light
-constexpr int kLeastSidePx = 8;        // of VisibleErrorModel
+constexpr int kLeastModelPx = 8;       // of VisibleErrorModel
 
 double squared(double value) {
   return value * value;
@@ -40,11 +41,56 @@ ImageGray relative_difference(const Pilot& a, const Pilot& b, const ImageGray& l
   return difference;
 }
 
+constexpr int kRadius = 2;
+
+double pooled_at(const ImageGray& values, int x, int y) {
+  std::array<double, (2 * kRadius + 1) * (2 * kRadius + 1)> window{};
+  std::size_t count = 0;
+  double sum = 0;
+  for (int ny = std::max(y - kRadius, 0); ny <= std::min(y + kRadius, values.height_px - 1); ++ny) {
+    for (int nx = std::max(x - kRadius, 0); nx <= std::min(x + kRadius, values.width_px - 1); ++nx) {
+      const auto value = static_cast<double>(values(nx, ny));
+      if (std::isfinite(value)) {
+        window.at(count) = std::max(value, 0.0);
+        sum += window.at(count++);
+      }
+    }
+  }
+  if (count < 2) {
+    return sum;
+  }
+  double pool = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    // The others are added up, since the difference of two sums may have no digits left.
+    double others = 0;
+    if (window.at(i) > 0.5 * sum) {
+      for (std::size_t k = 0; k < count; ++k) {
+        others += k == i ? 0.0 : window.at(k);
+      }
+      pool += std::min(window.at(i), kMostOfOthers * others / static_cast<double>(count - 1));
+    } else {
+      pool += window.at(i);
+    }
+  }
+  return pool / static_cast<double>(count);
+}
+
 }  // namespace
+
+ImageGray pooled(const ImageGray& values, int threads) {
+  ImageGray result(values.width_px, values.height_px);
+  parallel_for(static_cast<std::size_t>(values.height_px), threads, [&](std::size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < values.width_px; ++x) {
+      result(x, y) = static_cast<float>(pooled_at(values, x, y));
+    }
+  });
+  return result;
+}
 
 VisibleNoise::VisibleNoise(const FrameRequest& request, const FrameSettings& settings)
     : request_(request), settings_(settings) {
-  if (std::min(request.width_px, request.height_px) >= kLeastSidePx) {
+  if (std::min(request.width_px, request.height_px) >= kLeastModelPx) {
     VisibleErrorSettings seen;
     seen.view = request.view;
     seen.frames_per_second = settings.frames_per_second;

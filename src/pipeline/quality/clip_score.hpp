@@ -22,7 +22,7 @@ struct ClipScoreSettings {
 
 // The luminance (cd/m2) of a judged frame as it is shown, and that of its reference; `index` counts the frames of all
 // runs.
-using ShownFrame = std::function<ImageGray(const FrameRequest& request, std::size_t index)>;
+using ShownFrame = std::function<ImageGray(std::size_t index)>;
 using ReferenceFrame = std::function<const ImageGray&(std::size_t index)>;
 
 // Q of the sequence (fovvideovdp_jod()). Error(input) where no judged frame has a gaze.

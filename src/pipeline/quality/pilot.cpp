@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/pilot.hpp"
+#include "pipeline/quality/pilot.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -12,7 +12,7 @@
 
 #include <optional>
 
-#include "pipeline/pilot.hpp"
+#include "pipeline/quality/pilot.hpp"
 
 namespace gazetrace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/rate_looks.hpp"
+#include "pipeline/quality/rate_looks.hpp"
 
 #include <algorithm>
 #include <cmath>
