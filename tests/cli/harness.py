@@ -13,9 +13,15 @@ import unittest
 import zlib
 from pathlib import Path
 
+from fork_server import ForkServer
+
 PROGRAM = os.environ["GAZETRACE"]
 SHARED = Path(os.environ.get("GAZETRACE_SHARED_DIR", "/nonexistent"))
 SOURCE = Path(os.environ.get("GAZETRACE_SOURCE_DIR", Path(__file__).parents[2]))
+
+# Where it is built, most runs are forks of one program (fork_server.py); `alone` is for those that start by themselves.
+PRELOADED = os.environ.get("GAZETRACE_FORK_SERVER")
+server = None
 
 SCREEN = ["--screen-px", "64,36", "--screen-cm", "64,36", "--screen-distance-cm", "60"]
 
@@ -90,6 +96,13 @@ def png(width, height, pixel):
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
+def shared_server():
+    global server
+    if server is None:
+        server = ForkServer(PROGRAM, PRELOADED)
+    return server
+
+
 class CliTest(unittest.TestCase):
     """A test with a folder of its own, in which the program is started."""
 
@@ -106,10 +119,14 @@ class CliTest(unittest.TestCase):
         path.write_bytes(content)
         return path
 
-    def run_program(self, *arguments, timeout=300, environment=None):
+    def run_program(self, *arguments, timeout=300, environment=None, alone=False):
         variables = {name: value for name, value in os.environ.items() if name != "OCIO"}
-        result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=timeout,
-                                env={**variables, **(environment or {})}, check=False)
+        variables.update(environment or {})
+        if PRELOADED and not alone:
+            result = shared_server().run(arguments, self.folder, variables, timeout)
+        else:
+            result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, timeout=timeout,
+                                    env=variables, check=False)
         # Not text=True, which would turn the carriage returns of a progress bar into line ends.
         result.stdout, result.stderr = (stream.decode(errors="replace") for stream in (result.stdout, result.stderr))
         return result
