@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Divides a job into tasks for many machines. The tasks of an array render chunks of the frames, or of the samples, or
-// measure chunks of the rows of a sweep; a last task joins what they made. Every engine runs the same tasks, by one
+// Divides a job into tasks for many machines. The tasks of an array render chunks of the frames, or measure
+// chunks of the rows of a sweep; a last task joins what they made. Every engine runs the same tasks, by one
 // script that lies in the farm's folder.
 #pragma once
 
@@ -22,25 +22,22 @@ struct FarmEngineInfo {
 std::vector<FarmEngineInfo> farm_engines();
 
 struct FarmSettings {
-  std::string job_file;           // TOML, as `render` takes it, whose outputs say where the farm is; or a sweep's plan
-  std::string output;             // of a sweep: its folder; empty: the plan's name with .sweep
-  std::string engine;             // a name of farm_engines()
-  std::string program;            // gazetrace itself, as the tasks call it
-  std::uint32_t chunks = 0;       // so many, of about equal cost; 0: `chunk_frames` counts
-  std::int32_t chunk_frames = 0;  // so many frames each
-  std::uint32_t sample_ranges = 0;  // so many parts of the samples of all frames, in place of chunks of frames
-  int threads = 0;                  // of a task; 0: what its machine has
-  int retries = 3;                  // of a task that failed by chance or was interrupted
-  ByteCount memory;                 // of a task; 0: by estimate_scene() and the size of the pictures
-  std::optional<DurationNs> time;   // limit of a task; empty: by `rate_from`, else none is stated
-  std::string rate_from;            // the timing.csv of an earlier run of the job; empty: no time is predicted
-  std::string container;            // words before the program: "apptainer exec gazetrace.sif"
-  std::vector<std::string> then;    // commands of the shell after the sequence is whole: a video, a report
-  bool confine = false;             // the job is by others: it and its tasks keep to its folder or data set
+  std::string job_file;            // TOML, as `render` takes it, whose outputs say where the farm is; or a sweep's plan
+  std::string output;              // of a sweep: its folder; empty: the plan's name with .sweep
+  std::string engine;              // a name of farm_engines()
+  std::string program;             // gazetrace itself, as the tasks call it
+  std::uint32_t chunks = 0;        // so many, of about equal cost; at least 1
+  int threads = 0;                 // of a task; 0: what its machine has
+  int retries = 3;                 // of a task that failed by chance or was interrupted
+  ByteCount memory;                // of a task; 0: by estimate_scene() and the size of the pictures
+  std::optional<DurationNs> time;  // limit of a task; empty: none
+  std::string container;           // words before the program: "apptainer exec gazetrace.sif"
+  std::vector<std::string> then;   // commands of the shell after the sequence is whole: a video, a report
+  bool confine = false;            // the job is by others: it and its tasks keep to its folder or data set
 };
 
 // What is divided into chunks.
-enum class FarmKind : std::uint8_t { frames, samples, sweep };
+enum class FarmKind : std::uint8_t { frames, sweep };
 
 // What is to be done, for status, retry and every engine; farm.json in the farm's folder.
 struct FarmPlan {
@@ -54,22 +51,18 @@ struct FarmPlan {
   bool traces_first = false;
   // Where the run that finishes keeps its history, so that one which is interrupted does not begin again.
   std::string checkpoint;
-  std::string division;              // what follows `--chunk K`: "/8", or " --chunk-frames 20"
   std::vector<std::string> chunks;   // the frames of each; of a sweep, its rows
-  std::vector<std::string> ranges;   // of samples: the range of each, "0:1024"
   std::vector<double> samples;       // that the plan expects of each; 0: not known
   std::int32_t files_per_frame = 1;  // of what the whole sequence has
   int threads = 0, retries = 0;
   std::uint64_t memory_mib = 0;
-  std::int64_t time_s = 0;          // limit of a task; 0: none
-  std::vector<double> predicted_s;  // of each chunk; empty: not known
-  std::uint64_t traced_bytes = 0;   // that a traced frame takes at most, roughly; 0 where none is written
+  std::int64_t time_s = 0;  // limit of a task; 0: none
   std::vector<std::string> then;
   bool confine = false;
   bool is_moved = false;  // by read_farm(): it does not lie where it was made for, and cannot be run
 };
 
-// Reads job and plan, and predicts memory and, where it can, time. Error(usage, input) as resolve() does, and for a job
+// Reads job and plan, and predicts memory. Error(usage, input) as resolve() does, and for a job
 // without outputs. It writes nothing.
 FarmPlan plan_farm(const FarmSettings& settings);
 std::string farm_plan_text(const FarmPlan& plan);  // for people
@@ -100,14 +93,12 @@ struct TaskStatus {
 struct FarmStatus {
   std::vector<TaskStatus> tasks;            // as farm_tasks()
   std::size_t frames = 0, frames_done = 0;  // pictures of the sequence; of a farm that traces first, traced frames
-  std::optional<double> seconds_left;       // at the rate so far, with as many tasks as run now; empty: not known
   [[nodiscard]] bool is_done() const;
 };
 // How finished files are looked at: their sizes alone, or their content, which reads all of them.
 enum class FileCheck : std::uint8_t { size, content };
-// From records, journals, tables and locks that lie in the folder, on any machine that sees it. A run on another
-// machine counts as ended a minute after it last renewed its lock. A task whose files or rows are not as it left them
-// is not done.
+// From records, journals, tables and locks that lie in the folder, on any machine that sees it. A task whose files or
+// rows are not as it left them is not done.
 FarmStatus farm_status(const FarmPlan& plan, FileCheck check = FileCheck::size);
 std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status);
 std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status);
@@ -121,9 +112,9 @@ struct LocalSettings {
   std::function<bool()> stop;  // asked often; true: running tasks are asked to end, and no other begins
   std::function<void(const std::string& task, const std::string& what)> tell;  // "1", "begins"; "1", "exit code 0"
 };
-// Runs these chunks on this machine, and what follows once all chunks of the plan are done. Chunks that another such
-// process on this machine is at are left to it, and waited for. Returns the last exit code that was not 0, else 0. A
-// task that ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
+// Runs these chunks on this machine, and what follows once all chunks of the plan are done. Returns the last exit code
+// that was not 0, else 0. A task that ends with exit code 3, 4 or by a signal is tried again as often as the plan says.
+// Error(runtime) where another process is at the tasks of this folder.
 int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings);
 
 }  // namespace gazetrace

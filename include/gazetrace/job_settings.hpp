@@ -94,9 +94,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   FrameRate fps;
   std::optional<FrameList> frames;
   DurationNs start;
-  bool part = false;
   std::optional<Chunk> chunk;
-  int chunk_frames = 0;  // 0: chunks are balanced by what their frames cost
   SequenceStage stage = SequenceStage::whole;
 
   // How it is rendered

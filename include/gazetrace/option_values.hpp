@@ -32,9 +32,9 @@ struct DurationNs {
 struct ByteCount {
   std::uint64_t bytes = 0;
 };
-// The K-th chunk, counted from 1, of N: "2/5"; "2" alone leaves N open (0).
+// The K-th chunk, counted from 1, of N: "2/5".
 struct Chunk {
-  std::uint32_t number = 1, count = 0;
+  std::uint32_t number = 1, count = 1;
 };
 // The axis that points up.
 enum class WorldUp : std::uint8_t { y, z };

@@ -107,9 +107,7 @@ class JobOptions(TypedDict, total=False):
     fps: Value | None
     frames: Value | Iterable[int] | None
     start: Value | None
-    part: bool | None
     chunk: Value | None
-    chunk_frames: Value | None
     stage: Value | None
     sample_range: Value | None
     frame_rect: Value | Sequence[Value] | None

@@ -178,6 +178,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace gazetrace;
   std::signal(SIGPIPE, SIG_IGN);  // a reader of stdout that goes away is no error: see print_result
+  std::signal(SIGCHLD, SIG_DFL);  // ignored by who started this, no child would have an exit code
 #ifdef SIGXFSZ
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit on sizes fails like a full disk
 #endif

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_lock.hpp"
 #include "gazetrace/farm.hpp"
 
 namespace gazetrace {
@@ -42,6 +43,9 @@ std::vector<std::string> tasks_after_chunks(const FarmPlan& plan);
 // with all of them what a chunk does with some, and goes on where it was interrupted: all its tries together have the
 // time of all chunks one after the other. Others have an hour at least.
 std::int64_t time_after_chunks_s(const FarmPlan& plan);
+// Nobody else runs tasks of the farm as processes, or writes its files, while it is held. Error(runtime) where somebody
+// does.
+FileLock lock_farm(const FarmPlan& plan);
 std::string task_script_path(const FarmPlan& plan);
 std::string task_script(const FarmPlan& plan);
 std::string farm_plan_json(const FarmPlan& plan);

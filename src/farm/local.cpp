@@ -14,11 +14,9 @@
 #include <deque>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <thread>
 #include <utility>
 
-#include "core/file_lock.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/error.hpp"
 
@@ -85,11 +83,6 @@ bool may_be_tried_again(int code) {
   return code == 3 || code == kInterrupted || code > 128;
 }
 
-std::string lock_path(const FarmPlan& plan, const std::string& task) {
-  return (fs::path(plan.folder) / "tasks" / (task + ".lock")).string();
-}
-
-// Runs tasks, each under a lock of its own, so that two farms of this machine in one folder do not do the same.
 class Runner {
  public:
   Runner(const FarmPlan& plan, const LocalSettings& settings) : plan_(plan), settings_(settings) {}
@@ -116,14 +109,8 @@ class Runner {
              running_.size() < static_cast<std::size_t>(std::max(settings_.processes, 1))) {
         const std::string task = waiting.front();
         waiting.pop_front();
-        FileLock lock(lock_path(plan_, task), FileLock::Kind::alone, false);
-        if (!lock.is_held()) {
-          tell(task, "is left to another farm that is at it");
-          continue;
-        }
         tell(task, "begins");
         running_.emplace(start(plan_, task), task);
-        locks_.insert_or_assign(task, std::make_unique<FileLock>(std::move(lock)));
       }
       if (const int code = collect(stopped, waiting); code != 0) {
         worst = code;
@@ -144,7 +131,6 @@ class Runner {
       }
       const std::string task = at->second;
       at = running_.erase(at);
-      locks_.erase(task);
       const bool again = *code != 0 && !stopped && may_be_tried_again(*code) && tries_[task] < plan_.retries;
       tell(task, fmt::format("exit code {}{}", *code, again ? ", tried again" : ""));
       if (again) {
@@ -166,39 +152,21 @@ class Runner {
   const FarmPlan& plan_;
   const LocalSettings& settings_;
   std::map<pid_t, std::string> running_;
-  std::map<std::string, std::unique_ptr<FileLock>> locks_;
   std::map<std::string, int> tries_;
 };
 
-bool is_a_chunk_running(const FarmPlan& plan) {
-  const std::vector<TaskStatus> tasks = farm_status(plan).tasks;
-  return std::any_of(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(plan.chunks.size()),
-                     [](const TaskStatus& task) { return task.state == TaskState::running; });
-}
-
-// Until no other farm is at a chunk, and no chunk is left of a farm that was killed. False where that was to be
-// stopped.
-bool wait_for_others(const FarmPlan& plan, const LocalSettings& settings) {
-  for (std::size_t chunk = 1; chunk <= plan.chunks.size(); ++chunk) {
-    while (!FileLock(lock_path(plan, std::to_string(chunk)), FileLock::Kind::alone, false).is_held()) {
-      if (settings.stop && settings.stop()) {
-        return false;
-      }
-      std::this_thread::sleep_for(kLook);
-    }
-  }
-  while (is_a_chunk_running(plan)) {
-    if (settings.stop && settings.stop()) {
-      return false;
-    }
-    std::this_thread::sleep_for(10 * kLook);
-  }
-  return true;
-}
-
 }  // namespace
 
+FileLock lock_farm(const FarmPlan& plan) {
+  FileLock lock((fs::path(plan.folder) / "tasks" / "local.lock").string(), FileLock::Kind::alone, false);
+  if (!lock.is_held()) {
+    throw Error(ErrorKind::runtime, plan.folder, "another 'gazetrace farm' runs these tasks", "wait for it or end it");
+  }
+  return lock;
+}
+
 int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, const LocalSettings& settings) {
+  const FileLock alone = lock_farm(plan);
   Runner runner(plan, settings);
   std::deque<std::string> tasks;
   for (const std::size_t chunk : chunks) {
@@ -206,18 +174,6 @@ int run_local(const FarmPlan& plan, const std::vector<std::size_t>& chunks, cons
   }
   if (const int code = runner.run(std::move(tasks)); code != 0) {
     return code;
-  }
-  if (!wait_for_others(plan, settings)) {
-    return kInterrupted;
-  }
-  // One of the farms does the rest; the other has nothing to add.
-  const FileLock rest((fs::path(plan.folder) / "tasks" / "rest.lock").string(), FileLock::Kind::alone, true);
-  const FarmStatus status = farm_status(plan, FileCheck::content);
-  if (!chunks_to_retry(status).empty()) {
-    return 0;  // another farm's chunk has failed, and that farm tells of it
-  }
-  if (status.is_done()) {
-    return 0;
   }
   for (const std::string& task : tasks_after_chunks(plan)) {
     if (const int code = runner.run({task}); code != 0) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
 #include <utility>
@@ -22,12 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kReserveOfMemory = 1.25;  // over what is predicted
-constexpr double kReserveOfTime = 2;
 constexpr std::uint64_t kProgramMib = 256;
 // What a run holds of a frame while it renders: sums, guides, the picture, its view and history, with copies of some.
 constexpr std::uint64_t kBytesOfAPixel = 600;
-// What a traced frame takes in its file for a site: sums, up to three surfaces and first hits.
-constexpr std::uint64_t kBytesOfASite = 12 + 12 + 4 + 4 + 3 * sizeof(SurfaceSums) + 4 + sizeof(FirstHitSums);
 
 // Engines read the name within lines of their own.
 std::string plain_name(std::string name) {
@@ -50,65 +46,15 @@ std::uint64_t memory_mib(const JobSettings& job, const FramePlan& frames) {
   return static_cast<std::uint64_t>(kReserveOfMemory * static_cast<double>(bytes) / 1048576.0) + kProgramMib;
 }
 
-// Seconds of a sample, and of a frame where samples are not known, by the rows of an earlier run.
-struct Rate {
-  double s_per_sample = 0, s_per_frame = 0;
-};
-
-Rate rate_of(const std::string& timing_path) {
-  double ms = 0;
-  double samples = 0;
-  double frames = 0;
-  for (const TimingRow& row : read_timing_csv(timing_path)) {
-    if (std::isfinite(row.total_ms) && row.samples > 0) {
-      ms += row.total_ms;
-      samples += static_cast<double>(row.samples);
-      frames += 1;
-    }
-  }
-  if (frames == 0) {
-    throw Error(ErrorKind::input, timing_path, "no row of it tells how long a frame took", "name another timing.csv");
-  }
-  return {ms / 1000 / samples, ms / 1000 / frames};
-}
-
-void predict_times(const FarmSettings& settings, const std::vector<FrameChunk>& chunks, FarmPlan& plan) {
-  if (settings.time) {
-    plan.time_s = settings.time->ns / 1'000'000'000;
-  }
-  if (settings.rate_from.empty()) {
-    return;
-  }
-  const Rate rate = rate_of(settings.rate_from);
-  double longest = 0;
-  for (const FrameChunk& chunk : chunks) {
-    plan.predicted_s.push_back(chunk.samples > 0 ? chunk.samples * rate.s_per_sample
-                                                 : static_cast<double>(chunk.frames.size()) * rate.s_per_frame);
-    longest = std::max(longest, plan.predicted_s.back());
-  }
-  if (!settings.time) {
-    plan.time_s = static_cast<std::int64_t>(std::ceil(kReserveOfTime * longest)) + 300;
-  }
-}
-
-void check_division(const FarmSettings& settings) {
-  const int given = static_cast<int>(settings.chunks > 0) + static_cast<int>(settings.chunk_frames > 0) +
-                    static_cast<int>(settings.sample_ranges > 0);
-  if (given != 1) {
-    throw Error(ErrorKind::usage, "`chunks`", "into how many tasks is the job divided?",
-                "give `chunks`, `chunk-frames` or `sample-ranges`");
-  }
-}
-
 void check_render_job(const FarmSettings& settings, const JobSettings& job) {
   if (job.outputs.empty()) {
     throw Error(ErrorKind::input, settings.job_file, "the job has no output, which says where the farm is",
                 "add output = [\"out/frame.####.exr\"]");
   }
-  if (job.chunk || job.part || job.trace.samples || job.frames == std::nullopt) {
+  if (job.chunk || job.trace.samples || job.frames == std::nullopt) {
     throw Error(ErrorKind::input, settings.job_file,
                 job.frames ? "the job is a part of a sequence already" : "the job does not say which frames it has",
-                job.frames ? "leave `chunk`, `part` and `sample-range` out" : "add frames = \"1-100\"");
+                job.frames ? "leave `chunk` and `sample-range` out" : "add frames = \"1-100\"");
   }
 }
 
@@ -126,13 +72,7 @@ void forget_earlier(const FarmPlan& plan) {
 }
 
 std::string record_of_chunk(const FarmPlan& plan, std::size_t chunk) {
-  std::string name = plan.chunks[chunk];
-  if (plan.kind == FarmKind::samples) {
-    SampleRange range;
-    parse_value(plan.ranges[chunk], plan.folder, range);
-    name = part_of_samples_name(name, range);
-  }
-  return run_record_file_name(plan.run_folder, name, true);
+  return run_record_file_name(plan.run_folder, plan.chunks[chunk], true);
 }
 
 // Parts of an earlier division that have begun would be rendered once more, and then stand in the way of the merge.
@@ -185,6 +125,7 @@ FarmPlan farm_plan_of(const FarmSettings& settings, const std::string& run_folde
   plan.threads = settings.threads;
   plan.retries = settings.retries;
   plan.memory_mib = (settings.memory.bytes + 1048575) / 1048576;
+  plan.time_s = settings.time ? settings.time->ns / 1'000'000'000 : 0;
   plan.then = settings.then;
   plan.confine = settings.confine;
   return plan;
@@ -196,7 +137,9 @@ std::string absolute_path(const std::string& path) {
 
 FarmPlan plan_farm(const FarmSettings& settings) {
   farm_engine(settings.engine);
-  check_division(settings);
+  if (settings.chunks == 0) {
+    throw Error(ErrorKind::usage, "`chunks`", "into how many tasks is the job divided?", "give `chunks`");
+  }
   if (is_sweep_plan(settings.job_file)) {
     return plan_sweep_farm(settings);
   }
@@ -206,11 +149,6 @@ FarmPlan plan_farm(const FarmSettings& settings) {
   }
   Job job = load_job(settings.job_file, settings.confine);
   check_render_job(settings, job.settings);
-  if (settings.sample_ranges > 0) {
-    job.settings.trace.samples = SampleRange{0, 1};
-    check_job(job);  // says what the samples of a frame cannot be divided for
-    job.settings.trace.samples.reset();
-  }
   ResolveOptions options;
   options.scope = ResolveScope::plan;
   options.tell_idle = false;
@@ -224,20 +162,10 @@ FarmPlan plan_farm(const FarmSettings& settings) {
     plan.checkpoint =
         job.settings.checkpoint.empty() ? (fs::path(plan.folder) / "history").string() : job.settings.checkpoint;
   }
-  std::vector<FrameChunk> chunks;
-  if (settings.sample_ranges > 0) {
-    plan.kind = FarmKind::samples;
-    chunks = divide_samples(resolved, settings.sample_ranges, plan);
-  } else {
-    JobSettings divided = resolved.job.settings;
-    divided.chunk = Chunk{1, settings.chunks};
-    divided.chunk_frames = settings.chunk_frames;
-    plan.division = settings.chunk_frames > 0 ? fmt::format(" --chunk-frames {}", settings.chunk_frames)
-                                              : fmt::format("/{}", settings.chunks);
-    chunks = divide_frames(divided, resolved.plan).chunks;
-    std::erase_if(chunks, [](const FrameChunk& chunk) { return chunk.frames.empty(); });
-  }
-  for (const FrameChunk& chunk : chunks) {
+  JobSettings divided = resolved.job.settings;
+  // No chunk is empty: their number is all that the tasks are told.
+  divided.chunk = Chunk{1, std::min(settings.chunks, static_cast<std::uint32_t>(resolved.plan.frames.size()))};
+  for (const FrameChunk& chunk : divide_frames(divided, resolved.plan).chunks) {
     plan.chunks.push_back(format_frame_list(chunk.frames));
     plan.samples.push_back(chunk.samples);
   }
@@ -247,12 +175,6 @@ FarmPlan plan_farm(const FarmSettings& settings) {
                          static_cast<std::int32_t>(!output.map_pattern.empty());
   if (plan.memory_mib == 0) {
     plan.memory_mib = memory_mib(resolved.job.settings, resolved.plan);
-  }
-  predict_times(settings, chunks, plan);
-  if (plan.traces_first && !resolved.plan.frames.empty()) {
-    const FrameRequest& first = resolved.plan.frames.front();
-    plan.traced_bytes =
-        kBytesOfASite * static_cast<std::uint64_t>(first.width_px) * static_cast<std::uint64_t>(first.height_px);
   }
   return plan;
 }
@@ -267,6 +189,7 @@ void write_farm(const FarmPlan& plan, const std::vector<std::size_t>& chunks) {
     throw Error(ErrorKind::input, plan.folder, "the folder cannot be made: " + failed.message(),
                 "choose another output folder");
   }
+  const FileLock alone = lock_farm(plan);
   forget_earlier(plan);
   for (const auto& [name, text] : farm_files(plan, chunks)) {
     write_text_atomically((fs::path(plan.folder) / name).string(), text);

@@ -15,9 +15,6 @@ namespace gazetrace {
 FarmPlan farm_plan_of(const FarmSettings& settings, const std::string& run_folder);
 std::string absolute_path(const std::string& path);
 
-// The samples of all frames in parts of about equal cost; every part has all frames. Fills in the plan's ranges.
-std::vector<FrameChunk> divide_samples(const ResolvedJob& resolved, std::uint32_t count, FarmPlan& plan);
-
 FarmPlan plan_sweep_farm(const FarmSettings& settings);
 
 }  // namespace gazetrace

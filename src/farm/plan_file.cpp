@@ -10,8 +10,7 @@
 
 namespace gazetrace {
 
-NLOHMANN_JSON_SERIALIZE_ENUM(FarmKind,
-                             {{FarmKind::frames, "frames"}, {FarmKind::samples, "samples"}, {FarmKind::sweep, "sweep"}})
+NLOHMANN_JSON_SERIALIZE_ENUM(FarmKind, {{FarmKind::frames, "frames"}, {FarmKind::sweep, "sweep"}})
 
 namespace {
 
@@ -32,17 +31,13 @@ void each_member(Plan& plan, const Visit& visit) {
   visit("work_folder", plan.work_folder);
   visit("traces_first", plan.traces_first);
   visit("checkpoint", plan.checkpoint);
-  visit("division", plan.division);
   visit("chunks", plan.chunks);
-  visit("ranges", plan.ranges);
   visit("samples", plan.samples);
   visit("files_per_frame", plan.files_per_frame);
   visit("threads", plan.threads);
   visit("retries", plan.retries);
   visit("memory_mib", plan.memory_mib);
   visit("time_s", plan.time_s);
-  visit("predicted_s", plan.predicted_s);
-  visit("traced_bytes", plan.traced_bytes);
   visit("then", plan.then);
   visit("confine", plan.confine);
 }
@@ -96,7 +91,7 @@ FarmPlan read_farm(const std::string& folder) {
     }
   });
   if (Json(plan.kind) != json.at("kind")) {
-    throw refuse("is damaged: chunks are of frames, samples or sweep");
+    throw refuse("is damaged: chunks are of frames or sweep");
   }
   constexpr std::int64_t kMostTime_s = 10'000'000'000;  // of DurationNs
   constexpr std::uint64_t kMostMemory_mib = std::uint64_t{1} << 44U;
@@ -104,8 +99,7 @@ FarmPlan read_farm(const std::string& folder) {
       plan.retries < 0 || plan.files_per_frame < 1) {
     throw refuse("is damaged: it has limits that no farm can have");
   }
-  if (plan.chunks.empty() || plan.samples.size() != plan.chunks.size() ||
-      (plan.kind == FarmKind::samples && plan.ranges.size() != plan.chunks.size())) {
+  if (plan.chunks.empty() || plan.samples.size() != plan.chunks.size()) {
     throw refuse("is damaged: it does not tell the same of every chunk");
   }
   check_chunks(plan, refuse);

@@ -11,19 +11,11 @@
 namespace gazetrace {
 
 FarmPlan plan_sweep_farm(const FarmSettings& settings) {
-  if (settings.chunks == 0) {
-    throw Error(ErrorKind::usage, "`chunks`", "the rows of a sweep are divided by their cost", "give `chunks`");
-  }
-  if (!settings.rate_from.empty()) {
-    throw Error(ErrorKind::usage, "`rate-from`", "tells nothing of a sweep, whose rows are timed", "give `time`");
-  }
   SweepPlan sweep = load_sweep_plan(settings.job_file, std::nullopt, std::nullopt, job_schema(), settings.confine).plan;
   sweep.directory =
       settings.output.empty() ? std::filesystem::path(settings.job_file).stem().string() + ".sweep" : settings.output;
   FarmPlan plan = farm_plan_of(settings, sweep.directory);
   plan.kind = FarmKind::sweep;
-  plan.division = fmt::format("/{}", settings.chunks);
-  plan.time_s = settings.time ? settings.time->ns / 1'000'000'000 : 0;
   for (const SweepShare& share : divide_sweep(sweep, settings.chunks)) {
     plan.chunks.push_back(fmt::format("{}", fmt::join(share.rows, " ")));
     plan.samples.push_back(share.samples);

@@ -21,23 +21,18 @@ std::size_t count_in(const FarmPlan& plan, std::size_t chunk) {
 }  // namespace
 
 std::string farm_plan_text(const FarmPlan& plan) {
-  std::string text = fmt::format("{:>6}{:>8}{:>16}{:>10}  {}\n", "chunk",
-                                 plan.kind == FarmKind::sweep ? "rows" : "frames", "samples", "minutes", "which");
+  std::string text = fmt::format("{:>6}{:>8}{:>16}  {}\n", "chunk", plan.kind == FarmKind::sweep ? "rows" : "frames",
+                                 "samples", "which");
   for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
-    text += fmt::format("{:>6}{:>8}{:>16}{:>10}  {}{}\n", i + 1, count_in(plan, i),
+    text += fmt::format("{:>6}{:>8}{:>16}  {}\n", i + 1, count_in(plan, i),
                         plan.samples[i] > 0 ? fmt::format("{:.0f}", plan.samples[i]) : "not known",
-                        i < plan.predicted_s.size() ? fmt::format("{:.2f}", plan.predicted_s[i] / 60) : "-",
-                        bounded(plan.chunks[i], 80),
-                        plan.kind == FarmKind::samples ? ", samples " + plan.ranges[i] : std::string());
+                        bounded(plan.chunks[i], 80));
   }
   text += fmt::format("each task: {}{}{}\n", plan.threads > 0 ? fmt::format("{} threads, ", plan.threads) : "",
                       plan.memory_mib > 0 ? fmt::format("{} MiB", plan.memory_mib) : "memory not stated",
                       plan.time_s > 0 ? fmt::format(", at most {} min", (plan.time_s + 59) / 60) : "");
   if (plan.traces_first) {
-    text += fmt::format(
-        "frames depend on those before them: the tasks trace, and one run finishes all frames in order; a traced frame "
-        "takes up to {:.1f} MiB until then\n",
-        static_cast<double>(plan.traced_bytes) / 1048576.0);
+    text += "frames depend on those before them: the tasks trace, and one run finishes all frames in order\n";
   }
   return text + fmt::format("then: {}", plan.traces_first ? "finish" : "merge") +
          (plan.then.empty() ? "" : fmt::format("; {}", fmt::join(plan.then, "; "))) + "\n";

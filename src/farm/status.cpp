@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
-#include <utility>
 
 #include "core/file_lock.hpp"
 #include "farm/engine.hpp"
@@ -23,19 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Observed {
-  TaskStatus task;
-  double made_ms = 0;  // of the frames whose times are known
-  std::size_t timed = 0;
-};
-
 fs::path exit_file(const FarmPlan& plan, const std::string& task) {
   return fs::path(plan.folder) / "tasks" / (task + ".exit");
-}
-
-fs::file_time_type exit_time(const FarmPlan& plan, const std::string& task) {
-  std::error_code unknown;
-  return fs::last_write_time(exit_file(plan, task), unknown);
 }
 
 std::optional<int> exit_code_of(const FarmPlan& plan, const std::string& task) {
@@ -82,15 +69,11 @@ std::string state_in(const std::string& record_path) {
 }
 
 // The frames that have a row; none where there is no table yet, or it is damaged.
-std::set<std::int32_t> add_times(const std::string& timing_path, Observed& run) {
+std::set<std::int32_t> frames_of_table(const std::string& timing_path) {
   std::set<std::int32_t> rows;
   try {
     for (const TimingRow& row : read_timing_csv(timing_path)) {
       rows.insert(row.frame);
-      if (std::isfinite(row.total_ms)) {
-        run.made_ms += row.total_ms;
-        ++run.timed;
-      }
     }
   } catch (const Error&) {
     rows.clear();
@@ -106,44 +89,41 @@ struct Outputs {
 };
 
 // Counts the finished frames; true where these are all, each with its row in the table.
-bool observe_outputs(const FarmPlan& plan, const Outputs& outputs, FileCheck check, Observed& run) {
-  const std::vector<std::int32_t> wanted = parse_frame_list(run.task.frames);
+bool observe_outputs(const FarmPlan& plan, const Outputs& outputs, FileCheck check, TaskStatus& task) {
+  const std::vector<std::int32_t> wanted = parse_frame_list(task.frames);
   const std::string record_path = run_record_file_name(plan.run_folder, outputs.name, outputs.is_part);
   const std::set<std::int32_t> finished = finished_frames(plan.run_folder, record_path, outputs.files_per_frame, check);
-  const std::set<std::int32_t> rows = add_times(timing_file_name(plan.run_folder, outputs.name, outputs.is_part), run);
-  run.task.all = wanted.size();
-  run.task.done = static_cast<std::size_t>(
+  const std::set<std::int32_t> rows = frames_of_table(timing_file_name(plan.run_folder, outputs.name, outputs.is_part));
+  task.all = wanted.size();
+  task.done = static_cast<std::size_t>(
       std::count_if(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return finished.contains(frame); }));
-  return run.task.done == run.task.all &&
+  return task.done == task.all &&
          std::all_of(wanted.begin(), wanted.end(), [&](std::int32_t frame) { return rows.contains(frame); });
 }
 
-Observed observe_run(const FarmPlan& plan, const std::string& task, const std::string& frames, const Outputs& outputs,
-                     FileCheck check) {
-  Observed run;
-  run.task.name = task;
-  run.task.frames = frames;
-  run.task.exit_code = exit_code_of(plan, task);
+TaskStatus observe_run(const FarmPlan& plan, const std::string& name, const std::string& frames, const Outputs& outputs,
+                       FileCheck check) {
+  TaskStatus task;
+  task.name = name;
+  task.frames = frames;
+  task.exit_code = exit_code_of(plan, name);
   const std::string record_path = run_record_file_name(plan.run_folder, outputs.name, outputs.is_part);
-  const bool is_whole = observe_outputs(plan, outputs, check, run);
+  const bool is_whole = observe_outputs(plan, outputs, check, task);
   std::error_code missing;
   const bool has_record = fs::exists(record_path, missing);
-  // A task that was refused for other inputs has left the files of those before it as they were; a record that is newer
-  // is of a run that somebody has made since.
-  std::error_code unknown;
-  const bool has_failed = run.task.exit_code && *run.task.exit_code != 0 && *run.task.exit_code != 4 &&
-                          !(fs::last_write_time(record_path, unknown) > exit_time(plan, task) && !unknown);
+  // A task that was refused for other inputs has left the files of those before it as they were.
+  const bool has_failed = task.exit_code.value_or(0) != 0 && task.exit_code != 4;
   if (is_locked(record_path)) {
-    run.task.state = TaskState::running;
+    task.state = TaskState::running;
   } else if (has_failed) {
-    run.task.state = TaskState::failed;
+    task.state = TaskState::failed;
   } else if (has_record && is_whole && state_in(record_path) == "done") {
-    run.task.state = TaskState::done;
+    task.state = TaskState::done;
   } else if (has_record) {
     // Ended in order, or without a word, or some of its files are damaged since.
-    run.task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted : TaskState::failed;
+    task.state = state_in(record_path) == "interrupted" ? TaskState::interrupted : TaskState::failed;
   }
-  return run;
+  return task;
 }
 
 bool is_held(const std::string& lock, FileLock::Kind tried) {
@@ -165,39 +145,22 @@ TaskStatus observe_exit(const FarmPlan& plan, const std::string& name) {
   return task;
 }
 
-// A task that measures rows of a sweep holds a lock in the sweep's folder while it runs, see SweepDirectory.
-Observed observe_rows(const FarmPlan& plan, std::size_t chunk) {
-  Observed run;
-  run.task = observe_exit(plan, std::to_string(chunk + 1));
-  run.task.frames = plan.chunks[chunk];
-  if (is_held(fmt::format("{}/lock.{}-of-{}", plan.run_folder, chunk + 1, plan.chunks.size()),
-              FileLock::Kind::shared)) {
-    run.task.state = TaskState::running;
-  }
-  return run;
-}
-
-Observed observe_chunk(const FarmPlan& plan, std::size_t chunk, FileCheck check) {
-  const std::string task = std::to_string(chunk + 1);
+TaskStatus observe_chunk(const FarmPlan& plan, std::size_t chunk, FileCheck check) {
+  const std::string name = std::to_string(chunk + 1);
   const std::string& frames = plan.chunks[chunk];
-  switch (plan.kind) {
-    case FarmKind::sweep:
-      return observe_rows(plan, chunk);
-    case FarmKind::samples: {
-      SampleRange range;
-      parse_value(plan.ranges[chunk], plan.folder, range);
-      return observe_run(plan, task, frames, {part_of_samples_name(frames, range), true, 1}, check);
-    }
-    case FarmKind::frames:
-      break;
+  if (plan.kind == FarmKind::frames) {
+    return observe_run(plan, name, frames, {frames, true, plan.traces_first ? 1 : plan.files_per_frame}, check);
   }
-  return observe_run(plan, task, frames, {frames, true, plan.traces_first ? 1 : plan.files_per_frame}, check);
+  TaskStatus task = observe_exit(plan, name);
+  task.frames = frames;
+  // A task that measures rows of a sweep holds a lock in the sweep's folder while it runs, see SweepDirectory.
+  if (is_held(fmt::format("{}/lock.{}-of-{}", plan.run_folder, name, plan.chunks.size()), FileLock::Kind::shared)) {
+    task.state = TaskState::running;
+  }
+  return task;
 }
 
 std::string all_frames(const FarmPlan& plan) {
-  if (plan.kind == FarmKind::samples) {
-    return plan.chunks.front();  // each has some samples of all of them
-  }
   std::vector<std::int32_t> frames;
   for (const std::string& chunk : plan.chunks) {
     const std::vector<std::int32_t> list = parse_frame_list(chunk);
@@ -215,22 +178,16 @@ TaskStatus observe_finish(const FarmPlan& plan, FileCheck check) {
   const std::string frames = all_frames(plan);
   const Outputs whole{frames, false, plan.files_per_frame};
   if (plan.traces_first) {
-    return observe_run(plan, "finish", frames, whole, check).task;
+    return observe_run(plan, "finish", frames, whole, check);
   }
-  Observed merged;
-  merged.task.frames = frames;
+  TaskStatus merged;
+  merged.frames = frames;
   TaskStatus task = observe_exit(plan, "finish");
   if (task.state == TaskState::done && !observe_outputs(plan, whole, check, merged)) {
     task.state = TaskState::missing;
     task.exit_code.reset();
   }
   return task;
-}
-
-std::string duration_words(double seconds) {
-  return seconds < 90
-             ? fmt::format("{:.0f} s", seconds)
-             : (seconds < 5400 ? fmt::format("{:.0f} min", seconds / 60) : fmt::format("{:.1f} h", seconds / 3600));
 }
 
 // Traced frames may be removed once their pictures are there.
@@ -279,24 +236,13 @@ bool FarmStatus::is_done() const {
 
 FarmStatus farm_status(const FarmPlan& plan, FileCheck check) {
   FarmStatus status;
-  double made_ms = 0;
-  std::size_t timed = 0;
-  std::size_t running = 0;
   const TaskStatus finish = observe_finish(plan, check);
   const bool needs_traced = !plan.traces_first || finish.state != TaskState::done;
   for (std::size_t i = 0; i < plan.chunks.size(); ++i) {
-    const Observed run = observe_chunk(plan, i, needs_traced ? check : FileCheck::size);
-    status.frames += run.task.all;
-    status.frames_done += run.task.done;
-    running += run.task.state == TaskState::running ? 1 : 0;
-    made_ms += run.made_ms;
-    timed += run.timed;
-    status.tasks.push_back(run.task);
-  }
-  const double left = static_cast<double>(status.frames - status.frames_done);
-  if (timed > 0) {
-    status.seconds_left =
-        left * made_ms / 1000 / static_cast<double>(timed) / static_cast<double>(std::max<std::size_t>(running, 1));
+    const TaskStatus task = observe_chunk(plan, i, needs_traced ? check : FileCheck::size);
+    status.frames += task.all;
+    status.frames_done += task.done;
+    status.tasks.push_back(task);
   }
   if (!needs_traced) {
     count_as_traced(status);
@@ -331,13 +277,8 @@ std::string farm_status_text(const FarmPlan& plan, const FarmStatus& status) {
   if (plan.kind == FarmKind::sweep) {
     return text;
   }
-  text += fmt::format("{} of {} {} are {}", status.frames_done, status.frames,
-                      plan.kind == FarmKind::samples ? "parts of frames" : "frames",
-                      plan.traces_first ? "traced" : "rendered");
-  if (status.seconds_left && status.frames_done < status.frames) {
-    text += fmt::format(", about {} left", duration_words(*status.seconds_left));
-  }
-  return text + "\n";
+  return text + fmt::format("{} of {} frames are {}\n", status.frames_done, status.frames,
+                            plan.traces_first ? "traced" : "rendered");
 }
 
 std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status) {
@@ -355,12 +296,13 @@ std::string farm_status_json(const FarmPlan& plan, const FarmStatus& status) {
     }
     tasks.push_back(json);
   }
-  Json json{{"folder", plan.folder},       {"engine", plan.engine},   {"traces_first", plan.traces_first},
-            {"is_done", status.is_done()}, {"frames", status.frames}, {"frames_done", status.frames_done},
-            {"seconds_left", nullptr},     {"tasks", tasks}};
-  if (status.seconds_left) {
-    json["seconds_left"] = *status.seconds_left;
-  }
+  Json json{{"folder", plan.folder},
+            {"engine", plan.engine},
+            {"traces_first", plan.traces_first},
+            {"is_done", status.is_done()},
+            {"frames", status.frames},
+            {"frames_done", status.frames_done},
+            {"tasks", tasks}};
   return json.dump(2) + "\n";
 }
 

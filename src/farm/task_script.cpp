@@ -101,22 +101,14 @@ std::string finish_words(const FarmPlan& plan) {
 
 // What runs chunk $1.
 std::string chunk_words(const FarmPlan& plan) {
+  const std::string program = program_words(plan);
+  const std::string job = shell_word(plan.job_file);
+  const std::string chunk = fmt::format("--chunk \"$1/{}\"{}", plan.chunks.size(), limits(plan, plan.time_s));
   if (plan.kind == FarmKind::sweep) {
-    return fmt::format("  run \"$1\" {} sweep {} -o {} --chunk \"$1\"{}{}\n", program_words(plan),
-                       shell_word(plan.job_file), shell_word(plan.run_folder), plan.division,
-                       limits(plan, plan.time_s));
+    return fmt::format("  run \"$1\" {} sweep {} -o {} {}\n", program, job, shell_word(plan.run_folder), chunk);
   }
-  const std::string render = fmt::format("{} render --config {}", program_words(plan), shell_word(plan.job_file));
-  if (plan.kind == FarmKind::frames) {
-    return fmt::format("  run \"$1\" {} --chunk \"$1\"{} --resume{}{}\n", render, plan.division,
-                       plan.traces_first ? " --stage trace" : "", limits(plan, plan.time_s));
-  }
-  std::string text = "  case $1 in\n";
-  for (std::size_t i = 0; i < plan.ranges.size(); ++i) {
-    text += fmt::format("    {}) samples={} ;;\n", i + 1, plan.ranges[i]);
-  }
-  return text + fmt::format("  esac\n  run \"$1\" {} --sample-range \"$samples\" --resume{}\n", render,
-                            limits(plan, plan.time_s));
+  return fmt::format("  run \"$1\" {} render --config {} --resume{} {}\n", program, job,
+                     plan.traces_first ? " --stage trace" : "", chunk);
 }
 
 }  // namespace

@@ -188,14 +188,6 @@ void check_stage(const JobSettings& job) {
 }
 
 void check_chunk(const JobSettings& job) {
-  if (job.chunk_frames > 0 && !job.chunk) {
-    throw Error(ErrorKind::usage, "`chunk-frames`", "which chunk is it?", "give `chunk` K");
-  }
-  if (job.chunk && (job.chunk->count == 0) != (job.chunk_frames > 0)) {
-    throw Error(ErrorKind::usage, "`chunk`",
-                job.chunk_frames > 0 ? "the length of chunks says how many there are" : "of how many chunks is it one?",
-                "give `chunk` K/N, or `chunk` K with `chunk-frames`");
-  }
   constexpr std::uint32_t kMostChunks = 1000000;
   if (job.chunk && job.chunk->count > kMostChunks) {
     throw Error(ErrorKind::usage, "`chunk`", fmt::format("{} chunks are more than {}", job.chunk->count, kMostChunks),

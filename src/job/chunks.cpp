@@ -91,29 +91,9 @@ std::vector<FrameChunk> balanced(const std::vector<std::int32_t>& frames, const 
   return chunks;
 }
 
-// Chunks of equally many frames, however many chunks that makes.
-std::vector<FrameChunk> chunks_of_length(const std::vector<std::int32_t>& frames, std::size_t length) {
-  const std::vector<double> unknown(frames.size(), 0);
-  std::vector<FrameChunk> chunks;
-  for (std::size_t begin = 0; begin < frames.size(); begin += length) {
-    chunks.push_back(chunk_of(frames, unknown, begin, std::min(frames.size(), begin + length)));
-  }
-  return chunks;
-}
-
-std::vector<FrameChunk> chunks_of(const JobSettings& job, const FramePlan& whole) {
-  return job.chunk_frames > 0 ? chunks_of_length(numbers_of(whole), static_cast<std::size_t>(job.chunk_frames))
-                              : balanced_chunks(job, whole, job.chunk->count);
-}
-
-// "5" chunks, or chunks "of-20" frames.
-std::string division_name(const JobSettings& job) {
-  return job.chunk_frames > 0 ? fmt::format("of-{}", job.chunk_frames) : std::to_string(job.chunk->count);
-}
-
 std::string digest_of_borders(const JobSettings& job, const std::vector<std::int32_t>& frames) {
   std::vector<std::pair<std::string, std::string>> parts{{"frames", format_frame_list(frames)},
-                                                         {"division", division_name(job)}};
+                                                         {"division", std::to_string(job.chunk->count)}};
   for (const OptionOf<JobSettings>& option : job_schema().options()) {
     if (option.decides != Decides::nothing) {
       parts.emplace_back(option.name, fmt::format("{}", fmt::join(option.values(job), "\n")));
@@ -125,10 +105,10 @@ std::string digest_of_borders(const JobSettings& job, const std::vector<std::int
 // The name holds a digest, so that another job in the folder has a file of its own, and none is ever replaced.
 std::string borders_path(const JobSettings& job, const std::string& digest) {
   const std::string folder = output_settings(job).run_directory;
-  return folder.empty() ? std::string()
-                        : (std::filesystem::path(folder) /
-                           fmt::format("chunks.{}.{}.json", division_name(job), digest.substr(0, 8)))
-                              .string();
+  return folder.empty()
+             ? std::string()
+             : (std::filesystem::path(folder) / fmt::format("chunks.{}.{}.json", job.chunk->count, digest.substr(0, 8)))
+                   .string();
 }
 
 std::vector<FrameChunk> chunks_in(const ChunkFile& file) {
@@ -158,9 +138,6 @@ std::string words_for(const JobSettings& job, const ChunkBorders& borders) {
   if (borders.text.empty() && !borders.path.empty()) {
     return "as written in " + borders.path;
   }
-  if (job.chunk_frames > 0) {
-    return fmt::format("of {} frames each", job.chunk_frames);
-  }
   return samples_are_known(job.foveation) ? "balanced by the samples of the plan"
                                           : "of equally many frames, since pilots decide the samples";
 }
@@ -180,7 +157,7 @@ DividedFrames divide_frames(const JobSettings& job, const FramePlan& whole) {
     divided.chunks = std::move(*written);
     return divided;
   }
-  divided.chunks = chunks_of(job, whole);
+  divided.chunks = balanced_chunks(job, whole, job.chunk->count);
   ChunkFile file{digest, format_frame_list(frames), {}, {}};
   for (const FrameChunk& chunk : divided.chunks) {
     file.chunks.push_back(chunk.frames.empty() ? std::string() : format_frame_list(chunk.frames));

@@ -15,7 +15,7 @@ struct DividedFrames {
   ChunkBorders borders;  // to be written down where they are not; without a path where there is no output
 };
 
-// How `chunk` and `chunk-frames` divide the frames; which chunk it is does not matter. As the first task wrote it down
+// How `chunk` divides the frames; which chunk it is does not matter. As the first task wrote it down
 // or, for that task, as it follows from the plan alone. `whole`: the plan of all frames.
 DividedFrames divide_frames(const JobSettings& job, const FramePlan& whole);
 

@@ -196,12 +196,12 @@ void parse_value(std::string_view text, const std::string& place, ByteCount& val
 }
 
 void parse_value(std::string_view text, const std::string& place, Chunk& value) {
-  constexpr std::string_view kWanted = "a chunk such as 2/5, the second of five, or 2 beside a length";
+  constexpr std::string_view kWanted = "a chunk such as 2/5, the second of five";
   const std::size_t slash = text.find('/');
   value.number = parse_number<std::uint32_t>(text.substr(0, slash), place, kWanted);
   value.count =
-      slash == std::string_view::npos ? 0 : parse_number<std::uint32_t>(text.substr(slash + 1), place, kWanted);
-  if (value.number == 0 || (slash != std::string_view::npos && value.number > value.count)) {
+      parse_number<std::uint32_t>(slash == std::string_view::npos ? "" : text.substr(slash + 1), place, kWanted);
+  if (value.number == 0 || value.number > value.count) {
     reject(text, place, kWanted);
   }
 }
@@ -378,7 +378,7 @@ std::string format_value(const ByteCount& value) {
 }
 
 std::string format_value(const Chunk& value) {
-  return value.count == 0 ? std::to_string(value.number) : fmt::format("{}/{}", value.number, value.count);
+  return fmt::format("{}/{}", value.number, value.count);
 }
 
 std::string format_value(const SizePx& value) {

@@ -120,7 +120,7 @@ void check_earlier_run(const PipelineSettings& settings, const std::vector<std::
       throw Error(ErrorKind::usage, "`resume`",
                   fmt::format("{} is of a run over frames {}, and frame {} is not asked for now", record_path,
                               format_frame_list(before), frame),
-                  "give frames that include those, `part`, or another folder");
+                  "give frames that include those, or another folder");
     }
   }
 }
@@ -181,7 +181,7 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.output = output_settings(job);
   settings.fps = job.fps;
   settings.threads = job.threads;
-  settings.is_part = job.part || job.chunk.has_value() || job.stage == SequenceStage::trace;
+  settings.is_part = job.chunk.has_value() || job.stage == SequenceStage::trace;
   settings.stage = job.stage;
   if (job.stage == SequenceStage::trace) {  // history belongs to the run that finishes
     settings.checkpoint.clear();
@@ -212,7 +212,7 @@ void prepare_outputs(const ResolvedJob& resolved) {
         const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
         throw Error(ErrorKind::input, path, "this output exists already",
                     is_record && !settings.is_part && !settings.trace.samples
-                        ? "give `overwrite`, `resume`, `part` for one part of a sequence, or another folder"
+                        ? "give `overwrite`, `resume`, `chunk` for a part of a sequence, or another folder"
                         : "give `overwrite`, `resume` or another name");
       }
     }

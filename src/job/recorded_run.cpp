@@ -89,9 +89,8 @@ ResolvedJob resolve_whole_of_parts(const std::vector<RunPart>& parts, bool overw
   Job job = job_of_record(first.record, first.timing_path);
   job.settings.frames = FrameList{frames_of(parts)};
   job.settings.trace.samples.reset();
-  job.settings.part = job.settings.resume = false;
+  job.settings.resume = false;
   job.settings.chunk.reset();
-  job.settings.chunk_frames = 0;
   job.settings.overwrite = overwrite;
   ResolveOptions options;
   options.scope = ResolveScope::digests;

@@ -184,34 +184,40 @@ int open_lock(const std::string& path) {
   return file;
 }
 
+[[noreturn]] void refuse(int file, Range range, const std::map<std::int64_t, std::string>& files) {
+  const Range other = held_by_others(file, range).value_or(range);
+  std::string who = "a run that does not say which";
+  for (const Owner& owner : read_owners(file)) {
+    if (owner.range.begin < other.end && other.begin < owner.range.end) {
+      who = owner.words;
+    }
+  }
+  throw Error(ErrorKind::runtime, files.lower_bound(std::max(other.begin, range.begin))->second,
+              "another run is writing this file, " + bounded(who, 600), "wait for it or end it");
+}
+
 // Locks these files of a folder; false where the folder cannot be locked.
 bool lock_files(int file, const std::map<std::int64_t, std::string>& files, const std::string& self) {
-  if (const int problem = set_lock(file, F_WRLCK, {kTextPosition, kTextPosition + 1}, true); problem != 0) {
-    if (cannot_lock(problem)) {
-      return false;
+  int problem = set_lock(file, F_WRLCK, {kTextPosition, kTextPosition + 1}, true);
+  std::vector<Owner> own;
+  for (const Range& range : ranges_of(files)) {
+    if (problem == 0) {
+      problem = set_lock(file, F_WRLCK, range);
     }
+    if (problem == EAGAIN || problem == EACCES) {
+      refuse(file, range, files);
+    }
+    own.push_back({range, self});
+  }
+  if (problem != 0 && !cannot_lock(problem)) {
     throw Error(ErrorKind::runtime, files.begin()->second,
                 "its folder cannot be locked: " + std::system_category().message(problem), "try again");
   }
-  std::vector<Owner> own;
-  for (const Range& range : ranges_of(files)) {
-    own.push_back({range, self});
-    if (set_lock(file, F_WRLCK, range) == 0) {
-      continue;
-    }
-    const Range other = held_by_others(file, range).value_or(range);
-    std::string who = "a run that does not say which";
-    for (const Owner& owner : read_owners(file)) {
-      if (owner.range.begin < other.end && other.begin < owner.range.end) {
-        who = owner.words;
-      }
-    }
-    throw Error(ErrorKind::runtime, files.lower_bound(std::max(other.begin, range.begin))->second,
-                "another run is writing this file, " + bounded(who, 600), "wait for it or end it");
+  if (problem == 0) {
+    write_owners(file, own);
   }
-  write_owners(file, own);
   set_lock(file, F_UNLCK, {kTextPosition, kTextPosition + 1});
-  return true;
+  return problem == 0;
 }
 
 }  // namespace

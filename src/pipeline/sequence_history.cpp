@@ -50,7 +50,7 @@ TemporalHistory starting_history(const FramePlan& plan, const PipelineSettings& 
   if (settings.resume_from.empty()) {
     if (settings.is_part && first > 1 && settings.preroll == 0 && needs_history(settings)) {
       warnings.push_back(
-          fmt::format("`part`: frame {} begins without the history of those before it; where the sequence begins "
+          fmt::format("`chunk`: frame {} begins without the history of those before it; where the sequence begins "
                       "earlier, this part differs from one run: give `resume-from`, or `preroll`",
                       first));
     }

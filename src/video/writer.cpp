@@ -134,12 +134,16 @@ struct VideoWriter::Impl {
     }
   }
 
-  int wait_for_child() {
+  // Whether it ended as a program does that has done its work. Where a process ignores SIGCHLD nobody can know, which
+  // is no success.
+  bool wait_for_child() {
     int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    pid_t ended = 0;
+    do {
+      ended = ::waitpid(child, &status, 0);
+    } while (ended < 0 && errno == EINTR);
     child = -1;
-    return status;
+    return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
 
   // The last line that the program wrote.
@@ -261,8 +265,7 @@ void VideoWriter::add(const DisplayImage& frame) {
 
 void VideoWriter::finish() {
   impl_->close_socket();
-  const int status = impl_->wait_for_child();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+  if (!impl_->wait_for_child()) {
     impl_->fail();
   }
   if (::rename(impl_->temporary.c_str(), impl_->path.c_str()) != 0) {

@@ -117,7 +117,7 @@ def measure(frames, size):
             return f"{name}.toml"
 
         def farm(name, count, chunk, processes):
-            return run("farm", job(name, count), "--chunk-frames", chunk, "--processes", processes, "--threads", "1")
+            return run("farm", job(name, count), "--chunks", -(-count // chunk), "--processes", processes, "--threads", "1")
 
         def costs(processes):
             """Of each frame, while as many runs are at work: cores share what they do not have twice."""

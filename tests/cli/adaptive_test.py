@@ -65,7 +65,7 @@ class Adaptive(harness.CliTest):
         self.assertEqual(len(whole), 3)
         self.assertEqual(whole, self.pictures("three"))
         for part in ("1", "2-3"):
-            self.run_ok("render", "box.gltf", *VIEW, *common[:2], "--frames", part, "--part", "-o", "parts/f.####.exr")
+            self.run_ok("render", "box.gltf", *VIEW, *common[:2], "--frames", part, "--chunk", "1/1", "-o", "parts/f.####.exr")
         self.run_ok("merge", "parts")
         self.assertEqual(whole, self.pictures("parts"))
         (self.folder / "three/f.0002.exr").unlink()
@@ -93,7 +93,7 @@ class Adaptive(harness.CliTest):
         clip("threads", "9", "--threads", "1")
         self.assertEqual(whole, self.pictures("threads"))
         for part in ("1-3", "4-8"):
-            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", part, "--part", "--target-jod", "9", "-o",
+            self.run_ok("render", "box.gltf", *VIEW[:-2], *RAW, "--frames", part, "--chunk", "1/1", "--target-jod", "9", "-o",
                         "parts/f.####.exr")
         self.run_ok("merge", "parts")
         self.assertEqual(whole, self.pictures("parts"))
@@ -122,7 +122,7 @@ class Adaptive(harness.CliTest):
         clip("threads", "1-6", *both, "--threads", "1")
         self.assertEqual(whole, self.pictures("threads"))
         for part in ("1-2", "3-6"):
-            clip("parts", part, *both, "--part")
+            clip("parts", part, *both, "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertEqual(whole, self.pictures("parts"))
         (self.folder / "whole/f.0003.exr").unlink()
@@ -199,7 +199,7 @@ class Adaptive(harness.CliTest):
         clip("threads", "1-6", "--threads", "1")
         self.assertEqual(whole, self.pictures("threads"))
         for part in ("1-2", "3-6"):
-            clip("parts", part, "--part")
+            clip("parts", part, "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertEqual(whole, self.pictures("parts"))
         (self.folder / "whole/f.0003.exr").unlink()

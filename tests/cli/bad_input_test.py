@@ -227,7 +227,7 @@ class BadOutputs(harness.CliTest):
     def test_going_on_with_another_run(self):
         arguments = ["render", "box.gltf", "--size", "16x9", "--spp", "1", "-o", "f.####.exr"]
         self.run_ok(*arguments, "--frames", "1-3")
-        self.assert_refused([*arguments, "--frames", "4-6", "--resume"], ["run.json", "1-3", "--part"])
+        self.assert_refused([*arguments, "--frames", "4-6", "--resume"], ["run.json", "1-3", "another folder"])
         self.run_ok(*arguments, "--frames", "1-5", "--resume")
         self.write("timing.csv", "garbage\n")
         self.assertIn("timing.csv", self.run_ok(*arguments, "--frames", "1-5", "--resume").stderr)  # made anew

@@ -57,7 +57,7 @@ class CompareParts(harness.CliTest):
     def test_parts_of_the_frames(self):
         self.render("whole", "--frames", "1-4")
         for frames in ("3-4", "1-2"):
-            self.render("parts", "--frames", frames, "--part")
+            self.render("parts", "--frames", frames, "--chunk", "1/1")
         # No record is yet of all of them: the regions of the test are not known.
         self.assertIn("fovea to 2.6 deg", self.compare("ref", "parts")["conditions"]["regions"])
         self.run_ok("merge", "parts")
@@ -73,8 +73,8 @@ class CompareParts(harness.CliTest):
     def test_parts_joined_by_their_history(self):
         history = ["--accumulate", "reproject"]
         self.render("whole", "--frames", "1-4", *history)
-        self.render("parts", "--frames", "1-2", "--part", *history, "--checkpoint", "history.bin")
-        self.render("parts", "--frames", "3-4", "--part", *history, "--resume-from", "history.bin")
+        self.render("parts", "--frames", "1-2", "--chunk", "1/1", *history, "--checkpoint", "history.bin")
+        self.render("parts", "--frames", "3-4", "--chunk", "1/1", *history, "--resume-from", "history.bin")
         self.run_ok("merge", "parts")
         record = json.loads((self.folder / "parts/run.json").read_text())
         self.assertEqual(record["part_digests"], [], "parts of one job have one digest")
@@ -82,7 +82,7 @@ class CompareParts(harness.CliTest):
 
     def test_pictures_of_another_run_are_not_the_record_s(self):
         for frames in ("3-4", "1-2"):
-            self.render("parts", "--frames", frames, "--part")
+            self.render("parts", "--frames", frames, "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertIn("fovea to 2 deg", self.compare("ref", "parts")["conditions"]["regions"])
         self.render("other", "--frames", "1-4", "--region-angles", "6,12")

@@ -64,7 +64,7 @@ class DensityMap(harness.CliTest):
         self.assertEqual(self.render("all", *common), [64 * 36 * frame for frame in (1, 2, 3)])
         # Parts have the digest of the whole, and the same pictures.
         for part in ("1", "2-3"):
-            self.run_ok("render", "box.gltf", *VIEW, "--falloff", "map", "--density-map", "d.####.exr", "--frames", part, "--part",
+            self.run_ok("render", "box.gltf", *VIEW, "--falloff", "map", "--density-map", "d.####.exr", "--frames", part, "--chunk", "1/1",
                         "-o", "parts/f.####.exr")
         self.run_ok("merge", "parts")
         self.assertEqual(self.pictures("all"), self.pictures("parts"))

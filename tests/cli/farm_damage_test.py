@@ -57,15 +57,7 @@ class DamagedFarm(Farm):
                         self.assertEqual(self.pictures("out"), whole)
                         rows = (self.folder / "out/timing.csv").read_text().splitlines()
                         self.assertEqual([row.split(",")[0] for row in rows], [row.split(",")[0] for row in table])
-                        self.assertEqual(set(self.states("--check-files")), {"done"})
-
-    def test_files_can_be_trusted(self):
-        self.write("job.toml", FARM_TOML)
-        self.run_ok("farm", "job.toml", "--chunks", "2", "--processes", "2", "--threads", "1")
-        flip(self.folder / "out/f.0004.exr")
-        self.assertEqual(self.states(), ["done"] * 3)
-        self.assertEqual(self.states("--check-files"), ["done", "failed", "missing"])
-        self.assertIn("nothing to do", self.run_ok("farm", "retry", "out", "--trust-files").stderr)
+                        self.assertEqual(set(self.states()), {"done"})
 
 
 class DamagedSweep(harness.CliTest):

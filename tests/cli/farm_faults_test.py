@@ -34,7 +34,7 @@ class Farm(harness.CliTest):
 
     def parts(self, folder, *more):
         for frames in ("1-3", "4-6"):
-            self.render(folder, "--frames", frames, "--part", *more)
+            self.render(folder, "--frames", frames, "--chunk", "1/1", *more)
 
     def record(self, path):
         return json.loads((self.folder / path).read_text())
@@ -89,15 +89,15 @@ class MergeLooksAtFiles(Farm):
         self.assert_refused(["merge", "out"], ["frames are missing: 4-6"])
 
     def test_parts_of_different_outputs_are_no_sequence(self):
-        self.render("out", "--frames", "1-2", "--part")
-        self.run_ok("render", *JOB, "-o", "out/f.####.exr", "--frames", "3-4", "--part")
+        self.render("out", "--frames", "1-2", "--chunk", "1/1")
+        self.run_ok("render", *JOB, "-o", "out/f.####.exr", "--frames", "3-4", "--chunk", "1/1")
         refused = self.run_program("merge", "out")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("run.3-4.json: lists no 'f.0003.png', and frame 1 has a file like that", refused.stderr)
         # Numbers that are not the frame's do not matter.
         for folder, name in (("two", "f2.####.exr"), ("one", "f.####.v001.exr"), ("both", "p2.####_s2.png"), ("each", "%04d/f1.%04d.exr")):
             for frames in ("1-2", "3-4"):
-                self.run_ok("render", *JOB, "-o", f"{folder}/{name}", "--frames", frames, "--part")
+                self.run_ok("render", *JOB, "-o", f"{folder}/{name}", "--frames", frames, "--chunk", "1/1")
             self.run_ok("merge", folder)
 
     def test_a_division_that_is_gone(self):
@@ -127,7 +127,7 @@ class MergeLooksAtFiles(Farm):
         self.assertIn("samples.0001.4-8.sums: has another content", merged.stderr)
 
     def test_a_killed_part_knows_its_files(self):
-        self.render("out", "--frames", "1-3", "--part")
+        self.render("out", "--frames", "1-3", "--chunk", "1/1")
         record = self.record("out/run.1-3.json")
         lines = [f'{file["frame"]} {file["bytes"]} {file["digest"]} {name}\n' for name, file in record["files"].items()]
         record["files"] = {}
@@ -136,7 +136,7 @@ class MergeLooksAtFiles(Farm):
         (self.folder / "out/f.0002.exr").write_bytes(b"")
         self.assertIn("f.0002.exr: has 0 bytes in place of", self.run_program("merge", "out").stderr)
         before = self.times("out")
-        self.render("out", "--frames", "1-3", "--part", "--resume")
+        self.render("out", "--frames", "1-3", "--chunk", "1/1", "--resume")
         made = {name for name, stamp in self.times("out").items() if before[name] != stamp}
         self.assertEqual(made, {"f.0002.exr", "f.0002.png"})
         self.assertFalse((self.folder / "out/run.1-3.files").exists())
@@ -169,7 +169,7 @@ class ResumeLosesNothing(Farm):
         self.assert_refused([*again, "--seed", "4"], ["2 finished frames", "no record"])
 
     def test_another_history_is_another_picture(self):
-        history = ["--accumulate", "reproject", "--part"]
+        history = ["--accumulate", "reproject", "--chunk", "1/1"]
         self.render("out", "--frames", "1-2", *history, "--checkpoint", "after-2")
         self.render("out", "--frames", "3-4", *history)
         joined = ["render", *JOB, *outputs("out"), "--frames", "3-4", *history, "--resume-from", "after-2", "--resume"]
@@ -182,8 +182,8 @@ class DigestsOfParts(Farm):
     def test_how_a_run_was_cut_is_not_in_its_files(self):
         history = ["--accumulate", "reproject"]
         self.render("whole", "--frames", "1-6", *history)
-        self.render("parts", "--frames", "1-3", "--part", *history, "--checkpoint", "h")
-        self.render("parts", "--frames", "4-6", "--part", *history, "--resume-from", "h")
+        self.render("parts", "--frames", "1-3", "--chunk", "1/1", *history, "--checkpoint", "h")
+        self.render("parts", "--frames", "4-6", "--chunk", "1/1", *history, "--resume-from", "h")
         self.assertEqual(self.pictures("parts"), self.pictures("whole"))
         self.run_ok("merge", "parts")
         whole, parts = self.record("whole/run.json"), self.record("parts/run.json")
@@ -211,7 +211,7 @@ class DamagedSideFiles(Farm):
 
     def test_pictures_of_a_lost_record_tell_their_own_damage(self):
         """Without a record, each picture is believed by what is in it, and a damaged one is made again."""
-        self.render("out", "--frames", "1-4", "--part")
+        self.render("out", "--frames", "1-4", "--chunk", "1/1")
         whole = self.pictures("out")
         for name in ("f.0002.exr", "f.0003.png"):
             path = self.folder / "out" / name
@@ -220,7 +220,7 @@ class DamagedSideFiles(Farm):
             path.write_bytes(content)
         (self.folder / "out/run.1-4.json").write_bytes((self.folder / "out/run.1-4.json").read_bytes()[:500])
         times = self.times("out")
-        self.render("out", "--frames", "1-4", "--part", "--resume")
+        self.render("out", "--frames", "1-4", "--chunk", "1/1", "--resume")
         self.assertEqual(self.pictures("out"), whole)
         kept = [name for name, time_ns in self.times("out").items() if time_ns == times[name]]
         self.assertEqual(sorted(kept), ["f.0001.exr", "f.0001.png", "f.0004.exr", "f.0004.png"])
@@ -231,7 +231,7 @@ class DamagedSideFiles(Farm):
         record = (self.folder / "out/run.1-3.json").read_bytes()
         self.write("out/run.1-3.json", record[:len(record) // 2])
         self.assertLess(len(self.assert_refused(["merge", "out"], ["run.1-3.json", "--resume"])), 700)
-        self.render("out", "--frames", "1-3", "--part", "--resume")
+        self.render("out", "--frames", "1-3", "--chunk", "1/1", "--resume")
         self.run_ok("merge", "out")
 
 
@@ -294,16 +294,16 @@ class Chunks(Farm):
         self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-6", "--chunk", "2/2")
         self.assertIn("run.5-6.json", self.files("out"))
 
-    def test_chunks_of_a_length(self):
+    def test_more_chunks_than_frames(self):
         for number in range(1, 4):
-            self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-5", "--chunk", number, "--chunk-frames", "2")
-        self.assertIn("3 parts joined, frames 1-5", self.run_ok("merge", "out").stdout)
-        late = self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-5", "--chunk", "4", "--chunk-frames", "2")
-        self.assertIn("chunk 4 has none of the 5 frames", late.stderr)
+            self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-3", "--chunk", f"{number}/4")
+        self.assertIn("3 parts joined, frames 1-3", self.run_ok("merge", "out").stdout)
+        late = self.run_ok("render", *JOB, *outputs("out"), "--frames", "1-3", "--chunk", "4/4")
+        self.assertIn("chunk 4 has none of the 3 frames", late.stderr)
 
     def test_what_is_no_chunk(self):
         for options, words in ((["--chunk", "3"], "--chunk"), (["--chunk", "4/3"], "4/3"), (["--chunk", "0/3"], "0/3"),
-                               (["--chunk-frames", "3"], "--chunk"), (["--chunk", "1/3", "--chunk-frames", "3"], "--chunk")):
+                               (["--chunk-frames", "3"], "this option is gone")):
             self.assert_refused(["render", *JOB, *outputs("bad"), *options], [words])
 
 

@@ -20,7 +20,7 @@ class Plans(FarmFiles):
                             (json.dumps({**plan, "chunks": ["1-3", "x"]}), "'x' is no list of frames"),
                             (json.dumps({**plan, "samples": []}), "does not tell the same of every chunk"),
                             (json.dumps({key: value for key, value in plan.items() if key != "then"}), "does not tell 'then'"),
-                            (json.dumps({**plan, "kind": "stars"}), "chunks are of frames, samples or sweep"),
+                            (json.dumps({**plan, "kind": "stars"}), "chunks are of frames or sweep"),
                             (json.dumps({**plan, "chunks": [], "samples": []}), "does not tell the same of every chunk"),
                             (json.dumps({**plan, "time_s": 2**63 - 1}), "limits that no farm can have"),
                             (json.dumps({**plan, "engine": "condor"}), "condor")):
@@ -32,8 +32,8 @@ class Plans(FarmFiles):
                 self.assertNotIn("json.exception", told.stderr)
 
     def test_what_is_no_farm(self):
-        for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks, --chunk-frames or --sample-ranges"),
-                                 (["--chunks", "2", "--rate-from", "none.csv"], "none.csv")):
+        for arguments, words in ((["--engine", "condor", "--chunks", "2"], "condor"), ([], "give --chunks"),
+                                 (["--engine", "flamenco", "--chunks", "2"], "flamenco")):
             refused = self.farm(*arguments, program=self.run_program)
             self.assertEqual(refused.returncode, 2)
             self.assertIn(words, refused.stderr)

@@ -70,10 +70,10 @@ class TracedFirst(Farm):
         self.assertEqual(self.pictures("out"), whole)
 
     def test_frames_that_are_not_traced_are_named(self):
-        self.trace("out", "--chunk", "1", "--chunk-frames", "4")
-        self.assertIn("2 frames are not traced under these settings: 5-6",
+        self.trace("out", "--chunk", "1/2")
+        self.assertIn("3 frames are not traced under these settings: 4-6",
                       self.finish("out", program=self.run_program).stderr)
-        self.trace("out", "--chunk", "2", "--chunk-frames", "4")
+        self.trace("out", "--chunk", "2/2")
         shutil.copyfile(self.folder / "out/traced.0005.sparse", self.folder / "out/traced.0006.sparse")
         self.assertIn("traced.0006.sparse: holds frame 5", self.finish("out", "--resume", program=self.run_program).stderr)
         # Cut within the line that says under which settings it was made, and that line changed: damaged, not another's.
@@ -82,7 +82,7 @@ class TracedFirst(Farm):
         line = content.index(b"\n")
         for broken in (content[:line - 5], content[:line - 1] + bytes([content[line - 1] ^ 1]) + content[line:]):
             first.write_bytes(broken)
-            self.trace("out", "--chunk", 1, "--chunk-frames", "4", "--resume")
+            self.trace("out", "--chunk", "1/2", "--resume")
             self.assertEqual(first.read_bytes()[:line], content[:line])
         damaged = self.folder / "out/traced.0002.sparse"
         damaged.write_bytes(damaged.read_bytes()[:-5])
@@ -90,7 +90,7 @@ class TracedFirst(Farm):
         self.assertEqual(again.returncode, 2)
         self.assertIn("traced.0002.sparse: the file of a traced frame is damaged", again.stderr)
         for number in (1, 2):
-            self.trace("out", "--chunk", number, "--chunk-frames", "4", "--resume")
+            self.trace("out", "--chunk", f"{number}/2", "--resume")
         self.finish("out", "--resume")
         self.assertEqual(self.pictures("out"), self.whole())
 
@@ -135,7 +135,7 @@ class OneCheckpoint(Farm):
 
     def part(self, frames, *more, program=None):
         run = program or self.run_ok
-        return run("render", "--config", "job.toml", *HISTORY, "--frames", frames, "--part", "-o", "out/f.####.exr", "-o",
+        return run("render", "--config", "job.toml", *HISTORY, "--frames", frames, "--chunk", "1/1", "-o", "out/f.####.exr", "-o",
                    "out/f.####.png", "--checkpoint", "out/history", *more)
 
     def test_it_goes_on_when_it_was_interrupted(self):
@@ -143,7 +143,7 @@ class OneCheckpoint(Farm):
         self.render("whole", *HISTORY, *FRAMES)
         self.part("1-2")
         # A checkpoint after every frame is what an interrupted run leaves behind.
-        arguments = ["render", "--config", "job.toml", *HISTORY, "--frames", "3-6", "--part", "-o", "out/f.####.exr", "-o",
+        arguments = ["render", "--config", "job.toml", *HISTORY, "--frames", "3-6", "--chunk", "1/1", "-o", "out/f.####.exr", "-o",
                      "out/f.####.png", "--checkpoint", "out/history", "--checkpoint-every", "1", "--resume-from", "out/history"]
         run = subprocess.Popen([harness.PROGRAM, *arguments], cwd=self.folder)
         while run.poll() is None and not (self.folder / "out/f.0004.exr").exists():
@@ -215,6 +215,14 @@ class Engines(FarmFiles):
         self.assertTrue(status["is_done"])
         self.assertEqual([task["state"] for task in status["tasks"]], ["done"] * 5)
         self.assertIn("nothing to do", self.run_ok("farm", "retry", "out").stderr)
+
+    def test_local_where_the_caller_ignores_what_becomes_of_its_children(self):
+        done = subprocess.run([harness.PROGRAM, "farm", "farm.toml", "--chunks", "2", "--processes", "2", "--threads", "1"],
+                              cwd=self.folder, capture_output=True, text=True, check=False,
+                              preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("tried again", done.stderr)
+        self.assertTrue(self.status()["is_done"])
 
     def test_what_follows_is_done_again(self):
         """After frames that are made anew, and where its commands are others."""
@@ -325,8 +333,7 @@ class Engines(FarmFiles):
         self.assertFalse((self.folder / "went-on").exists())
 
     def test_files_for_slurm(self):
-        self.run_ok("render", "--config", "farm.toml", "-o", "whole/f.####.exr", "--quiet")
-        self.farm("--engine", "slurm", "--chunks", "3", "--threads", "2", "--rate-from", "whole/timing.csv", "--then",
+        self.farm("--engine", "slurm", "--chunks", "3", "--threads", "2", "--time", "2h", "--then",
                   "echo 'it is done'")
         batch = (self.folder / "out/farm/task.sbatch").read_text()
         for words in ("#SBATCH --cpus-per-task=2", "#SBATCH --mem=", "#SBATCH --time=", "--requeue", "--signal=B:USR1@90"):
@@ -359,67 +366,6 @@ class Engines(FarmFiles):
         wrong = self.run_program("render", "--config", "farm.toml", "--progress", "openjd", "--gaze", "none.csv", "-o", "p/f.####.exr")
         self.assertTrue(wrong.stdout.startswith("openjd_fail: none.csv"), wrong.stdout)
 
-    def test_files_for_flamenco(self):
-        self.farm("--engine", "flamenco", "--chunks", "3", "--then", "true")
-        job = json.loads((self.folder / "out/farm/job.json").read_text())
-        self.assertEqual(job["settings"]["chunks"], "1,2,3")
-        self.assertEqual(job["settings"]["after"], "finish,after-1")
-        script = (self.folder / "out/farm/gazetrace_farm.js").read_text()
-        self.assertIn("function compileJob(job)", script)
-        if shutil.which("node") is None:
-            self.skipTest("no node, which stands in for the manager")
-        # The manager's own objects, as far as the script uses them.
-        stand_in = """
-            const author = { Task: (name, type) => ({ name, type, commands: [], needs: [],
-                                 addCommand(command) { this.commands.push(command); },
-                                 addDependency(task) { this.needs.push(task.name); } }),
-                             Command: (name, parameters) => ({ name, parameters }) };
-            const job = { settings: SETTINGS, tasks: [], addTask(task) { this.tasks.push(task); } };
-            compileJob(job);
-            console.log(JSON.stringify(job.tasks));"""
-        told = subprocess.run(["node", "-e", script + stand_in.replace("SETTINGS", json.dumps(job["settings"]))],
-                              capture_output=True, text=True, check=True)
-        tasks = {task["name"]: task for task in json.loads(told.stdout)}
-        self.assertEqual(list(tasks), ["1", "2", "3", "finish", "after-1"])
-        self.assertEqual(tasks["finish"]["needs"], ["1", "2", "3"])
-        self.assertEqual(tasks["after-1"]["needs"], ["finish"])
-        self.assertEqual(tasks["2"]["commands"], [{"name": "exec", "parameters": {
-            "exe": "sh", "args": [str((self.folder / "out/farm/task.sh").resolve()), "2"]}}])
-
-    def test_parts_of_the_samples(self):
-        self.write("still.toml", FARM_TOML.replace("region-samples = [4, 2, 1]", 'falloff = "uniform"\nspp = 32\nfilter = "none"')
-                   .replace('"1-6"', '"1-2"'))
-        told = self.farm("--sample-ranges", "4", "--processes", "2", "--threads", "1", job="still.toml")
-        self.assertIn("samples 8:16", told.stderr)
-        self.assertIn("8 of 8 parts of frames are rendered", told.stdout)
-        self.assertEqual(len(list((self.folder / "out").glob("samples.*.sums"))), 8)
-        self.assertEqual(self.pictures("out"), self.whole("still.toml"))
-        self.assertTrue(self.status()["is_done"])
-        # A part that is lost is missing, and made again alone.
-        (self.folder / "out/samples.0001.8-16.sums").unlink()
-        self.assertEqual([task["state"] for task in self.status()["tasks"]], ["done", "failed", "done", "done", "missing"])
-        again = self.run_ok("farm", "retry", "out").stderr
-        self.assertIn("task 2: begins", again)
-        self.assertNotIn("task 1: begins", again)
-        self.assertTrue(self.status()["is_done"])
-        # Foveated samples: every part takes about as many.
-        self.write("foveated.toml", FARM_TOML.replace("[4, 2, 1]", "[64, 16, 4]") + 'filter = "linear"\n')
-        other = self.farm("--engine", "slurm", "--sample-ranges", "3", job="foveated.toml", program=self.run_program)
-        self.assertIn("holds parts of another division", other.stderr)
-        shutil.rmtree(self.folder / "out")
-        self.farm("--engine", "slurm", "--sample-ranges", "3", job="foveated.toml")
-        plan = json.loads((self.folder / "out/farm/farm.json").read_text())
-        self.assertLess(max(plan["samples"]) / min(plan["samples"]), 1.6)
-        self.assertEqual(plan["ranges"][0].split(":")[0], "0")
-        for one, two in zip(plan["ranges"], plan["ranges"][1:]):
-            self.assertEqual(one.split(":")[1], two.split(":")[0])
-        for arguments, job, words in ((["--sample-ranges", "2"], "history.toml", "frames depend on those before them"),
-                                      (["--sample-ranges", "99"], "still.toml", "no pixel has more than 32 samples"),
-                                      (["--sample-ranges", "2", "--chunks", "2"], "still.toml", "into how many tasks")):
-            refused = self.farm(*arguments, job=job, program=self.run_program)
-            self.assertEqual(refused.returncode, 2)
-            self.assertIn(words, refused.stderr)
-
     def test_rows_of_a_sweep(self):
         self.write("plan.toml", SWEEP_TOML)
         told = self.run_ok("farm", "plan.toml", "-o", "out", "--chunks", "2", "--processes", "2", "--threads", "1", "--then",
@@ -431,12 +377,8 @@ class Engines(FarmFiles):
         self.assertEqual((self.folder / "report.txt").read_text(), "made\n")
         self.run_ok("farm", "plan.toml", "-o", "out", "--chunks", "2", "--engine", "slurm")
         self.assertIn("sweep merge ", (self.folder / "out/farm/task.sh").read_text())
-        for arguments, words in ((["--chunk-frames", "2"], "divided by their cost"), (["--chunks", "2", "--rate-from", "t.csv"], "timed")):
-            refused = self.farm(*arguments, job="plan.toml", program=self.run_program)
-            self.assertEqual(refused.returncode, 2)
-            self.assertIn(words, refused.stderr)
 
-    def test_a_chunk_is_tried_again_while_another_runs(self):
+    def test_a_chunk_is_tried_again_when_the_others_have_ended(self):
         self.write("slow.toml", FARM_TOML.replace("[4, 2, 1]", "[1024, 512, 256]"))
         (self.folder / "out").mkdir()
         broken = self.folder / "out/f.0001.exr"
@@ -454,18 +396,17 @@ class Engines(FarmFiles):
             time.sleep(0.02)
         broken.rmdir()
         self.assertEqual(self.states()["2"], "running")
-        second = subprocess.Popen([harness.PROGRAM, "farm", "retry", "out"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        while self.states()["1"] != "done" and second.poll() is None:
-            time.sleep(0.02)
-        # What follows waits for the chunk that the first farm is at.
-        self.assertEqual((self.states()["2"], second.poll()), ("running", None))
+        # One farm at a time runs tasks here.
+        for words in (["retry", "out"], ["slow.toml", "--chunks", "2"]):
+            refused = self.run_program("farm", *words)
+            self.assertNotEqual(refused.returncode, 0)
+            self.assertRegex(refused.stderr, "task 2 is running|another 'gazetrace farm' runs these tasks")
         os.kill(held, signal.SIGCONT)
-        told = second.communicate()[1]
-        self.assertEqual(second.returncode, 0, told)
-        self.assertNotIn("task 2: begins", told)
-        self.assertIn("task finish: begins", told)
         self.assertNotEqual(first.wait(), 0)
         first.stderr.close()
+        told = self.run_ok("farm", "retry", "out").stderr
+        self.assertIn("task 1: begins", told)
+        self.assertNotIn("task 2: begins", told)
         self.assertTrue(self.status()["is_done"])
         self.assertEqual(self.pictures("out"), self.whole("slow.toml"))
 

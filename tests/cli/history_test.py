@@ -72,7 +72,7 @@ class Histories(harness.CliTest):
         return json.loads((self.folder / path).read_text())
 
     def part(self, folder, frames, *more):
-        return self.run_ok("render", *JOB, *SMALL, "-o", f"{folder}/f.####.png", "--frames", frames, "--part", *more)
+        return self.run_ok("render", *JOB, *SMALL, "-o", f"{folder}/f.####.png", "--frames", frames, "--chunk", "1/1", *more)
 
     def test_parts_joined_by_a_checkpoint_merge(self):
         self.run_ok("render", *JOB, *SMALL, "-o", "whole/f.####.png", "--frames", "1-5")
@@ -94,7 +94,7 @@ class Histories(harness.CliTest):
     def test_broken_chains_of_parts_are_said(self):
         self.part("parts", "1-3", "--checkpoint", "after3.bin")
         alone = self.part("parts", "4")
-        self.assertIn("--part: frame 4 begins without the history of those before it", alone.stderr)
+        self.assertIn("--chunk: frame 4 begins without the history of those before it", alone.stderr)
         self.assert_refused(["merge", "parts"], ["timing.4.csv", "frame 4 was made without history",
                                                  "in one run it would have been with the history of frames 1-3",
                                                  "--resume-from and a checkpoint made after frame 3"])
@@ -179,8 +179,8 @@ class Histories(harness.CliTest):
 
     def test_a_lost_row_of_a_chain(self):
         """The pictures are whole, and the history that the frame began from is gone: its row is made anew without times."""
-        self.render("out", *SMALL, "--frames", "1-3", "--part", "--checkpoint", "history.bin")
-        second = [*SMALL, "--frames", "4-6", "--part", "--resume-from", "history.bin"]
+        self.render("out", *SMALL, "--frames", "1-3", "--chunk", "1/1", "--checkpoint", "history.bin")
+        second = [*SMALL, "--frames", "4-6", "--chunk", "1/1", "--resume-from", "history.bin"]
         whole = self.render("out", *second)
         table = self.folder / "out/timing.4-6.csv"
         lines = table.read_text().splitlines()

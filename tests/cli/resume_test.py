@@ -111,7 +111,7 @@ class Sequences(harness.CliTest):
     def test_parts_join(self):
         whole = self.render("whole")
         for frames in ("5-8", "1-4", "9-12"):
-            self.render("parts", "--frames", frames, "--part")
+            self.render("parts", "--frames", frames, "--chunk", "1/1")
         self.assertEqual(self.pictures("parts"), whole)
         records = [name for name in self.files("parts") if name.endswith((".json", ".csv"))]
         self.assertEqual(records, sorted(f"{stem}.{frames}.{suffix}" for frames in ("1-4", "5-8", "9-12")

@@ -117,7 +117,7 @@ class SampleRanges(harness.CliTest):
         self.parts("other", ["8:64"], "--seed", "4")
         self.assert_refused(["merge", "other"], ["other settings"])
         self.parts("kinds", ["0:8"])
-        self.render("kinds", "--part")
+        self.render("kinds", "--chunk", "1/1")
         self.assert_refused(["merge", "kinds"], ["another kind"])
         self.parts("good", ["0:8", "8:64"])
         sums = self.folder / "good/samples.0001.8-64.sums"

@@ -38,7 +38,7 @@ class TwoSided(harness.CliTest):
     def test_a_frame_is_the_same_in_every_run(self):
         whole = self.render("whole", "--frames", "1-8")
         for frames in ("1-3", "4", "5-8", "2,7"):
-            part = self.render(f"part-{frames}", "--frames", frames, "--part")
+            part = self.render(f"part-{frames}", "--frames", frames, "--chunk", "1/1")
             for name, pixels in part.items():
                 self.assertEqual(pixels, whole[name], f"{frames}: {name}")
         self.assertEqual(self.render("one-thread", "--frames", "4", "--threads", "1")["f.0004.png"],
@@ -46,8 +46,8 @@ class TwoSided(harness.CliTest):
 
     def test_parts_merge_and_a_run_resumes(self):
         whole = self.render("whole", "--frames", "1-6")
-        self.render("parts", "--frames", "1-3", "--part")
-        self.render("parts", "--frames", "4-6", "--part")
+        self.render("parts", "--frames", "1-3", "--chunk", "1/1")
+        self.render("parts", "--frames", "4-6", "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertEqual({p.name: png_pixels(p) for p in (self.folder / "parts").glob("f.*.png")}, whole)
         (self.folder / "whole" / "f.0004.png").unlink()
@@ -60,10 +60,10 @@ class TwoSided(harness.CliTest):
         names = sorted(whole)
         self.assertEqual([whole[a] == whole[b] for a, b in zip(names, names[1:])], [True, False, True, False, True])
         for frames in ("1-3", "4", "2,5"):
-            for name, pixels in self.render(f"part-{frames}", *rest, "--frames", frames, "--part").items():
+            for name, pixels in self.render(f"part-{frames}", *rest, "--frames", frames, "--chunk", "1/1").items():
                 self.assertEqual(pixels, whole[name], f"{frames}: {name}")
-        self.render("parts", *rest, "--frames", "1-3", "--part")
-        self.render("parts", *rest, "--frames", "4-6", "--part")
+        self.render("parts", *rest, "--frames", "1-3", "--chunk", "1/1")
+        self.render("parts", *rest, "--frames", "4-6", "--chunk", "1/1")
         self.run_ok("merge", "parts")
         self.assertEqual({p.name: png_pixels(p) for p in (self.folder / "parts").glob("f.*.png")}, whole)
         (self.folder / "whole" / "f.0004.png").unlink()

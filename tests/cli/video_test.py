@@ -3,6 +3,7 @@
 
 import json
 import shutil
+import signal
 import subprocess
 import unittest
 
@@ -137,6 +138,12 @@ exit 3
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("no such encoder", result.stderr)
         self.assertEqual(len(result.stderr.splitlines()), 1)
+        self.assertEqual([name for name in self.files() if "out" in name], [])
+        # A caller that ignores SIGCHLD hands that on, and a process that does so is not told how its children ended.
+        command = [harness.PROGRAM, "video", "p.####.png", "-o", "out.mp4", "--fps", "24", "--ffmpeg", str(program)]
+        ignoring = subprocess.run(command, cwd=self.folder, capture_output=True, check=False,
+                                  preexec_fn=lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN))
+        self.assertEqual(ignoring.returncode, 3, ignoring.stderr)
         self.assertEqual([name for name in self.files() if "out" in name], [])
 
     def test_what_is_refused(self):

@@ -80,10 +80,8 @@ inline FarmPlan farm(const std::string& engine) {
   plan.folder = "/data/out/farm";
   plan.run_folder = "/data/out";
   plan.work_folder = "/data";
-  plan.division = "/2";
   plan.chunks = {"1-10", "11-20"};
   plan.samples = {100, 200};
-  plan.predicted_s = {1, 2};
   plan.time_s = 60;
   plan.memory_mib = 512;
   plan.then = {"report out"};
@@ -206,7 +204,7 @@ metrics = ["flip"]
   files.push_back({"run-record", "part", record});
   files.push_back({"timing", "two", seeds::timing()});
   files.push_back({"parts", "one", seeds::timing() + "\n%%FILE run.1-2.json\n" + record});
-  for (const char* engine : {"slurm", "openjd", "flamenco", "local"}) {
+  for (const char* engine : {"slurm", "openjd", "local"}) {
     files.push_back({"farm", engine, farm_plan_json(seeds::farm(engine))});
   }
   files.push_back({"chunks", "two", chunk_file_text({fuzz::kDigest, "1-20", {"1-10", "11-20"}, {100, 200}})});

@@ -29,8 +29,6 @@ struct FarmArguments {
   std::string folder;  // of status and retry
   int processes = 1;
   bool submit = false;
-  bool check_files = false;  // of status
-  bool trust_files = false;  // of retry
   JsonOutput json;
 };
 
@@ -101,7 +99,7 @@ int run_farm(FarmArguments& arguments) {
 
 int run_status(const FarmArguments& arguments) {
   const FarmPlan plan = read_farm(arguments.folder);
-  const FarmStatus status = farm_status(plan, arguments.check_files ? FileCheck::content : FileCheck::size);
+  const FarmStatus status = farm_status(plan);
   arguments.json.print(farm_status_text(plan, status), [&] { return farm_status_json(plan, status); });
   return exit_done;
 }
@@ -112,7 +110,7 @@ int run_retry(const FarmArguments& arguments) {
     throw Error(ErrorKind::input, plan.folder, "the farm was made for another folder, and its tasks would write there",
                 "call 'gazetrace farm' again for a job whose outputs are here");
   }
-  const FarmStatus status = farm_status(plan, arguments.trust_files ? FileCheck::size : FileCheck::content);
+  const FarmStatus status = farm_status(plan, FileCheck::content);
   if (status.is_done()) {
     throw Error(ErrorKind::nothing_to_do, arguments.folder, "every task is done");
   }
@@ -157,13 +155,6 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
                  "Divides the frames, or the rows of a sweep, into N tasks of about equal cost")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  app.add_option("--chunk-frames", settings.chunk_frames, "Divides them into tasks of N frames each")
-      ->check(CLI::PositiveNumber)
-      ->type_name("N");
-  app.add_option("--sample-ranges", settings.sample_ranges,
-                 "Divides the samples of all frames into N tasks, whose sums 'merge' makes pictures of")
-      ->check(CLI::PositiveNumber)
-      ->type_name("N");
   app.add_option("-o,--output", settings.output, "Of a sweep: its folder; default: the plan's name with .sweep")
       ->type_name("FOLDER");
   app.add_option("--threads", settings.threads, "Of each task; 0: as many as its machine has")
@@ -175,11 +166,7 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--memory", arguments->memory,
                  "Of each task, such as 8G; default: by the scene and the pictures' size")
       ->type_name("BYTES");
-  app.add_option("--time", arguments->time, "Limit of each task, such as 2h; default: by --rate-from, else none")
-      ->type_name("DURATION");
-  app.add_option("--rate-from", settings.rate_from,
-                 "A timing.csv of the same job on such a machine, by which times are predicted")
-      ->type_name("FILE");
+  app.add_option("--time", arguments->time, "Limit of each task, such as 2h; default: none")->type_name("DURATION");
   app.add_option("--container", settings.container, "Words before the program, such as 'apptainer exec gazetrace.sif'")
       ->type_name("WORDS");
   app.add_option("--program", settings.program, "gazetrace as the tasks find it; default: this one")->type_name("FILE");
@@ -194,15 +181,10 @@ Command add_farm_command(CLI::App& app, const Invocation& /*invocation*/) {
   CLI::App* const status = app.add_subcommand("status", "Tell of each task whether it is done, and what is left");
   status->footer(kExitCodesHelp);
   status->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
-  status->add_flag(
-      "--check-files", arguments->check_files,
-      "Reads all finished files and compares their content with what was written, and not the sizes alone");
   add_json_option(*status, arguments->json);
   CLI::App* const retry = app.add_subcommand("retry", "Do again what is neither done nor running, and what follows");
   retry->footer(kExitCodesHelp);
   retry->add_option("folder", arguments->folder, "Where the job writes its outputs")->required()->type_name("DIR");
-  retry->add_flag("--trust-files", arguments->trust_files,
-                  "Compares the sizes of finished files alone with what was written, and not their content");
   add_hand_over_options(*retry, *arguments);
   app.require_subcommand(0, 1);
 

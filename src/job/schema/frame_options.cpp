@@ -16,27 +16,15 @@ void add_frame_options(JobSchema& schema) {
       .decides_nothing();
   schema.value("--start", &JobSettings::start, "DURATION", Touch::frames, "Video time at which frame 1 begins");
   schema
-      .flag("--part", &JobSettings::part, Touch::frames,
-            "The frames are one part of a sequence, and other runs render the rest: timing and run record carry the "
-            "range of frames in their names, and 'gazetrace merge' joins them. Frames that depend on those before them "
-            "need --resume-from or --preroll")
-      .decides_nothing()
-      .with(Trait::one_run);
-  schema
       .value(
           "--chunk", &JobSettings::chunk, "K/N", Touch::frames,
-          "Renders the K-th of N parts of the frames, which cost about the same by the samples of the plan; each is a "
-          "--part. The borders are the same for every task and are written down beside the outputs. With "
-          "--chunk-frames, K alone: the K-th so many frames. A chunk without frames is done at once")
+          "Renders the K-th of N parts of the frames, which cost about the same by the samples of the plan; 1/1 makes all "
+          "frames that are asked for a part of a longer sequence. Timing and "
+          "run record carry its frames in their names, and 'gazetrace merge' joins all parts. The borders are the same "
+          "for every task and are written down beside the outputs. Frames that depend on those before them need "
+          "--resume-from or --preroll. A chunk without frames is done at once")
       .decides_nothing()
       .with(Trait::one_run);
-  schema
-      .value("--chunk-frames", &JobSettings::chunk_frames, "N", Touch::frames,
-             "Chunks of N frames each, however many there are; 0: --chunk says of how many")
-      .decides_nothing()
-      .within(0, 1e9)
-      .with(Trait::one_run)
-      .need("`chunk`");
   schema
       .value("--stage", &JobSettings::stage, choices<SequenceStage>(), Touch::frames,
              "For frames that depend on those before them: trace only traces frames, on any number of machines, and "
