@@ -65,7 +65,7 @@ class Locks(Running):
         (self.folder / "c").mkdir()
         self.run_ok("render", *JOB, "-o", "c/f.####.exr", "-o", "b/g.####.png", "--frames", "3")
         for name in ("b/f.####.png", "b/f.%04d.png", "link/f.%04d.png", "./b/../link/f.0003.png"):
-            self.refused(["-o", "e/h.####.exr", "-o", name], ["f.0003.png", f"process {first.pid} on", "gazetrace render"])
+            self.refused(["-o", "e/h.####.exr", "-o", name], ["f.0003.png", f"process {first.pid} on", "render --config job.toml"])
         self.assert_refused(["render", *JOB, *self.OUTPUTS, *self.SLOW, "--resume"], ["a/", f"process {first.pid} on"], 3)
         # Other frames are free.
         self.run_ok("render", *JOB, "-o", "d/f.####.exr", "-o", "b/f.####.png", "--frames", "5-6")

@@ -122,7 +122,7 @@ TEST_F(OutputLocks, WhoeverHoldsItIsNamedAndNobodyAfterwards) {
     const OutputLock held = lock_outputs(run_of(folder / "a/f.####.png", folder / "a"), frames);
     const std::string text = file_bytes(folder / "a/.gazetrace.lock");
     EXPECT_NE(text.find("process " + std::to_string(::getpid()) + " on "), std::string::npos);
-    EXPECT_NE(text.find("output_lock_test"), std::string::npos) << text;
+    EXPECT_NE(text.find(program_invocation_short_name), std::string::npos) << text;
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 4) << "a sequence is held as one range";
     EXPECT_TRUE(is_locked(folder / "a/run.json"));
     EXPECT_FALSE(is_locked(folder / "a/run.1-3.json"));
