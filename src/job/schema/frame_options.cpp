@@ -18,7 +18,8 @@ void add_frame_options(JobSchema& schema) {
   schema
       .value(
           "--chunk", &JobSettings::chunk, "K/N", Touch::frames,
-          "Renders the K-th of N parts of the frames, which cost about the same by the samples of the plan; 1/1 makes all "
+          "Renders the K-th of N parts of the frames, which cost about the same by the samples of the plan; 1/1 makes "
+          "all "
           "frames that are asked for a part of a longer sequence. Timing and "
           "run record carry its frames in their names, and 'gazetrace merge' joins all parts. The borders are the same "
           "for every task and are written down beside the outputs. Frames that depend on those before them need "
