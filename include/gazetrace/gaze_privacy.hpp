@@ -20,6 +20,8 @@ bool is_wall_clock(const GazeLog& log);
 std::int64_t count_from_first_sample(GazeLog& log);
 // Dates and times of day in a text become "(date)".
 std::string without_dates(const std::string& text);
+// Numbers of 18 or 19 digits, nanoseconds since 1970, become "(stamp)".
+std::string without_stamps(const std::string& text);
 
 struct LogWithoutTimesOfDay {
   GazeLog log;

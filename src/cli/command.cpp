@@ -2,11 +2,12 @@
 #include "cli/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <regex>
+#include <string_view>
 
 #include "cli/exit_codes.hpp"
 #include "gazetrace/error.hpp"
@@ -14,6 +15,14 @@
 
 namespace gazetrace {
 namespace {
+
+// Words of small letters and digits, joined by single hyphens; the first begins with a letter.
+bool is_setting_name(std::string_view name) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_word = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
+  return !name.empty() && is_letter(name.front()) && name.back() != '-' && name.find("--") == std::string_view::npos &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return c == '-' || is_word(c); });
+}
 
 std::string joined(const std::vector<std::string>& texts) {
   std::string line;
@@ -138,8 +147,23 @@ void print_result(const std::string& text) {
 }
 
 std::string with_flags(const std::string& text) {
-  static const std::regex kSetting("`([a-z][a-z0-9]*(?:-[a-z0-9]+)*)`");
-  return std::regex_replace(text, kSetting, "--$1");
+  std::string result;
+  std::size_t copied = 0;  // so much of the text is in the result
+  for (std::size_t open = text.find('`'); open != std::string::npos;) {
+    const std::size_t close = text.find('`', open + 1);
+    if (close == std::string::npos) {
+      break;
+    }
+    const std::string_view name = std::string_view(text).substr(open + 1, close - open - 1);
+    if (is_setting_name(name)) {
+      result.append(text, copied, open - copied).append("--").append(name);
+      copied = close + 1;
+      open = text.find('`', copied);
+    } else {
+      open = close;
+    }
+  }
+  return result.append(text, copied);
 }
 
 std::vector<std::string> with_flags(std::vector<std::string> texts) {

@@ -31,6 +31,11 @@ std::string without_dates(const std::string& text) {
   return std::regex_replace(text, kDate, "(date)");
 }
 
+std::string without_stamps(const std::string& text) {
+  static const std::regex kStamp(R"(\b\d{18,19}\b)");
+  return std::regex_replace(text, kStamp, "(stamp)");
+}
+
 bool is_wall_clock(const GazeLog& log) {
   constexpr std::int64_t kYear2000 = 946'684'800'000'000'000;
   constexpr std::int64_t kYear2100 = 4'102'444'800'000'000'000;

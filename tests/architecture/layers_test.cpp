@@ -115,6 +115,7 @@ const std::vector<std::pair<std::string, std::string>> dependencies = {
     {R"(nlohmann/)", R"(src/(.*\.cpp|scene/gltf/walker\.hpp|results/json_node\.hpp|gazelog/bids_parts\.hpp))"},
     {R"(pugixml)", R"(src/gazelog/formats/xdf\.cpp)"},
     {R"(fmt/)", R"(src/.*\.cpp)"},
+    {"regex$", R"(src/gaze/privacy\.cpp)"},
     {R"(zlib\.h)", R"(src/(gazelog/gzip|core/png_file)\.cpp)"},
 };
 

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <regex>
 
 #include "gazelog/mending.hpp"
 #include "gazelog/recordings.hpp"
@@ -102,8 +101,7 @@ GazeInspection inspect(const GazeLog& log, const GazeUnderInspection* whole, con
     report.timing.first_ns = report.timing.last_ns = 0;
     report.order.first_backward_ns = report.order.before_ns = report.order.first_duplicate_ns = 0;
     for (GazeFinding& finding : report.findings) {
-      static const std::regex kStamp(R"(\b\d{18,19}\b)");
-      finding.what = std::regex_replace(finding.what, kStamp, "(stamp)");
+      finding.what = without_stamps(finding.what);
     }
     for (GazeCalibration& calibration : report.calibrations) {
       calibration.t_ns = 0;
