@@ -126,7 +126,7 @@ void choose_wanted_frames(const ViewInputs& inputs, ResolvedJob& resolved) {
   if (inputs.log == nullptr && !follows_picture(job.foveation)) {
     resolved.decisions.emplace_back("sampling", sampling_without_gaze(job.foveation));
   }
-  if (job.chunk) {
+  if (job.chunk && job.chunk->count > 1) {  // one of one divides nothing
     keep_to_chunk(job, inputs.camera, inputs.taken_off_ns, resolved);
   }
 }
