@@ -10,9 +10,9 @@ OPTIONS are those of `gazetrace render`. Frames are uniform, or foveated as by d
 scaled to a rate: so many samples a pixel on average. The camera is at rest, and every frame has samples of its own and
 stands for a seed: `--seeds` of them up to 4 samples a pixel, at most 3 above and 2 from 256 on. They fill the screen `paper`.
 
-The reference of a scene is the mean of two frames of `--reference-spp` samples with the seed 991. Half their difference is
-as large as the error of that mean: what the first of them scores against the mean is the reference's floor. It is taken off
-the relative MSE of `none` before differences are stated in per cent.
+The reference of a scene is the mean of two renders of `--reference-spp` samples with the seeds 991 and 992, by `gazetrace
+merge --mean`. Half their difference is as large as the error of that mean: what the first of them scores against the mean
+is the reference's floor. It is taken off the relative MSE of `none` before differences are stated in per cent.
 
 A line is a cell: `none`, the filter, and how much the filter changes, a mean over seeds with its 95 % interval by Student's
 t, of JOD, FLIP within the fovea and relative MSE. A cell is `LOST` in a metric where the whole interval lies beyond the
@@ -97,14 +97,20 @@ class Bench:
         return folder
 
     def reference(self, name, scene):
-        """The folder of the reference: frame 1 is one half, frame 2 the mean of both."""
-        return self.render(self.asked.program, self.out / name / "reference", scene, "--preset", "reference", "--spp",
-                           self.asked.reference_spp, "--seed", "991", "--accumulate", "running", "--frames", "1-2")
+        """The folders of one half of the reference, and of the mean of both."""
+        halves = [self.render(self.asked.program, self.out / name / f"half-{seed}", scene, "--preset", "reference", "--spp",
+                              self.asked.reference_spp, "--seed", seed, "--frames", "1") for seed in ("991", "992")]
+        whole = self.out / name / "reference"
+        if not (whole / "done").exists():
+            run(self.asked.program, "merge", "--mean", *(half / "f.####.exr" for half in halves), "-o", whole / "f.####.exr",
+                "--overwrite")
+            (whole / "done").touch()
+        return halves[0], whole
 
     def scores(self, reference, picture):
         record = picture.with_suffix(".json")
         if not record.exists():
-            run(self.asked.program, "compare", reference / "f.0002.exr", picture, "--metrics", ",".join(METRICS), "--anyway",
+            run(self.asked.program, "compare", reference / "f.0001.exr", picture, "--metrics", ",".join(METRICS), "--anyway",
                 "--json", record)
         found = {s["metric"]: s for s in json.loads(record.read_text())["sequence"][0]["scores"]}
         return {"fovvideovdp": found["fovvideovdp"]["value"], "flip": found["flip"]["regions"]["fovea"],
@@ -159,8 +165,8 @@ class Bench:
         print("| " + " | ".join(cells) + " |", flush=True)
 
     def scene(self, name, scene):
-        reference = self.reference(name, scene)
-        floor = self.scores(reference, reference / "f.0001.exr")
+        half, reference = self.reference(name, scene)
+        floor = self.scores(reference, half / "f.0001.exr")
         print(f"| {name} | floor | | {floor['fovvideovdp']:.2f} | {floor['flip']:.4g} | {floor['relmse']:.4g} | |", flush=True)
         for layout in self.asked.layouts.split(","):
             for rate in self.asked.rates.split(","):
