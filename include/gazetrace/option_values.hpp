@@ -70,7 +70,6 @@ void parse_value(std::string_view text, const std::string& place, Vec2d& value);
 void parse_value(std::string_view text, const std::string& place, Vec3d& value);
 void parse_value(std::string_view text, const std::string& place, FrameRect& value);
 void parse_value(std::string_view text, const std::string& place, PixelIndex& value);
-void parse_value(std::string_view text, const std::string& place, SampleRange& value);  // A:B
 void parse_value(std::string_view text, const std::string& place, std::array<std::uint32_t, 3>& value);
 void parse_value(std::string_view text, const std::string& place, std::array<int, 2>& value);
 void parse_value(std::string_view text, const std::string& place, std::array<double, 2>& value);
@@ -97,7 +96,6 @@ std::string format_value(const Vec2d& value);
 std::string format_value(const Vec3d& value);
 std::string format_value(const FrameRect& value);
 std::string format_value(const PixelIndex& value);
-std::string format_value(const SampleRange& value);
 std::string format_value(const std::array<std::uint32_t, 3>& value);
 std::string format_value(const std::array<int, 2>& value);
 std::string format_value(const std::array<double, 2>& value);

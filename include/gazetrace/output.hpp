@@ -110,9 +110,11 @@ struct FrameHeader {
   double exposure_ev = 0;
   double enhance_contrast = 0;  // above 0: contrast was enhanced, and the picture no longer estimates radiance
   std::uint64_t seed = 0;
-  std::string settings_digest;  // hex
-  std::string history;          // history_text() of the frames behind this one; empty: it depends on no other
-  std::string software;         // "gazetrace 0.1.0"
+  std::string settings_digest;   // hex
+  std::string mean_digest;       // PipelineSettings::mean_digest; empty: no mean is to be taken of this picture
+  double samples_per_pixel = 0;  // where every pixel has as many; 0: they differ
+  std::string history;           // history_text() of the frames behind this one; empty: it depends on no other
+  std::string software;          // "gazetrace 0.1.0"
 };
 
 struct WrittenExr {
@@ -199,13 +201,12 @@ struct RunRecord {
   std::map<std::string, std::string> input_digests;  // path -> content hash
   std::string frames;                                // a frame list, see format_frame_list()
   bool is_part = false;                              // a part of a longer sequence
-  std::string samples;                               // "0:1024": a part of the samples; empty: all of them
-  std::string stage;       // "trace": its files are traced frames (save_traced()); empty: pictures or sums
-  std::string chunk_file;  // the ChunkFile that its frames come from, in its folder; empty: none
+  std::string stage;                         // "trace": its files are traced frames (save_traced()); empty: pictures
+  std::string chunk_file;                    // the ChunkFile that its frames come from, in its folder; empty: none
   std::map<std::string, std::string> facts;  // load_s, bvh_mib, peak_memory_mib, view, working_space, ...
   Warnings warnings;
   std::vector<BadSample> bad_samples;
-  WrittenFiles files;  // pictures, maps, sums of samples and traced frames, as they were written
+  WrittenFiles files;  // pictures, maps and traced frames, as they were written
 };
 std::string run_record_json(const RunRecord& record);
 RunRecord read_run_record(const std::string& path);  // Error(input)
@@ -214,10 +215,6 @@ RunRecord read_run_record(const std::string& path);  // Error(input)
 std::string timing_file_name(const std::string& directory, const std::string& frames, bool is_part);
 std::string run_record_file_name(const std::string& directory, const std::string& frames, bool is_part);
 
-// The name of a part of the samples in the names of its files, beginning with the frames: "1-3.samples-0-1024".
-std::string part_of_samples_name(const std::string& frames, const SampleRange& samples);
-// The file of a frame's sums over a part of the samples: samples.0001.0-1024.sums
-std::string samples_file_name(const std::string& directory, std::int32_t frame, const SampleRange& samples);
 // The file of a frame that was traced and not yet reconstructed: traced.0001.sparse
 std::string traced_file_name(const std::string& directory, std::int32_t frame);
 
@@ -261,9 +258,6 @@ std::vector<BadFile> find_bad_files(const std::string& directory, const WrittenF
 std::vector<BadFile> find_bad_files(const std::vector<RunPart>& parts, int threads = 0);
 // Error(input) that counts bad files, and names the first of them and their frames; nothing where there are none.
 void refuse_bad_files(const std::string& directory, const std::vector<BadFile>& bad);
-// Whether these are parts of the samples, for merge_samples() of sample_parts.hpp, rather than parts of the frames.
-// Error(input) where both occur.
-bool are_parts_of_samples(const std::vector<RunPart>& parts);
 
 struct MergeOptions {
   bool allow_missing = false;  // join what is there; frames whose files are bad count as missing

@@ -31,13 +31,16 @@ struct PipelineSettings : FrameSettings {
   // The digest of all that decides about pixels, but not of which frames there are or how the sequence was divided.
   // What history a frame had is in the header of that frame's picture.
   std::string settings_digest;
+  // The same without the seed and, where pictures are plain means of equally many samples a pixel, without their
+  // number: pictures of one such digest and different seeds estimate the same light, and merge_means() takes their
+  // mean.
+  std::string mean_digest;
   // History (accumulation, smoothed exposure) that is kept in files and taken up again.
   std::string checkpoint;             // a file for the history after the last frame; empty: none
   std::int32_t checkpoint_every = 0;  // also write it after every so many frames; 0: only at the end
   std::string resume_from;            // a checkpoint whose last frame comes before the plan's first; empty: no history
   std::int32_t preroll = 0;           // so many frames at the plan's beginning are rendered for their history alone
-  // The plan is a part of a longer sequence: timing.csv and run.json carry the range of frames in their names. With
-  // `trace.samples` it is a part of the samples: their sums are written instead of pictures (sample_parts.hpp).
+  // The plan is a part of a longer sequence: timing.csv and run.json carry the range of frames in their names.
   bool is_part = false;
   SequenceStage stage = SequenceStage::whole;
 };
@@ -54,7 +57,7 @@ struct PipelineObserver {
   // `skipped`: no file was written, since it was there already or the frame was rendered for its history alone.
   std::function<void(const TimingRow&, bool skipped)> frame_done;
   // Called after frame_done for frames that were not skipped, with everything that was found out about the frame, to be
-  // moved out where it is to outlive the call. Not called where frames are only traced or are parts of the samples.
+  // moved out where it is to outlive the call. Not called where frames are only traced.
   std::function<void(const FrameRequest&, RenderedFrame&&, const TimingRow&)> take_frame;
   // Asked before a frame, with the mean time of those before it, ms (0: there was none): true ends the sequence there.
   // TraceSettings::stop gives up a frame in the middle.

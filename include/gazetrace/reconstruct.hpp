@@ -86,7 +86,6 @@ struct FilterFacts {
   bool foveated = true;            // a gaze steers where the samples go, under another fall-off than "uniform"
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
   bool enhances_contrast = false;  // enhance_contrast() is applied
-  bool part_of_samples = false;    // TraceSettings::samples
   bool means_frames = false;       // AccumulateMode::running
   bool single_pixel = false;       // TraceSettings::only_pixel
 };

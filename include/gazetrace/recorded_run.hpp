@@ -26,8 +26,4 @@ struct RecordedRun {
 // pictures carry (FrameFacts::settings_digest). Throws Error(input) for a record that cannot be read.
 std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const std::string& settings_digest);
 
-// The job that renders all samples of all frames of which `parts` hold some, for merge_samples(), with the scope
-// `digests`. Throws Error(input) where the files that the job names are not those that the parts were rendered from.
-ResolvedJob resolve_whole_of_parts(const std::vector<RunPart>& parts, bool overwrite);
-
 }  // namespace gazetrace

@@ -16,7 +16,6 @@
 #include "gazetrace/light_groups.hpp"
 #include "gazetrace/material.hpp"
 #include "gazetrace/motion.hpp"
-#include "gazetrace/sample_sums.hpp"
 #include "gazetrace/scene.hpp"
 
 namespace gazetrace {
@@ -76,11 +75,6 @@ struct TraceSettings {
   // itself, so that a mean over both has a little more noise than one over a single sequence.
   bool halves = false;
   std::optional<PixelIndex> only_pixel;  // trace only the site that holds this pixel
-  // Traces only these samples of every site, and keeps their exact sums in SparseFrame::unrounded as well. Rays are
-  // then traced one by one instead of in packets, so that a sample does not depend on its neighbours in the packet:
-  // within packets about one ray in 1e7 hits the other one of two surfaces that share an edge. This is about an eighth
-  // slower.
-  std::optional<SampleRange> samples;
   // Asked before every piece of work, from several threads: once it is true, tracing ends with Error(interrupted), and
   // the frame is lost. Empty: never.
   std::function<bool()> stop;
@@ -193,15 +187,8 @@ struct SparseFrame {
   std::vector<std::uint32_t> samples_of_others;
   // Of each site that filters change, beside its surfaces; empty unless TraceSettings::surfaces.
   std::vector<FirstHitSums> first_hits;
-  SampleSums unrounded;  // empty unless TraceSettings::samples
   TraceStats stats;
 };
-
-// Adds the sums of other samples of the same sites. Error(runtime) where the numbers of sites differ.
-void add_sums(const SampleSums& from, SampleSums& to);
-// What PosedScene::trace() would have returned for the samples that were added up, bit for bit, but without surfaces
-// and stats. Error(runtime) where the number of sums is not the map's number of sites.
-SparseFrame sparse_frame_of(const SampleSums& sums, const SamplingMap& map);
 
 // Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
 // samples than are enough. All others keep the mean of their own samples, bit by bit. What counts is the expectation

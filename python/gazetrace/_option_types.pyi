@@ -109,7 +109,6 @@ class JobOptions(TypedDict, total=False):
     start: Value | None
     chunk: Value | None
     stage: Value | None
-    sample_range: Value | None
     frame_rect: Value | Sequence[Value] | None
     falloff: Value | None
     spp: Value | None

@@ -51,10 +51,10 @@ void check_render_job(const FarmSettings& settings, const JobSettings& job) {
     throw Error(ErrorKind::input, settings.job_file, "the job has no output, which says where the farm is",
                 "add output = [\"out/frame.####.exr\"]");
   }
-  if (job.chunk || job.trace.samples || job.frames == std::nullopt) {
+  if (job.chunk || job.frames == std::nullopt) {
     throw Error(ErrorKind::input, settings.job_file,
                 job.frames ? "the job is a part of a sequence already" : "the job does not say which frames it has",
-                job.frames ? "leave `chunk` and `sample-range` out" : "add frames = \"1-100\"");
+                job.frames ? "leave `chunk` out" : "add frames = \"1-100\"");
   }
 }
 

@@ -10,7 +10,6 @@
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 #include "gazetrace/resolve.hpp"
-#include "gazetrace/sample_parts.hpp"
 #include "job/outputs.hpp"
 #include "job/quality_defaults.hpp"
 #include "pipeline/quality/adaptive_rates.hpp"
@@ -138,31 +137,6 @@ void check_target(const JobSettings& job) {
   }
 }
 
-void check_sample_range(const JobSettings& job) {
-  if (!job.trace.samples) {
-    return;
-  }
-  PipelineSettings settings;
-  settings.foveation = job.foveation;
-  settings.reconstruction.filter = filter_of(job).name;
-  settings.accumulate = job.accumulate;
-  settings.exposure = job.exposure;
-  settings.exposure.smoothing_s = static_cast<double>(job.exposure_smoothing.ns) * 1e-9;
-  settings.trace.only_pixel = job.only_pixel;
-  settings.output.exr = job.exr;
-  if (const std::string reason = needs_all_samples(settings); !reason.empty()) {
-    throw Error(ErrorKind::usage, "`sample-range`", reason, "leave it out, or change that");
-  }
-  const FoveationSettings& foveation = job.foveation;
-  if (foveation.falloff == "uniform" && !foveation.budget_spp && !foveation.budget_samples &&
-      job.trace.samples->end > foveation.uniform_spp) {
-    throw Error(
-        ErrorKind::usage, "`sample-range`",
-        fmt::format("{} is beyond the {} samples of a pixel", format_value(*job.trace.samples), foveation.uniform_spp),
-        "end it there, or raise `spp`");
-  }
-}
-
 void check_stage(const JobSettings& job) {
   if (job.stage == SequenceStage::whole) {
     return;
@@ -172,9 +146,6 @@ void check_stage(const JobSettings& job) {
   };
   if (job.accumulate.mode == AccumulateMode::two_sided) {
     refuse("frames read the samples of those around them, and each part traces those by itself");
-  }
-  if (job.trace.samples) {
-    refuse("`sample-range` leaves sums, which `merge` finishes");
   }
   if (job.foveation.target.jod) {
     refuse("the rate needs a pilot of the sequence");
@@ -192,10 +163,6 @@ void check_chunk(const JobSettings& job) {
   if (job.chunk && job.chunk->count > kMostChunks) {
     throw Error(ErrorKind::usage, "`chunk`", fmt::format("{} chunks are more than {}", job.chunk->count, kMostChunks),
                 "give no more of them than there are frames");
-  }
-  if (job.chunk && job.trace.samples) {
-    throw Error(ErrorKind::usage, "`chunk`", "`sample-range` divides the samples, and this the frames",
-                "give one of them");
   }
 }
 
@@ -233,7 +200,6 @@ void check_job(const Job& asked, const JobSchema& schema) {
   check_ranges(job, schema);
   check_history_options(job);
   check_target(job);
-  check_sample_range(job);
   check_chunk(job);
   check_stage(job);
   const auto is_near = [](double place) { return place >= -kMaxGazeScreens && place <= 1 + kMaxGazeScreens; };
@@ -265,7 +231,6 @@ FilterChoice filter_of(const JobSettings& job) {
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,
                         .enhances_contrast = job.enhance_contrast > 0,
-                        .part_of_samples = job.trace.samples.has_value(),
                         .means_frames = job.accumulate.mode == AccumulateMode::running,
                         .single_pixel = job.only_pixel.has_value()});
 }

@@ -280,19 +280,6 @@ void parse_value(std::string_view text, const std::string& place, PixelIndex& va
   value = {parse_number<std::uint16_t>(x, place, kWanted), parse_number<std::uint16_t>(y, place, kWanted)};
 }
 
-void parse_value(std::string_view text, const std::string& place, SampleRange& value) {
-  constexpr std::string_view kWanted = "a range of samples: A:B for A up to, not including, B";
-  const auto parts = split(text, ':');
-  if (parts.size() != 2) {
-    reject(text, place, kWanted);
-  }
-  value = {parse_number<std::uint32_t>(parts[0], place, kWanted),
-           parse_number<std::uint32_t>(parts[1], place, kWanted)};
-  if (value.begin >= value.end) {
-    reject(text, place, kWanted);
-  }
-}
-
 void parse_value(std::string_view text, const std::string& place, std::array<std::uint32_t, 3>& value) {
   constexpr std::string_view kWanted = "three whole numbers with commas between";
   const auto parts = split_exactly<3>(text, place, kWanted);
@@ -415,10 +402,6 @@ std::string format_value(const FrameRect& value) {
 
 std::string format_value(const PixelIndex& value) {
   return fmt::format("{},{}", value.x, value.y);
-}
-
-std::string format_value(const SampleRange& value) {
-  return fmt::format("{}:{}", value.begin, value.end);
 }
 
 std::string format_value(const std::array<std::uint32_t, 3>& value) {

@@ -211,7 +211,7 @@ void prepare_outputs(const ResolvedJob& resolved) {
       if (fs::exists(path)) {
         const bool is_record = path.ends_with(".json") || path.ends_with(".csv");
         throw Error(ErrorKind::input, path, "this output exists already",
-                    is_record && !settings.is_part && !settings.trace.samples
+                    is_record && !settings.is_part
                         ? "give `overwrite`, `resume`, `chunk` for a part of a sequence, or another folder"
                         : "give `overwrite`, `resume` or another name");
       }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <set>
 #include <system_error>
 
 #include "core/list_folder.hpp"
@@ -13,15 +12,6 @@ namespace gazetrace {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::int32_t> frames_of(const std::vector<RunPart>& parts) {
-  std::set<std::int32_t> frames;
-  for (const RunPart& part : parts) {
-    const std::vector<std::int32_t> listed = parse_frame_list(part.record.frames);
-    frames.insert(listed.begin(), listed.end());
-  }
-  return {frames.begin(), frames.end()};
-}
 
 ResolvedJob resolve_for_viewing(Job job) {
   JobSettings& settings = job.settings;
@@ -82,24 +72,6 @@ std::optional<RecordedRun> find_recorded_run(const std::string& pattern, const s
                        view == record.facts.end() ? std::string() : view->second};
   }
   return std::nullopt;
-}
-
-ResolvedJob resolve_whole_of_parts(const std::vector<RunPart>& parts, bool overwrite) {
-  const RunPart& first = parts.front();
-  Job job = job_of_record(first.record, first.timing_path);
-  job.settings.frames = FrameList{frames_of(parts)};
-  job.settings.trace.samples.reset();
-  job.settings.resume = false;
-  job.settings.chunk.reset();
-  job.settings.overwrite = overwrite;
-  ResolveOptions options;
-  options.scope = ResolveScope::digests;
-  ResolvedJob resolved = resolve(job, options);
-  if (resolved.pipeline.settings_digest != first.record.settings_digest) {
-    throw Error(ErrorKind::input, first.timing_path, "was rendered from other files, or by another version",
-                "start the merge where the parts were started, with the same files in place");
-  }
-  return resolved;
 }
 
 }  // namespace gazetrace

@@ -207,9 +207,20 @@ void set_pipeline(ResolveScope scope, ResolvedJob& resolved) {
   resolved.pipeline.preroll = static_cast<std::int32_t>(resolved.plan.frames.size() - resolved.frames.size());
 }
 
+// The digest of what a picture is an estimate of.
+std::string digest_of_mean(const JobSettings& job, const std::map<std::string, std::string>& files) {
+  JobSettings same = job;
+  same.trace.seed = 0;
+  if (job.foveation.falloff == "uniform" && job.filter == "none") {
+    same.foveation.uniform_spp = FoveationSettings().uniform_spp;
+  }
+  return digest_job(same, files);
+}
+
 void set_digests(ResolvedJob& resolved) {
   resolved.input_digests = digest_job_files(resolved.job.settings);
   resolved.pipeline.settings_digest = digest_job(resolved.job.settings, resolved.input_digests);
+  resolved.pipeline.mean_digest = digest_of_mean(resolved.job.settings, resolved.input_digests);
   // The same options choose other rates where a view at rest is judged as a still, and not as a clip.
   if (const JudgedFrames& judged = resolved.plan.judged; !judged.runs.empty()) {
     resolved.pipeline.settings_digest =

@@ -56,10 +56,9 @@ RunRecord start_run_record(const ResolvedJob& resolved, const PathTracer& tracer
     record.files = read_earlier_files(outputs.front());  // the file of the record is about to be replaced
     keep_chosen_rate(outputs.front(), record);
   }
-  record.is_part = settings.is_part || settings.trace.samples.has_value();
+  record.is_part = settings.is_part;
   record.stage = settings.stage == SequenceStage::trace ? format_value(settings.stage) : "";
   record.chunk_file = fs::path(resolved.chunk_borders.path).filename().string();
-  record.samples = settings.trace.samples ? format_value(*settings.trace.samples) : "";
   record.warnings = resolved.warnings;
   for (const auto& [name, text] : resolved.decisions) {
     std::string& fact = record.facts[name];  // there may be several of one name, as an option may be replaced twice

@@ -153,6 +153,12 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   add_text(header, "t_video_ns", std::to_string(frame.t_video_ns));
   add_text(header, "seed", std::to_string(frame.seed));
   add_text(header, "settings_digest", frame.settings_digest);
+  if (!frame.mean_digest.empty()) {
+    add_text(header, "mean_digest", frame.mean_digest);
+  }
+  if (frame.samples_per_pixel > 0) {
+    add_text(header, "samples_per_pixel", fmt::format("{}", frame.samples_per_pixel));
+  }
   if (!frame.history.empty()) {
     add_text(header, "history", frame.history);
   }

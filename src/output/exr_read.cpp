@@ -18,24 +18,25 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "core/exr_header.hpp"
 #include "gazetrace/output.hpp"
 #include "output/exr.hpp"
+#include "output/exr_layers.hpp"
 
 namespace gazetrace {
 namespace {
 
 // The pixels are only the claim of a header of a few bytes. Of black pictures a byte holds up to 170 pixels where the
 // compression is lossless, and up to 2700 where it is dwaa or dwab.
-void check_size(const Imf::InputFile& file, const std::string& path) {
+void check_size(const Imf::Header& header, const std::string& path) {
   constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 30U;
   constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;
-  const Imath::Box2i window = file.header().dataWindow();
+  const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const bool is_dwa =
-      file.header().compression() == Imf::DWAA_COMPRESSION || file.header().compression() == Imf::DWAB_COMPRESSION;
+  const bool is_dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
   std::error_code ignored;
   const std::uint64_t bytes = std::filesystem::file_size(path, ignored);
   const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
@@ -47,15 +48,14 @@ void check_size(const Imf::InputFile& file, const std::string& path) {
 }
 
 // Opens an EXR and gives what `read` makes of it; what OpenEXR throws becomes Error(input).
-template <class Read>
+template <class File = Imf::InputFile, class Read>
 auto read_exr(const std::string& path, const Read& read) {
   if (!std::filesystem::exists(path)) {
     throw Error(ErrorKind::input, path, "there is no such file");
   }
   try {
     check_exr_header(path, path);
-    Imf::InputFile file(path.c_str(), 0);
-    check_size(file, path);
+    File file(path.c_str(), 0);
     return read(file);
   } catch (const Error&) {
     throw;
@@ -83,6 +83,7 @@ std::string gray_channel(const Imf::ChannelList& channels) {
 
 ImageRgb read_exr_rgb(const std::string& path) {
   return read_exr(path, [&](Imf::InputFile& file) {
+    check_size(file.header(), path);
     const Imath::Box2i window = file.header().dataWindow();
     if (file.header().channels().findChannel("R") == nullptr) {
       throw Error(ErrorKind::input, path, "the EXR has no channel R", "name an RGB picture");
@@ -102,6 +103,7 @@ ImageRgb read_exr_rgb(const std::string& path) {
 
 ImageGray read_exr_gray(const std::string& path) {
   return read_exr(path, [&](Imf::InputFile& file) {
+    check_size(file.header(), path);
     const Imath::Box2i window = file.header().dataWindow();
     const std::string name = gray_channel(file.header().channels());
     if (name.empty()) {
@@ -115,6 +117,31 @@ ImageGray read_exr_gray(const std::string& path) {
     file.setFrameBuffer(buffer);
     file.readPixels(window.min.y, window.max.y);
     return image;
+  });
+}
+
+std::vector<ExrLayers> read_exr_layers(const std::string& path) {
+  return read_exr<Imf::MultiPartInputFile>(path, [&](Imf::MultiPartInputFile& file) {
+    std::vector<ExrLayers> parts;
+    for (int i = 0; i < file.parts(); ++i) {
+      ExrLayers& part = parts.emplace_back();
+      part.header = file.header(i);
+      check_size(part.header, path);
+      const Imath::Box2i window = part.header.dataWindow();
+      const int width = window.max.x - window.min.x + 1;
+      const int height = window.max.y - window.min.y + 1;
+      Imf::FrameBuffer buffer;
+      const Imf::ChannelList& channels = part.header.channels();
+      for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+        ImageGray& image = part.channels[channel.name()] = ImageGray(width, height);
+        buffer.insert(channel.name(), Imf::Slice::Make(Imf::FLOAT, image.pixels.data(), window, sizeof(float),
+                                                       sizeof(float) * static_cast<std::size_t>(width)));
+      }
+      Imf::InputPart input(file, i);
+      input.setFrameBuffer(buffer);
+      input.readPixels(window.min.y, window.max.y);
+    }
+    return parts;
   });
 }
 

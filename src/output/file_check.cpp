@@ -120,9 +120,6 @@ void add_frames_without_a_file(const std::vector<RunPart>& parts, std::vector<Ba
         bad.push_back({part.record_path, frame, fmt::format("lists no file of frame {}", frame)});
         continue;
       }
-      if (!part.record.samples.empty()) {
-        continue;  // every part has its own
-      }
       for (const std::string& name : most->second) {
         const std::vector<std::string> names_here = names_of_frame(name, most->first, frame);
         if (names_here.empty()) {

@@ -76,11 +76,6 @@ void append_new(Warnings& to, const Warnings& from) {
   }
 }
 
-// "1-3", or "1-3, samples 0:1024".
-std::string name_of(const RunRecord& record) {
-  return record.samples.empty() ? record.frames : record.frames + ", samples " + record.samples;
-}
-
 }  // namespace
 
 std::vector<RunPart> read_run_parts(const std::string& directory) {
@@ -117,22 +112,9 @@ std::vector<RunPart> read_run_parts(const std::string& directory) {
   return parts;
 }
 
-bool are_parts_of_samples(const std::vector<RunPart>& parts) {
-  const bool first = !parts.front().record.samples.empty();
-  for (const RunPart& part : parts) {
-    if (part.record.samples.empty() == first) {
-      throw Error(ErrorKind::input, part.timing_path,
-                  "is a part of another kind than " + parts.front().timing_path + ": of frames, and of samples",
-                  "keep them in folders of their own");
-    }
-  }
-  return first;
-}
-
 RunRecord join_records(const std::vector<RunPart>& parts, const std::string& frames, Warnings& warnings) {
   RunRecord whole = parts.front().record;
   whole.is_part = false;
-  whole.samples.clear();
   whole.chunk_file.clear();
   whole.frames = frames;
   whole.facts.clear();
@@ -166,7 +148,7 @@ RunRecord join_records(const std::vector<RunPart>& parts, const std::string& fra
         const auto it = other.record.facts.find(k);
         return it != other.record.facts.end() && it->second == v;
       });
-      whole.facts[shared ? key : fmt::format("{} of {}", key, name_of(record))] = value;
+      whole.facts[shared ? key : fmt::format("{} of {}", key, record.frames)] = value;
     }
   }
   append_new(whole.warnings, warnings);

@@ -44,14 +44,6 @@ std::string run_record_file_name(const std::string& directory, const std::string
   return part_file_name(directory, "run", ".json", frames, is_part);
 }
 
-std::string part_of_samples_name(const std::string& frames, const SampleRange& samples) {
-  return fmt::format("{}.samples-{}-{}", frames, samples.begin, samples.end);
-}
-
-std::string samples_file_name(const std::string& directory, std::int32_t frame, const SampleRange& samples) {
-  return directory + fmt::format("/samples.{:04}.{}-{}.sums", frame, samples.begin, samples.end);
-}
-
 std::string traced_file_name(const std::string& directory, std::int32_t frame) {
   return directory + fmt::format("/traced.{:04}.sparse", frame);
 }
@@ -79,7 +71,6 @@ std::string run_record_json(const RunRecord& record) {
                     {"checkpoint", record.history.checkpoint}}},
                   {"frames", record.frames},
                   {"is_part", record.is_part},
-                  {"samples", record.samples},
                   {"stage", record.stage},
                   {"chunk_file", record.chunk_file},
                   {"input_digests", record.input_digests},
@@ -108,8 +99,7 @@ RunRecord read_run_record(const std::string& path) {
     json.at("settings_digest").get_to(record.settings_digest);
     json.at("frames").get_to(record.frames);
     json.at("is_part").get_to(record.is_part);
-    // Records of earlier versions have no samples, stage, parts, history and files.
-    record.samples = json.value("samples", "");
+    // Records of earlier versions have no stage, parts, history and files.
     record.stage = json.value("stage", "");
     record.chunk_file = json.value("chunk_file", "");
     record.part_digests = json.value("part_digests", record.part_digests);

@@ -15,8 +15,14 @@
 namespace gazetrace {
 namespace {
 
+double samples_of_every_pixel(const ImageGray& samples) {
+  const float first = samples.pixels.front();
+  const bool same = std::all_of(samples.pixels.begin(), samples.pixels.end(), [&](float n) { return n == first; });
+  return same ? static_cast<double>(first) : 0;
+}
+
 FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const PipelineSettings& settings,
-                      double exposure_ev, const std::string& history) {
+                      const RenderedFrame& rendered, const std::string& history) {
   FrameHeader header;
   header.frame = request.frame;
   header.t_video_ns = request.t_video_ns;
@@ -28,10 +34,12 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.gaze_true = request.gaze_true;
   header.gaze = gaze_numbers(request);
   header.gaze_processing = plan.gaze_processing;
-  header.exposure_ev = exposure_ev;
+  header.exposure_ev = rendered.exposure_ev;
   header.enhance_contrast = settings.enhance_contrast;
   header.seed = settings.trace.seed;
   header.settings_digest = settings.settings_digest;
+  header.mean_digest = settings.mean_digest;
+  header.samples_per_pixel = samples_of_every_pixel(rendered.frame.sample_count);
   header.history = history;
   header.software = std::string("gazetrace ") + kVersion;
   return header;
@@ -47,7 +55,7 @@ void write_frame_files(const FrameRequest& request, const FramePlan& plan, const
                        const ColorPipeline& color, const PipelineSettings& settings, const std::string& history,
                        TimingRow& row, SequenceResult& result) {
   const OutputSettings& output = settings.output;
-  const FrameHeader header = header_of(request, plan, settings, rendered.exposure_ev, history);
+  const FrameHeader header = header_of(request, plan, settings, rendered, history);
   const auto list = [&](const std::string& path, WrittenFile file) {
     file.frame = request.frame;
     result.files.insert_or_assign(name_in_record(output.run_directory, path), std::move(file));
@@ -114,22 +122,16 @@ std::vector<std::string> output_files(const PipelineSettings& settings, const st
   if (!writes_anything(output)) {
     return files;
   }
-  const std::optional<SampleRange>& samples = settings.trace.samples;
   const std::string list = format_frame_list(frames);
-  if (settings.is_part || samples) {
-    const std::string part = samples ? part_of_samples_name(list, *samples) : list;
-    files.push_back(run_record_file_name(output.run_directory, part, true));
-    files.push_back(timing_file_name(output.run_directory, part, true));
+  if (settings.is_part) {
+    files.push_back(run_record_file_name(output.run_directory, list, true));
+    files.push_back(timing_file_name(output.run_directory, list, true));
   } else {
     const RunFiles whole = whole_run_files(output);
     files.push_back(whole.record);
     files.push_back(whole.timing);
   }
   for (const std::int32_t frame : frames) {
-    if (samples) {
-      files.push_back(samples_file_name(output.run_directory, frame, *samples));
-      continue;
-    }
     if (settings.stage == SequenceStage::trace) {
       files.push_back(traced_file_name(output.run_directory, frame));
       continue;

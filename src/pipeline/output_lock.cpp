@@ -257,7 +257,7 @@ OutputLock lock_outputs(const PipelineSettings& settings, const std::vector<std:
   };
   const OutputSettings& output = settings.output;
   const std::vector<std::string> files = output_files(settings, frames);
-  const bool has_pictures = !settings.trace.samples && settings.stage != SequenceStage::trace;
+  const bool has_pictures = settings.stage != SequenceStage::trace;
   for (std::size_t i = 0; i < files.size() && (i < 2 || !has_pictures); ++i) {
     claim(output.run_directory, files[i]);
   }

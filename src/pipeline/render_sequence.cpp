@@ -221,7 +221,7 @@ SequenceResult render_sequence(PathTracer& tracer, const FramePlan& plan, const 
 
   SequenceRenderer renderer(tracer, std::move(own), plan, {to_render.begin(), to_render.end()});
   RunLog log{TimingLog(paths.timing, resume.kept_rows), FileJournal(paths.record, resume.kept_files)};
-  if (!settings.output.display.pattern.empty() && !plan.frames.empty() && !settings.trace.samples) {
+  if (!settings.output.display.pattern.empty() && !plan.frames.empty()) {
     const FrameRequest& first = plan.frames.front();
     color.prepare(first.width_px, first.height_px, display_image_bits(settings.output.display), settings.threads);
   }

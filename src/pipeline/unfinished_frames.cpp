@@ -10,42 +10,31 @@
 #include "core/stopwatch.hpp"
 #include "core/text.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/sample_parts.hpp"
 #include "gazetrace/traced_frame_file.hpp"
 #include "output/written_file.hpp"
-#include "pipeline/sample_sums_file.hpp"
 #include "pipeline/timing_row.hpp"
 #include "pipeline/traced_file.hpp"
 
 namespace gazetrace {
 
 bool leaves_unfinished(const PipelineSettings& settings) {
-  return settings.trace.samples || settings.stage == SequenceStage::trace;
+  return settings.stage == SequenceStage::trace;
 }
 
 std::string unfinished_file_name(const PipelineSettings& settings, std::int32_t frame) {
-  const std::string& folder = settings.output.run_directory;
-  return settings.trace.samples ? samples_file_name(folder, frame, *settings.trace.samples)
-                                : traced_file_name(folder, frame);
+  return traced_file_name(settings.output.run_directory, frame);
 }
 
 std::string read_unfinished_digest(const PipelineSettings& settings, std::int32_t frame) {
-  const std::string path = unfinished_file_name(settings, frame);
-  return settings.trace.samples ? read_samples_digest(path) : read_traced_digest(path);
+  return read_traced_digest(unfinished_file_name(settings, frame));
 }
 
 void save_unfinished(std::int32_t frame, const TracedFrame& traced, const PipelineSettings& settings, TimingRow& row,
                      WrittenFiles& files) {
   const Stopwatch watch;
   const std::string path = unfinished_file_name(settings, frame);
-  WrittenFile file;
-  if (settings.trace.samples) {
-    file = save_samples(path, traced.sparse.unrounded, settings.settings_digest);
-    file.frame = frame;
-  } else {
-    add_prediction(traced.prediction, row);
-    file = save_traced(path, frame, traced, settings.settings_digest);
-  }
+  add_prediction(traced.prediction, row);
+  WrittenFile file = save_traced(path, frame, traced, settings.settings_digest);
   files.insert_or_assign(name_in_record(settings.output.run_directory, path), std::move(file));
   row.write_ms += watch.elapsed_ms();
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames that a run leaves for another one to finish: the sums of a part of their samples, or what the first half of
-// the stages found.
+// Frames that a run leaves for another one to finish: what the first half of the stages found.
 #pragma once
 
 #include <cstdint>

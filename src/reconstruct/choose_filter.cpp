@@ -10,9 +10,6 @@ FilterChoice choose_filter(const FilterFacts& facts) {
   if (facts.enhances_contrast) {
     return {"linear", "only filters that blur blocks leave contrast to bring back"};
   }
-  if (facts.part_of_samples) {
-    return {"linear", "guided filters need every sample of a frame, and this is a part of them"};
-  }
   if (!facts.foveated && facts.means_frames) {
     return {"linear", "frames are uniform, and their running mean is to tend to that of the samples"};
   }

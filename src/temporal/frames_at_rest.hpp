@@ -41,7 +41,7 @@ struct SamplesAtRest {
 // `frames`: at least one, with the same sites and of different numbers; the result does not depend on which of them is
 // to be shown. What SparseFrame states of two halves of the samples is stated of the frames with odd and with even
 // numbers, each of which has a scrambling of its own, so that it is known where a frame has a single sample as well.
-// `camera`: that of the guides; nullptr where the frames hold no surfaces. Without stats and SparseFrame::unrounded.
+// `camera`: that of the guides; nullptr where the frames hold no surfaces. Without stats.
 SamplesAtRest add_up(const std::vector<SamplesOfFrame>& frames, const GuideCamera* camera, int threads);
 
 }  // namespace gazetrace

@@ -15,7 +15,6 @@
 #include "trace/samples/bad_samples.hpp"
 #include "trace/samples/pixel_filter.hpp"
 #include "trace/samples/sample_list.hpp"
-#include "trace/samples/sample_sums.hpp"
 #include "trace/samples/site_ranges.hpp"
 #include "trace/samples/site_summer.hpp"
 #include "trace/samples/surface_sums.hpp"
@@ -26,11 +25,15 @@ namespace {
 
 SparseFrame untraced_frame(const SamplingMap& map, const TraceSettings& settings) {
   const std::size_t sites = map.sites.size();
-  SparseFrame out = empty_frame(map, settings.guides);
+  SparseFrame out;
+  out.width_px = map.width_px;
+  out.height_px = map.height_px;
+  out.sum.resize(sites);
+  out.sum_square_luminance.resize(sites);
+  out.count.resize(sites);
+  out.guides.resize(settings.guides ? sites : 0);
   out.light_groups.resize(settings.light_groups ? sites : 0);
   out.half_difference.resize(settings.halves ? sites : 0);
-  out.unrounded.sites.resize(settings.samples ? sites : 0);
-  out.unrounded.guides.resize(settings.samples && settings.guides ? sites : 0);
   out.first_surface.resize(settings.surfaces ? sites + 1 : 0);
   out.first_hits.resize(settings.surfaces ? sites : 0);
   out.stats.regions.resize(map.regions.size());
@@ -96,14 +99,7 @@ class RangeTracer {
  private:
   [[nodiscard]] SampleList samples_of(const SiteRange& range) const {
     const TraceSettings& settings = context_.settings;
-    return {map_,
-            range.first,
-            range.count,
-            settings.seed,
-            frame_,
-            settings.samples.value_or(kAllSamples),
-            z_order_ ? &*z_order_ : nullptr,
-            settings.halves};
+    return {map_, range.first, range.count, settings.seed, frame_, z_order_ ? &*z_order_ : nullptr, settings.halves};
   }
 
   const FrameContext& context_;

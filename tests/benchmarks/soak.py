@@ -5,7 +5,7 @@
     GAZETRACE=build/bin/gazetrace python3 tests/benchmarks/soak.py --seconds 3600 --seed 1
 
 Every round takes a way to render a short sequence (one run, one with history and checkpoints, chunks, chunks that are
-traced first, parts of the samples, a farm of this machine) or to measure a sweep (by one process, and in chunks), and harms it
+traced first, a farm of this machine) or to measure a sweep (by one process, and in chunks), and harms it
 several times: signals at random moments, files that are cut, changed, swapped or removed, a folder that is removed, a disk
 that is full, inputs that change. After every fault each file under a final name must be a whole one, unless this script damaged
 it, and what `merge` accepts must be right. In the end the way is gone to its end, by --resume where there is that, and the
@@ -35,7 +35,6 @@ from sweep_chunks_test import TIMES  # noqa: E402
 
 FRAMES = 6
 HISTORY = 'accumulate = "reproject"\nfilter = "guided"\n'
-SAMPLES = 'falloff = "uniform"\nspp = 16\nfilter = "linear"\nexr-pixels = "float"\n'
 RENDER = ["render", "--config", "job.toml", "--resume", "--quiet", "--grace", "50ms"]
 
 
@@ -97,14 +96,12 @@ class SweepWay(Way):
 def ways():
     chunks = [[*RENDER, "--chunk", f"{number}/3"] for number in (1, 2, 3)]
     traced = [[*chunk, "--stage", "trace"] for chunk in chunks]
-    samples = [[*RENDER, "--sample-range", part] for part in ("0:6", "6:16")]
     sweep = ["sweep", "plan.toml", "-o", "out", "--quiet"]
     return [
         Way("one run", "", [RENDER]),
         Way("with history", HISTORY + 'checkpoint = "out/history"\ncheckpoint-every = 2\n', [RENDER]),
         Way("chunks", "", [*chunks, ["merge", "out", "--overwrite"]]),
         Way("traced first", HISTORY, [*traced, [*RENDER, "--stage", "finish"]]),
-        Way("samples", SAMPLES, [*samples, ["merge", "out", "--overwrite"]]),
         Way("local farm", HISTORY, [["farm", "farm.toml", "--chunks", "2", "--processes", "2", "--threads", "1", "--retries", "2"]]),
         SweepWay("sweep", "", [sweep]),
         SweepWay("sweep in chunks", "", [[*sweep, "--chunk", "1/2"], [*sweep, "--chunk", "2/2"], ["sweep", "merge", "plan.toml", "-o", "out"]]),

@@ -156,7 +156,6 @@ class Aovs(harness.CliTest):
         self.assert_refused([*render, "crypto_object", "--exr-compression", "dwaa"], ["exr-compression", "--exr-parts multi"])
         self.assert_refused([*render, "crypto_object", "--crypto-ranks", "5"], ["crypto-ranks", "even"])
         self.assert_refused([*render, "depth,depth"], ["aov", "twice"])
-        self.assert_refused([*render, "emission", "--sample-range", "0:1", "--filter", "none"], ["sample-range", "AOVs"])
         self.run_ok(*render, "crypto_object", "--exr-compression", "dwaa", "--exr-parts", "multi")
         self.run_ok(*render, "crypto_object", "--exr-compression", "dwaa", "--exr-parts", "multi", "--resume")
 

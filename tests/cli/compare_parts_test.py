@@ -63,13 +63,6 @@ class CompareParts(harness.CliTest):
         self.run_ok("merge", "parts")
         self.assert_compared_as_one("whole", "parts")
 
-    def test_parts_of_the_samples(self):
-        self.render("whole", "--frames", "1-4")
-        for samples in ("0:3", "3:8"):
-            self.render("parts", "--frames", "1-4", "--sample-range", samples)
-        self.run_ok("merge", "parts")
-        self.assert_compared_as_one("whole", "parts")
-
     def test_parts_joined_by_their_history(self):
         history = ["--accumulate", "reproject"]
         self.render("whole", "--frames", "1-4", *history)

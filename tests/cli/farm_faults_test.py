@@ -114,18 +114,6 @@ class MergeLooksAtFiles(Farm):
             path.unlink()
         self.assert_refused(["merge", "out", "--allow-missing"], ["no frame is left to join"])
 
-    def test_sums_of_samples(self):
-        for samples in ("0:4", "4:8"):
-            self.run_ok("render", "glide.gltf", "--falloff", "uniform", "--spp", "8", "--filter", "none", "--size", "32x18",
-                        "--quiet", "--frames", "1", "-o", "out/f.exr", "--sample-range", samples)
-        sums = self.folder / "out/samples.0001.4-8.sums"
-        content = bytearray(sums.read_bytes())
-        content[-50] ^= 1
-        sums.write_bytes(content)
-        merged = self.run_program("merge", "out")
-        self.assertEqual(merged.returncode, 2)
-        self.assertIn("samples.0001.4-8.sums: has another content", merged.stderr)
-
     def test_a_killed_part_knows_its_files(self):
         self.render("out", "--frames", "1-3", "--chunk", "1/1")
         record = self.record("out/run.1-3.json")

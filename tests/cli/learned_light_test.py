@@ -49,14 +49,6 @@ class LearnedLight(harness.CliTest):
                 (folder / "f.0003.exr").unlink()
                 self.assertEqual(self.render(name, *settings, "--resume"), whole)
 
-    def test_parts_of_samples_learn_the_same(self):
-        raw = ["--falloff", "uniform", "--spp", "4", "--filter", "linear"]
-        whole = self.render("whole", *raw)
-        for samples in ("2:4", "0:1", "1:2"):
-            self.render("parts", *raw, "--sample-range", samples)
-        self.run_ok("merge", "parts")
-        self.assertEqual(self.pictures("parts"), whole)
-
     def test_it_changes_pictures_and_is_counted(self):
         raw = ["--falloff", "uniform", "--spp", "2", "--filter", "none"]
         learned = self.render("learned", *raw)

@@ -92,7 +92,6 @@ class TwoSided(harness.CliTest):
 
     def test_what_cannot_be_is_refused(self):
         for more, message in (
-                (["--sample-range", "0:4", "--filter", "linear"], "frames read those around them"),
                 (["--checkpoint", "history.bin"], "--checkpoint"),
                 (["--preroll", "2"], "--preroll")):
             with self.subTest(options=more):

@@ -50,7 +50,7 @@ bool is_json(const std::string& name) {
 }
 
 bool is_sealed_kind(const std::string& name) {
-  return name == "checkpoint" || name == "traced" || name == "samples";
+  return name == "checkpoint" || name == "traced";
 }
 
 // New bytes, empty where there is no way of their own for this target and input.

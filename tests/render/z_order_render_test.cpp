@@ -60,27 +60,11 @@ TEST(ZOrderRender, ThreadsDoNotMatterAndTheOtherPatternDiffers) {
   }
 }
 
-TEST(ZOrderRender, PartsOfTheSamplesAreTheWhole) {
-  const Scene scene = room();
-  PathTracer tracer(scene, threads(2));
-  const SamplingMap map = foveated(true);
-  const auto part = [&](const SampleRange& range) {
-    TraceSettings settings = z_order();
-    settings.samples = range;
-    return tracer.at_rest().trace(kCamera, 1, map, settings);
-  };
-  const SparseFrame whole = part({0, 1000});
-  SampleSums sums = part({2, 1000}).unrounded;
-  add_sums(part({0, 2}).unrounded, sums);
-  EXPECT_TRUE(same_samples(whole, sparse_frame_of(sums, map), map));
-}
-
 TEST(ZOrderRender, OnlyPixelReplaysItsSite) {
   const Scene scene = room();
   PathTracer tracer(scene, threads(1));
   const SamplingMap map = foveated(false);
   TraceSettings settings = z_order();
-  settings.samples = SampleRange{0, 1000};  // single rays, as a sample may depend on its neighbours in a packet
   const SparseFrame whole = tracer.at_rest().trace(kCamera, 1, map, settings);
   std::vector<PixelIndex> pixels;
   for (const std::size_t i : {std::size_t{0}, map.sites.size() / 3, map.sites.size() / 2, map.sites.size() - 1}) {

@@ -23,7 +23,6 @@
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/resolve.hpp"
 #include "gazetrace/results.hpp"
-#include "gazetrace/sample_parts.hpp"
 #include "gazetrace/traced_frame_file.hpp"
 #include "output/exr.hpp"
 #include "render/tracer_scenes.hpp"
@@ -36,9 +35,9 @@ namespace gazetrace {
 // that the file gets.
 inline std::vector<std::string> fuzz_files() {
   return {
-      "scene",      "scene-render", "picture-png", "picture-jpg", "picture-exr", "picture-hdr",   "job",
-      "sweep-plan", "checkpoint",   "traced",      "samples",     "run-record",  "timing",        "parts",
-      "farm",       "chunks",       "results",     "display",     "aois",        "falloff-table",
+      "scene",      "scene-render", "picture-png", "picture-jpg", "picture-exr",   "picture-hdr", "job",
+      "sweep-plan", "checkpoint",   "traced",      "run-record",  "timing",        "parts",       "farm",
+      "chunks",     "results",      "display",     "aois",        "falloff-table",
   };
 }
 
@@ -239,14 +238,6 @@ inline void read_traced(const std::string& path) {
   static_cast<void>(FrameRenderer(tracer, run.settings).finish(run.request, std::move(traced), history));
 }
 
-inline void read_samples(const std::string& path) {
-  const SampleSums sums = load_samples(path, kDigest);
-  const SamplingMap map = test::uniform_map(8, 6, 4);
-  SampleSums both = sums;
-  add_sums(sums, both);
-  static_cast<void>(sparse_frame_of(both, map));
-}
-
 inline void read_farm_folder(const std::string& folder) {
   const FarmPlan plan = read_farm(folder);
   static_cast<void>(farm_plan_text(plan));
@@ -293,8 +284,6 @@ inline bool read_file(const std::string& target, const std::string& path, std::s
       read_checkpoint(path);
     } else if (target == "traced") {
       read_traced(path);
-    } else if (target == "samples") {
-      read_samples(path);
     } else if (target == "run-record") {
       static_cast<void>(job_of_record(read_run_record(path), path));
     } else if (target == "timing") {

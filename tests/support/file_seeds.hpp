@@ -10,7 +10,6 @@
 #include "core/hash.hpp"
 #include "farm/engine.hpp"
 #include "gazetrace/checkpoint.hpp"
-#include "gazetrace/sample_parts.hpp"
 #include "gazetrace/traced_frame_file.hpp"
 #include "support/file_fuzz.hpp"
 #include "support/scene_seeds.hpp"
@@ -148,13 +147,6 @@ inline void add_sealed(std::vector<FileSeed>& files, const std::string& folder) 
     save_traced(path, 1, renderer.trace(run.request), fuzz::kDigest);
     files.push_back({"traced", mode == AccumulateMode::running ? "running" : "reproject", gazetrace::read_file(path)});
   }
-  SampleSums sums;
-  sums.sites.resize(48);
-  sums.guides.resize(48);
-  sums.sites[7] = {{1, 0}, {2, 0}, {3, 0}, {4, 0}, 5};
-  sums.guides[7].hits = 4;
-  save_samples(path, sums, fuzz::kDigest);
-  files.push_back({"samples", "sums", gazetrace::read_file(path)});
 }
 
 }  // namespace seeds

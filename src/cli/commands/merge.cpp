@@ -11,14 +11,17 @@
 #include "cli/exit_codes.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
-#include "gazetrace/recorded_run.hpp"
-#include "gazetrace/sample_parts.hpp"
+#include "gazetrace/merge_means.hpp"
+#include "gazetrace/output.hpp"
 
 namespace gazetrace {
 namespace {
 
 struct MergeArguments {
-  std::string directory;
+  std::vector<std::string> inputs;  // the folder of the parts, or the renders of a mean
+  bool mean = false;
+  std::string output;
+  bool resume = false;
   bool allow_missing = false;
   bool overwrite = false;
   bool trust_files = false;
@@ -33,29 +36,39 @@ void check_files(const std::vector<RunPart>& parts, const MergeArguments& argume
   for (const BadFile& file : bad.size() > kNamedByError ? bad : std::vector<BadFile>()) {
     std::fprintf(stderr, "gazetrace: bad file: %s: %s\n", bounded(file.path).c_str(), bounded(file.problem).c_str());
   }
-  refuse_bad_files(arguments.directory, bad);
+  refuse_bad_files(arguments.inputs.front(), bad);
 }
 
-MergeResult run_merge_samples(const std::vector<RunPart>& parts, const MergeArguments& arguments) {
-  const ResolvedJob resolved = resolve_whole_of_parts(parts, arguments.overwrite);
-  const ColorPipeline color(resolved.job.settings.color);
-  prepare_outputs(resolved);
-  return merge_samples(parts, resolved.plan, color, resolved.pipeline);
+MergeResult run_merge_means(const MergeArguments& arguments, const std::vector<std::string>& command_line) {
+  if (arguments.output.empty()) {
+    throw Error(ErrorKind::usage, "--mean", "needs a name for the pictures", "add --output mean.####.exr");
+  }
+  return merge_means({arguments.inputs, arguments.output, command_line, arguments.allow_missing, arguments.overwrite,
+                      arguments.resume});
 }
 
-int run_merge(const MergeArguments& arguments) {
-  arguments.json.check();
-  const std::vector<RunPart> parts = read_run_parts(arguments.directory);
-  const bool of_samples = are_parts_of_samples(parts);
+MergeResult run_merge_parts(const MergeArguments& arguments) {
+  if (arguments.inputs.size() > 1 || !arguments.output.empty() || arguments.resume) {
+    throw Error(ErrorKind::usage, "merge", "joins the parts in one folder, and needs nothing else",
+                "give --mean for the mean of renders");
+  }
+  const std::string& directory = arguments.inputs.front();
+  const std::vector<RunPart> parts = read_run_parts(directory);
   MergeOptions options{arguments.allow_missing, arguments.overwrite, arguments.trust_files, arguments.threads};
-  if (!options.trust_files && (of_samples || !options.allow_missing)) {
+  if (!options.trust_files && !options.allow_missing) {
     check_files(parts, arguments);
     options.trust_files = true;
   }
-  const MergeResult result =
-      of_samples ? run_merge_samples(parts, arguments) : merge_runs(arguments.directory, options);
+  return merge_runs(directory, options);
+}
+
+int run_merge(const MergeArguments& arguments, const std::vector<std::string>& command_line) {
+  arguments.json.check();
+  const MergeResult result = arguments.mean ? run_merge_means(arguments, command_line) : run_merge_parts(arguments);
   print_warnings(result.warnings);
-  arguments.json.print(fmt::format("{} parts joined, frames {}\n", result.parts.size(), result.frames), [&] {
+  const char* const done = arguments.mean ? "mean of {} renders, frames {}\n" : "{} parts joined, frames {}\n";
+  const std::string text = fmt::format(fmt::runtime(done), result.parts.size(), result.frames);
+  arguments.json.print(text, [&] {
     const nlohmann::ordered_json json{
         {"parts", result.parts}, {"frames", result.frames}, {"warnings", with_flags(result.warnings)}};
     return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -65,9 +78,18 @@ int run_merge(const MergeArguments& arguments) {
 
 }  // namespace
 
-Command add_merge_command(CLI::App& app, const Invocation& /*invocation*/) {
+Command add_merge_command(CLI::App& app, const Invocation& invocation) {
   auto arguments = std::make_shared<MergeArguments>();
-  app.add_option("folder", arguments->directory, "Where the parts were rendered into")->required()->type_name("DIR");
+  app.add_option("input", arguments->inputs,
+                 "The folder that parts were rendered into; with --mean, renders of one job with different seeds: "
+                 "frame.####.exr of each")
+      ->required()
+      ->type_name("INPUT");
+  app.add_flag("--mean", arguments->mean,
+               "Writes the mean of renders, weighted by the samples of each pixel; a mean can be one of them");
+  app.add_option("-o,--output", arguments->output, "Of --mean: the pictures, mean.####.exr")->type_name("FILE");
+  app.add_flag("--resume", arguments->resume,
+               "Of --mean: adds to the pictures that are there the renders that are not in them yet");
   app.add_flag("--allow-missing", arguments->allow_missing,
                "Joins what is there though frames are missing, or their files bad");
   app.add_flag("--trust-files", arguments->trust_files,
@@ -75,9 +97,9 @@ Command add_merge_command(CLI::App& app, const Invocation& /*invocation*/) {
   app.add_option("--threads", arguments->threads, "For comparing files; 0: as many as the machine has")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
-  app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and, of parts of samples, pictures");
+  app.add_flag("--overwrite", arguments->overwrite, "Replaces timing.csv, run.json and pictures");
   add_json_option(app, arguments->json);
-  return {[arguments] { return run_merge(*arguments); }, {}};
+  return {[arguments, line = invocation.arguments] { return run_merge(*arguments, line); }, {}};
 }
 
 }  // namespace gazetrace

@@ -9,7 +9,7 @@ void add_filter_options(JobSchema& schema) {
       .value("--filter", &JobSettings::filter, "NAME", Touch::filter,
              "Fills pixels between samples and takes noise away ('gazetrace list filters'; where the samples are is "
              "--falloff, which has a 'linear', too). auto: guided; linear, "
-             "which passes single pixels through, with --sample-range, --enhance-contrast and "
+             "which passes single pixels through, with --enhance-contrast and "
              "--accumulate-order before, and for uniform frames with --accumulate running or --only-pixel")
       .with(Trait::always_stated);
   schema.value("--pass-through", &JobSettings::pass_through_samples, "SPP", Touch::filter,

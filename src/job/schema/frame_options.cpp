@@ -33,13 +33,6 @@ void add_frame_options(JobSchema& schema) {
              "in order, to the bit those of a single run")
       .decides_nothing()
       .with(Trait::one_run);
-  schema
-      .value("--sample-range", at(&JobSettings::trace, &TraceSettings::samples), "A:B", Touch::frames,
-             "Traces only the samples A to B - 1 of every pixel or block, and writes their sums instead of pictures; "
-             "once all parts are there, 'gazetrace merge' makes the pictures, to the bit those of a single run with "
-             "the same --filter")
-      .decides_nothing()
-      .with(Trait::one_run);
   schema.value("--frame-rect", &JobSettings::frame_rect, "X,Y,W,H", Touch::frames,
                "Where the frame lies on the screen, in screen pixels; default: it fills the screen");
 }

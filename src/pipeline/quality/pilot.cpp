@@ -74,7 +74,6 @@ Pilot trace_pilot(const PosedScene& scene, const FrameRequest& request, const Fr
   trace.pixel_cone *= share;
   trace.guides = false;
   trace.only_pixel.reset();
-  trace.samples.reset();
   const SamplingMap map = pilot_map(pilot.view, rates, map_context(request, trace.seed, settings.threads));
   SparseFrame sparse =
       timed(pilot.times.trace_ms, [&] { return scene.trace(request.camera, request.frame, map, trace); });

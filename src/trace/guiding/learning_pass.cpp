@@ -79,7 +79,7 @@ class LearningPaths {
       : context_(std::move(context)), kernel_(kernel), width_px_(width_px), height_px_(height_px), threads_(threads) {
     context_.records_bounces = true;
     context_.settings.guides = context_.settings.surfaces = context_.settings.light_groups = false;
-    context_.settings.samples = kAllSamples;  // rays one by one: the same hits whichever rays are traced together
+    context_.single_rays = true;
   }
 
   // About so many more of them, spread evenly. `round` chooses their scrambling, and `so_far` is what they follow.

@@ -33,8 +33,11 @@ struct FrameContext {
   bool last_ray_needs_surface = false;    // it can find light on a surface, so visibility of the sky is not enough
   bool shifts_hits = false;               // samples may hit what the pinhole sees elsewhere in the frame
   const LearnedLight* learned = nullptr;  // where light arrives from; empty: directions follow the BSDF alone
-  bool records_bounces = false;           // Workspace::bounces are collected, for learning
-  RayRecorder* recorder = nullptr;        // for measurements only
+  // Rays are traced one by one: in packets, which of two surfaces a ray hits on their common edge may depend on the
+  // other rays.
+  bool single_rays = false;
+  bool records_bounces = false;     // Workspace::bounces are collected, for learning
+  RayRecorder* recorder = nullptr;  // for measurements only
 };
 
 FrameContext make_frame_context(const Scene& scene, const RenderScene& render_scene, const LightSampler& lights,

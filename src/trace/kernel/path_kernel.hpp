@@ -52,9 +52,7 @@ class PathKernel {
         see_sky(vertex, alive);
         return;
       }
-      // Which of two surfaces a ray hits on their common edge may depend on the other rays in its packet.
-      const bool alone = frame_.settings.samples.has_value();
-      const RayShape shape = vertex == 0 && !alone ? RayShape::coherent_packet : RayShape::single;
+      const RayShape shape = vertex == 0 && !frame_.single_rays ? RayShape::coherent_packet : RayShape::single;
       record(rays, alive, shape, false);
       counts_.rejected += static_cast<std::uint64_t>(frame_.scene->rays->intersect(rays, alive, shape, work_.hits));
       shadow_count_ = 0;

@@ -30,7 +30,7 @@ inline void PathKernel<kFeatures, kDiffuse>::trace_shadows(int vertex) {
   const int count = static_cast<int>(shadow_count_);
   ShadowBatch& shadows = work_.shadows;
   stamp(shadows.rays, shadows.slot, shadow_count_);
-  const RayShape shape = vertex == 0 && !frame_.settings.samples ? RayShape::packet : RayShape::single;
+  const RayShape shape = vertex == 0 && !frame_.single_rays ? RayShape::packet : RayShape::single;
   counts_.rays_shadow += shadow_count_;
   record(shadows.rays, count, shape, true);
   counts_.rejected +=

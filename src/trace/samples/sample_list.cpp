@@ -28,11 +28,10 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
   int filled = 0;
   while (filled < kBatchSize && site_ < end_) {
     const Site& site = map_->sites[site_];
-    const std::uint32_t last = std::min(site.samples, range_.end);
-    if (sample_ >= last) {
+    if (sample_ >= site.samples) {
       curve_index_ += site.samples;
       ++site_;
-      sample_ = range_.begin;
+      sample_ = 0;
       continue;
     }
     const int block = map_->regions[site.region].block_px;
@@ -45,7 +44,7 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
       first_y = pixels_[0].y;
     }
     const SiteSequence sequence = sequence_of_site(site, first_x, first_y);
-    const auto left = static_cast<int>(std::min<std::uint32_t>(last - sample_, kBatchSize));
+    const auto left = static_cast<int>(std::min<std::uint32_t>(site.samples - sample_, kBatchSize));
     const int count = std::min(left, kBatchSize - filled);
     const auto size = static_cast<float>(block);
     const auto pixel_count = static_cast<float>(site.pixels);

@@ -4,32 +4,25 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "gazetrace/foveation.hpp"
-#include "gazetrace/sample_sums.hpp"
 #include "trace/kernel/path_batch.hpp"
 #include "trace/samples/pixel_filter.hpp"
 #include "trace/samples/z_order.hpp"
 
 namespace gazetrace {
 
-inline constexpr SampleRange kAllSamples{0, std::numeric_limits<std::uint32_t>::max()};
-
-// Goes through the sites [first, first + count) of a map in order, and through those of each site's samples 0, 1, 2,
-// ... that are in `range`. Neighbouring entries are neighbours in the picture, so that packets of 16 rays are coherent.
-// With `z_order` all sites share one sequence of random numbers along that curve; without, each has its own.
+// Goes through the sites [first, first + count) of a map in order, and through the samples of each. Neighbouring
+// entries are neighbours in the picture, so that packets of 16 rays are coherent. With `z_order` all sites share one
+// sequence of random numbers along that curve; without, each has its own.
 class SampleList {
  public:
   SampleList(const SamplingMap& map, std::uint32_t first_site, std::uint32_t site_count, std::uint64_t seed,
-             std::int32_t frame, const SampleRange& range = kAllSamples, const ZOrder* z_order = nullptr,
-             bool halves = false)
+             std::int32_t frame, const ZOrder* z_order = nullptr, bool halves = false)
       : map_(&map),
         site_(first_site),
         end_(first_site + site_count),
-        range_(range),
-        sample_(range.begin),
         seed_(seed),
         frame_(frame),
         halves_(halves),
@@ -44,8 +37,7 @@ class SampleList {
 
   const SamplingMap* map_;
   std::uint32_t site_, end_;
-  SampleRange range_;
-  std::uint32_t sample_;
+  std::uint32_t sample_ = 0;
   std::uint64_t seed_;
   std::int32_t frame_;
   bool halves_;  // as TraceSettings::halves

@@ -8,31 +8,24 @@
 
 #include "core/luminance.hpp"
 #include "trace/samples/bad_samples.hpp"
-#include "trace/samples/sample_sums.hpp"
 
 namespace gazetrace {
 namespace {
 
+constexpr double kMostSquare = std::numeric_limits<float>::max();
+
 void add_guides(const GuideBatch& g, std::size_t i, SiteGuideSums& sums) {
-  sums.albedo_red.add(static_cast<double>(g.albedo_r[i]));
-  sums.albedo_green.add(static_cast<double>(g.albedo_g[i]));
-  sums.albedo_blue.add(static_cast<double>(g.albedo_b[i]));
-  sums.normal_x.add(static_cast<double>(g.normal_x[i]));
-  sums.normal_y.add(static_cast<double>(g.normal_y[i]));
-  sums.normal_z.add(static_cast<double>(g.normal_z[i]));
-  sums.depth_m.add(static_cast<double>(g.depth[i]));
+  sums.albedo += Vec3d{g.albedo_r[i], g.albedo_g[i], g.albedo_b[i]};
+  sums.normal += Vec3d{g.normal_x[i], g.normal_y[i], g.normal_z[i]};
+  sums.depth_m += static_cast<double>(g.depth[i]);
   ++sums.hits;
 }
 
-void add_light(const Vec3f& radiance, SiteSums& sums) {
-  sums.red.add(static_cast<double>(radiance.x));
-  sums.green.add(static_cast<double>(radiance.y));
-  sums.blue.add(static_cast<double>(radiance.z));
+void add_light(const Vec3f& radiance, SiteLightSums& sums) {
+  sums.radiance += to_double(radiance);
   const double shone = luminance(to_double(radiance));
-  // Rounded to float, as all terms of an ExactSum must be. It saturates, since squares exceed float's range from a
-  // radiance of 1.8e19 on.
-  constexpr double kMost = std::numeric_limits<float>::max();
-  sums.square_luminance.add(static_cast<double>(static_cast<float>(std::min(shone * shone, kMost))));
+  // A float, as the radiance is. It saturates, since squares exceed float's range from a radiance of 1.8e19 on.
+  sums.square_luminance += static_cast<double>(static_cast<float>(std::min(shone * shone, kMostSquare)));
 }
 
 void add_groups(const LightGroupBatch& batch, std::size_t i, std::array<Vec3d, kLightGroups>& sums) {
@@ -98,12 +91,13 @@ SummedRange SiteSummer::finish() {
 }
 
 void SiteSummer::finish_site() {
-  store_rounded(sum_.light, out_.guides.empty() ? nullptr : &sum_.guides, site_, out_);
-  if (!out_.unrounded.sites.empty()) {
-    out_.unrounded.sites[site_] = sum_.light;
-  }
-  if (!out_.unrounded.guides.empty()) {
-    out_.unrounded.guides[site_] = sum_.guides;
+  out_.sum[site_] = to_float(sum_.light.radiance);
+  out_.sum_square_luminance[site_] = static_cast<float>(std::min(sum_.light.square_luminance, kMostSquare));
+  out_.count[site_] = sum_.light.count;
+  if (!out_.guides.empty()) {
+    const SiteGuideSums& guides = sum_.guides;
+    out_.guides[site_] = {to_float(guides.albedo), to_float(guides.normal), static_cast<float>(guides.depth_m),
+                          guides.hits};
   }
   for (std::size_t group = 0; group < kLightGroups && !out_.light_groups.empty(); ++group) {
     out_.light_groups[site_].sum[group] = to_float(sum_.groups[group]);

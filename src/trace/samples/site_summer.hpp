@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds up the samples of sites without rounding.
+// Adds up the samples of sites.
 #pragma once
 
 #include <array>
@@ -21,6 +21,18 @@ struct SummedRange {
   std::vector<SurfaceSums> surfaces;  // of all sites, in their order
 };
 
+// The sums of a site in double, of which its entries in the frame are rounded; members as in SparseFrame and GuideSums.
+struct SiteLightSums {
+  Vec3d radiance;
+  double square_luminance = 0;
+  std::uint32_t count = 0;
+};
+struct SiteGuideSums {
+  Vec3d albedo, normal;
+  double depth_m = 0;
+  std::uint32_t hits = 0;
+};
+
 // Sites are finished one at a time, since the samples of a site follow each other, possibly over several batches. A
 // site belongs to one thread, which adds its samples in their order.
 class SiteSummer {
@@ -37,7 +49,7 @@ class SiteSummer {
 
  private:
   struct SiteSum {
-    SiteSums light;
+    SiteLightSums light;
     SiteGuideSums guides;
     std::array<Vec3d, kLightGroups> groups{};
   };

@@ -68,8 +68,6 @@ TEST(ChooseFilter, GuidedWhereAllSamplesAreThere) {
   EXPECT_NE(choose_filter({.foveated = false}).reason, choose_filter({}).reason);
   for (const FilterFacts& facts : std::vector<FilterFacts>{{.accumulates_sites = true},
                                                            {.enhances_contrast = true},
-                                                           {.part_of_samples = true},
-                                                           {.foveated = false, .part_of_samples = true},
                                                            {.foveated = false, .means_frames = true},
                                                            {.foveated = false, .single_pixel = true}}) {
     const FilterChoice choice = choose_filter(facts);
