@@ -27,20 +27,12 @@ struct ExposureSettings {
 double choose_exposure_ev(const ImageRgb& radiance, std::int64_t t_video_ns, const ExposureSettings& settings,
                           TemporalHistory& history);
 
-// How 8-bit pictures are computed; 16-bit pictures are always exact.
-enum class ViewPrecision {
-  automatic,  // baked for the built-in ACES view on frames of at least 250,000 pixels, else exact
-  exact,      // OpenColorIO's own arithmetic for every pixel: about 240 ms of CPU per megapixel for ACES
-  baked,      // a table, for the pixels where it is within half a code value of exact: 20 to 70 ms per megapixel
-};
-
 struct ColorSettings {
   std::string config;   // OCIO config file; empty: that of $OCIO; neither: the built-in one
   std::string input;    // name of linear Rec.709 in a config without aces_interchange
   std::string display;  // empty: the config's default
   std::string view;     // empty: the display's default
   std::string look;     // empty: those of the view
-  ViewPrecision precision = ViewPrecision::automatic;
 };
 
 struct ViewInfo {

@@ -77,11 +77,6 @@ struct FoveationSettings {
   AngleReading reading = AngleReading::full_angle;
   SampleUnit unit = SampleUnit::per_block;
   RegionShape shape = RegionShape::cone;
-  // Over a rim of this many degrees about each border of `regions`, the logarithm of the density passes smoothly from
-  // one region's to the other's, and blocks follow from the density. 0: the paper's hard borders. Away from the borders
-  // regions keep their own rates and blocks: a density_floor of at most the default does not raise a region's rate, and
-  // the default max_block_px does not limit blocks to less than the largest region's (up to the next power of two).
-  double border_blend_deg = 0;
 
   FalloffParameters parameters;
   // Of the fall-off `map`: the file that MapContext::density is read from, or a pattern of files with a place for the
@@ -102,29 +97,19 @@ struct FoveationSettings {
   int max_block_px = kDefaultMaxBlockPx;
   double density_floor = kDefaultDensityFloor;  // the least density anywhere, so that every place gets some samples
 
-  // How the density p of any model is made, except for the layouts "uniform" and `regions` with hard borders:
-  //   1  e      is reduced by the uncertainty of the gaze, to no less than 0
-  //   2  p      = (f(e) / f_disp)^2 cos^3 t, or the model's own density, times retinal_velocity, at most 1
-  //   3  p      times saccade_density during a saccade, times the contrast term; both also lower p at the gaze itself
-  //   4  p      is raised to at least density_floor
-  //   5  count  = p times uniform_spp, or times the rate that meets the budget. A budget is always met: then steps 1 to
-  //             4 only say where its samples go.
+  // How the density p of any model is made, except for the layouts "uniform" and `regions`:
+  //   1  p      = (f(e) / f_disp)^2 cos^3 t, or the model's own density, at most 1
+  //   2  p      is raised to at least density_floor
+  //   3  count  = p times uniform_spp, or times the rate that meets the budget. A budget is always met: then steps 1
+  //             and 2 only say where its samples go.
   // Models that follow a picture (FalloffInfo::from_picture) have p = MapContext::density over its largest value in
-  // step 2, and that value, in samples a pixel, is their full rate. They need no gaze.
-  bool retinal_velocity = false;  // the squared share of acuity that the speed of the image on the retina leaves
-  double saccade_density = 1;     // 0..1, while the eye is in a saccade
-  // 0..1. 0: off; 1: a quarter of the density is left where a first, coarse rendering shows no contrast.
-  double contrast_strength = 0;
+  // step 1, and that value, in samples a pixel, is their full rate. They need no gaze.
 };
 
 // What a map depends on besides settings, view and gaze.
 struct MapContext {
   std::uint64_t seed = 0;  // seed and frame decide which of the sites that expect a fraction of a sample round up
   std::int32_t frame = 0;
-  double uncertainty_deg = 0;   // the gaze may be off by this angle: eccentricities count from the nearest such gaze
-  double gaze_speed_deg_s = 0;  // for retinal_velocity
-  bool in_saccade = false;      // for saccade_density
-  const ImageGray* contrast = nullptr;  // multiplies the density; of any size, stretched over the frame
   // What models that follow a picture follow: samples a pixel, or relative rates where there is a budget. Of any size,
   // stretched over the frame; see check_density_picture().
   const ImageGray* density = nullptr;
@@ -147,8 +132,6 @@ bool works_without_gaze(const FoveationSettings& settings);
 // budget, is more than a pixel can have; and where all values are 0.
 void check_density_picture(const ImageGray& density, const FoveationSettings& settings, const std::string& place);
 void check_foveation(const FoveationSettings& settings);  // Error(usage) that names the setting that is out of range
-// The settings with every region ending `by_deg` of eccentricity farther out, for a gaze that may be off by that much.
-FoveationSettings widened(const FoveationSettings& settings, double by_deg);
 
 // The highest spatial frequency, in cycles per degree, that the eye sees at an eccentricity according to the model. The
 // meridian is the direction from the gaze in the visual field: 0 right, 90 up, 180 left. Infinite at 0 degrees for

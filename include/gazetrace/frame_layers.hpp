@@ -37,9 +37,9 @@ struct FrameLayers {
   std::shared_ptr<const std::vector<MatteTable>> tables;
   std::vector<Coverage> mattes;
   MotionLayers motion;  // images are empty where they were not asked for
-  // One for each LightGroup, or none. Under the filters none, linear, tent and push-pull, whose weights do not depend
+  // One for each LightGroup, or none. Under the filters none and linear, whose weights do not depend
   // on the light, each is what the filter makes of the group's own samples. Under other filters, and where frames are
-  // accumulated or contrast is enhanced, a group is the picture itself times the group's share of the light, as the
+  // accumulated, a group is the picture itself times the group's share of the light, as the
   // filter `linear` (or, in single pixels, the samples' mean) finds it in the frame's own samples. Both ways the layers
   // add up to the picture, apart from rounding.
   std::vector<ImageRgb> light;

@@ -30,7 +30,7 @@ struct FrameRates {
 
 struct FrameSettings {
   FoveationSettings foveation;
-  TraceSettings trace;                    // what the filter needs is added to it: `surfaces`, `pass_through_samples`
+  TraceSettings trace;                    // what the filter needs is added to it: `surfaces`, `halves`
   ReconstructionSettings reconstruction;  // its filter must be named; choose_filter() helps
   AccumulateSettings accumulate;
   ExposureSettings exposure;
@@ -44,8 +44,7 @@ struct FrameSettings {
   // How the viewer's display shows luminance at an exposure in stops; empty: linear_display_curve().
   std::function<DisplayCurve(double exposure_ev)> display_curve;
   LayerSettings layers;
-  double enhance_contrast = 0;  // strength of enhance_contrast(), after accumulation and the choice of an exposure
-  int threads = 0;              // 0: all
+  int threads = 0;  // 0: all
 };
 
 // A frame depends on what became of those before it. That it reads the samples of other frames (two_sided) is no
@@ -57,9 +56,9 @@ struct StageTimes {
   double plan_ms = 0;         // the sampling map
   double learn_ms = 0;        // PosedScene::learn_light()
   double pilot_ms = 0;        // everything that decides the rates of the fall-off `visible`
-  double trace_ms = 0;        // samples, those of the first look included, and putting the scene into its pose
+  double trace_ms = 0;        // samples, and putting the scene into its pose
   double guides_ms = 0;       // first hits for the filter
-  double reconstruct_ms = 0;  // the filter, and the enhancement
+  double reconstruct_ms = 0;  // the filter
   double temporal_ms = 0;     // accumulation, and where surfaces were before
   double exposure_ms = 0;
   double layers_ms = 0;  // FrameLayers
@@ -75,19 +74,19 @@ struct Prediction {
 struct TracedFrame {
   SamplingMap map;
   SparseFrame sparse;
-  // Of the samples that told where the frame's own belong, and were discarded: those of the pilot, of the first look of
-  // `contrast_strength`. The paths of TraceSettings::learn_light are counted here, too, but are no samples.
-  TraceStats first_look;
+  // Of the samples that told where the frame's own belong, and were discarded. The paths of TraceSettings::learn_light
+  // are counted here, too, but are no samples.
+  TraceStats pilot;
   Prediction prediction;
   StageTimes times;  // plan_ms, learn_ms, pilot_ms and trace_ms
 };
 
 struct RenderedFrame {
-  Frame frame;             // linear, after accumulation and enhancement
+  Frame frame;             // linear, after accumulation
   double exposure_ev = 0;  // stops; the radiance is not multiplied by it
   FrameLayers layers;      // those of FrameSettings::layers
   SamplingMap map;
-  TraceStats samples, first_look;  // as SparseFrame::stats and TracedFrame::first_look
+  TraceStats samples, pilot;  // as SparseFrame::stats and TracedFrame::pilot
   // Of frames that were traced only because this one reads them (AccumulateMode::two_sided), their pilots among them.
   // Their time is part of `times`. Empty from FrameRenderer.
   TraceStats others;
@@ -103,7 +102,7 @@ struct ReconstructedFrame {
   std::vector<ImageRgb> light;  // FrameLayers::light before it is brought to the light of the finished picture
   // What the frame would leave as history if it were the first one; only where other frames read it.
   TemporalHistory alone;
-  TraceStats samples, first_look;
+  TraceStats samples, pilot;
   Prediction prediction;
   StageTimes times;
 };
@@ -123,7 +122,7 @@ class FrameRenderer {
 
   [[nodiscard]] const FrameSettings& settings() const { return settings_; }
 
-  // map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure -> enhance.
+  // map -> trace -> guides, where the filter needs them -> reconstruct -> accumulate -> exposure.
   // A function of its arguments: without history (uses_history) a frame has the same bits alone and in a sequence.
   // `history` is that of the frames before, and then that of this frame as well; it begins empty. Error(usage) with
   // AccumulateMode::two_sided, which takes reconstruct() and join().
@@ -144,8 +143,8 @@ class FrameRenderer {
   // Whether nothing moves between two frames: they see the same, and differ by their samples alone.
   [[nodiscard]] bool at_rest(const FrameRequest& a, const FrameRequest& b) const;
   // Whether frames around a frame are read before its filter, surface by surface (src/temporal/moving_views.hpp): all
-  // that can move in the scene is the camera, the filter takes light surface by surface, and neither
-  // AccumulateSettings::blend nor ReconstructionSettings::pass_through_samples is set.
+  // that can move in the scene is the camera, the filter takes light surface by surface, and AccumulateSettings::blend
+  // is not set.
   [[nodiscard]] bool only_views_move() const;
   // Lets other frames read this one: fills in ReconstructedFrame::alone.
   void keep_history(ReconstructedFrame& frame) const;
@@ -183,8 +182,7 @@ ImageGray read_density_map(const FoveationSettings& settings, std::int32_t frame
 // Every file that FoveationSettings::density_map may stand for, by name; Error(input) where there is none.
 std::vector<std::string> density_map_files(const FoveationSettings& settings);
 
-// The sampling map of a frame, for settings under which no sample of the frame decides it: neither a first look
-// (`contrast_strength`) nor a pilot (`visible`).
+// The sampling map of a frame, for settings under which no pilot of the frame decides it (`visible`).
 SamplingMap planned_sampling_map(const FoveationSettings& settings, const FrameRequest& request, std::uint64_t seed,
                                  int threads = 0);
 

@@ -84,12 +84,13 @@ AoiAnalysis analyse_aois(const GazeLog& log, const EyeEvents& events, std::vecto
                          const std::optional<GazeUncertainty>& uncertainty, const GazeObjects* objects);
 
 // The same for the gaze of a job. Its scene is loaded only where an AOI is an object of it. `method` is the name of an
-// event preset, "auto" or "log". Warnings are those of the job.
+// event preset, "auto" or "log"; where `uncertainty` is NaN, the log's is taken. Warnings are those of the job.
 struct AoisOfJob {
   AoiAnalysis analysis;
   Warnings warnings;
 };
-AoisOfJob aois_of_job(const Job& job, const std::string& aoi_file, const std::string& method);
+AoisOfJob aois_of_job(const Job& job, const std::string& aoi_file, const std::string& method,
+                      const GazeUncertainty& uncertainty);
 
 std::string aoi_fixations_as_tsv(const AoiAnalysis& analysis);
 std::string aoi_figures_as_tsv(const AoiAnalysis& analysis);

@@ -22,6 +22,16 @@ namespace gazetrace {
 // not tell; who asks must.
 enum class Stimulus : std::uint8_t { replayed, recorded };
 
+// How far gaze is off: the tracker's systematic error (accuracy) and its scatter (precision).
+struct GazeUncertainty {
+  double accuracy_deg = 0, precision_deg = 0;
+};
+// What the log says about it: the mean error of its validations, and the root mean square of the scatter within
+// fixations. NaN where the log does not say.
+GazeUncertainty uncertainty_of(const GazeLog& log);
+// `stated` and, where that is NaN, what the log says.
+GazeUncertainty known_uncertainty(const GazeUncertainty& stated, const GazeLog& log);
+
 // Directions around a gaze, equally likely each. The gaze is off by a normal distribution around it: the tracker's
 // accuracy is its mean distance, sd = accuracy sqrt(2 / pi) in each axis (the mean of a Rayleigh distribution), and the
 // precision p, a root mean square distance, adds p / sqrt(2) in each axis. Radii are the quantiles (i + 1/2) / count of
@@ -93,8 +103,8 @@ struct GazeObjects {
 GazeObjects gaze_objects(PathTracer& tracer, const Scene& scene, const FramePlan& plan,
                          const GazeObjectsSettings& settings);
 
-// The same for the frames of a job, whose scene is loaded for it. Accuracy and precision are those of the job
-// (`gaze-accuracy`, `gaze-precision`) or, where it states none, those of the log; Error(input) where that tells none.
+// The same for the frames of a job, whose scene is loaded for it. Where settings.uncertainty is NaN, the log's is
+// taken; Error(input) where that tells none.
 struct GazeOnScene {
   ResolvedJob resolved;
   GazeObjects objects;

@@ -22,8 +22,8 @@ enum class SurfaceKind : std::uint8_t {
 
 struct GuideSettings {
   int spp = 1;  // rays per pixel, 1..64: a single one goes through the centre, several are spread over the pixel
-  // As TraceSettings::pixel_cone. It is on here since one ray stands for the whole pixel, where the samples of paths
-  // would average the texture themselves.
+  // Width of a ray's cone in pixels, which chooses the level of detail of textures. One ray stands for the whole pixel
+  // here, where the samples of paths average the texture themselves.
   double pixel_cone = 1;
   DiffuseModel diffuse = DiffuseModel::burley;
   int edge_rays = 0;  // further rays through each pixel that an edge may cross, 0..64: Guides::edge_rays

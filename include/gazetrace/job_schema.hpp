@@ -9,6 +9,8 @@
 namespace gazetrace {
 
 using JobSchema = OptionSchema<JobSettings>;
+// The heading of options that only machines need which share a sequence.
+inline constexpr const char* kFarmHeading = "On many machines";
 // Made once and never changed.
 const JobSchema& job_schema();
 

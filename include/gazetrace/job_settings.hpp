@@ -44,7 +44,6 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   double environment_rotation_deg = 0;
   double environment_ev = 0;
   ByteCount max_memory;  // 0: most_memory_bytes()
-  SceneLimits limits;    // all but its memory
   bool allow_outside = false;
   bool confine = false;  // as for load_job()
 
@@ -82,8 +81,6 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   bool keep_ids = false;
   std::vector<std::string> gaze_process;  // texts for parse_gaze_step()
   std::vector<std::string> gaze_anchors;  // LOG=VIDEO
-  bool gaze_uncertainty = false;
-  std::optional<double> gaze_accuracy_deg, gaze_precision_deg;
   ScreenSettings screen;
   std::string recording_screen;  // a name or a file
   std::optional<GazeTransfer> gaze_transfer;
@@ -100,10 +97,7 @@ struct JobSettings {  // NOLINT(clang-analyzer-optin.performance.Padding)
   // How it is rendered
   FoveationSettings foveation;
   TraceSettings trace;
-  BvhQuality bvh = BvhQuality::high;
   std::string filter = "auto";  // filter_of() says which filter that is
-  std::optional<std::uint64_t> pass_through_samples;
-  double enhance_contrast = 0;
   AccumulateSettings accumulate;
   std::string checkpoint, resume_from;
   std::int32_t checkpoint_every = 0, preroll = 0;

@@ -3,11 +3,13 @@
 // touches. The command line, settings files, help, run records, digests, warnings and the reference page are all made
 // from these definitions.
 //
-// A schema is not bound to any settings: its accessors take the settings as an argument. Settings are therefore plain
-// values that can be copied, and any number of them can exist at the same time.
+// A schema is not bound to any settings: an option knows the place of its value in them and the type of that value, and
+// takes the settings as an argument. Settings are therefore plain values that can be copied, and any number of them can
+// exist at the same time. All that parses, prints and measures a value exists once for each type, not for each option.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -75,7 +77,8 @@ constexpr Touches operator|(Touch a, Touch b) {
 }
 std::vector<std::string> touch_names(Touches touches);  // "sampling", "filter"
 
-// What an option means for a sweep, which measures many settings against one reference (sweep.hpp).
+// What an option means beside its value: to a sweep, which measures many settings against one reference (sweep.hpp),
+// and to readers.
 enum class Trait : std::uint8_t {
   trade_off,      // makes rendering cheaper and less accurate: a reference never takes its value from a row
   needs_truth,    // a trade-off without a value that is right by itself: the plan must state that of the reference
@@ -83,6 +86,7 @@ enum class Trait : std::uint8_t {
   clock,          // decides where a camera that follows the head is at a given time
   gaze_source,    // decides whose gaze is used
   one_run,        // has a meaning for a single run only, such as the names of its files
+  everyday,       // what most people set: help shows these unless it is asked for all
   always_stated,  // stated in a paragraph on methods even where it has its default
 };
 
@@ -97,6 +101,18 @@ struct OptionRange {
   [[nodiscard]] std::string words() const;  // "0..1000", "above 0"
 };
 
+// What options of one type of value have in common, whatever settings hold them. `value` points to one of that type.
+struct OptionType {
+  OptionShape shape = OptionShape::value;
+  // Sets the value. Throws Error(usage, place, ...) for texts that the type does not take.
+  void (*parse)(const std::vector<std::string>& texts, const std::string& place, void* value) = nullptr;
+  void (*check)(const std::vector<std::string>& texts, const std::string& place) = nullptr;  // parses and forgets
+  // The value in canonical form; empty: not set.
+  std::vector<std::string> (*format)(const void* value) = nullptr;
+  // The numbers of the value, which are checked against the option's range.
+  std::vector<double> (*numbers)(const void* value) = nullptr;
+};
+
 // What is known about an option without any settings.
 struct Option {
   std::string flags;  // "-o,--output"; without dashes: the command line takes it by its position
@@ -104,6 +120,8 @@ struct Option {
   std::string group;  // a heading for people, which affects nothing else
   std::string unit;   // stands for the value in the help: "DEG", "a|b|c"
   std::string help;
+  const OptionType* type = nullptr;
+  std::size_t offset = 0;  // of the value within the settings, in bytes
   OptionShape shape = OptionShape::value;
   Decides decides = Decides::text;
   Touches touches;
@@ -112,9 +130,9 @@ struct Option {
   std::vector<std::string> needs;       // what has to be given with it, in words with settings in back quotes
   std::vector<std::string> idle_words;  // when it has no effect, in the same kind of words
   std::vector<std::string> defaults;    // its values in default settings; empty: not set
-  // Throws Error(usage, place, ...) unless the option takes these values.
-  std::function<void(const std::vector<std::string>& values, const std::string& place)> check;
 
+  // Throws Error(usage, place, ...) unless the option takes these values.
+  void check(const std::vector<std::string>& values, const std::string& place) const { type->check(values, place); }
   [[nodiscard]] bool is(Trait trait) const;
   // A flag that is set unless it is turned off. The command line takes --no-NAME for it.
   [[nodiscard]] bool is_on_by_default() const;
@@ -122,6 +140,8 @@ struct Option {
 using OptionList = std::vector<const Option*>;
 [[nodiscard]] const Option* find_option(const OptionList& options, const std::string& name);
 [[nodiscard]] std::vector<std::string> names_of(const OptionList& options);
+// An option as its flags name it.
+[[nodiscard]] Option make_option(const std::string& flags, const OptionType& type, std::size_t offset);
 
 // A condition under which an option has no effect because of the other settings.
 template <class S>
@@ -134,13 +154,16 @@ struct IdleRule {
 // An option of settings of the type S.
 template <class S>
 struct OptionOf : Option {
-  // Sets the value. Throws Error(usage, place, ...) for values that the option does not take.
-  std::function<void(S& settings, const std::vector<std::string>& values, const std::string& place)> assign;
-  // The present value in canonical form; empty: not set.
-  std::function<std::vector<std::string>(const S& settings)> values;
-  // The numbers of its value, which are checked against the range.
-  std::function<std::vector<double>(const S& settings)> numbers;
   std::vector<IdleRule<S>> idle;
+
+  // Sets the value. Throws Error(usage, place, ...) for values that the option does not take.
+  void assign(S& settings, const std::vector<std::string>& values, const std::string& place) const {
+    type->parse(values, place, reinterpret_cast<std::byte*>(&settings) + offset);
+  }
+  // The present value in canonical form; empty: not set.
+  [[nodiscard]] std::vector<std::string> values(const S& settings) const { return type->format(value_in(settings)); }
+  // The numbers of its value, which are checked against the range.
+  [[nodiscard]] std::vector<double> numbers(const S& settings) const { return type->numbers(value_in(settings)); }
 
   OptionOf& decides_nothing() {
     decides = Decides::nothing;
@@ -177,17 +200,31 @@ struct OptionOf : Option {
     }
     return *this;
   }
+
+ private:
+  const void* value_in(const S& settings) const { return reinterpret_cast<const std::byte*>(&settings) + offset; }
 };
 
-// An accessor that leads from settings to a part of them: at(&JobSettings::foveation, &FoveationSettings::uniform_spp).
-template <class... Members>
-constexpr auto at(Members... members) {
-  return [members...](auto& settings) -> auto& {
-    return (settings.*....*members);
-  };
-}
+// Where a value of the type T lies in settings of the type S: its distance from their beginning, in bytes.
+template <class S, class T>
+struct Place {
+  std::size_t offset = 0;
+};
 
 namespace option_detail {
+
+// Settings as they are by default, in which places are measured.
+template <class S>
+const S& defaults() {
+  static const S settings{};
+  return settings;
+}
+
+template <class S, class T>
+Place<S, T> place_of(const T& value) {
+  const auto* begin = reinterpret_cast<const std::byte*>(&defaults<S>());
+  return {static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&value) - begin)};
+}
 
 template <class T>
 struct Bare {
@@ -225,7 +262,68 @@ std::vector<double> numbers_in(const T& value) {
   }
 }
 
+template <class Held>
+struct Ops {
+  using T = typename Bare<Held>::Type;
+  static constexpr bool kIsOptional = !std::is_same_v<Held, T>;
+
+  static void parse(const std::vector<std::string>& texts, const std::string& place, void* value) {
+    if constexpr (kIsOptional) {  // stays as it was where the text is wrong
+      T parsed{};
+      parse_value(texts.at(0), place, parsed);
+      *static_cast<Held*>(value) = std::move(parsed);
+    } else {
+      parse_value(texts.at(0), place, *static_cast<Held*>(value));
+    }
+  }
+  static void check(const std::vector<std::string>& texts, const std::string& place) {
+    T scratch{};
+    parse_value(texts.at(0), place, scratch);
+  }
+  static std::vector<std::string> format(const void* value) {
+    const Held& held = *static_cast<const Held*>(value);
+    if constexpr (kIsOptional) {
+      return held ? std::vector{format_value(*held)} : std::vector<std::string>();
+    } else {
+      std::string text = format_value(held);
+      return text.empty() ? std::vector<std::string>() : std::vector{std::move(text)};
+    }
+  }
+  static std::vector<double> numbers(const void* value) {
+    const Held& held = *static_cast<const Held*>(value);
+    if constexpr (kIsOptional) {
+      return held ? numbers_in(*held) : std::vector<double>();
+    } else {
+      return numbers_in(held);
+    }
+  }
+};
+
 }  // namespace option_detail
+
+// at(&JobSettings::foveation, &FoveationSettings::uniform_spp)
+template <class S, class First, class... Rest>
+auto at(First S::*first, Rest... rest) {
+  const auto& value = ((option_detail::defaults<S>().*first).*....*rest);
+  return option_detail::place_of<S, std::remove_cvref_t<decltype(value)>>(value);
+}
+// The settings themselves, or those that they are derived from.
+template <class S, class Base>
+Place<S, Base> whole() {
+  return option_detail::place_of<S, Base>(option_detail::defaults<S>());
+}
+
+template <class Held>
+const OptionType& option_type() {
+  using Ops = option_detail::Ops<Held>;
+  static constexpr OptionType kType{std::is_same_v<typename Ops::T, bool>       ? OptionShape::flag
+                                    : option_detail::is_list<typename Ops::T>() ? OptionShape::list
+                                                                                : OptionShape::value,
+                                    Ops::parse, Ops::check, Ops::format, Ops::numbers};
+  return kType;
+}
+// Of options that may be given several times; their values are taken as they are.
+const OptionType& repeated_type();
 
 template <class S>
 class OptionSchema {
@@ -233,116 +331,66 @@ class OptionSchema {
   // Heading of the options that follow.
   void group(std::string heading) { group_ = std::move(heading); }
 
-  template <class Access>
-  OptionOf<S>& flag(const std::string& flags, Access access, Touches touches, const std::string& help) {
-    return value(flags, access, "", touches, help);
-  }
-  template <class Access>
-  OptionOf<S>& value(const std::string& flags, Access access, const std::string& unit, Touches touches,
+  // `place`: where the value lies, as at() says it, or a pointer to the member.
+  template <class Where>
+  OptionOf<S>& value(const std::string& flags, Where place, const std::string& unit, Touches touches,
                      const std::string& help) {
-    if constexpr (std::is_member_object_pointer_v<Access>) {
-      return value(flags, at(access), unit, touches, help);
-    } else {
-      using Held = std::remove_cvref_t<std::invoke_result_t<Access, S&>>;
-      using T = typename option_detail::Bare<Held>::Type;
-      constexpr bool is_optional = !std::is_same_v<Held, T>;
-      OptionOf<S> option = start(flags, unit, touches, help);
-      option.shape = std::is_same_v<T, bool>       ? OptionShape::flag
-                     : option_detail::is_list<T>() ? OptionShape::list
-                                                   : OptionShape::value;
-      option.assign = [access](S& settings, const auto& values, const auto& place) {
-        if constexpr (is_optional) {
-          T parsed{};
-          parse_value(values.at(0), place, parsed);
-          access(settings) = parsed;
-        } else {
-          parse_value(values.at(0), place, access(settings));
-        }
-      };
-      option.check = [](const auto& values, const auto& place) {
-        T scratch{};
-        parse_value(values.at(0), place, scratch);
-      };
-      option.values = [access](const S& settings) -> std::vector<std::string> {
-        const Held& held = access(settings);
-        if constexpr (is_optional) {
-          return held ? std::vector{format_value(*held)} : std::vector<std::string>();
-        } else {
-          std::string text = format_value(held);
-          return text.empty() ? std::vector<std::string>() : std::vector{std::move(text)};
-        }
-      };
-      option.numbers = [access](const S& settings) -> std::vector<double> {
-        const Held& held = access(settings);
-        if constexpr (is_optional) {
-          return held ? option_detail::numbers_in(*held) : std::vector<double>();
-        } else {
-          return option_detail::numbers_in(held);
-        }
-      };
-      return finish(std::move(option));
-    }
+    return value_of(flags, place_in_settings(place), unit, touches, help);
   }
-  // For settings outside of jobs, where it does not matter what an option touches.
-  template <class Access>
-  OptionOf<S>& flag(const std::string& flags, Access access, const std::string& help) {
-    return value(flags, access, "", Touches(), help);
-  }
-  template <class Access>
-  OptionOf<S>& value(const std::string& flags, Access access, const std::string& unit, const std::string& help) {
-    return value(flags, access, unit, Touches(), help);
-  }
-  template <class Access>
-  OptionOf<S>& repeated(const std::string& flags, Access access, const std::string& unit, const std::string& help) {
-    return repeated(flags, access, unit, Touches(), help);
+  template <class Where>
+  OptionOf<S>& flag(const std::string& flags, Where place, Touches touches, const std::string& help) {
+    return value(flags, place, "", touches, help);
   }
   // An option that may be given several times; its values are taken as they are.
-  template <class Access>
-  OptionOf<S>& repeated(const std::string& flags, Access access, const std::string& unit, Touches touches,
+  template <class Where>
+  OptionOf<S>& repeated(const std::string& flags, Where place, const std::string& unit, Touches touches,
                         const std::string& help) {
-    if constexpr (std::is_member_object_pointer_v<Access>) {
-      return repeated(flags, at(access), unit, touches, help);
-    } else {
-      OptionOf<S> option = start(flags, unit, touches, help);
-      option.shape = OptionShape::repeated;
-      option.assign = [access](S& settings, const auto& values, const auto& /*place*/) { access(settings) = values; };
-      option.check = [](const auto& /*values*/, const auto& /*place*/) {};
-      option.values = [access](const S& settings) { return access(settings); };
-      option.numbers = [](const S& /*settings*/) { return std::vector<double>(); };
-      return finish(std::move(option));
-    }
+    const Place<S, std::vector<std::string>> values = place_in_settings(place);
+    return add(flags, repeated_type(), values.offset, unit, touches, help);
+  }
+  // For settings outside of jobs, where it does not matter what an option touches.
+  template <class Where>
+  OptionOf<S>& flag(const std::string& flags, Where place, const std::string& help) {
+    return value(flags, place, "", Touches(), help);
+  }
+  template <class Where>
+  OptionOf<S>& value(const std::string& flags, Where place, const std::string& unit, const std::string& help) {
+    return value(flags, place, unit, Touches(), help);
+  }
+  template <class Where>
+  OptionOf<S>& repeated(const std::string& flags, Where place, const std::string& unit, const std::string& help) {
+    return repeated(flags, place, unit, Touches(), help);
   }
 
   // An option as it is, under its own heading.
-  OptionOf<S>& add(OptionOf<S> option) { return finish(std::move(option)); }
+  OptionOf<S>& add(OptionOf<S> option) {
+    options_.push_back(std::move(option));
+    options_.back().defaults = options_.back().values(option_detail::defaults<S>());
+    return options_.back();
+  }
 
   // Adds all options of a part of these settings, with their headings; returns the last of them.
-  template <class Part, class Access>
-  OptionOf<S>& include(const OptionSchema<Part>& part, Access access) {
-    if constexpr (std::is_member_object_pointer_v<Access>) {
-      return include(part, at(access));
-    } else {
-      for (const OptionOf<Part>& inner : part.options()) {
-        OptionOf<S> option;
-        static_cast<Option&>(option) = inner;
-        option.assign = [inner = inner.assign, access](S& settings, const auto& values, const auto& place) {
-          inner(access(settings), values, place);
+  template <class Part, class Where>
+  OptionOf<S>& include(const OptionSchema<Part>& part, Where place) {
+    const Place<S, Part> whole_part = place_in_settings(place);
+    const std::size_t begin = whole_part.offset;
+    for (const OptionOf<Part>& inner : part.options()) {
+      OptionOf<S> option;
+      static_cast<Option&>(option) = inner;
+      option.offset += begin;
+      for (const IdleRule<Part>& rule : inner.idle) {
+        const auto part_of = [begin](const S& settings) -> const Part& {
+          return *reinterpret_cast<const Part*>(reinterpret_cast<const std::byte*>(&settings) + begin);
         };
-        option.values = [inner = inner.values, access](const S& settings) { return inner(access(settings)); };
-        option.numbers = [inner = inner.numbers, access](const S& settings) { return inner(access(settings)); };
-        for (const IdleRule<Part>& rule : inner.idle) {
-          IdleRule<S> of_whole;
-          of_whole.words = rule.words;
-          of_whole.holds = [holds = rule.holds, access](const S& settings) { return holds(access(settings)); };
-          if (rule.said) {
-            of_whole.said = [said = rule.said, access](const S& settings) { return said(access(settings)); };
-          }
-          option.idle.push_back(std::move(of_whole));
+        IdleRule<S> of_whole{rule.words, [=, holds = rule.holds](const S& s) { return holds(part_of(s)); }};
+        if (rule.said) {
+          of_whole.said = [=, said = rule.said](const S& s) { return said(part_of(s)); };
         }
-        finish(std::move(option));
+        option.idle.push_back(std::move(of_whole));
       }
-      return options_.back();
+      add(std::move(option));
     }
+    return options_.back();
   }
 
   [[nodiscard]] const std::vector<OptionOf<S>>& options() const { return options_; }
@@ -371,22 +419,28 @@ class OptionSchema {
   }
 
  private:
-  [[nodiscard]] OptionOf<S> start(const std::string& flags, const std::string& unit, Touches touches,
-                                  const std::string& help) const {
+  template <class Base, class T>
+  static Place<S, T> place_in_settings(Place<Base, T> place) {
+    return {whole<S, Base>().offset + place.offset};
+  }
+  template <class Base, class T>
+  static Place<S, T> place_in_settings(T Base::*member) {
+    return place_in_settings(at(member));
+  }
+  template <class T>
+  OptionOf<S>& value_of(const std::string& flags, Place<S, T> place, const std::string& unit, Touches touches,
+                        const std::string& help) {
+    return add(flags, option_type<T>(), place.offset, unit, touches, help);
+  }
+  OptionOf<S>& add(const std::string& flags, const OptionType& type, std::size_t offset, const std::string& unit,
+                   Touches touches, const std::string& help) {
     OptionOf<S> option;
-    option.flags = flags;
-    const std::size_t dashes = flags.find("--");
-    option.name = dashes == std::string::npos ? flags : flags.substr(dashes + 2, flags.find(',', dashes) - dashes - 2);
+    static_cast<Option&>(option) = make_option(flags, type, offset);
     option.group = group_;
     option.unit = unit;
     option.help = help;
     option.touches = touches;
-    return option;
-  }
-  OptionOf<S>& finish(OptionOf<S> option) {
-    option.defaults = option.values(S{});
-    options_.push_back(std::move(option));
-    return options_.back();
+    return add(std::move(option));
   }
 
   std::string group_ = "Options";

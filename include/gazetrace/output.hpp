@@ -108,7 +108,6 @@ struct FrameHeader {
   GazeNumbers gaze;
   std::vector<std::string> gaze_processing;  // FramePlan::gaze_processing
   double exposure_ev = 0;
-  double enhance_contrast = 0;  // above 0: contrast was enhanced, and the picture no longer estimates radiance
   std::uint64_t seed = 0;
   std::string settings_digest;   // hex
   std::string mean_digest;       // PipelineSettings::mean_digest; empty: no mean is to be taken of this picture

@@ -37,14 +37,6 @@ struct Shutter {
 Shutter parse_shutter(std::string_view text);
 std::string to_string(const Shutter& shutter);
 
-// How far gaze is off: the tracker's systematic error (accuracy) and its scatter (precision).
-struct GazeUncertainty {
-  double accuracy_deg = 0, precision_deg = 0;
-};
-// What the log says about it: the mean error of its validations, and the root mean square of the scatter within
-// fixations. NaN where the log does not say.
-GazeUncertainty uncertainty_of(const GazeLog& log);
-
 // How gaze that was recorded on one screen is carried over to a screen of another size or distance. Velocities, events
 // and precision are always those of the recording.
 //   fraction  keeps positions: what was at a quarter of the screen's width is there again; angles change
@@ -63,9 +55,6 @@ struct PlanSettings {
   std::uint64_t most_frames_without_gaze = 0;
   std::int64_t gaze_latency_ns = 0;  // >= 0; gaze_render is the gaze this long before the frame, gaze_true is not
   bool find_events = true;           // detect eye movements with default_event_preset(), in the recording's geometry
-  // If given, FrameRequest::gaze_uncertainty_deg is accuracy + precision + age x speed, and widens the fovea.
-  std::optional<GazeUncertainty> uncertainty;
-  bool find_speed = false;  // fill in FrameRequest::eye_speed_deg_s
   int width_px = 1280, height_px = 720;
   std::optional<DisplayGeometry> display;  // where the frame is watched; required for a screen log
   // Required where the log states a recording screen whose angular size differs from the display's by more than 2 %.
@@ -92,11 +81,7 @@ struct FrameRequest {
   GazeAtTime gaze_true;    // the gaze of the unprocessed log at the frame's time; metrics use this one
   // See GazeAges; in video time. Empty without gaze, and where the log does not tell.
   std::optional<std::int64_t> gaze_effective_age_ns;
-  // The angle by which gaze_render may be off (PlanSettings::uncertainty); 0 where that is not given.
-  double gaze_uncertainty_deg = 0;
-  // What the eye did according to the unprocessed log, at the time of gaze_render, so that no foresight is needed. The
-  // speed is 0 unless PlanSettings::find_speed or uncertainty asks for it.
-  double eye_speed_deg_s = 0;
+  // What the eye did according to the unprocessed log, at the time of gaze_render, so that no foresight is needed.
   bool eye_in_saccade = false;
   // Also by the unprocessed log: whether the eye was in a saccade, or closed, at any time between the gaze_render of
   // the frame before and that of this frame. Both are often shorter than a frame.

@@ -38,10 +38,9 @@ struct ReconstructionNeeds {
 };
 
 struct FilterInfo {
-  std::string name;  // as users write it, for example "push-pull"
+  std::string name;  // as users write it, for example "guided"
   std::string description;
   ReconstructionNeeds needs;
-  bool blurs_blocks = true;  // it takes contrast from the picture where blocks are coarse (see contrast_gain)
 };
 std::vector<FilterInfo> reconstruction_filters();
 
@@ -49,7 +48,6 @@ struct ReconstructionSettings {
   // One of reconstruction_filters(). There is no default that suits every job: choose_filter() names one for the job at
   // hand.
   std::string filter;
-  std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only filters that need surfaces heed it
 };
 
 struct FilterDefinition;  // what a file of src/reconstruct/filters/ defines
@@ -69,23 +67,20 @@ class Reconstruction {
   // those of the samples, and a ray's cone is at least as wide as a sample's. Empty: the filter needs no guides.
   [[nodiscard]] std::optional<GuideSettings> guide_settings(const TraceSettings& trace) const;
 
-  // A site without samples takes its value from its neighbours. The pixels of a site that PassThrough keeps have the
-  // same bits under every filter. `guides`: of the map's size, nullptr unless the filter needs them. Error(runtime) for
-  // inputs that do not belong together.
+  // A site without samples takes its value from its neighbours. `guides`: of the map's size, nullptr unless the filter
+  // needs them. Error(runtime) for inputs that do not belong together.
   [[nodiscard]] Frame frame(const SparseFrame& sparse, const SamplingMap& map, const Guides* guides = nullptr,
                             int threads = 0) const;
 
  private:
   const FilterDefinition* definition_;
   FilterInfo filter_;
-  std::optional<std::uint64_t> pass_through_samples_;
 };
 
 // What decides which filter suits a job. The defaults are those of a foveated job that asks for nothing else.
 struct FilterFacts {
   bool foveated = true;            // a gaze steers where the samples go, under another fall-off than "uniform"
   bool accumulates_sites = false;  // AccumulateMode::reproject under AccumulateOrder::before
-  bool enhances_contrast = false;  // enhance_contrast() is applied
   bool means_frames = false;       // AccumulateMode::running
   bool single_pixel = false;       // TraceSettings::only_pixel
 };
@@ -94,25 +89,7 @@ struct FilterChoice {
   std::string reason;  // the end of a sentence that begins "... because"
 };
 // "guided", since it shows edges and texture at full resolution, takes noise away, and tends to the samples' own mean
-// as they grow in number. "linear" wherever "guided" would not work (it needs all samples) or leaves nothing to
-// enhance.
+// as they grow in number. "linear" wherever "guided" would not work (it needs all samples).
 FilterChoice choose_filter(const FilterFacts& facts);
-
-// Contrast preservation where samples are sparse: an enhancement, not an estimate of radiance.
-//
-// Blocks of n pixels take contrast from the picture: averaged over a block and interpolated between blocks, a wave of
-// f cycles a pixel keeps sinc(f n)^3 of its amplitude, sinc(x) = sin(pi x) / (pi x). Patney et al., "Towards Foveated
-// Rendering for Gaze-Tracked Virtual Reality" (ACM TOG 35(6), 2016) found that the eye's periphery misses this contrast
-// more than detail, and raise what is left. Here the logarithm of luminance goes `gain` times farther from its mean
-// under a Gaussian of standard deviation n pixels:
-//   log Y' = log Y + gain (log Y - mean),   gain = strength (sinc(1/4)^-3 - 1) / (1 - exp(-pi^2 / 8))
-// so that at strength 1 a wave of half the blocks' own limit, f = 1 / (4 n), is as strong as before. Colours keep their
-// ratios. Waves longer than that come out up to 6 % too strong, and noise is raised with the picture.
-double contrast_gain(double strength);
-
-// Pixels of 1x1 blocks and black pixels keep their bits. The gain moves a pixel at most by a factor of 7.4 (e^2) for
-// each unit of gain, so that single bright samples are not raised without bounds. `strength` is in 0..1; Error(usage)
-// outside of it, and where the map is not of the picture's size.
-ImageRgb enhance_contrast(ImageRgb radiance, const SamplingMap& map, double strength, int threads = 0);
 
 }  // namespace gazetrace

@@ -150,18 +150,6 @@ struct MaterialExtensionInfo {
 };
 std::vector<MaterialExtensionInfo> material_extensions();
 
-// What a scene may ask for, whatever its few bytes claim. Every refusal names the limit and the setting that moves it.
-struct SceneLimits {
-  // What the loaded scene may take with its tracing structures, as estimate_scene() reckons it; 0: most_memory_bytes().
-  std::uint64_t memory_bytes = 0;
-  int texture_side_px = 16384;
-  // Decoded bytes of a picture for each byte of its file, beyond the first kFreeDecodedBytes: pictures of one colour
-  // pack a thousand to one, and small ones may.
-  double expansion = 200;
-  std::uint64_t nodes = 500'000;
-  int nesting = 200;  // of the JSON
-};
-inline constexpr std::uint64_t kFreeDecodedBytes = std::uint64_t{64} << 20U;
 // Three quarters of the memory that the machine, or the control group that the process is in, lets it have.
 std::uint64_t most_memory_bytes();
 
@@ -172,7 +160,10 @@ struct SceneReadOptions {
   std::string animation;
   // Called with the number of textures and meshes that are ready; from several threads, but never at the same time.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  SceneLimits limits;
+  // What the loaded scene may take with its tracing structures, as estimate_scene() reckons it, whatever its few bytes
+  // claim; 0: most_memory_bytes(). A sixteenth of it is what one picture may unpack to beyond 200 times its file, and
+  // what the nodes may take. Every refusal names `max-memory`.
+  std::uint64_t memory_bytes = 0;
   // The scene may name files outside of its data set. Otherwise buffers and pictures must lie, symbolic links followed,
   // in the scene's folder or in the data set that it belongs to, see src/core/data_root.hpp.
   bool allow_outside = false;

@@ -22,13 +22,6 @@ namespace gazetrace {
 
 enum class LightSampling : std::uint8_t { mis, light_only, bsdf_only };
 enum class PixelFilter : std::uint8_t { box, blackman_harris };
-// How the random numbers of pixels are related. scrambled: every site has a sequence of its own (Owen-scrambled Sobol
-// points), so that errors are white noise over the picture. z_order: all sites share one such sequence for every pair
-// of dimensions, along a Z-curve over the picture (Ahmed and Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo
-// Sampling Error via Hierarchical Ordering of Pixels", ACM TOG 39(6), 2020), so that errors of neighbours cancel in
-// their mean. In both every sample by itself is uniform, and frames are independent of each other.
-enum class SamplePattern : std::uint8_t { scrambled, z_order };
-enum class BvhQuality : std::uint8_t { high, medium };
 
 class LearnedLight;  // opaque; made by PosedScene::learn_light
 
@@ -39,9 +32,6 @@ struct TraceSettings {
   bool russian_roulette = false;
   DiffuseModel diffuse = DiffuseModel::burley;
   LightSampling light_sampling = LightSampling::mis;
-  // Draws light samples of the environment only where it exceeds half its mean (MIS compensation); has an effect with
-  // LightSampling::mis only. This gives less noise in the open, and more where most of the sky is hidden.
-  bool compensate_environment = false;
   // Upper bound (radiance, on the largest channel) of each contribution that reaches the camera after more than one
   // scattering event. It removes fireflies, and with them the light that they stand for. 0: off, unbiased.
   double clamp_indirect = 0;
@@ -49,10 +39,6 @@ struct TraceSettings {
   // diffuse bounce and hardly at all for a mirror, so that hits after a bounce read coarser texture levels. 0: full
   // resolution.
   double bounce_cone_rad = 0.15;
-  // Width of a camera ray's cone in pixels, which chooses the texture level at first hits. 0: full resolution, which
-  // the pixel's samples average. Coarser levels save too little time to be worth their blur (Sponza at 960 x 540: a
-  // root mean square difference of 12 % per pixel).
-  double pixel_cone = 0;
   // The frame first learns from some paths of its own where its light arrives from, and draws bounces towards it
   // (PosedScene::learn_light). Means do not change but for texture levels after a bounce (bounce_cone_rad). Frames take
   // less samples for the same noise where most of the sky is hidden, and a little more time where it is not.
@@ -61,15 +47,13 @@ struct TraceSettings {
   // What the frame has learned: trace() draws bounces by it. Empty: by the BSDF alone, whatever `learn_light` says.
   std::shared_ptr<const LearnedLight> learned;
   PixelFilter filter = PixelFilter::box;  // box: half width 0.5 px; blackman_harris: 1.5 px
-  SamplePattern sample_pattern = SamplePattern::scrambled;
   // The pixel filter is this many times as wide, above 0. So a frame of an eighth of the size shows, with 1/8, single
   // pixels of the larger frame, eight apart, and their samples have the noise that they have there.
   double footprint = 1;
   std::uint64_t seed = 0;
   bool guides = false;        // collect albedo, normal and depth of the first hit
   bool light_groups = false;  // collect SparseFrame::light_groups
-  bool surfaces = false;      // collect SparseFrame::surfaces for the sites that PassThrough leaves to filters
-  std::optional<std::uint64_t> pass_through_samples;  // as in PassThrough; only `surfaces` heeds it
+  bool surfaces = false;      // collect SparseFrame::surfaces
   // Splits the samples of every site into two halves of independent scramblings: sample k is number k / 2 of one of
   // them. Their difference says how far off their mean is (SparseFrame::half_difference). Each half is stratified by
   // itself, so that a mean over both has a little more noise than one over a single sequence.
@@ -91,7 +75,6 @@ enum class MeshUpdate : std::uint8_t { refit, rebuild_low, rebuild_medium, rebui
 
 struct TracerOptions {
   int threads = 0;  // 0: all cores
-  BvhQuality bvh_quality = BvhQuality::high;
   MeshUpdate mesh_update = MeshUpdate::refit;
   LightChoice light_choice = LightChoice::automatic;
   // For measurements: always use the kernel variant that has every feature compiled in.
@@ -188,26 +171,6 @@ struct SparseFrame {
   // Of each site that filters change, beside its surfaces; empty unless TraceSettings::surfaces.
   std::vector<FirstHitSums> first_hits;
   TraceStats stats;
-};
-
-// Which sites a filter that works on surfaces changes: those of several pixels, and single pixels that expect fewer
-// samples than are enough. All others keep the mean of their own samples, bit by bit. What counts is the expectation
-// and not the whole number of samples: of pixels that expect 15.5 samples half have 16, and others in every frame.
-class PassThrough {
- public:
-  // `samples`: so many are enough; 0 or empty: no number is, since filters themselves give back what samples know
-  // better.
-  // Keeps a reference to `map`, which must outlive it.
-  PassThrough(const SamplingMap& map, const std::optional<std::uint64_t>& samples);
-
-  [[nodiscard]] std::uint32_t enough_samples() const { return enough_samples_; }
-  [[nodiscard]] bool needs_filtering(std::size_t site) const {
-    return map_->regions[map_->sites[site].region].block_px > 1 || map_->expected(site) < enough_samples_;
-  }
-
- private:
-  const SamplingMap* map_;
-  std::uint32_t enough_samples_;
 };
 
 // When the shutter opens and closes, in video time; the two are equal for an instantaneous exposure.

@@ -8,18 +8,25 @@ Value: TypeAlias = str | float | os.PathLike[str]
 
 class JobOptions(TypedDict, total=False):
     preset: Value | None
+    output: str | Sequence[Value] | None
+    exr_pixels: Value | None
+    exr_compression: Value | None
+    exr_zip_level: Value | None
+    aov: Value | Sequence[Value] | None
+    exr_parts: Value | None
+    sky_depth: Value | None
+    crypto_ranks: Value | None
+    crypto_samples: Value | None
+    map: Value | None
+    bits: Value | None
+    jpeg_quality: Value | None
+    overwrite: bool | None
+    resume: bool | None
     scene: Value | None
     animation: Value | None
     env: Value | None
     env_rotation: Value | None
     env_ev: Value | None
-    allow_outside: bool | None
-    confine: bool | None
-    max_memory: Value | None
-    max_texture: Value | None
-    max_expansion: Value | None
-    max_nodes: Value | None
-    max_nesting: Value | None
     camera: Value | None
     camera_path: Value | None
     camera_from_gaze: bool | None
@@ -92,9 +99,6 @@ class JobOptions(TypedDict, total=False):
     keep_ids: bool | None
     gaze_anchor: str | Sequence[Value] | None
     gaze_process: str | Sequence[Value] | None
-    gaze_uncertainty: bool | None
-    gaze_accuracy: Value | None
-    gaze_precision: Value | None
     screen: Value | None
     screen_px: Value | Sequence[Value] | None
     screen_cm: Value | Sequence[Value] | None
@@ -107,8 +111,6 @@ class JobOptions(TypedDict, total=False):
     fps: Value | None
     frames: Value | Iterable[int] | None
     start: Value | None
-    chunk: Value | None
-    stage: Value | None
     frame_rect: Value | Sequence[Value] | None
     falloff: Value | None
     spp: Value | None
@@ -118,7 +120,6 @@ class JobOptions(TypedDict, total=False):
     angle_reading: Value | None
     sample_unit: Value | None
     region_shape: Value | None
-    border_blend_deg: Value | None
     budget_spp: Value | None
     budget_samples: Value | None
     block_samples: Value | None
@@ -139,12 +140,7 @@ class JobOptions(TypedDict, total=False):
     min_spp: Value | None
     max_spp: Value | None
     target_relmse: Value | None
-    contrast_strength: Value | None
-    retinal_velocity: bool | None
-    saccade_density: Value | None
     filter: Value | None
-    pass_through: Value | None
-    enhance_contrast: Value | None
     accumulate: Value | None
     accumulate_window: Value | None
     accumulate_hold: Value | None
@@ -162,15 +158,11 @@ class JobOptions(TypedDict, total=False):
     russian_roulette: bool | None
     diffuse: Value | None
     light_sampling: Value | None
-    compensate_environment: bool | None
     learn_light: bool | None
     clamp_indirect: Value | None
     pixel_filter: Value | None
-    pixel_cone: Value | None
     bounce_cone: Value | None
-    sample_pattern: Value | None
     seed: Value | None
-    bvh: Value | None
     threads: Value | None
     only_pixel: Value | Sequence[Value] | None
     exposure: Value | None
@@ -181,26 +173,16 @@ class JobOptions(TypedDict, total=False):
     display: Value | None
     view: Value | None
     look: Value | None
-    view_precision: Value | None
-    output: str | Sequence[Value] | None
-    exr_pixels: Value | None
-    exr_compression: Value | None
-    exr_zip_level: Value | None
-    aov: Value | Sequence[Value] | None
-    exr_parts: Value | None
-    sky_depth: Value | None
-    crypto_ranks: Value | None
-    crypto_samples: Value | None
-    map: Value | None
-    bits: Value | None
-    jpeg_quality: Value | None
-    overwrite: bool | None
-    resume: bool | None
+    progress: Value | None
+    quiet: bool | None
+    allow_outside: bool | None
+    confine: bool | None
+    max_memory: Value | None
+    chunk: Value | None
+    stage: Value | None
     trust_files: bool | None
     grace: Value | None
     max_time: Value | None
-    progress: Value | None
-    quiet: bool | None
 
 class GazeOptions(TypedDict, total=False):
     gaze_format: Value | None

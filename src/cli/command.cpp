@@ -119,7 +119,8 @@ int exit_code_of(const Error& error) {
 }
 
 std::string unknown_key_remedy(const std::string& command) {
-  return "'gazetrace " + command + " --help' lists the options, whose names are the keys";
+  const char* const help = command == "render" ? " --help-all'" : " --help'";
+  return "'gazetrace " + command + help + " lists the options, whose names are the keys";
 }
 
 void check_output_file(const std::string& path, bool overwrite) {

@@ -68,8 +68,7 @@ void add_result_options(OptionSchema<CompareJob>& schema) {
 
 OptionSchema<CompareJob> compare_schema() {
   OptionSchema<CompareJob> schema;
-  schema.include(
-      metric_schema(), [](auto& job) -> auto& { return job; });
+  schema.include(metric_schema(), whole<CompareJob, MetricChoice>());
   schema.value("--pooling-weights", &CompareJob::pooling_weights, "FILE",
                "A picture in the frames' size whose red channel says how much each pixel counts in fovvideovdp's means "
                "over a frame, as where windows stand for the whole; other metrics are refused beside it");

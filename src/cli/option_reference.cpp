@@ -134,8 +134,9 @@ std::string former_options_as_text() {
   return text;
 }
 
-std::string options_as_text(const JobSchema& schema) {
-  const OptionList options = schema.list();
+std::string options_as_text(const JobSchema& schema, const std::string& only) {
+  OptionList options = schema.list();
+  std::erase_if(options, [&](const Option* option) { return !only.empty() && option->group != only; });
   std::size_t width = 0;
   for (const Option* option : options) {
     width = std::max(width, shown_name(*option).size());

@@ -12,7 +12,8 @@ namespace gazetrace {
 // touches, what it needs and when it does nothing.
 std::string options_as_markdown(const JobSchema& schema);
 // A line for each option under its heading.
-std::string options_as_text(const JobSchema& schema);
+// `only`: of one heading; empty: all.
+std::string options_as_text(const JobSchema& schema, const std::string& only = {});
 // The same facts as on the page, as a JSON array.
 std::string options_as_json(const JobSchema& schema);
 

@@ -27,7 +27,7 @@ constexpr int kMaxSidePx = 65536;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30U;        // 4 GiB of bytes, 16 of floats
 constexpr std::uint64_t kPixelsOfAnyFile = std::uint64_t{1} << 20U;  // whatever its size
 // Environments and pictures to compare: of one colour or nearly, 8192 x 5461 half floats may come from a few bytes.
-constexpr PictureLimits kFloatLimits{kMaxSidePx, 200, std::uint64_t{256} << 20U};
+constexpr PictureLimits kFloatLimits{200, std::uint64_t{256} << 20U};
 
 // OpenImageIO multiplies PNG colour by alpha unless told otherwise, which would lose the colour where alpha is 0.
 OIIO::ImageSpec keep_alpha_unassociated() {
@@ -77,12 +77,6 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
         "a picture of " + size + " pixels is too large; at most " + std::to_string(kMaxPixels) + " are possible",
         "make it smaller");
   }
-  if (spec.width > limits.side_px || spec.height > limits.side_px) {
-    throw Error(
-        ErrorKind::input, place,
-        "a picture of " + size + " pixels is larger than the limit of " + std::to_string(limits.side_px) + " a side",
-        "make it smaller, or raise `max-texture`");
-  }
   const std::uint64_t a_byte = most_pixels_a_byte(picture.input->format_name());
   if (a_byte > 0 && pixels > kPixelsOfAnyFile + a_byte * picture.file_size) {
     throw Error(ErrorKind::input, place,
@@ -99,7 +93,7 @@ const OIIO::ImageSpec& check_size(const OpenPicture& picture, const std::string&
                     std::to_string(static_cast<std::uint64_t>(decoded) >> 20U) + " MiB; the limit is " +
                     std::to_string(limits.free_bytes >> 20U) + " MiB and " +
                     std::to_string(static_cast<std::uint64_t>(limits.expansion)) + " times the file",
-                limits.side_px < kMaxSidePx ? "make the picture smaller, or raise `max-expansion`" : "make it smaller");
+                limits.by_memory ? "make the picture smaller, or raise `max-memory`" : "make it smaller");
   }
   return spec;
 }

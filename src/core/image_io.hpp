@@ -22,12 +22,12 @@ struct ImageRgba {
   bool is_linear = false;  // the file holds floats, which are linear light
 };
 
-// What a picture may ask for; `setting`s are named where it asks for more.
+// What a picture may ask for.
 struct PictureLimits {
-  int side_px = 65536;
   // Decoded bytes for each byte of the file, beyond the first `free_bytes`; 0: any number.
   double expansion = 0;
   std::uint64_t free_bytes = 0;
+  bool by_memory = false;  // free_bytes is a part of `max-memory`, which a refusal names
 };
 
 struct PictureSize {

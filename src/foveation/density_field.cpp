@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "foveation/picture.hpp"
-#include "foveation/terms/terms.hpp"
 #include "gazetrace/error.hpp"
 
 namespace gazetrace {
@@ -46,27 +45,19 @@ double density_per_cpd2(const FoveationSettings& settings, const PlanarView& vie
 DensityField::DensityField(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction,
                            const MapContext& context, DensityModel model)
     : view_(&view),
-      contrast_(context.contrast != nullptr && !context.contrast->empty() ? context.contrast : nullptr),
       picture_(model.from_picture ? context.density : nullptr),
       model_(std::move(model)),
       gaze_(gaze_direction / length(gaze_direction)),
       right_(right_of(gaze_)),
       up_(cross(right_, gaze_)),
       gaze_px_(view.pixel(gaze_)),
-      uncertainty_deg_(context.uncertainty_deg),
       floor_(settings.density_floor),
       step_deg_(std::max(view.step_x, view.step_y) * kDegPerRad),
       per_cpd2_(density_per_cpd2(settings, view, model_)),
       shrinks_(model_.quantity == DensityModel::Quantity::cutoff_cpd &&
                settings.parameters.normalization == FalloffNormalization::display) {
-  if (settings.retinal_velocity) {
-    velocity_ = retinal_velocity_factor(context.gaze_speed_deg_s);
-  }
   if (picture_ != nullptr) {
     per_picture_value_ = 1 / full_rate_of_picture(context);
-  }
-  if (context.in_saccade) {
-    flight_ = settings.saccade_density;
   }
 }
 
@@ -80,16 +71,13 @@ Vec2d DensityField::meridian(const Vec3d& direction) const {
 DensityField::Seen DensityField::seen(double x_px, double y_px) const {
   Seen seen;
   seen.direction = view_->direction(x_px, y_px);
-  const double angle_deg = angle_between_rad(gaze_, seen.direction) * kDegPerRad;
-  seen.place.eccentricity_deg = std::max(0.0, angle_deg - uncertainty_deg_);
+  seen.place.eccentricity_deg = angle_between_rad(gaze_, seen.direction) * kDegPerRad;
   if (model_.uses_meridian) {
     seen.place.meridian = meridian(seen.direction);
   }
   if (model_.uses_radius) {
     const double radius_px = std::hypot(x_px - gaze_px_.x, y_px - gaze_px_.y);
-    const double uncertain_px = uncertainty_deg_ / step_deg_;
-    seen.place.radius_px =
-        std::isfinite(radius_px) ? std::max(0.0, radius_px - uncertain_px) : std::numeric_limits<double>::infinity();
+    seen.place.radius_px = std::isfinite(radius_px) ? radius_px : std::numeric_limits<double>::infinity();
   }
   return seen;
 }
@@ -100,8 +88,7 @@ double DensityField::density(const FalloffPlace& place, double cos_off_axis) con
     const double solid_angle = shrinks_ ? cos_off_axis * cos_off_axis * cos_off_axis : 1.0;
     value *= value * per_cpd2_ * solid_angle;
   }
-  // Limited to 1 before the last factor, since that may be zero and the cut-off infinite.
-  return std::min(1.0, value * velocity_) * flight_;
+  return std::min(1.0, value);
 }
 
 double DensityField::limited(double density) const {
@@ -111,13 +98,8 @@ double DensityField::limited(double density) const {
 double DensityField::at(double x_px, double y_px) const {
   const Seen point = seen(x_px, y_px);
   double value = density(point.place, 1 / length(point.direction));
-  const double u = x_px / view_->width_px;
-  const double v = y_px / view_->height_px;
-  if (contrast_ != nullptr) {
-    value *= picture_at(*contrast_, u, v);
-  }
   if (picture_ != nullptr) {
-    value *= picture_at(*picture_, u, v) * per_picture_value_;
+    value *= picture_at(*picture_, x_px / view_->width_px, y_px / view_->height_px) * per_picture_value_;
   }
   return limited(value);
 }
@@ -175,16 +157,13 @@ DensityField::Bounds DensityField::within(int x_px, int y_px, int side_px) const
       }
     }
   }
-  for (const ImageGray* picture : {contrast_, picture_}) {
-    if (picture != nullptr) {
-      const double scale = picture == picture_ ? per_picture_value_ : 1.0;
-      const auto [least, most] = picture_within(*picture, x_px / static_cast<double>(view_->width_px),
-                                                y_px / static_cast<double>(view_->height_px),
-                                                (x_px + side_px) / static_cast<double>(view_->width_px),
-                                                (y_px + side_px) / static_cast<double>(view_->height_px));
-      bounds.least *= least * scale;
-      bounds.most *= most * scale;
-    }
+  if (picture_ != nullptr) {
+    const auto width_px = static_cast<double>(view_->width_px);
+    const auto height_px = static_cast<double>(view_->height_px);
+    const auto [least, most] = picture_within(*picture_, x_px / width_px, y_px / height_px, (x_px + side_px) / width_px,
+                                              (y_px + side_px) / height_px);
+    bounds.least *= least * per_picture_value_;
+    bounds.most *= most * per_picture_value_;
   }
   return {limited(bounds.least), limited(bounds.most)};
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A density model applied to a frame: its normalization, the terms that multiply it (in the order that
-// FoveationSettings states), and its bounds within a square of pixels, by which blocks are chosen.
+// A density model applied to a frame: its normalization, and its bounds within a square of pixels, by which blocks are
+// chosen.
 #pragma once
 
 #include "foveation/falloff.hpp"
@@ -9,8 +9,8 @@ namespace gazetrace {
 
 class DensityField {
  public:
-  // Keeps references to `view`, `context.contrast` and `context.density`, which must outlive it. A model that follows a
-  // picture must have one.
+  // Keeps references to `view` and `context.density`, which must outlive it. A model that follows a picture must have
+  // one.
   DensityField(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction,
                const MapContext& context, DensityModel model);
 
@@ -37,24 +37,20 @@ class DensityField {
   };
   [[nodiscard]] Seen seen(double x_px, double y_px) const;
   [[nodiscard]] Vec2d meridian(const Vec3d& direction) const;
-  // The density before contrast and floor; `cos_off_axis` is the cosine of the angle off the view's axis.
+  // The density before picture and floor; `cos_off_axis` is the cosine of the angle off the view's axis.
   [[nodiscard]] double density(const FalloffPlace& place, double cos_off_axis) const;
   [[nodiscard]] double limited(double density) const;
 
   const PlanarView* view_;
-  const ImageGray* contrast_;
   const ImageGray* picture_;      // nullptr: the model follows none
   double per_picture_value_ = 1;  // one over the picture's largest value
   DensityModel model_;
   Vec3d gaze_, right_, up_;  // of unit length
   Vec2d gaze_px_;
-  double uncertainty_deg_, floor_;
+  double floor_;
   double step_deg_;  // the largest angle that a pixel's side spans
   double per_cpd2_;  // the density for a cut-off of 1 cycle per degree on the view's axis
   bool shrinks_;     // falls with cos^3 off the axis, since it is normalized to the display
-  // Terms that are the same everywhere. velocity_ multiplies what the model asks for, before that is limited to the
-  // full rate; flight_ (during a saccade) multiplies what is left.
-  double velocity_ = 1, flight_ = 1;
 };
 
 }  // namespace gazetrace

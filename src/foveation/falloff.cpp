@@ -3,7 +3,6 @@
 #include "foveation/falloff.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 
@@ -49,10 +48,6 @@ FoveationSettings with_limits_of(const DensityModel& model, const FoveationSetti
   }
   if (model.own_block_samples && settings.block_samples == FoveationSettings().block_samples) {
     own.block_samples = *model.own_block_samples;
-  }
-  if (settings.max_block_px == kDefaultMaxBlockPx) {
-    const auto largest = std::bit_ceil(static_cast<unsigned>(model.own_block_px));
-    own.max_block_px = std::max(settings.max_block_px, static_cast<int>(largest));
   }
   return own;
 }

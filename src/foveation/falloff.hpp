@@ -43,11 +43,9 @@ struct DensityModel {
   bool uses_meridian = false, uses_radius = false;
   bool from_picture = false;            // MapContext::density over its largest value multiplies the value
   std::optional<double> full_rate_spp;  // default: the settings' uniform_spp
-  // For a model made from regions: the least of their densities and the side of their largest block. The default floor
-  // and the default limit of blocks give way to them, and so do the default samples of a block (with_limits_of).
+  // To which the default floor and the default samples of a block give way (with_limits_of).
   double own_floor = 1;
   std::optional<double> own_block_samples;
-  int own_block_px = 1;
   // Eccentricities at which the value may change from falling to rising or back.
   std::vector<double> turns_deg;
 };
@@ -60,7 +58,7 @@ using Falloff = std::variant<Layout, DensityModel>;
 #include "foveation/falloffs.def"
 #undef FALLOFF
 
-// The settings with the density floor and the largest block that hold for this model.
+// The settings with the density floor and the samples of a block that hold for this model.
 FoveationSettings with_limits_of(const DensityModel& model, const FoveationSettings& settings);
 
 // The fall-off that the settings name; check_foveation must have accepted them.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads pictures of any size that are stretched over the frame: multipliers of a density (contrast), and densities
-// themselves. u and v are fractions of the frame.
+// Reads pictures of densities, of any size, which are stretched over the frame. u and v are fractions of the frame.
 #pragma once
 
 #include "gazetrace/foveation.hpp"

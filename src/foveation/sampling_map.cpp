@@ -109,9 +109,6 @@ SamplingMap map_of_falloff(const FoveationSettings& settings, const PlanarView& 
   if (auto* model = std::get_if<DensityModel>(&falloff)) {
     return map_of_density(std::move(*model), settings, view, gaze, budget, context);
   }
-  if (context.uncertainty_deg > 0) {
-    falloff = make_falloff(widened(settings, context.uncertainty_deg), view, gaze);
-  }
   return map_of_layout(std::get<Layout>(std::move(falloff)), budget, context);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks settings, and widens regions for an uncertain gaze.
+// Checks settings.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -82,10 +82,6 @@ void check_density(const FoveationSettings& settings) {
   require(settings.density_floor > 0 && settings.density_floor <= 1, "`density-floor`",
           "a least density of " + std::to_string(settings.density_floor) + " is not possible",
           "give more than 0, up to 1: every place needs some samples");
-  require_between("`border-blend-deg`", settings.border_blend_deg, 0, 180, "the width of a border's rim");
-  require_between("`contrast-strength`", settings.contrast_strength, 0, 1, "the strength of the contrast term");
-  require_between("`saccade-density`", settings.saccade_density, 0, 1,
-                  "the share of the density that a saccade leaves");
 }
 
 void check_rates(const FoveationSettings& settings) {
@@ -110,22 +106,6 @@ void check_rates(const FoveationSettings& settings) {
   } else {
     require_positive(place, *target.relmse, "a relative squared error");
   }
-}
-
-// Terms multiply a density, which a layout of whole rates does not have.
-void check_terms(const FoveationSettings& settings) {
-  require(settings.falloff != "visible" || settings.contrast_strength == 0, "`contrast-strength`",
-          "the fall-off 'visible' looks at the frame by itself", "give another `falloff`");
-  const bool hard_regions = settings.falloff == "regions" && settings.border_blend_deg == 0;
-  if (!hard_regions && settings.falloff != "uniform") {
-    return;
-  }
-  const std::string_view term = settings.retinal_velocity        ? "`retinal-velocity`"
-                                : settings.saccade_density != 1  ? "`saccade-density`"
-                                : settings.contrast_strength > 0 ? "`contrast-strength`"
-                                                                 : "";
-  require(term.empty(), term, "the fall-off '" + settings.falloff + "' has fixed rates",
-          hard_regions ? "give `border-blend-deg`, or another `falloff`" : "give another `falloff`");
 }
 
 void check_parameters(const FoveationSettings& settings) {
@@ -178,19 +158,7 @@ void check_foveation(const FoveationSettings& settings) {
   check_angles(settings);
   check_density(settings);
   check_rates(settings);
-  check_terms(settings);
   check_parameters(settings);
-}
-
-FoveationSettings widened(const FoveationSettings& settings, double by_deg) {
-  FoveationSettings wider = settings;
-  const double share = eccentricity_share(settings.reading);
-  // tan(a/2) of a disc has its pole at 180 degrees.
-  const double most = settings.shape == RegionShape::disc ? 179.0 : 180.0 / share;
-  for (double& angle : wider.region_angles_deg) {
-    angle = std::max(angle, std::min(angle + by_deg / share, most));
-  }
-  return wider;
 }
 
 }  // namespace gazetrace

@@ -82,7 +82,7 @@ void check_history_options(const JobSettings& job) {
     }
   }
   if (accumulate.mode == AccumulateMode::reproject && accumulate.order == AccumulateOrder::before &&
-      Reconstruction({filter_of(job).name, {}}).needs().surfaces) {
+      Reconstruction({filter_of(job).name}).needs().surfaces) {
     throw Error(ErrorKind::usage, "`accumulate-order`",
                 fmt::format("before the filter there are sites to accumulate, and '{}' works on surfaces", job.filter),
                 "give after, or another `filter`");
@@ -121,10 +121,6 @@ void check_target(const JobSettings& job) {
   if (job.only_pixel) {
     throw Error(ErrorKind::usage, option, "with `only-pixel` a single pixel is traced, and no quality is chosen",
                 "give `budget-spp` as `rate` in run.json says");
-  }
-  if (job.foveation.contrast_strength > 0) {
-    throw Error(ErrorKind::usage, option, "`contrast-strength` looks at frames by itself",
-                "leave it out, or give a budget");
   }
   const AccumulateSettings& accumulate = job.accumulate;
   const bool adds_up = accumulate.mode == AccumulateMode::two_sided && !(accumulate.blend > 0) &&
@@ -186,11 +182,6 @@ void check_job(const Job& asked, const JobSchema& schema) {
   }
   check_registry_name("`filter`", "filter", filter_of(job).name, filter_names, falloff_names,
                       "a fall-off has this name: give `falloff`");
-  if (job.enhance_contrast > 0 && !Reconstruction({filter_of(job).name, {}}).filter().blurs_blocks) {
-    throw Error(ErrorKind::usage, "`enhance-contrast`",
-                fmt::format("filter '{}' does not blur blocks, there is no contrast to bring back", job.filter),
-                "give `filter` linear, push-pull or tent");
-  }
   if (job.foveation.falloff == "visible" && !job.foveation.target.is_given()) {
     FrameRequest request;
     request.width_px = job.size.width;
@@ -230,7 +221,6 @@ FilterChoice filter_of(const JobSettings& job) {
   return choose_filter({.foveated = foveated,
                         .accumulates_sites = job.accumulate.mode == AccumulateMode::reproject &&
                                              job.accumulate.order == AccumulateOrder::before,
-                        .enhances_contrast = job.enhance_contrast > 0,
                         .means_frames = job.accumulate.mode == AccumulateMode::running,
                         .single_pixel = job.only_pixel.has_value()});
 }

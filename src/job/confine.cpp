@@ -11,6 +11,7 @@
 #include "gazetrace/job_schema.hpp"
 #include "gazetrace/output.hpp"
 #include "job/settings_paths.hpp"
+#include "job/toml_values.hpp"
 
 namespace gazetrace {
 namespace {
@@ -68,8 +69,11 @@ void check_confined(const Option& option, const std::vector<std::string>& values
 
 void check_confined(const std::string& text, const std::string& path, const std::string& remedy) {
   const OptionList options = job_schema().list();
-  for (const TomlSetting& setting : read_toml_settings(text, path, options, remedy)) {
-    check_confined(*find_option(options, setting.name), setting.values, path, setting.place);
+  for (const auto& [key, node] : parse_toml(text, path).members) {
+    for (const TomlSetting& setting :
+         toml_settings(key, node, options, path, remedy, PathsBegin::beside_settings, TomlChecks::names)) {
+      check_confined(*find_option(options, setting.name), setting.values, path, setting.place);
+    }
   }
 }
 

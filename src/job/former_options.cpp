@@ -86,6 +86,11 @@ CurrentOptions current_options(const std::string& option, const std::vector<std:
     throw Error(kind, place, *refusal);
   }
   CurrentOptions current;
+  const bool is_flag_off = !former->takes_value && values == std::vector<std::string>{"false"};
+  const auto is_fixed = [](const auto& row) { return !row.second.empty() && row.second != kGivenValue; };
+  if (is_flag_off && std::any_of(former->replacements.begin(), former->replacements.end(), is_fixed)) {
+    return current;  // a fixed value stands for the flag itself, and this one was not set
+  }
   std::vector<std::string> words;
   for (const auto& [name, value] : former->replacements) {
     const bool is_given_value = value.empty() || value == kGivenValue;

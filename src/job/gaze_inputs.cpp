@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How gaze enters a run: its clock, its processing, and its uncertainty.
+// How gaze enters a run: its clock and its processing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -200,31 +200,6 @@ std::vector<GazeStep> gaze_steps_of(const std::vector<std::string>& texts) {
     steps.push_back(parse_gaze_step(text));
   }
   return steps;
-}
-
-std::optional<GazeUncertainty> gaze_uncertainty(const JobSettings& job, const GazeLog& log) {
-  if (!job.gaze_uncertainty) {
-    if (job.gaze_accuracy_deg || job.gaze_precision_deg) {
-      throw Error(ErrorKind::usage, job.gaze_accuracy_deg ? "`gaze-accuracy`" : "`gaze-precision`",
-                  "says how far the fovea grows, and it is not asked to", "add `gaze-uncertainty`");
-    }
-    return std::nullopt;
-  }
-  const GazeUncertainty stated = uncertainty_of(log);
-  const GazeUncertainty uncertainty{job.gaze_accuracy_deg.value_or(stated.accuracy_deg),
-                                    job.gaze_precision_deg.value_or(stated.precision_deg)};
-  if (std::isnan(uncertainty.accuracy_deg)) {
-    throw Error(ErrorKind::input, log.source, "has no validation that would tell the tracker's accuracy",
-                "give `gaze-accuracy` DEG");
-  }
-  if (std::isnan(uncertainty.precision_deg)) {
-    throw Error(ErrorKind::input, log.source, "has no fixation to measure the tracker's precision in",
-                "give `gaze-precision` DEG");
-  }
-  if (!(uncertainty.accuracy_deg >= 0) || !(uncertainty.precision_deg >= 0)) {
-    throw Error(ErrorKind::usage, "`gaze-uncertainty`", "an error of a tracker is not negative");
-  }
-  return uncertainty;
 }
 
 }  // namespace gazetrace

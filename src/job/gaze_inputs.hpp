@@ -11,8 +11,5 @@ namespace gazetrace {
 // The log that the job names, or its fixed gaze as a log of one sample; empty where there is no gaze. Times of day are
 // hidden unless the job keeps them; `taken_off_ns` then receives what was subtracted from the stamps.
 std::optional<GazeLog> gaze_of_job(const JobSettings& job, std::int64_t& taken_off_ns);
-// Empty where the job does not ask for it. Throws Error(usage, input) where neither the job nor the log states what is
-// needed.
-std::optional<GazeUncertainty> gaze_uncertainty(const JobSettings& job, const GazeLog& log);
 
 }  // namespace gazetrace

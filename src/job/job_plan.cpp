@@ -64,16 +64,9 @@ void make_plan(const JobSettings& job, const CameraPath& camera, std::int64_t ta
   std::vector<std::int32_t> planned = frames_before(resolved.frames, job.preroll);
   planned.insert(planned.end(), resolved.frames.begin(), resolved.frames.end());
   PlanSettings settings = plan_settings(job, planned, log, taken_off_ns, resolved.decisions);
-  if (log != nullptr) {
-    settings.uncertainty = gaze_uncertainty(job, *log);
-  }
-  if (log != nullptr && !job.gaze_at) {
-    settings.find_speed = job.foveation.retinal_velocity;
-    if (!job.gaze_process.empty()) {
-      resolved.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
-      resolved.decisions.emplace_back("gaze processing",
-                                      fmt::format("{}", fmt::join(resolved.steering->reports, "; ")));
-    }
+  if (log != nullptr && !job.gaze_at && !job.gaze_process.empty()) {
+    resolved.steering = process_gaze(*log, gaze_steps_of(job.gaze_process));
+    resolved.decisions.emplace_back("gaze processing", fmt::format("{}", fmt::join(resolved.steering->reports, "; ")));
   }
   resolved.plan = plan_frames(camera, log, settings, resolved.steering ? &*resolved.steering : nullptr);
   resolved.plan_settings = std::move(settings);

@@ -126,7 +126,8 @@ std::vector<std::string> toml_values(const TomlNode& node, const Option& option,
 }
 
 std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node, const OptionList& options,
-                                       const std::string& path, const std::string& remedy, PathsBegin paths) {
+                                       const std::string& path, const std::string& remedy, PathsBegin paths,
+                                       TomlChecks checks) {
   const std::string place = toml_place(path, node);
   const Option* const present = find_option(options, key);
   if (present == nullptr && find_former_option(key, {}) == nullptr) {
@@ -146,10 +147,12 @@ std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& n
       continue;  // an empty array sets nothing
     }
     TomlSetting setting{name, values_for(*option, values), place, {}};
-    try {
-      option->check(setting.values, place + ": " + name);
-    } catch (const Error& error) {
-      throw Error(ErrorKind::input, "", error.what());
+    if (checks == TomlChecks::values) {
+      try {
+        option->check(setting.values, place + ": " + name);
+      } catch (const Error& error) {
+        throw Error(ErrorKind::input, "", error.what());
+      }
     }
     for (std::string& value : setting.values) {
       if (paths == PathsBegin::beside_settings) {

@@ -55,6 +55,28 @@ bool Option::is_on_by_default() const {
   return shape == OptionShape::flag && defaults == std::vector<std::string>{"true"};
 }
 
+Option make_option(const std::string& flags, const OptionType& type, std::size_t offset) {
+  Option option;
+  option.flags = flags;
+  const std::size_t dashes = flags.find("--");
+  option.name = dashes == std::string::npos ? flags : flags.substr(dashes + 2, flags.find(',', dashes) - dashes - 2);
+  option.type = &type;
+  option.offset = offset;
+  option.shape = type.shape;
+  return option;
+}
+
+const OptionType& repeated_type() {
+  using Texts = std::vector<std::string>;
+  static constexpr OptionType kType{
+      OptionShape::repeated,
+      [](const Texts& texts, const std::string& /*place*/, void* value) { *static_cast<Texts*>(value) = texts; },
+      [](const Texts& /*texts*/, const std::string& /*place*/) {},
+      [](const void* value) { return *static_cast<const Texts*>(value); },
+      [](const void* /*value*/) { return std::vector<double>(); }};
+  return kType;
+}
+
 const Option* find_option(const OptionList& options, const std::string& name) {
   const auto found =
       std::find_if(options.begin(), options.end(), [&](const Option* option) { return option->name == name; });

@@ -170,8 +170,7 @@ PipelineSettings pipeline_settings(const JobSettings& job) {
   settings.trace = job.trace;
   settings.trace.only_pixel = job.only_pixel;
   settings.trace.guides = show_first_hits(job.exr.aovs);
-  settings.reconstruction = {filter_of(job).name, job.pass_through_samples};
-  settings.enhance_contrast = job.enhance_contrast;
+  settings.reconstruction = {filter_of(job).name};
   settings.accumulate = job.accumulate;
   settings.checkpoint = job.checkpoint;
   settings.checkpoint_every = job.checkpoint_every;

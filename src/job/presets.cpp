@@ -13,16 +13,15 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 
 // "Foveated Path Tracing with Configurable Sampling and Block-Based Rendering", as far as the paper says.
 Settings paper_settings(const std::string& angle_reading) {
-  return {{"falloff", "regions"},   {"region-samples", "32,16,8"},
-          {"region-blocks", "2,4"}, {"region-angles", "5.2,17"},
-          {"region-shape", "disc"}, {"angle-reading", angle_reading},
-          {"sample-unit", "block"}, {"border-blend-deg", "0"},
-          {"filter", "linear"},     {"accumulate", "off"},
-          {"bounces", "3"},         {"russian-roulette", "false"},
-          {"diffuse", "burley"},    {"light-sampling", "mis"},
-          {"learn-light", "false"}, {"pixel-filter", "box"},
-          {"clamp-indirect", "0"},  {"exposure", "auto"},
-          {"view", "Reinhard"}};
+  return {{"falloff", "regions"},        {"region-samples", "32,16,8"},
+          {"region-blocks", "2,4"},      {"region-angles", "5.2,17"},
+          {"region-shape", "disc"},      {"angle-reading", angle_reading},
+          {"sample-unit", "block"},      {"filter", "linear"},
+          {"accumulate", "off"},         {"bounces", "3"},
+          {"russian-roulette", "false"}, {"diffuse", "burley"},
+          {"light-sampling", "mis"},     {"learn-light", "false"},
+          {"pixel-filter", "box"},       {"clamp-indirect", "0"},
+          {"exposure", "auto"},          {"view", "Reinhard"}};
 }
 
 }  // namespace
@@ -41,7 +40,6 @@ const std::vector<Preset>& presets() {
         {"region-shape", "cone"},
         {"angle-reading", "full-angle"},
         {"sample-unit", "block"},
-        {"border-blend-deg", "0"},
         {"filter", "auto"},
         {"accumulate", "off"}}},
       {"reference",

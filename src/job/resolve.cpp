@@ -151,10 +151,10 @@ void check_density_maps(const FoveationSettings& foveation, const FramePlan& pla
 }
 
 void warn_of_filter(const JobSettings& job, Warnings& warnings) {
-  if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter, {}}).needs().guides) {
+  if (job.trace.filter != PixelFilter::box && Reconstruction({job.filter}).needs().guides) {
     warnings.push_back(
         fmt::format("`filter` {} takes edges, texture and what shines from a box of one pixel: `pixel-filter` "
-                    "blackman-harris is missing there, `filter` linear or tent keep it",
+                    "blackman-harris is missing there, `filter` linear keeps it",
                     job.filter));
   }
 }
@@ -271,7 +271,6 @@ ResolvedJob resolve(const Job& job, const ResolveOptions& options) {
 TracerOptions tracer_options(const JobSettings& job) {
   TracerOptions options;
   options.threads = job.threads;
-  options.bvh_quality = job.bvh;
   return options;
 }
 

@@ -30,14 +30,13 @@ std::string remedies(const JobSettings& job) {
 Warnings saving_warnings(const JobSettings& job, const FramePlan& plan) {
   const FoveationSettings& foveation = job.foveation;
   const auto frame = std::find_if(plan.frames.begin(), plan.frames.end(), [](const FrameRequest& request) {
-    return request.gaze_direction_render.has_value() && !request.eye_in_saccade;
+    return request.gaze_direction_render.has_value();
   });
   if (!is_known_before(foveation) || frame == plan.frames.end()) {
     return {};
   }
-  const double full_rate = foveation.falloff == "regions" && foveation.border_blend_deg == 0
-                               ? static_cast<double>(foveation.region_samples[0])
-                               : static_cast<double>(foveation.uniform_spp);
+  const double full_rate = foveation.falloff == "regions" ? static_cast<double>(foveation.region_samples[0])
+                                                          : static_cast<double>(foveation.uniform_spp);
   const SamplingMap map = planned_sampling_map(foveation, *frame, job.trace.seed, job.threads);
   const double all = full_rate * frame->width_px * frame->height_px;
   const double saving = all / std::max(1.0, static_cast<double>(map.samples()));

@@ -62,8 +62,7 @@ SceneReadOptions scene_read_options(const JobSettings& job) {
   SceneReadOptions options;
   options.animation = job.animation;
   options.threads = job.threads;
-  options.limits = job.limits;
-  options.limits.memory_bytes = job.max_memory.bytes;
+  options.memory_bytes = job.max_memory.bytes;
   options.allow_outside = job.allow_outside;
   return options;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,11 @@ namespace gazetrace {
 std::vector<std::string> toml_values(const TomlNode& node, const Option& option, const std::string& path);
 
 // What a key sets: one option, or those that took the place of a former one; nothing for an empty array. Throws as
-// read_toml_settings() does.
+// read_toml_settings() does. `names`: values are not checked, for which some options open the files that they name.
+enum class TomlChecks : std::uint8_t { values, names };
 std::vector<TomlSetting> toml_settings(const std::string& key, const TomlNode& node, const OptionList& options,
                                        const std::string& path, const std::string& remedy,
-                                       PathsBegin paths = PathsBegin::beside_settings);
+                                       PathsBegin paths = PathsBegin::beside_settings,
+                                       TomlChecks checks = TomlChecks::values);
 
 }  // namespace gazetrace

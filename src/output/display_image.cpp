@@ -81,9 +81,6 @@ WrittenFile write_display_image(const std::string& path, const DisplayImage& ima
     options.note += " history=" + header.history;
   }
   options.note += fmt::format(" t_video_ns={} exposure_ev={}", header.t_video_ns, header.exposure_ev);
-  if (header.enhance_contrast > 0) {
-    options.note += fmt::format(" enhance_contrast={}", header.enhance_contrast);
-  }
   if (const GazeAtTime& gaze = header.gaze_true; gaze.state != GazeState::none || gaze.no_gaze || gaze.movement) {
     options.note += " " + gaze_words(gaze);
   }

@@ -162,9 +162,6 @@ void describe(Imf::Header& header, const FrameHeader& frame, double aspect) {
   if (!frame.history.empty()) {
     add_text(header, "history", frame.history);
   }
-  if (frame.enhance_contrast > 0) {
-    add_text(header, "enhanced", fmt::format("contrast by {}: no estimate of radiance", frame.enhance_contrast));
-  }
   add_text(header, "camera", camera_text(frame.camera));
   if (frame.shutter_close_ns > frame.shutter_open_ns) {
     add_text(header, "shutter_ns", fmt::format("{},{}", frame.shutter_open_ns, frame.shutter_close_ns));

@@ -35,7 +35,6 @@ FrameHeader header_of(const FrameRequest& request, const FramePlan& plan, const 
   header.gaze = gaze_numbers(request);
   header.gaze_processing = plan.gaze_processing;
   header.exposure_ev = rendered.exposure_ev;
-  header.enhance_contrast = settings.enhance_contrast;
   header.seed = settings.trace.seed;
   header.settings_digest = settings.settings_digest;
   header.mean_digest = settings.mean_digest;

@@ -50,8 +50,7 @@ std::vector<ImageRgb> FrameRenderer::filtered_light(const TracedFrame& traced, S
     return {};
   }
   return timed(times.layers_ms, [&] {
-    const Reconstruction filter =
-        is_linear(reconstruction_) ? reconstruction_ : Reconstruction({.filter = "linear", .pass_through_samples = {}});
+    const Reconstruction filter = is_linear(reconstruction_) ? reconstruction_ : Reconstruction({"linear"});
     return filter_light_groups(traced.sparse, traced.map, filter, settings_.threads);
   });
 }
@@ -65,8 +64,7 @@ void FrameRenderer::add_layers(const FrameRequest& request, std::vector<ImageRgb
   rendered.layers = timed(rendered.times.layers_ms, [&] {
     FrameLayers layers;
     layers.light = std::move(light);
-    const bool is_own = is_linear(reconstruction_) && settings_.accumulate.mode == AccumulateMode::off &&
-                        !(settings_.enhance_contrast > 0);
+    const bool is_own = is_linear(reconstruction_) && settings_.accumulate.mode == AccumulateMode::off;
     if (!layers.light.empty() && !is_own) {
       scale_to_picture(rendered.frame.radiance, layers.light);
     }

@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "pipeline/first_look.hpp"
 #include "pipeline/frame_layers.hpp"
 #include "pipeline/frame_stages.hpp"
 #include "pipeline/quality/adaptive_rates.hpp"
@@ -52,15 +51,14 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
   TracedFrame traced;
   StageTimes& times = traced.times;
   const PosedScene scene = timed(times.trace_ms, [&] { return tracer_->at(shutter_of(request)); });
-  // The pilot and the first look see the noise that the frame will have, so that they know what it has learned.
+  // The pilot sees the noise that the frame will have, so that it knows what that has learned.
   FrameSettings frame_settings = settings_;
   if (settings_.trace.learn_light) {
     frame_settings.trace.learned =
-        timed(times.learn_ms, [&] { return learned_light(scene, request, known, traced.first_look); });
+        timed(times.learn_ms, [&] { return learned_light(scene, request, known, traced.pilot); });
   }
   MapContext context = map_context(request, settings_.trace.seed, settings_.threads);
   FoveationSettings foveation = settings_.foveation;
-  ImageGray contrast;
   ImageGray density;
   if (settings_.rates_of) {
     FrameRates rates = timed(times.plan_ms, [&] { return settings_.rates_of(request); });
@@ -77,17 +75,8 @@ TracedFrame FrameRenderer::trace(const FrameRequest& request, KnownLight& known)
     foveation.budget_spp = adaptive.spp;
     density = std::move(adaptive.rates);
     context.density = &density;
-    add_traces(adaptive.pilot, traced.first_look);
+    add_traces(adaptive.pilot, traced.pilot);
     traced.prediction = adaptive.prediction;
-  }
-  if (foveation.contrast_strength > 0 && request.gaze_direction_render) {
-    foveation = less_first_look(foveation, request);
-    FirstLook first_look = timed(times.trace_ms, [&] {
-      return trace_first_look(scene, request, frame_settings.trace, settings_.foveation.contrast_strength);
-    });
-    contrast = std::move(first_look.multiplier);
-    context.contrast = &contrast;
-    add_traces(first_look.stats, traced.first_look);
   }
   traced.map = timed(times.plan_ms, [&] {
     return make_sampling_map(foveation, request.view, request.gaze_direction_render, context);
@@ -141,7 +130,7 @@ RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame tra
       return accumulate(std::move(frame), request, settings_.accumulate, history, settings_.threads);
     });
   } else if (settings_.accumulate.order == AccumulateOrder::before && !reconstruction_.needs().surfaces) {
-    const Frame sites = reprojected(filtered(traced.sparse, Reconstruction({"none", {}})));
+    const Frame sites = reprojected(filtered(traced.sparse, Reconstruction({"none"})));
     rendered.frame = filtered(sites_of_frame(sites, traced.sparse, traced.map), reconstruction_);
   } else {
     rendered.frame = reprojected(filtered(traced.sparse, reconstruction_));
@@ -149,7 +138,7 @@ RenderedFrame FrameRenderer::finish(const FrameRequest& request, TracedFrame tra
   std::vector<ImageRgb> light = filtered_light(traced, times);
   rendered.map = std::move(traced.map);
   rendered.samples = std::move(traced.sparse.stats);
-  rendered.first_look = std::move(traced.first_look);
+  rendered.pilot = std::move(traced.pilot);
   rendered.prediction = traced.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);
@@ -167,21 +156,12 @@ void expose(const FrameRequest& request, const FrameSettings& settings, Temporal
   rendered.exposure_ev = timed(rendered.times.exposure_ms, [&] {
     return choose_exposure_ev(rendered.frame.radiance, request.t_video_ns, settings.exposure, history);
   });
-  if (settings.enhance_contrast > 0) {
-    rendered.frame.radiance = timed(rendered.times.reconstruct_ms, [&] {
-      return enhance_contrast(std::move(rendered.frame.radiance), rendered.map, settings.enhance_contrast,
-                              settings.threads);
-    });
-  }
 }
 
 MapContext map_context(const FrameRequest& request, std::uint64_t seed, int threads) {
   MapContext context;
   context.seed = seed;
   context.frame = request.frame;
-  context.uncertainty_deg = request.gaze_uncertainty_deg;
-  context.gaze_speed_deg_s = request.eye_speed_deg_s;
-  context.in_saccade = request.eye_in_saccade;
   context.threads = threads;
   return context;
 }

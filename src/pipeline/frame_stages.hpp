@@ -30,7 +30,7 @@ void add_times(const From& from, To& to) {
   to.layers_ms += from.layers_ms;
 }
 
-// Chooses the frame's exposure, then enhances its picture where that is asked for.
+// Chooses the frame's exposure.
 void expose(const FrameRequest& request, const FrameSettings& settings, TemporalHistory& history,
             RenderedFrame& rendered);
 

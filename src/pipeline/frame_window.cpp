@@ -162,7 +162,7 @@ ReconstructedFrame FrameWindow::among_views(const Run& run, const Run& window, s
   }
   shown.map = own.map;
   shown.samples = own.sparse.stats;
-  shown.first_look = own.first_look;
+  shown.pilot = own.pilot;
   shown.prediction = own.prediction;
   return shown;
 }
@@ -186,7 +186,7 @@ const ReconstructedFrame& FrameWindow::rested(const Run& run, std::int32_t frame
   shown.request = request;
   shown.map = own.map;
   shown.samples = own.sparse.stats;
-  shown.first_look = own.first_look;
+  shown.pilot = own.pilot;
   shown.prediction = own.prediction;
   return shown;
 }
@@ -204,7 +204,7 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
         in_memory_.emplace(frame, WindowFrame{renderer_->trace(request_of(frame), light_), {}}).first->second.traced;
     if (frame != request.frame && !counted_.contains(frame)) {
       add_traces(traced.sparse.stats, others);
-      add_traces(traced.first_look, others);
+      add_traces(traced.pilot, others);
       add_times(traced.times, times);
     }
   }

@@ -21,7 +21,7 @@ void keep_bad_samples(const TraceStats& samples, SequenceResult& result) {
 void trace_to_file(const PipelineSettings& settings, const FrameRequest& request, SequenceRenderer& renderer,
                    TimingRow& row, SequenceResult& result) {
   const TracedFrame traced = renderer.trace(request);
-  add_samples(traced.sparse.stats, traced.first_look, traced.map, row);
+  add_samples(traced.sparse.stats, traced.pilot, traced.map, row);
   keep_bad_samples(traced.sparse.stats, result);
   add_times(traced.times, row);
   save_unfinished(request.frame, traced, settings, row, result.files);
@@ -44,7 +44,7 @@ RenderedFrame make_picture(const SequenceInputs& inputs, const FrameRequest& req
   RenderedFrame rendered = settings.stage == SequenceStage::finish
                                ? finish_from_file(settings, request, renderer, history, row)
                                : renderer.render(request, history);
-  add_samples(rendered.samples, rendered.first_look, rendered.map, row);
+  add_samples(rendered.samples, rendered.pilot, rendered.map, row);
   add_others(rendered.others, row);
   keep_bad_samples(rendered.samples, result);
   add_times(rendered.times, row);

@@ -77,9 +77,9 @@ void add_others(const TraceStats& others, TimingRow& row) {
   add_trace(others, row);
 }
 
-void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row) {
+void add_samples(const TraceStats& samples, const TraceStats& pilot, const SamplingMap& map, TimingRow& row) {
   add_trace(samples, row);
-  add_pilot(first_look, row);
+  add_pilot(pilot, row);
   const std::vector<std::string>& names = timing_regions();
   for (std::size_t i = 0; i < map.regions.size(); ++i) {
     const auto name = std::find(names.begin(), names.end(), map.regions[i].name);

@@ -16,8 +16,8 @@ TimingRow timing_row(const FrameRequest& request);
 TimingRow lost_timing_row(const FrameRequest& request, std::optional<double> exposure_ev);
 
 void add_prediction(const Prediction& prediction, TimingRow& row);
-// `samples` are those of the map's sites; those of the first look or pilot belong to no region.
-void add_samples(const TraceStats& samples, const TraceStats& first_look, const SamplingMap& map, TimingRow& row);
+// `samples` are those of the map's sites; those of the pilot belong to no region.
+void add_samples(const TraceStats& samples, const TraceStats& pilot, const SamplingMap& map, TimingRow& row);
 // Samples that decided where those of frames belong, and were discarded; add_samples() adds the frame's own.
 void add_pilot(const TraceStats& pilot, TimingRow& row);
 void add_others(const TraceStats& others, TimingRow& row);  // RenderedFrame::others

@@ -197,7 +197,7 @@ WrittenFile save_traced(const std::string& path, std::int32_t frame, const Trace
   }
   each_sum(traced.sparse, writer);
   write(traced.sparse.stats, writer);
-  write(traced.first_look, writer);
+  write(traced.pilot, writer);
   write(traced.prediction.relmse, writer);
   write(traced.prediction.jod, writer);
   writer(traced.times);
@@ -218,7 +218,7 @@ TracedFrame load_traced(const std::string& path, std::int32_t frame, const std::
   read_list(reader, traced.map.regions, [&](MapRegion& region) { each_part_of_region(region, reader); });
   each_sum(traced.sparse, reader);
   read(reader, traced.sparse.stats);
-  read(reader, traced.first_look);
+  read(reader, traced.pilot);
   read(reader, traced.prediction.relmse);
   read(reader, traced.prediction.jod);
   reader(traced.times);

@@ -49,8 +49,7 @@ bool FrameRenderer::at_rest(const FrameRequest& a, const FrameRequest& b) const 
 }
 
 bool FrameRenderer::only_views_move() const {
-  return !tracer_->moves() && reconstruction_.needs().surfaces && !(settings_.accumulate.blend > 0) &&
-         settings_.reconstruction.pass_through_samples.value_or(0) == 0;
+  return !tracer_->moves() && reconstruction_.needs().surfaces && !(settings_.accumulate.blend > 0);
 }
 
 ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request, const TracedFrame& traced,
@@ -62,7 +61,7 @@ ReconstructedFrame FrameRenderer::reconstruct(const FrameRequest& request, const
   done.light = filtered_light(traced, done.times);
   done.map = traced.map;
   done.samples = traced.sparse.stats;
-  done.first_look = traced.first_look;
+  done.pilot = traced.pilot;
   done.prediction = traced.prediction;
   return done;
 }
@@ -120,7 +119,7 @@ RenderedFrame FrameRenderer::join(const std::vector<const ReconstructedFrame*>& 
   });
   rendered.map = frame.map;
   rendered.samples = frame.samples;
-  rendered.first_look = frame.first_look;
+  rendered.pilot = frame.pilot;
   rendered.prediction = frame.prediction;
   history.passed.push_back(request.frame);
   expose(request, settings_, history, rendered);

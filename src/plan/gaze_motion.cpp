@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/nan.hpp"
 #include "core/statistics.hpp"
 
 namespace gazetrace {
 namespace {
 
-constexpr std::int64_t kSpeedWindowNs = 20'000'000;
 constexpr double kFramesOfLatency = 4;
 
 double frame_ns(const PlanSettings& settings) {
@@ -21,8 +19,7 @@ double frame_ns(const PlanSettings& settings) {
 
 }  // namespace
 
-GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings)
-    : log_(log), uncertainty_(settings.uncertainty) {
+GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings) : log_(log) {
   // Gaze of a single row never moves.
   if (log == nullptr || log->samples.size() < 2 || !knows_angles(*log)) {
     return;
@@ -30,23 +27,12 @@ GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings)
   if (settings.find_events) {
     movements_ = detect_events(*log, default_event_preset(*log)).labels;
   }
-  if (uncertainty_ || settings.find_speed) {
-    speed_deg_s_ = angular_speed_deg_s(gaze_directions(*log), kSpeedWindowNs);
-  }
 }
 
 std::size_t GazeMotion::row_at(std::int64_t t_log_ns) const {
   const auto after = std::upper_bound(log_->samples.begin(), log_->samples.end(), t_log_ns,
                                       [](std::int64_t t, const GazeSample& sample) { return t < sample.t_ns; });
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - log_->samples.begin() - 1, 0));
-}
-
-double GazeMotion::speed_deg_s(std::int64_t t_log_ns) const {
-  if (speed_deg_s_.empty()) {
-    return 0;
-  }
-  const double speed = speed_deg_s_[row_at(t_log_ns)];
-  return std::isnan(speed) ? 0 : speed;
 }
 
 bool GazeMotion::in_saccade(std::int64_t t_log_ns) const {
@@ -61,18 +47,6 @@ bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64
   const auto last = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(t_log_ns));
   // The first row was already counted for the frame before; where it is the only one, it counts for this frame, too.
   return std::find(first == last ? first : first + 1, last + 1, movement) != last + 1;
-}
-
-double GazeMotion::uncertainty_deg(const FrameRequest& request) const {
-  const auto age_ns = effective_age_ns(request);
-  // A fixed gaze has no rows and no age. It does not move, but may be off all the same.
-  const bool is_fixed = !age_ns && request.gaze_render.state == GazeState::measured;
-  if (!uncertainty_ || (!age_ns && !is_fixed)) {
-    return 0;
-  }
-  const double moved_deg =
-      is_fixed ? 0 : speed_deg_s(request.gaze_true.t_log_ns - *age_ns) * std::abs(static_cast<double>(*age_ns)) * 1e-9;
-  return uncertainty_->accuracy_deg + uncertainty_->precision_deg + moved_deg;
 }
 
 std::optional<std::int64_t> effective_age_ns(const FrameRequest& request) {
@@ -127,36 +101,6 @@ void warn_about_latency(const PlanSettings& settings, Warnings& warnings) {
       "from {:.1f} to {:.1f} ms; a study of latency needs `fps` {:.0f} or more",
       latency_ns * 1e-6, frames, to_string(settings.fps), latency_ns * 1e-6 - half_ms, latency_ns * 1e-6 + half_ms,
       std::ceil(kFramesOfLatency * 1e9 / latency_ns)));
-}
-
-GazeUncertainty uncertainty_of(const GazeLog& log) {
-  GazeUncertainty uncertainty{kNan, kNan};
-  double sum = 0;
-  double count = 0;
-  for (const GazeCalibration& calibration : log.calibrations) {
-    if (!std::isnan(calibration.mean_error_deg)) {
-      sum += calibration.mean_error_deg;
-      ++count;
-    }
-  }
-  if (count > 0) {
-    uncertainty.accuracy_deg = sum / count;
-  }
-  if (log.samples.size() > 1 && knows_angles(log)) {
-    double squares = 0;
-    double samples = 0;
-    for (const EyeEvent& event : detect_events(log, default_event_preset(log)).events) {
-      if (event.movement == EyeMovement::fixation && !std::isnan(event.dispersion_deg)) {
-        const auto weight = static_cast<double>(event.last - event.first + 1);
-        squares += weight * event.dispersion_deg * event.dispersion_deg;
-        samples += weight;
-      }
-    }
-    if (samples > 0) {
-      uncertainty.precision_deg = std::sqrt(squares / samples);
-    }
-  }
-  return uncertainty;
 }
 
 }  // namespace gazetrace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the eye does at the time of a frame, how fast it moves, and how old a frame's gaze is.
+// What the eye does at the time of a frame, and how old a frame's gaze is.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,14 @@
 
 namespace gazetrace {
 
-// The movements and speed of the eye in one log. Where the log has no angles, nothing is known.
+// The movements of the eye in one log. Where the log has no angles, nothing is known.
 class GazeMotion {
  public:
   GazeMotion(const GazeLog* log, const PlanSettings& settings);
 
   // One for each sample of the log; nullptr where nothing is known.
   [[nodiscard]] const std::vector<EyeMovement>* movements() const { return movements_.empty() ? nullptr : &movements_; }
-  // accuracy + precision + age x speed of the gaze that steers the frame; 0 where it is not asked for or has no gaze.
-  [[nodiscard]] double uncertainty_deg(const FrameRequest& request) const;
-  // At a time on the log's clock: the speed of the gaze (0 where it is not asked for or not known), and whether the eye
-  // is in a saccade.
-  [[nodiscard]] double speed_deg_s(std::int64_t t_log_ns) const;
+  // Whether the eye is in a saccade at a time on the log's clock.
   [[nodiscard]] bool in_saccade(std::int64_t t_log_ns) const;
   // Whether the eye made this movement at any time after the first time and up to the second.
   [[nodiscard]] bool did(EyeMovement movement, std::int64_t after_log_ns, std::int64_t t_log_ns) const;
@@ -33,9 +29,7 @@ class GazeMotion {
   [[nodiscard]] std::size_t row_at(std::int64_t t_log_ns) const;
 
   const GazeLog* log_;
-  std::optional<GazeUncertainty> uncertainty_;
   std::vector<EyeMovement> movements_;
-  std::vector<double> speed_deg_s_;
 };
 
 // The age, in log time and at the middle of the frame, of the gaze that steers it. Interpolated gaze is as old as the

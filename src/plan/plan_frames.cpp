@@ -202,8 +202,6 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
       if (age_ns && request.gaze_render.age_is_known && !request.gaze_render.no_gaze) {
         request.gaze_effective_age_ns = std::llround(static_cast<double>(*age_ns) * settings.gaze.scale);
       }
-      request.gaze_uncertainty_deg = steering_motion.uncertainty_deg(request);
-      request.eye_speed_deg_s = motion.speed_deg_s(request.gaze_render.t_log_ns);
       request.eye_in_saccade = motion.in_saccade(request.gaze_render.t_log_ns);
       say_what_the_eye_did(request, likely_predecessor(settings.frames, plan.frames.size()), motion, *log, settings);
       geometry.settle(request.gaze_render);

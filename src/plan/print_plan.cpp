@@ -178,8 +178,6 @@ std::string plan_as_json(const FramePlan& plan) {
                           {"camera", camera_json(request.camera)},
                           {"gaze_render", gaze_json(request.gaze_render, request.gaze_direction_render)},
                           {"gaze_true", gaze_json(request.gaze_true, request.gaze_direction_true)},
-                          {"gaze_uncertainty_deg", request.gaze_uncertainty_deg},
-                          {"eye_speed_deg_s", request.eye_speed_deg_s},
                           {"eye_in_saccade", request.eye_in_saccade},
                           {"saccade_since_last_frame", request.saccade_since_last_frame},
                           {"blink_since_last_frame", request.blink_since_last_frame}});

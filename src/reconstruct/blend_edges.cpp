@@ -41,24 +41,19 @@ void blend_edges(const FilterInput& input, const SurfaceLookup& lookup, const Im
     }
     while (k < std::min((task + 1) * kRaysPerTask, rays.size())) {
       const std::uint32_t pixel = rays[k].pixel;
-      const bool changed = input.pass_through.needs_filtering(site_of_pixel.pixels[pixel]);
       PixelValue sum = picture.at(pixel);
       float count = 1;
       for (; k < rays.size() && rays[k].pixel == pixel; ++k) {
-        if (changed) {
-          const PixelValue value = value_of(rays[k]);
-          sum.radiance += value.radiance;
-          sum.variance += value.variance;
-          sum.replica += value.replica;
-          sum.error += value.error;
-          ++count;
-        }
+        const PixelValue value = value_of(rays[k]);
+        sum.radiance += value.radiance;
+        sum.variance += value.variance;
+        sum.replica += value.replica;
+        sum.error += value.error;
+        ++count;
       }
-      if (changed) {
-        // An upper bound of the variance: the values may share their samples.
-        blended[task].push_back(
-            {pixel, {sum.radiance / count, sum.variance / count, sum.replica / count, sum.error / count}});
-      }
+      // An upper bound of the variance: the values may share their samples.
+      blended[task].push_back(
+          {pixel, {sum.radiance / count, sum.variance / count, sum.replica / count, sum.error / count}});
     }
   });
   parallel_for(blended.size(), input.threads, [&](std::size_t task) {

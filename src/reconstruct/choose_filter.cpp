@@ -7,9 +7,6 @@ FilterChoice choose_filter(const FilterFacts& facts) {
   if (facts.accumulates_sites) {
     return {"linear", "accumulation before the filter leaves sites, which cannot be taken apart by surfaces"};
   }
-  if (facts.enhances_contrast) {
-    return {"linear", "only filters that blur blocks leave contrast to bring back"};
-  }
   if (!facts.foveated && facts.means_frames) {
     return {"linear", "frames are uniform, and their running mean is to tend to that of the samples"};
   }

@@ -38,8 +38,7 @@ class SquareFiller {
   void fill(const Square& square) {
     for (int y = square.y; y < square.y_end; ++y) {
       for (int x = square.x; x < square.x_end; ++x) {
-        if (map_.region(x, y) == region_ &&
-            (block_ > 1 || input_.pass_through.needs_filtering(lattice_.site_of_pixel(x, y)))) {
+        if (map_.region(x, y) == region_) {
           put(x, y);
           if (pixels_.count == kGatherLanes) {
             flush(square);

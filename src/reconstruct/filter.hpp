@@ -14,14 +14,12 @@ struct FilterInput {
   const SparseFrame& sparse;
   const SiteValues& values;
   const SamplingMap& map;
-  const PassThrough& pass_through;
   const Guides* guides;  // of the map's size where the filter needs them
   int threads;
 };
 
 struct FilterDefinition {
   ReconstructionNeeds needs = {};  // reconstruct.cpp checks that they are met
-  bool blurs_blocks = true;        // as in FilterInfo
   Frame (*frame)(const FilterInput& input);
 };
 
@@ -33,7 +31,7 @@ struct FilterDefinition {
 // A frame of the map's size; guide images only where `guides` is set.
 Frame make_frame(const SamplingMap& map, bool guides);
 
-// Gives every pixel of a site the site's own values. Every filter uses it for the pixels of 1x1 sites that it does not
+// Gives every pixel of a site the site's own values. Filters use it for the pixels of 1x1 sites that they do not
 // change, so that these have the same bits whichever filter is used.
 void paint_site(Frame& frame, const SamplingMap& map, const SiteValues& values, std::size_t site);
 

@@ -21,7 +21,7 @@ std::vector<SiteResidual> residuals_of_sites(const FilterInput& input, const Sur
   parallel_for(map.tiles.size(), input.threads, [&](std::size_t t) {
     const MapTile& tile = map.tiles[t];
     for (std::size_t i = tile.first_site; i < tile.first_site + tile.site_count; ++i) {
-      if (input.values.count(i) == 0 || !input.pass_through.needs_filtering(i)) {
+      if (input.values.count(i) == 0) {
         continue;
       }
       Vec3f mean;
@@ -74,13 +74,9 @@ void keep_residuals(const FilterInput& input, const SmoothingSettings& settings,
     }
     for (int x = 0; x < map.width_px; ++x) {
       const std::uint8_t region = map.region(x, y);
-      const bool filtered = map.regions[region].block_px > 1 || input.pass_through.needs_filtering(site_of_pixel(x, y));
       const std::size_t i = picture.radiance.index(x, y);
       Vec3f& radiance = picture.radiance.pixels[i];
       const KeptResidual kept = rows[region].at(x, luminance(radiance));
-      if (!filtered) {
-        continue;
-      }
       const Vec3f value = radiance + kept.radiance;
       radiance = {std::max(value.x, 0.0F), std::max(value.y, 0.0F), std::max(value.z, 0.0F)};
       picture.replica.pixels[i] += kept.replica;

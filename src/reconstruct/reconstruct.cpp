@@ -54,7 +54,7 @@ NamedFilter filter_named(const std::string& name) {
 }
 
 FilterInfo info_of(const NamedFilter& filter) {
-  return {filter.name, filter.description, filter.definition->needs, filter.definition->blurs_blocks};
+  return {filter.name, filter.description, filter.definition->needs};
 }
 
 void check_needs(const ReconstructionNeeds& needs, const SparseFrame& sparse, const SamplingMap& map,
@@ -80,8 +80,7 @@ std::vector<FilterInfo> reconstruction_filters() {
   return filters;
 }
 
-Reconstruction::Reconstruction(const ReconstructionSettings& settings)
-    : pass_through_samples_(settings.pass_through_samples) {
+Reconstruction::Reconstruction(const ReconstructionSettings& settings) {
   const NamedFilter named = filter_named(settings.filter);
   definition_ = named.definition;
   filter_ = info_of(named);
@@ -90,14 +89,12 @@ Reconstruction::Reconstruction(const ReconstructionSettings& settings)
 TraceSettings Reconstruction::trace_settings(TraceSettings settings) const {
   settings.surfaces = filter_.needs.surfaces;
   settings.halves = filter_.needs.halves;
-  settings.pass_through_samples = pass_through_samples_;
   return settings;
 }
 
 std::optional<GuideSettings> Reconstruction::guide_settings(const TraceSettings& trace) const {
   std::optional<GuideSettings> settings = filter_.needs.guides;
   if (settings) {
-    settings->pixel_cone = std::max(trace.pixel_cone, settings->pixel_cone);
     settings->diffuse = trace.diffuse;
   }
   return settings;
@@ -107,8 +104,7 @@ Frame Reconstruction::frame(const SparseFrame& sparse, const SamplingMap& map, c
                             int threads) const {
   const SiteValues values(sparse, map, threads);
   check_needs(filter_.needs, sparse, map, guides);
-  const PassThrough pass_through(map, pass_through_samples_);
-  return definition_->frame({sparse, values, map, pass_through, guides, threads});
+  return definition_->frame({sparse, values, map, guides, threads});
 }
 
 Frame make_frame(const SamplingMap& map, bool guides) {

@@ -55,9 +55,6 @@ class SampledFirstHits {
     parallel_for(static_cast<std::size_t>(map_.height_px), input_.threads, [&](std::size_t row) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < map_.width_px; ++x) {
-        if (!input_.pass_through.needs_filtering(cells_.site_of_pixel(x, y))) {
-          continue;
-        }
         const Seen seen = between_blocks(x, y);
         if (seen.share > 0) {
           const std::size_t p = picture.radiance.index(x, y);
@@ -108,9 +105,7 @@ class SampledFirstHits {
     });
   }
 
-  [[nodiscard]] bool is_known(std::size_t site) const {
-    return input_.values.count(site) > 0 && input_.pass_through.needs_filtering(site);
-  }
+  [[nodiscard]] bool is_known(std::size_t site) const { return input_.values.count(site) > 0; }
 
   [[nodiscard]] Seen seen_at(std::size_t site) const {
     if (!is_known(site)) {

@@ -29,16 +29,6 @@ Frame frame_from_surfaces(const FilterInput& input, SmoothSurfaces smooth) {
       const Site& site = map.sites[i];
       const float density = static_cast<float>(input.values.count(i)) / static_cast<float>(site.pixels);
       for_each_pixel(map, site, [&](int x, int y) { frame.sample_count(x, y) = density; });
-      if (!input.pass_through.needs_filtering(i)) {
-        const SiteValue value = input.values.value(i);
-        for_each_pixel(map, site, [&](int x, int y) {
-          picture.put(frame.radiance.index(x, y),
-                      {value.radiance, value.variance, input.sparse.half_difference[i], value.variance});
-        });
-        if (input.values.has_guides()) {
-          paint_site(frame, map, input.values, i);
-        }
-      }
     }
   });
   const SurfaceLookup lookup(input, lattice, settings);

@@ -109,7 +109,7 @@ SceneEstimate estimate_scene(const std::string& path, const SceneReadOptions& op
     open.document.buffers = load_buffers(open.file, open.checked.buffers, storage);
   }
   Warnings unused;
-  TextureTable textures(open.document, options.limits);
+  TextureTable textures(open.document, memory_limit(options));
   make_materials(open.document, textures, unused);
   add_pictures(textures, options.threads, estimate);
   return estimate;
@@ -121,7 +121,7 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   const CheckedGltf& checked = open.checked;
   GltfDocument& document = open.document;
   SceneEstimate estimate = estimate_geometry(file, checked, document);
-  check_memory(estimate, options.limits, path);
+  check_memory(estimate, memory_limit(options), path);
   std::vector<std::vector<std::uint8_t>> storage;
   document.buffers = load_buffers(file, checked.buffers, storage);
   unpack_meshopt(document, checked.meshopt_views, storage, options.threads);
@@ -135,10 +135,10 @@ Scene load_scene(const std::string& path, const SceneReadOptions& options) {
   list_unshown(document, scene);
   warn_of_offset(document, scene.warnings);
 
-  TextureTable textures(document, options.limits);
+  TextureTable textures(document, memory_limit(options));
   scene.materials = make_materials(document, textures, scene.warnings);
   add_pictures(textures, options.threads, estimate);
-  check_memory(estimate, options.limits, path);
+  check_memory(estimate, memory_limit(options), path);
   const std::int32_t fallback = default_material(document, scene.materials);
 
   LoadCount count(options.progress, textures.picture_count() + document.meshes.size());

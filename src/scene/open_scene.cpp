@@ -9,15 +9,20 @@
 
 namespace gazetrace {
 
+std::uint64_t memory_limit(const SceneReadOptions& options) {
+  return options.memory_bytes > 0 ? options.memory_bytes : most_memory_bytes();
+}
+
 OpenScene open_scene(const std::string& path, const SceneReadOptions& options) {
   OpenScene scene;
-  check_file_memory(path, options.limits);
+  const std::uint64_t memory_bytes = memory_limit(options);
+  check_file_memory(path, memory_bytes);
   scene.file = read_gltf_file(path);
   if (!options.allow_outside) {
     scene.file.roots = data_roots(path);
   }
-  check_json_memory(path, scene.file.bytes.size(), scene.file.json, options.limits);
-  scene.checked = check_gltf_json(path, scene.file.json, options.limits);
+  check_json_memory(path, scene.file.bytes.size(), scene.file.json, memory_bytes);
+  scene.checked = check_gltf_json(path, scene.file.json, memory_bytes);
   scene.document = parse_gltf(path, scene.checked);
   scene.document.data_roots = scene.file.roots;
   if (!options.animation.empty()) {

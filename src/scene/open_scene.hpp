@@ -19,6 +19,8 @@ struct OpenScene {
   CheckedGltf checked;
   GltfDocument document;
 };
+// SceneReadOptions::memory_bytes, or what stands for 0.
+std::uint64_t memory_limit(const SceneReadOptions& options);
 OpenScene open_scene(const std::string& path, const SceneReadOptions& options);
 
 // The bytes of all buffers; `storage` owns those that are not in the .glb itself.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "core/nan.hpp"
 #include "gaze/angles.hpp"
+#include "gazetrace/gaze_events.hpp"
 #include "gazetrace/gaze_objects.hpp"
 
 namespace gazetrace {
@@ -15,6 +17,42 @@ double spread_rad(const GazeUncertainty& uncertainty) {
 }
 
 }  // namespace
+
+GazeUncertainty uncertainty_of(const GazeLog& log) {
+  GazeUncertainty uncertainty{kNan, kNan};
+  double sum = 0;
+  double count = 0;
+  for (const GazeCalibration& calibration : log.calibrations) {
+    if (!std::isnan(calibration.mean_error_deg)) {
+      sum += calibration.mean_error_deg;
+      ++count;
+    }
+  }
+  if (count > 0) {
+    uncertainty.accuracy_deg = sum / count;
+  }
+  if (log.samples.size() > 1 && knows_angles(log)) {
+    double squares = 0;
+    double samples = 0;
+    for (const EyeEvent& event : detect_events(log, default_event_preset(log)).events) {
+      if (event.movement == EyeMovement::fixation && !std::isnan(event.dispersion_deg)) {
+        const auto weight = static_cast<double>(event.last - event.first + 1);
+        squares += weight * event.dispersion_deg * event.dispersion_deg;
+        samples += weight;
+      }
+    }
+    if (samples > 0) {
+      uncertainty.precision_deg = std::sqrt(squares / samples);
+    }
+  }
+  return uncertainty;
+}
+
+GazeUncertainty known_uncertainty(const GazeUncertainty& stated, const GazeLog& log) {
+  const GazeUncertainty of_log = uncertainty_of(log);
+  return {std::isnan(stated.accuracy_deg) ? of_log.accuracy_deg : stated.accuracy_deg,
+          std::isnan(stated.precision_deg) ? of_log.precision_deg : stated.precision_deg};
+}
 
 std::vector<Vec3d> gaze_cone(const Vec3d& direction, const GazeUncertainty& uncertainty, int count) {
   const TangentFrame frame(direction);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects and areas of interest for the gaze of a job.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "gazetrace/gaze_aois.hpp"
@@ -17,10 +19,18 @@ EyeEvents events_by(const GazeLog& log, const std::string& method) {
   return detect_events(log, method == "auto" ? default_event_preset(log) : event_preset(method));
 }
 
-bool knows_uncertainty(const JobSettings& settings, const GazeLog& log) {
-  const GazeUncertainty stated = uncertainty_of(log);
-  return (settings.gaze_accuracy_deg || stated.accuracy_deg >= 0) &&
-         (settings.gaze_precision_deg || stated.precision_deg >= 0);
+// Throws where neither the settings nor the log say how far the gaze is off.
+GazeUncertainty needed_uncertainty(const GazeUncertainty& stated, const GazeLog& log) {
+  const GazeUncertainty known = known_uncertainty(stated, log);
+  if (std::isnan(known.accuracy_deg)) {
+    throw Error(ErrorKind::input, log.source, "has no validation that would tell the tracker's accuracy",
+                "give `gaze-accuracy` DEG");
+  }
+  if (std::isnan(known.precision_deg)) {
+    throw Error(ErrorKind::input, log.source, "has no fixation to measure the tracker's precision in",
+                "give `gaze-precision` DEG");
+  }
+  return known;
 }
 
 }  // namespace
@@ -33,8 +43,7 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings, const st
     throw Error(ErrorKind::usage, "", "no gaze was given", "name a log with `gaze`");
   }
   Job asked = job;
-  asked.settings.gaze_uncertainty = true;  // has the plan take accuracy and precision from the log
-  asked.settings.gaze_latency = {};        // what steers a rendering late was not seen late
+  asked.settings.gaze_latency = {};  // what steers a rendering late was not seen late
   const Scene scene = load_job_scene(asked.settings);
   ResolveOptions options;
   options.scope = ResolveScope::plan;
@@ -49,7 +58,7 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings, const st
       request.gaze_direction_true = request.gaze_direction_render;
     }
   }
-  settings.uncertainty = *seen.resolved.plan_settings.uncertainty;
+  settings.uncertainty = needed_uncertainty(settings.uncertainty, *seen.resolved.gaze);
   PathTracer tracer(scene, tracer_options(asked.settings));
   settings.keep_hits = settings.keep_hits || heat.has_value();
   seen.objects = gaze_objects(tracer, scene, seen.resolved.plan, settings);
@@ -61,7 +70,8 @@ GazeOnScene look_at_scene(const Job& job, GazeObjectsSettings settings, const st
   return seen;
 }
 
-AoisOfJob aois_of_job(const Job& job, const std::string& aoi_file, const std::string& method) {
+AoisOfJob aois_of_job(const Job& job, const std::string& aoi_file, const std::string& method,
+                      const GazeUncertainty& uncertainty) {
   if (job.settings.gaze.path.empty()) {
     throw Error(ErrorKind::usage, "", "no gaze was given", "name a log with `gaze`");
   }
@@ -75,16 +85,14 @@ AoisOfJob aois_of_job(const Job& job, const std::string& aoi_file, const std::st
   std::optional<GazeOnScene> seen;
   if (has_objects) {
     GazeObjectsSettings settings;
+    settings.uncertainty = uncertainty;
     settings.nearest = settings.grid_rays = 0;
     seen = look_at_scene(job, settings);
   }
-  std::optional<GazeUncertainty> uncertainty;
-  if (knows_uncertainty(job.settings, log)) {
-    const GazeUncertainty stated = uncertainty_of(log);
-    uncertainty = GazeUncertainty{job.settings.gaze_accuracy_deg.value_or(stated.accuracy_deg),
-                                  job.settings.gaze_precision_deg.value_or(stated.precision_deg)};
-  }
-  return {analyse_aois(log, events_by(log, method), std::move(areas), uncertainty, seen ? &seen->objects : nullptr),
+  const GazeUncertainty known = known_uncertainty(uncertainty, log);
+  const bool is_known = known.accuracy_deg >= 0 && known.precision_deg >= 0;
+  return {analyse_aois(log, events_by(log, method), std::move(areas), is_known ? std::optional(known) : std::nullopt,
+                       seen ? &seen->objects : nullptr),
           seen ? seen->resolved.warnings : viewing.warnings};
 }
 

@@ -47,8 +47,6 @@ double angle_deg(const Vec3d& a, const Vec3d& b) {
 void steer_by(const FrameRequest& from, FrameRequest& to) {
   to.gaze_render = from.gaze_render;
   to.gaze_direction_render = from.gaze_direction_render;
-  to.gaze_uncertainty_deg = from.gaze_uncertainty_deg;
-  to.eye_speed_deg_s = from.eye_speed_deg_s;
   to.eye_in_saccade = from.eye_in_saccade;
   to.saccade_since_last_frame = from.saccade_since_last_frame;
   to.blink_since_last_frame = from.blink_since_last_frame;

@@ -42,8 +42,6 @@ std::string digest_of(const std::string& base, const std::string& what) {
 void make_uniform(const SweepPlan& plan, PlannedRow& row, double spp) {
   FoveationSettings& foveation = row.pipeline.foveation;
   foveation.falloff = "uniform";
-  foveation.retinal_velocity = false;
-  foveation.contrast_strength = 0;
   foveation.target = {};
   foveation.budget_samples.reset();
   foveation.budget_spp.reset();
@@ -196,8 +194,7 @@ std::vector<PlannedRow> baselines_of_samples(const SweepPlan& plan, const Planne
 std::optional<PlannedRow> cost_row(const SweepPlan& plan, const PlannedRow& test) {
   const FoveationSettings& foveation = test.pipeline.foveation;
   const std::uint32_t spp = plan.measure.efficiency_spp;
-  if (spp == 0 || !is_foveated(plan.tests[test.test]) || foveation.falloff != "regions" ||
-      foveation.border_blend_deg > 0) {
+  if (spp == 0 || !is_foveated(plan.tests[test.test]) || foveation.falloff != "regions") {
     return std::nullopt;
   }
   PlannedRow row = test;

@@ -42,7 +42,7 @@ PlannedRow uniform_row(const SweepPlan& plan, const PlannedRow& test, RowRole ro
 // with regions have one.
 std::optional<PlannedRow> cost_row(const SweepPlan& plan, const PlannedRow& test);
 
-// Samples a pixel that a test takes, by its maps; the samples of a first look at the contrast are not counted.
+// Samples a pixel that a test takes, by its maps.
 double planned_spp(const PlannedRow& row);
 
 }  // namespace gazetrace

@@ -150,7 +150,6 @@ class SceneSweep {
                       {"reference", digest_of_reference(*references_.at(rows.front()->row.reference))},
                       {"seed", std::to_string(rows.front()->pipeline.trace.seed)},
                       {"threads", threads_in_key(*rows.front())},
-                      {"bvh", std::to_string(static_cast<int>(plan_.scenes[scene_].tracer.bvh_quality))},
                       {"warm-up", std::to_string(plan_.measure.warm_up)}};
     for (const PlannedRow* row : rows) {
       parts.emplace_back("scores " + row->row.gaze, scoring_digest(plan_.measure, row->row.frames));

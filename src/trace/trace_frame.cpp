@@ -18,7 +18,6 @@
 #include "trace/samples/site_ranges.hpp"
 #include "trace/samples/site_summer.hpp"
 #include "trace/samples/surface_sums.hpp"
-#include "trace/samples/z_order.hpp"
 
 namespace gazetrace {
 namespace {
@@ -64,11 +63,7 @@ class RangeTracer {
         frame_(frame),
         map_(map),
         filter_(context.settings.filter, context.settings.footprint),
-        out_(out) {
-    if (context.settings.sample_pattern == SamplePattern::z_order) {
-      z_order_.emplace(map);
-    }
-  }
+        out_(out) {}
 
   // Threads may trace different ranges at once.
   [[nodiscard]] RangeResult trace(const SiteRange& range, Workspace& work) const {
@@ -76,7 +71,7 @@ class RangeTracer {
     result.regions.resize(map_.regions.size());
     std::vector<std::uint64_t> in_region(map_.regions.size());
     SampleList list = samples_of(range);
-    SiteSummer summer(context_, map_, frame_, range.first, out_);
+    SiteSummer summer(context_, frame_, range.first, out_);
     for (;;) {
       const std::int64_t begin_ns = thread_cpu_ns();
       const int count = list.next(filter_, work.samples);
@@ -99,7 +94,7 @@ class RangeTracer {
  private:
   [[nodiscard]] SampleList samples_of(const SiteRange& range) const {
     const TraceSettings& settings = context_.settings;
-    return {map_, range.first, range.count, settings.seed, frame_, z_order_ ? &*z_order_ : nullptr, settings.halves};
+    return {map_, range.first, range.count, settings.seed, frame_, settings.halves};
   }
 
   const FrameContext& context_;
@@ -107,7 +102,6 @@ class RangeTracer {
   std::int32_t frame_;
   const SamplingMap& map_;
   PixelFilterSampler filter_;
-  std::optional<ZOrder> z_order_;
   SparseFrame& out_;
 };
 

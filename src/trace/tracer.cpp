@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // PathTracer and PosedScene: a scene with its lights, its pose, and what is traced through it.
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "gazetrace/trace.hpp"
@@ -48,20 +47,6 @@ struct PathTracer::Impl {
     is_posed = true;
   }
 
-  // Compensated tables are made when they are first needed. They are used with MIS only, which finds what they leave
-  // out.
-  const LightSampler& lights_for(const TraceSettings& settings) {
-    if (!settings.compensate_environment || settings.light_sampling != LightSampling::mis ||
-        !scene->environment.present()) {
-      return lights;
-    }
-    std::call_once(compensated_once, [&] {
-      compensated_lights =
-          std::make_unique<LightSampler>(*scene, options.light_choice, EnvironmentDensity::compensated);
-    });
-    return *compensated_lights;
-  }
-
   [[nodiscard]] const NamedKernel& kernel_variant() const {
     return choose_kernel(kernel_features(render_scene.features, render_scene), options.all_features);
   }
@@ -70,8 +55,6 @@ struct PathTracer::Impl {
   TracerOptions options;
   RenderScene render_scene;
   LightSampler lights;
-  std::once_flag compensated_once;
-  std::unique_ptr<LightSampler> compensated_lights;
   std::optional<ShutterTimes> posed;
   bool is_posed = true;
 };
@@ -104,8 +87,7 @@ SparseFrame PosedScene::trace(const Camera& camera, std::int32_t frame, const Sa
   tracer_->pose(times_);
   const CameraRays rays(camera, map.height_px);
   const NamedKernel& variant = tracer_->kernel_variant();
-  FrameContext context =
-      make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
+  FrameContext context = make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights, rays, settings);
   context.learned = settings.learned.get();
   SparseFrame out = trace_frame(context, kernel_of(variant, settings.diffuse), frame, map, tracer_->options.threads);
   out.stats.kernel = variant.name;
@@ -120,7 +102,7 @@ LightLearning PosedScene::learn_light(const Camera& camera, int width_px, int he
   }
   const CameraRays rays(camera, height_px);
   const FrameContext context =
-      make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights_for(settings), rays, settings);
+      make_frame_context(*tracer_->scene, tracer_->render_scene, tracer_->lights, rays, settings);
   return gazetrace::learn_light(context, kernel_of(tracer_->kernel_variant(), settings.diffuse), width_px, height_px,
                                 tracer_->options.threads);
 }

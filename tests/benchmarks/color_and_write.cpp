@@ -91,19 +91,15 @@ int main(int argc, char** argv) {
 
   DisplayImage shown;
   for (const char* view : {"ACES SDR", "sRGB", "Reinhard"}) {
-    for (const ViewPrecision precision : {ViewPrecision::exact, ViewPrecision::baked}) {
-      ColorSettings settings;
-      settings.view = view;
-      settings.precision = precision;
-      const ColorPipeline color(settings);
-      const std::int64_t begin = process_cpu_ns();
-      color.prepare(width, height, 8);
-      const double prepared = static_cast<double>(process_cpu_ns() - begin) * 1e-6;
-      const double ms = cpu_ms([&] { shown = color.apply(frame.radiance, ev, 8); });
-      const bool baked = precision == ViewPrecision::baked;
-      row(fmt::format("color, {}, {}", view, baked ? fmt::format("baked (once: {:.0f} ms)", prepared) : "exact"), ms);
-      sum += baked && view == std::string("ACES SDR") ? ms : 0;
-    }
+    ColorSettings settings;
+    settings.view = view;
+    const ColorPipeline color(settings);
+    const std::int64_t begin = process_cpu_ns();
+    color.prepare(width, height, 8);
+    const double prepared = static_cast<double>(process_cpu_ns() - begin) * 1e-6;
+    const double ms = cpu_ms([&] { shown = color.apply(frame.radiance, ev, 8); });
+    row(fmt::format("color, {} (once: {:.0f} ms)", view, prepared), ms);
+    sum += view == std::string("ACES SDR") ? ms : 0;
   }
   const ColorPipeline aces{ColorSettings{}};
   row("color, ACES SDR, 16 bits", cpu_ms([&] { shown = aces.apply(frame.radiance, ev, 16); }));

@@ -406,10 +406,6 @@ int run(int argc, char** argv) {
       settings.parameters.normalization = FalloffNormalization::relative;
       settings.budget_spp = options.spp;
       compare_model(tracer, world, options, info.name, settings, uniform, all);
-      if (info.name == "regions") {
-        settings.border_blend_deg = 2;
-        compare_model(tracer, world, options, "regions, rim 2 deg", settings, uniform, all);
-      }
     }
   }
   judge(all);

@@ -2,7 +2,7 @@
 // What ways of finding light cost and give, beside the default in one run: error times time of a frame at several
 // rates.
 //   gazetrace_light_choice SCENE.gltf[=SKY.hdr] | lamps:N  [--eye X,Y,Z] [--target X,Y,Z] [--fov DEG] [--size 320x180]
-//       [--rows compensated,bsdf-only,compensated+z-order] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
+//       [--rows learned,bsdf-only,learned+roulette] [--spp 1,4,16,64] [--seeds 16] [--reference 4x256]
 //       [--bounces N] [--bounce-cone RAD]
 // A row is one or several of the words of kWords.
 // The reference is rendered with the default choice: so many scramblings of so many samples, none of them a row's. Rows
@@ -96,12 +96,10 @@ struct Word {
 };
 constexpr Word kWords[] = {
     {"default", [](TraceSettings&) {}},
-    {"compensated", [](TraceSettings& s) { s.compensate_environment = true; }},
     {"light-only", [](TraceSettings& s) { s.light_sampling = LightSampling::light_only; }},
     {"bsdf-only", [](TraceSettings& s) { s.light_sampling = LightSampling::bsdf_only; }},
     {"roulette", [](TraceSettings& s) { s.russian_roulette = true; }},
     {"learned", [](TraceSettings& s) { s.learn_light = true; }},
-    {"z-order", [](TraceSettings& s) { s.sample_pattern = SamplePattern::z_order; }},
 };
 
 // Only the rows that say so learn light.

@@ -6,8 +6,7 @@
 
 For nine gazes, the frame is rendered with the gaze there and with the gaze 4 degrees beside, and the pixels within 2.6
 degrees of the first gaze are measured both times against a uniform reference of another seed. Prints relative MSE and
-FLIP of these pixels, their means over the gazes, and how many gazes win. `--pass-through 32` shows what a fovea of raw
-samples does.
+FLIP of these pixels, their means over the gazes, and how many gazes win.
 """
 
 import argparse

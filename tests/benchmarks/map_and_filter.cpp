@@ -43,7 +43,7 @@ void bench_map(benchmark::State& state, bool foveated, AngleReading reading) {
 void bench_filter(benchmark::State& state, bool foveated, AngleReading reading, const char* filter) {
   const SamplingMap map = paper_map(foveated, reading);
   const SparseFrame sparse = sparse_frame(map);
-  const Reconstruction reconstruction({filter, {}});
+  const Reconstruction reconstruction({filter});
   for (auto _ : state) {
     benchmark::DoNotOptimize(reconstruction.frame(sparse, map, nullptr, 1));
   }
@@ -51,7 +51,7 @@ void bench_filter(benchmark::State& state, bool foveated, AngleReading reading, 
 
 void bench_accumulate(benchmark::State& state) {
   const SamplingMap map = paper_map(true, AngleReading::full_angle);
-  Frame frame = Reconstruction({"none", {}}).frame(sparse_frame(map), map, nullptr, 1);
+  Frame frame = Reconstruction({"none"}).frame(sparse_frame(map), map, nullptr, 1);
   TemporalHistory history;
   for (auto _ : state) {
     frame = accumulate(std::move(frame), {}, {AccumulateMode::running}, history, 1);

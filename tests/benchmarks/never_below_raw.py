@@ -125,7 +125,7 @@ class Bench:
         program = self.asked.earlier if earlier else self.asked.program
         seeds = self.seeds(rate)
         folder = self.render(program, self.out / name / f"{layout}-{rate:g}-{column}", scene, *LAYOUTS[layout],
-                             "--budget-spp", f"{rate:g}", "--pass-through", "0", "--filter",
+                             "--budget-spp", f"{rate:g}", "--filter",
                              self.asked.filter if earlier else column, "--frames", f"1-{seeds}")
         by_seed = [self.scores(self.out / name / "reference", folder / f"f.{k:04d}.exr") for k in range(1, seeds + 1)]
         return {metric: [scores[metric] for scores in by_seed] for metric in METRICS}

@@ -82,13 +82,12 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-std::vector<Row> make_rows(PathTracer& high, PathTracer& medium, double frame_mean) {
+std::vector<Row> make_rows(PathTracer& tracer, double frame_mean) {
   std::vector<Row> rows;
   TraceSettings exact;
-  exact.pixel_cone = 0;
   exact.bounce_cone_rad = 0;
   const auto add = [&](std::string name, bool biased, const std::function<void(TraceSettings&, TraceSettings&)>& set) {
-    Row row{std::move(name), TraceSettings{}, TraceSettings{}, &high, biased};
+    Row row{std::move(name), TraceSettings{}, TraceSettings{}, &tracer, biased};
     set(row.settings, row.exact);
     rows.push_back(std::move(row));
   };
@@ -104,12 +103,6 @@ std::vector<Row> make_rows(PathTracer& high, PathTracer& medium, double frame_me
     settings.max_bounces = 8;
     settings.russian_roulette = true;
   });
-  for (const double cone : {0.0, 0.5, 2.0, 4.0}) {
-    add(fmt::format("--pixel-cone {}", cone), true, [&](auto& settings, auto& reference) {
-      settings.pixel_cone = cone;
-      reference.pixel_cone = 0;
-    });
-  }
   for (const double cone : {0.0, 0.05, 0.3, 0.6}) {
     add(fmt::format("--bounce-cone {}", cone), true, [&](auto& settings, auto& reference) {
       settings.bounce_cone_rad = cone;
@@ -121,7 +114,6 @@ std::vector<Row> make_rows(PathTracer& high, PathTracer& medium, double frame_me
     add(fmt::format("--clamp-indirect {:.3g} ({} means)", limit, means), true,
         [&](auto& settings, auto&) { settings.clamp_indirect = limit; });
   }
-  add("--compensate-environment", false, [](auto& settings, auto&) { settings.compensate_environment = true; });
   add("--light-sampling light", false,
       [](auto& settings, auto&) { settings.light_sampling = LightSampling::light_only; });
   add("--light-sampling bsdf", false,
@@ -129,8 +121,6 @@ std::vector<Row> make_rows(PathTracer& high, PathTracer& medium, double frame_me
   add("--pixel-filter blackman-harris", false,
       [](auto& settings, auto&) { settings.filter = PixelFilter::blackman_harris; });
   add("--diffuse lambert", false, [](auto& settings, auto&) { settings.diffuse = DiffuseModel::lambert; });
-  add("--bvh medium", false, [](auto&, auto&) {});
-  rows.back().tracer = &medium;
   return rows;
 }
 
@@ -252,20 +242,17 @@ int run(int argc, char** argv) {
   scene.environment = options.sky.empty() ? builtin_sky() : load_environment(options.sky);
   TracerOptions one_thread;
   one_thread.threads = 1;
-  PathTracer high(scene, one_thread);
-  one_thread.bvh_quality = BvhQuality::medium;
-  PathTracer medium(scene, one_thread);
-  const PixelStatistics plain = measure(high.at_rest(), {}, options.view, options.seeds, options.spp);
+  PathTracer tracer(scene, one_thread);
+  const PixelStatistics plain = measure(tracer.at_rest(), {}, options.view, options.seeds, options.spp);
   fmt::print("{}, {} x {}, {} seeds of {} spp; default {:.3f} us/sample, mean {:.4g}, relative MSE at 1 spp {:.3f}\n",
              scene.source, options.view.width_px, options.view.height_px, options.seeds, options.spp,
              plain.us_per_sample, average(plain.mean), relative_mse(plain, plain.mean, 1));
-  fmt::print("tree: high {:.2f} s, {:.1f} MiB; medium {:.2f} s, {:.1f} MiB\n", high.memory().build_s,
-             static_cast<double>(high.memory().bvh_bytes) * 0x1p-20, medium.memory().build_s,
-             static_cast<double>(medium.memory().bvh_bytes) * 0x1p-20);
+  fmt::print("tree: {:.2f} s, {:.1f} MiB\n", tracer.memory().build_s,
+             static_cast<double>(tracer.memory().bvh_bytes) * 0x1p-20);
   print_half(plain);
   fmt::print("{:<32} {:>6} {:>16} {:>7} {:>6} {:>22} {:>9}\n", "setting", "time", "noise", "typical", "cost", "mean",
              "pixel");
-  for (const Row& row : make_rows(high, medium, average(plain.mean))) {
+  for (const Row& row : make_rows(tracer, average(plain.mean))) {
     if (row.name.find(options.only) == std::string::npos) {
       continue;
     }
@@ -275,10 +262,10 @@ int run(int argc, char** argv) {
     for (int round = 0; round < options.rounds; ++round) {
       const int seeds = std::max(1, options.seeds / 8);
       const double with = measure(row.tracer->at_rest(), row.settings, options.view, seeds, options.spp).us_per_sample;
-      ratios.push_back(with / measure(high.at_rest(), {}, options.view, seeds, options.spp).us_per_sample);
+      ratios.push_back(with / measure(tracer.at_rest(), {}, options.view, seeds, options.spp).us_per_sample);
     }
     const double time = median(ratios);
-    const Ratio noise = noise_ratio(row, high, plain.mean, options);
+    const Ratio noise = noise_ratio(row, tracer, plain.mean, options);
     fmt::print("{:<32} {:6.3f} {:7.3f} +- {:5.3f} {:7.3f} {:6.3f} {}\n", row.name, time, noise.value, noise.error,
                typical_ratio(measured, plain), time * noise.value, bias_text(row, options));
     std::fflush(stdout);

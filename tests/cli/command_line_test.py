@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the command line makes of names that are unknown or old, of options given twice, and of help."""
 
+import json
+import re
+
 import harness
 
 
@@ -26,6 +29,36 @@ class UnknownNames(harness.CliTest):
     def test_former_options_are_a_page(self):
         page = self.run_ok("help", "former-options").stdout
         self.assertRegex(page, r"(?m)^--samples +there is no such option; the number of samples a pixel is --spp$")
+
+
+class Help(harness.CliTest):
+    def options(self, text):
+        """The option or positional of each line that begins one."""
+        found = re.findall(r"(?m)^  (?:-\w,)?(?:--)?([a-z][a-z-]+)(?=[ ,\n])", text)
+        return [name for name in found if name != "gazetrace"]
+
+    def test_render_has_twenty_options_and_one_example_that_runs(self):
+        text = self.run_ok("render", "-h").stdout
+        self.assertEqual(len(self.options(text)), 20, self.options(text))
+        example = re.search(r"(?m)^Example:\n  gazetrace (.+)$", text).group(1).split()
+        scene = example.index("scenes/courtyard/courtyard.gltf")
+        example[scene] = str(harness.SOURCE / example[scene])
+        self.run_ok(*example, "--size", "32x18", "--quiet")
+        self.assertTrue((self.folder / "out" / "frame.png").exists())
+
+    def test_all_options_are_on_one_of_two_pages(self):
+        listed = [option["name"] for option in json.loads(self.run_ok("list", "options", "--json").stdout)]
+        everything = self.options(self.run_ok("render", "--help-all").stdout)
+        farm = re.findall(r"(?m)^  --([a-z-]+)", self.run_ok("help", "farm-options").stdout)
+        self.assertIn("chunk", farm)
+        self.assertNotIn("spp", farm)
+        self.assertEqual(set(listed), set(everything + farm) - {"help", "help-all", "print-config", "json"})
+        self.assertEqual(set(everything) & set(farm), set())
+        shown = self.options(self.run_ok("render", "--help").stdout)
+        self.assertLess(set(shown), set(everything))
+        for command in (["plan"], ["gaze", "objects"], ["gaze", "aois"]):
+            self.assertLess(len(self.run_ok(*command, "--help").stdout), len(self.run_ok(*command, "--help-all").stdout) / 4)
+        self.assertEqual(self.run_ok("help", "render").stdout, self.run_ok("render", "--help").stdout)
 
 
 class GivenTwice(harness.CliTest):

@@ -261,14 +261,6 @@ class GazeTools(harness.CliTest):
         self.assert_refused([*base, "--gaze-anchor", "TRIAL=0s"], ["no message 'trial'"])
         self.assert_refused([*base, "--gaze-anchor", "1s"], ["no video time"])
 
-    def test_uncertainty_needs_to_be_known(self):
-        self.synth()
-        base = ["plan", "--gaze", "log.csv", "--eye", "0,1,4", "--target", "0,0,0", "--frames", "10"]
-        self.assert_refused([*base, "--gaze-uncertainty"], ["accuracy", "--gaze-accuracy"])
-        self.assert_refused([*base, "--gaze-accuracy", "1"], ["--gaze-uncertainty"])
-        plan = json.loads(self.run_ok(*base, "--gaze-uncertainty", "--gaze-accuracy", "1", "--json").stdout)
-        self.assertGreater(plan["frames"][0]["gaze_uncertainty_deg"], 1)
-
 
 if __name__ == "__main__":
     harness.main()

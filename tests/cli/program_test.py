@@ -89,8 +89,9 @@ class Talk(harness.CliTest):
                 self.assertIn("NAME", shown.stdout)
 
     def test_every_option_has_help(self):
-        for command in (["render"], ["plan"], ["gaze", "inspect"], ["gaze", "convert"]):
-            lines = self.run_ok(*command, "--help").stdout.splitlines()
+        for command in (["render", "--help-all"], ["plan", "--help-all"], ["render", "--help"], ["gaze", "inspect", "--help"],
+                        ["gaze", "convert", "--help"]):
+            lines = self.run_ok(*command).stdout.splitlines()
             options = [i for i, line in enumerate(lines) if re.match(r"  -", line)]
             self.assertGreater(len(options), 10)
             for i in options:
@@ -224,7 +225,7 @@ class Talk(harness.CliTest):
         """linear is a fall-off and a filter; help and errors say which option takes what."""
         self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--filter", "quadric"], ["filter", "give --falloff"])
         self.assert_refused(["render", "box.gltf", "-o", "f.exr", "--falloff", "guided"], ["falloff", "give --filter"])
-        text = " ".join(self.run_ok("render", "--help").stdout.split())
+        text = " ".join(self.run_ok("render", "--help-all").stdout.split())
         self.assertIn("how pixels are filled from the samples is --filter, which has a 'linear', too", text)
         self.assertIn("where the samples are is --falloff, which has a 'linear', too", text)
 

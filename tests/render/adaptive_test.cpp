@@ -121,7 +121,7 @@ TEST(Adaptive, SameBitsForAnyNumberOfThreads) {
     }
     EXPECT_EQ(frames[0].frame.radiance, frames[1].frame.radiance) << filter;
     EXPECT_EQ(frames[0].prediction.relmse, frames[1].prediction.relmse);
-    EXPECT_EQ(frames[0].first_look.samples, frames[1].first_look.samples);
+    EXPECT_EQ(frames[0].pilot.samples, frames[1].pilot.samples);
   }
 }
 
@@ -137,7 +137,7 @@ TEST(Adaptive, TheFrameIsThatOfItsRatesWithNothingOfThePilot) {
   const SparseFrame again = tracer.at({0, 0}).trace(request_of().camera, 1, traced.map, trace);
   EXPECT_EQ(traced.sparse.sum, again.sum);
   EXPECT_EQ(traced.sparse.count, again.count);
-  EXPECT_GT(traced.first_look.samples, 0U);
+  EXPECT_GT(traced.pilot.samples, 0U);
 }
 
 TEST(Adaptive, ABudgetCountsThePilot) {
@@ -147,8 +147,7 @@ TEST(Adaptive, ABudgetCountsThePilot) {
   for (const double spp : {5.0, 24.0}) {
     settings.foveation.budget_spp = spp;
     const TracedFrame traced = FrameRenderer(tracer, settings).trace(request_of());
-    EXPECT_NEAR(static_cast<double>(traced.sparse.stats.samples + traced.first_look.samples), spp * kWidth * kHeight,
-                2);
+    EXPECT_NEAR(static_cast<double>(traced.sparse.stats.samples + traced.pilot.samples), spp * kWidth * kHeight, 2);
   }
   settings.foveation.budget_spp = 0.5;
   EXPECT_THROW((void)FrameRenderer(tracer, settings).trace(request_of()), Error);

@@ -63,7 +63,7 @@ FrameSettings settings_of(const std::string& filter, AccumulateMode mode = Accum
 TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
   const Scene scene = room();
   const FrameRequest request = request_of(3);
-  for (const std::string filter : {"none", "tent", "guided"}) {
+  for (const std::string filter : {"none", "linear", "guided"}) {
     const FrameSettings settings = settings_of(filter);
     PathTracer tracer(scene, threads(2));
     TemporalHistory history;
@@ -79,12 +79,12 @@ TEST(FrameRenderer, MakesOfAFrameWhatItsStagesMakeOfIt) {
     trace.learned = by_hand.learn_light(request.camera, kWidth, kHeight, trace).light;
     const SparseFrame sparse = by_hand.trace(request.camera, request.frame, map, trace);
     const Guides guides = by_hand.guides(request.camera, kWidth, kHeight, {.edge_rays = 4});
-    const Frame frame = Reconstruction({filter, {}}).frame(sparse, map, filter == "guided" ? &guides : nullptr);
+    const Frame frame = Reconstruction({filter}).frame(sparse, map, filter == "guided" ? &guides : nullptr);
     EXPECT_TRUE(same_picture(rendered.frame.radiance, frame.radiance, filter));
     EXPECT_EQ(rendered.frame.variance, frame.variance);
     EXPECT_EQ(rendered.samples.samples, map.samples());
-    EXPECT_EQ(rendered.first_look.samples, 0U);  // the paths that it learns from are none
-    EXPECT_GT(rendered.first_look.learning_paths, 0U);
+    EXPECT_EQ(rendered.pilot.samples, 0U);  // the paths that it learns from are none
+    EXPECT_GT(rendered.pilot.learning_paths, 0U);
     EXPECT_EQ(rendered.times.guides_ms > 0, filter == "guided");
     EXPECT_EQ(history.passed, std::vector<std::int32_t>{3});
   }
@@ -100,7 +100,8 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
   for (const AccumulateMode mode : {AccumulateMode::off, AccumulateMode::reproject}) {
     PipelineSettings settings;
     static_cast<FrameSettings&>(settings) = settings_of("guided", mode);
-    settings.foveation.contrast_strength = 0.5;
+    settings.foveation.falloff = "visible";
+    settings.foveation.budget_spp = 4;
     settings.exposure.mode = ExposureMode::log_average;
     settings.exposure.smoothing_s = 0.2;
     PathTracer tracer(scene, threads(2));
@@ -125,8 +126,8 @@ TEST(FrameRenderer, IsWhatASequenceIsMadeOf) {
       EXPECT_EQ(rendered.exposure_ev, frames[i].second);
       EXPECT_TRUE(same_picture(rendered.frame.radiance, taken.at(i).frame.radiance, std::to_string(i + 1)));
       EXPECT_EQ(taken[i].map.samples(), rendered.map.samples());
-      EXPECT_GT(rendered.first_look.samples, 0U);
-      EXPECT_EQ(rendered.samples.samples + rendered.first_look.samples, result.rows[i].samples);
+      EXPECT_GT(rendered.pilot.samples, 0U);
+      EXPECT_EQ(rendered.samples.samples + rendered.pilot.samples, result.rows[i].samples);
     }
     EXPECT_EQ(history.passed, (std::vector<std::int32_t>{1, 2, 3, 4}));
   }

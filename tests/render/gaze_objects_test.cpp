@@ -130,7 +130,6 @@ Job courtyard_job(const std::string& frames) {
   job.settings.gaze.path = root + "/gazelogs/tx300_left.csv";
   job.settings.fps = {10, 1};
   parse_value(frames, "frames", job.settings.frames.emplace());
-  job.settings.gaze_accuracy_deg = 0.5;
   job.settings.size = {960, 540};
   return job;
 }
@@ -139,6 +138,7 @@ TEST(GazeObjects, OfTheCourtyardAreThoseOfASlowRayCast) {
   const Job job = courtyard_job("1-40x4");
   GazeObjectsSettings settings;
   settings.rays = 24;
+  settings.uncertainty = {0.5, std::numeric_limits<double>::quiet_NaN()};  // the precision is the log's
   const GazeOnScene seen = look_at_scene(job, settings);
   const Scene scene = load_job_scene(job.settings);
   const SlowScene slow(scene);

@@ -202,17 +202,17 @@ TEST(GuidedPaths, FramesAtRestLearnOnce) {
   PathTracer tracer(scene, threads(2));
   const FrameRenderer renderer(tracer, one_sample());
   KnownLight known;
-  EXPECT_GT(renderer.trace(request_of(1), known).first_look.learning_paths, 5000U);
+  EXPECT_GT(renderer.trace(request_of(1), known).pilot.learning_paths, 5000U);
   const TracedFrame second = renderer.trace(request_of(2), known);
-  EXPECT_EQ(second.first_look.learning_paths, 0U);
+  EXPECT_EQ(second.pilot.learning_paths, 0U);
   EXPECT_TRUE(same_samples(second.sparse, renderer.trace(request_of(2)).sparse, second.map));
 
   FrameRequest moved = request_of(3);
   moved.camera = camera_at({-2.4, 1.6, 2.0}, {0.8, 0.7, 0});
   const TracedFrame third = renderer.trace(moved, known);
-  EXPECT_GT(third.first_look.learning_paths, 5000U);
+  EXPECT_GT(third.pilot.learning_paths, 5000U);
   EXPECT_TRUE(same_samples(third.sparse, renderer.trace(moved).sparse, third.map));
-  EXPECT_GT(renderer.trace(request_of(4), known).first_look.learning_paths, 5000U);
+  EXPECT_GT(renderer.trace(request_of(4), known).pilot.learning_paths, 5000U);
 }
 
 // By default, and counted as what it is.
@@ -228,16 +228,16 @@ TEST(GuidedPaths, AFrameLearnsBeforeItIsTraced) {
   ASSERT_NE(by_hand.learned, nullptr);
   EXPECT_TRUE(same_samples(frame.sparse, tracer.at_rest().trace(kCamera, 1, frame.map, by_hand), frame.map));
   EXPECT_EQ(frame.sparse.stats.samples, static_cast<std::uint64_t>(kLearnWidth) * kLearnHeight);
-  EXPECT_EQ(frame.first_look.samples, 0U);
-  EXPECT_GT(frame.first_look.learning_paths, 5000U);
-  EXPECT_EQ(frame.first_look.rays_primary, 0U);
+  EXPECT_EQ(frame.pilot.samples, 0U);
+  EXPECT_GT(frame.pilot.learning_paths, 5000U);
+  EXPECT_EQ(frame.pilot.rays_primary, 0U);
   EXPECT_GT(frame.times.learn_ms, 0);
   EXPECT_EQ(frame.times.pilot_ms, 0);
 
   settings.trace.learn_light = false;
   const TracedFrame plain = FrameRenderer(tracer, settings).trace(request);
   EXPECT_FALSE(same_samples(frame.sparse, plain.sparse, frame.map));
-  EXPECT_EQ(plain.first_look.learning_paths, 0U);
+  EXPECT_EQ(plain.pilot.learning_paths, 0U);
 }
 
 TEST(GuidedPaths, NothingToLearn) {

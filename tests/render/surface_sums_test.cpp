@@ -50,7 +50,7 @@ TraceSettings with_surfaces() {
 }
 
 TraceSettings with_halves() {
-  return Reconstruction({"guided", {}}).trace_settings({});
+  return Reconstruction({"guided"}).trace_settings({});
 }
 
 TEST(SurfaceSums, AskingForThemChangesNoBitOfTheSums) {
@@ -95,31 +95,6 @@ TEST(SurfaceSums, ShiningAndReflectedLightAreTheWholeSum) {
     EXPECT_NEAR(sum.z, static_cast<double>(sparse.sum[i].z), tolerance) << i;
   }
   EXPECT_GT(several, 20U);  // edges of box, lamp and floor
-}
-
-// The tracer and the filters must agree on which single pixels are smoothed: by expectations, which are certain.
-TEST(SurfaceSums, SinglePixelsHaveThemWhereFewerThanEnoughSamplesAreExpected) {
-  const Scene scene = lit_scene();
-  PathTracer tracer(scene, threads(2));
-  FoveationSettings foveation;
-  foveation.falloff = "linear";
-  foveation.uniform_spp = 20;
-  const SamplingMap map =
-      make_sampling_map(foveation, view_of_perspective(50 * kRadPerDeg, kWidth, kHeight), Vec3d{0, 0, -1});
-  TraceSettings settings = with_surfaces();
-  settings.guides = true;
-  settings.pass_through_samples = 16;
-  settings.max_bounces = 1;
-  const SparseFrame sparse = tracer.at_rest().trace(kCamera, 0, map, settings);
-  int rounded_up = 0;
-  for (std::size_t i = 0; i < map.sites.size(); ++i) {
-    const bool has = sparse.first_surface[i] != sparse.first_surface[i + 1];
-    if (map.regions[map.sites[i].region].block_px == 1 && sparse.guides[i].hits > 0) {
-      ASSERT_EQ(has, map.expected(i) < 16) << i;
-      rounded_up += map.expected(i) < 16 && map.sites[i].samples >= 16 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(rounded_up, 10);
 }
 
 // Over 1000 seeds, the variance of the sites' means, and the mean square of half the difference of their halves.

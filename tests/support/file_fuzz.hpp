@@ -75,7 +75,7 @@ struct SmallRun {
 inline SceneReadOptions scene_options() {
   SceneReadOptions options;
   options.threads = 1;
-  options.limits.memory_bytes = kSceneBytes;
+  options.memory_bytes = kSceneBytes;
   return options;
 }
 
@@ -188,7 +188,6 @@ bool any_reads(const Readers&... readers) {
 
 inline bool read_picture(const std::string& path, std::string_view input) {
   PictureLimits limits;
-  limits.side_px = 2048;
   limits.expansion = 200;
   limits.free_bytes = std::uint64_t{16} << 20U;
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(input.data());

@@ -93,7 +93,7 @@ inline testing::AssertionResult same_picture(const ImageRgb& picture, const Imag
 
 // Each site's mean over its pixels; black where it has no samples.
 inline ImageRgb picture_of(const SparseFrame& sparse, const SamplingMap& map) {
-  return Reconstruction({"none", {}}).frame(sparse, map, nullptr, 1).radiance;
+  return Reconstruction({"none"}).frame(sparse, map, nullptr, 1).radiance;
 }
 
 // The sums of every site, bit by bit; the pictures that are left behind are their means.

@@ -2,8 +2,6 @@
 // A filter by its name, in one call.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 
 #include "gazetrace/reconstruct.hpp"
@@ -11,9 +9,8 @@
 namespace gazetrace {
 
 inline Frame reconstruct(const SparseFrame& sparse, const SamplingMap& map, const std::string& filter, int threads = 0,
-                         const Guides* guides = nullptr,
-                         const std::optional<std::uint64_t>& pass_through_samples = {}) {
-  return Reconstruction({filter, pass_through_samples}).frame(sparse, map, guides, threads);
+                         const Guides* guides = nullptr) {
+  return Reconstruction({filter}).frame(sparse, map, guides, threads);
 }
 
 }  // namespace gazetrace

@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/job_help.hpp"
 #include "cli/option_reference.hpp"
 #include "gazetrace/error.hpp"
 
@@ -13,10 +14,15 @@ namespace gazetrace {
 namespace {
 
 constexpr const char* kFormerOptions = "former-options";
+constexpr const char* kFarmOptions = "farm-options";
 
 int run_help(const CLI::App& program, const std::vector<std::string>& words) {
   if (words == std::vector<std::string>{kFormerOptions}) {
     print_result(former_options_as_text());
+    return exit_done;
+  }
+  if (words == std::vector<std::string>{kFarmOptions}) {
+    print_result(farm_options_as_text());
     return exit_done;
   }
   const CLI::App* found = &program;
@@ -30,7 +36,7 @@ int run_help(const CLI::App& program, const std::vector<std::string>& words) {
     }
     if (next == nullptr) {
       if (found == &program) {
-        known.emplace_back(kFormerOptions);
+        known.insert(known.end(), {kFormerOptions, kFarmOptions});
       }
       throw Error(ErrorKind::usage, "help", unknown_name_message("command", word, known));
     }
@@ -47,7 +53,8 @@ int run_help(const CLI::App& program, const std::vector<std::string>& words) {
 Command add_help_command(CLI::App& app, const Invocation& /*invocation*/) {
   const auto words = std::make_shared<std::vector<std::string>>();
   app.add_option("command", *words,
-                 "Such as render or gaze inspect; default: the list of all. former-options: what took their place")
+                 "Such as render or gaze inspect; default: the list of all. farm-options: those of machines "
+                 "that share a sequence; former-options: what took the place of others")
       ->type_name("COMMAND");
   return {[words, &app] { return run_help(*app.get_parent(), *words); }, {}};
 }

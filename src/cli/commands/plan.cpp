@@ -10,6 +10,7 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/job_help.hpp"
 #include "cli/json_output.hpp"
 #include "cli/model_gain_text.hpp"
 #include "gazetrace/error.hpp"
@@ -136,10 +137,6 @@ void print_chunks(const std::vector<FrameChunk>& chunks, const std::optional<dou
 
 /// Before anything is loaded or warned of, so that a refusal is the only line.
 void check_counts_are_known(const FoveationSettings& foveation) {
-  if (foveation.contrast_strength > 0) {
-    throw Error(ErrorKind::usage, "`contrast-strength`", "counts that follow the picture are known once it is rendered",
-                "leave it out, or render and read timing.csv");
-  }
   if (foveation.falloff == "visible") {
     throw Error(ErrorKind::usage, "`falloff`", "counts that a pilot decides are known once it is rendered",
                 "give another one, or render and read timing.csv");
@@ -211,6 +208,7 @@ int run_plan(const PlanArguments& arguments) {
 Command add_plan_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<PlanArguments>();
   bind_job_options(app, arguments->job);
+  use_job_help(app, "gazetrace plan --counts --gaze-at 0.4,0.5 --screen paper --size 480x270");
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--counts", arguments->counts,
                "Samples per region, nominal and traced, and their ratio to uniform --spp; needs no scene");

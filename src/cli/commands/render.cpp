@@ -13,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
 #include "cli/interruption.hpp"
+#include "cli/job_help.hpp"
 #include "cli/json_output.hpp"
 #include "cli/keep_memory.hpp"
 #include "cli/progress.hpp"
@@ -204,6 +205,9 @@ int run_render(const RenderArguments& arguments, const Invocation& invocation, R
 Command add_render_command(CLI::App& app, const Invocation& invocation) {
   auto arguments = std::make_shared<RenderArguments>();
   bind_job_options(app, arguments->job);
+  use_job_help(app,
+               "gazetrace render scenes/courtyard/courtyard.gltf --gaze-at 0.4,0.5 --screen paper --size 480x270 -o "
+               "out/frame.png");
   app.footer(std::string(kConfigHelp) + kExitCodesHelp);
   app.add_flag("--print-config", arguments->print_config, "Prints every option with its value as TOML, and stops");
   add_json_option(app, arguments->json, arguments->job.settings.overwrite);

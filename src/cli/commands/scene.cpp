@@ -21,8 +21,7 @@ namespace gazetrace {
 namespace {
 
 // The options of a job that say how its scene is read.
-constexpr std::array<const char*, 7> kReading{"animation",     "allow-outside", "max-memory", "max-texture",
-                                              "max-expansion", "max-nodes",     "max-nesting"};
+constexpr std::array<const char*, 3> kReading{"animation", "allow-outside", "max-memory"};
 
 struct SceneArguments {
   std::string path;

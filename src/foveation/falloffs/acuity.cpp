@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visual acuity after Reddy 2001: f(e) = 60 M(e) cycles per degree, with M from acuity_curve.hpp. The loss by motion,
-// f = G(v) M(e), is a term of its own (terms/retinal_velocity.cpp).
+// Visual acuity after Reddy 2001: f(e) = 60 M(e) cycles per degree, with M from acuity_curve.hpp.
 #include "foveation/acuity_curve.hpp"
 #include "foveation/falloff.hpp"
 

@@ -8,10 +8,6 @@
 // cone: e is the angle at the eye between gaze and pixel centre, by atan2, and ends at a/2 (full_angle) or a
 // (eccentricity). disc: pixels whose centre is within r of the gaze point, with eq. (1) of the paper,
 // 2 d R tan(a/2) / S, taken as the diameter (full_angle) or the radius (eccentricity). Borders are inclusive.
-// The paper mentions a blending between regions without saying how it is done. Here (border_blend_deg), over a rim of W
-// degrees about each border, the logarithm of the density (tau / n^2) passes from one region's to the other's by
-// smoothstep(t) = t^2 (3 - 2 t). Such regions are a density model, whose blocks follow from the density. With discs the
-// rim is measured in the angle of eq. (1).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -88,59 +84,9 @@ void fill_disc(Image<std::uint8_t>& region, const std::array<double, 2>& radii_p
   }
 }
 
-double smoothstep(double t) {
-  const double u = std::clamp(t, 0.0, 1.0);
-  return u * u * (3 - 2 * u);
-}
-
-// The samples per pixel of each region.
-std::array<double, 3> rates_of(const FoveationSettings& settings) {
-  const bool per_block = settings.unit == SampleUnit::per_block;
-  std::array<double, 3> rates{};
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    const double side = i == 0 || !per_block ? 1.0 : settings.region_blocks_px.at(i - 1);
-    rates.at(i) = settings.region_samples.at(i) / (side * side);
-  }
-  return rates;
-}
-
-DensityModel blended_regions(const FoveationSettings& settings, const PlanarView& view) {
-  const std::array<double, 3> rates = rates_of(settings);
-  const double full = *std::max_element(rates.begin(), rates.end());
-  const double part = eccentricity_share(settings.reading);
-  const bool disc = settings.shape == RegionShape::disc;
-  DensityModel model;
-  model.quantity = DensityModel::Quantity::density;
-  model.full_rate_spp = full;
-  model.uses_radius = disc;
-  model.own_floor = *std::min_element(rates.begin(), rates.end()) / full;
-  model.own_block_px = std::max(settings.region_blocks_px[0], settings.region_blocks_px[1]);
-  for (const double angle : settings.region_angles_deg) {
-    for (const double side : {-0.5, 0.0, 0.5}) {
-      model.turns_deg.push_back(part * angle + side * settings.border_blend_deg);
-    }
-  }
-  model.value = [=, angles = settings.region_angles_deg, width = settings.border_blend_deg,
-                 step = view.step_x](const FalloffPlace& place) {
-    // For discs, eq. (1) solved for the angle, as an eccentricity.
-    const double e =
-        disc ? part * 2 * std::atan(0.5 * place.radius_px * step / part) * kDegPerRad : place.eccentricity_deg;
-    double log_rate = std::log(rates[0] / full);
-    for (std::size_t i = 0; i < angles.size(); ++i) {
-      const double way = smoothstep((e - part * angles[i]) / width + 0.5);
-      log_rate += way * std::log(rates[i + 1] / rates[i]);
-    }
-    return std::exp(log_rate);
-  };
-  return model;
-}
-
 }  // namespace
 
 Falloff falloff_regions(const FoveationSettings& settings, const PlanarView& view, const Vec3d& gaze_direction) {
-  if (settings.border_blend_deg > 0) {
-    return blended_regions(settings, view);
-  }
   Layout layout;
   layout.regions = {{"fovea", 1, settings.region_samples[0], settings.unit},
                     {"intermediate", settings.region_blocks_px[0], settings.region_samples[1], settings.unit},

@@ -72,9 +72,11 @@ void add_lens_options(JobSchema& schema) {
 
 void add_camera_options(JobSchema& schema) {
   schema.group("Scene camera (what is pictured)");
-  schema.value("--camera", &JobSettings::camera, "NAME|INDEX", Touch::camera,
-               "Camera of the glTF file by name or number from 0; default: the first one, or a view of the whole scene "
-               "when it has none");
+  schema
+      .value("--camera", &JobSettings::camera, "NAME|INDEX", Touch::camera,
+             "Camera of the glTF file by name or number from 0; default: the first one, or a view of the whole scene "
+             "when it has none")
+      .with(Trait::everyday);
   schema
       .value("--camera-path", &JobSettings::camera_path, "FILE", Touch::camera,
              "Poses over time: gazetrace CSV (t[s],x[m],y[m],z[m],qx,qy,qz,qw), TUM, EuRoC, Nuke .chan, NeRF "

@@ -30,7 +30,8 @@ void add_color_options(JobSchema& schema) {
              "Exposure in stops, or auto for one that follows the log-average luminance of the frame, with a shift if "
              "wanted: auto+0.5")
       .within(-kMaxStops, kMaxStops)
-      .with(Trait::always_stated);
+      .with(Trait::always_stated)
+      .with(Trait::everyday);
   schema
       .value("--exposure-key", at(&JobSettings::exposure, &ExposureSettings::key), "LUMINANCE", Touch::color,
              "The luminance to which auto brings the log-average")
@@ -47,10 +48,6 @@ void add_color_options(JobSchema& schema) {
   schema.value("--view", color(&ColorSettings::view), "NAME", Touch::color, "OpenColorIO view; default: the display's")
       .with(Trait::always_stated);
   schema.value("--look", color(&ColorSettings::look), "NAME", Touch::color, "OpenColorIO look; default: the view's");
-  schema.value(
-      "--view-precision", color(&ColorSettings::precision), choices<ViewPrecision>(), Touch::color,
-      "exact: OpenColorIO for every pixel; baked: a table where it is within half an 8-bit code value of that, "
-      "several times faster; auto: baked for the built-in ACES view at 8 bits");
 }
 
 }  // namespace gazetrace

@@ -77,7 +77,8 @@ void add_time_options(JobSchema& schema) {
   schema
       .value("--gaze-at", &JobSettings::gaze_at, "U,V", Touch::gaze,
              "A fixed gaze in fractions of the screen from its top left, in place of a log")
-      .with(Trait::gaze_source);
+      .with(Trait::gaze_source)
+      .with(Trait::everyday);
   schema
       .value("--gaze-mode", &JobSettings::gaze_mode, choices<GazeInterpolation>(), Touch::gaze,
              "How the gaze of a frame is taken from the log's samples")
@@ -103,23 +104,6 @@ void add_time_options(JobSchema& schema) {
       .at_least(0)
       .idle_when({without_gaze_log()});
   add_clock_options(schema);
-}
-
-void add_uncertainty_options(JobSchema& schema) {
-  schema
-      .flag("--gaze-uncertainty", &JobSettings::gaze_uncertainty, Touch::gaze,
-            "Enlarges the fovea by the uncertainty of the gaze: accuracy + precision + age x speed")
-      .idle_when({without_gaze(), with_uniform()});
-  schema
-      .value("--gaze-accuracy", &JobSettings::gaze_accuracy_deg, "DEG", Touch::gaze,
-             "The tracker's systematic error; default: the mean error of the log's validations")
-      .need("`gaze-uncertainty`")
-      .idle_when({without_gaze()});
-  schema
-      .value("--gaze-precision", &JobSettings::gaze_precision_deg, "DEG", Touch::gaze,
-             "The tracker's scatter; default: the root mean square in the log's fixations")
-      .need("`gaze-uncertainty`")
-      .idle_when({without_gaze()});
 }
 
 constexpr auto trial(auto member) {
@@ -202,7 +186,8 @@ OptionSchema<std::vector<std::string>> gaze_process_schema() {
   OptionSchema<std::vector<std::string>> schema;
   schema.group("Gaze in time");
   schema.repeated(
-      "--gaze-process", [](auto& steps) -> auto& { return steps; }, "STEP[:NAME=VALUE,...]", Touch::gaze,
+      "--gaze-process", whole<std::vector<std::string>, std::vector<std::string>>(), "STEP[:NAME=VALUE,...]",
+      Touch::gaze,
       "A step of processing ('gazetrace list gaze-steps'), such as fill-gaps:max=75ms, median:samples=5 or "
       "noise:sd=0.5deg,seed=1; given once for each step, in the order of the steps. Measurements use the gaze as it "
       "was read");
@@ -215,11 +200,11 @@ void add_gaze_options(JobSchema& schema) {
       .value("--gaze", at(&JobSettings::gaze, &GazeFileSettings::path), "FILE", Touch::gaze,
              "Where the viewer looked, over time")
       .decides_by_file()
-      .with(Trait::gaze_source);
+      .with(Trait::gaze_source)
+      .with(Trait::everyday);
   schema.include(gaze_file_schema(), &JobSettings::gaze);
   add_time_options(schema);
   schema.include(gaze_process_schema(), &JobSettings::gaze_process).idle_when({without_gaze_log()});
-  add_uncertainty_options(schema);
 }
 
 }  // namespace gazetrace

@@ -33,10 +33,8 @@ JobIdleRule with_uniform() {
   return {"with `falloff` uniform", [](const JobSettings& job) { return job.foveation.falloff == "uniform"; }};
 }
 
-JobIdleRule with_hard_regions() {
-  return {"with `falloff` regions and hard borders (`border-blend-deg` 0)", [](const JobSettings& job) {
-            return job.foveation.falloff == "regions" && job.foveation.border_blend_deg == 0;
-          }};
+JobIdleRule with_regions() {
+  return {"with `falloff` regions", [](const JobSettings& job) { return job.foveation.falloff == "regions"; }};
 }
 
 JobIdleRule without_regions() {
@@ -70,6 +68,11 @@ JobIdleRule without_aov(const std::string& name) {
 JobIdleRule without_automatic_exposure() {
   return {"without `exposure` auto",
           [](const JobSettings& job) { return job.exposure.mode != ExposureMode::log_average; }};
+}
+
+JobIdleRule with_lights_sampled_alone() {
+  return {"with `light-sampling` light",
+          [](const JobSettings& job) { return job.trace.light_sampling == LightSampling::light_only; }};
 }
 
 JobIdleRule with_other_falloffs(const std::vector<std::string>& models) {

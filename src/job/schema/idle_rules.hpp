@@ -19,7 +19,7 @@ JobIdleRule without_gaze();
 JobIdleRule without_density();
 JobIdleRule without_gaze_log();
 JobIdleRule with_uniform();
-JobIdleRule with_hard_regions();
+JobIdleRule with_regions();
 JobIdleRule without_regions();
 JobIdleRule without_reproject();
 JobIdleRule without_two_sided();
@@ -27,6 +27,7 @@ JobIdleRule without_reprojection();  // neither reproject nor two-sided
 // No AOV whose name begins so is asked for.
 JobIdleRule without_aov(const std::string& name);
 JobIdleRule without_automatic_exposure();
+JobIdleRule with_lights_sampled_alone();
 // With any fall-off except these.
 JobIdleRule with_other_falloffs(const std::vector<std::string>& models);
 

@@ -15,17 +15,25 @@ constexpr Touches kOfPresets =
 void add_preset_option(JobSchema& schema) {
   schema.group("Presets");
   OptionOf<JobSettings>& option =
-      schema.value("--preset", &JobSettings::preset, "NAME", kOfPresets,
-                   "A named list of settings ('gazetrace list presets'). Given on the command line it overrides a "
-                   "settings file, but not the other options of the command line; given in a settings file it is "
-                   "overridden by the rest of the file");
+      schema
+          .value("--preset", &JobSettings::preset, "NAME", kOfPresets,
+                 "A named list of settings ('gazetrace list presets'). Given on the command line it overrides a "
+                 "settings file, but not the other options of the command line; given in a settings file it is "
+                 "overridden by the rest of the file")
+          .with(Trait::everyday);
   option.decides_nothing();
-  option.check = [](const auto& values, const auto& place) { (void)preset_by_name(values.at(0), place); };
+  static const OptionType kNameOfPreset = [] {
+    OptionType type = option_type<std::string>();
+    type.check = [](const auto& values, const auto& place) { (void)preset_by_name(values.at(0), place); };
+    return type;
+  }();
+  option.type = &kNameOfPreset;
 }
 
 JobSchema make_schema() {
   JobSchema schema;
   add_preset_option(schema);
+  add_output_options(schema);
   add_scene_options(schema);
   add_camera_options(schema);
   add_gaze_options(schema);
@@ -36,7 +44,9 @@ JobSchema make_schema() {
   add_history_options(schema);
   add_tracing_options(schema);
   add_color_options(schema);
-  add_output_options(schema);
+  add_talk_options(schema);
+  add_limit_options(schema);
+  add_farm_options(schema);
   return schema;
 }
 

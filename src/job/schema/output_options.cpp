@@ -58,7 +58,8 @@ void add_output_options(JobSchema& schema) {
                 "Linear pictures (.exr) and display pictures (.png .jpg .tif .dpx), one option each; the frame's "
                 "number stands where ####, %04d or <frame> is")
       .decides_nothing()
-      .with(Trait::one_run);
+      .with(Trait::one_run)
+      .with(Trait::everyday);
   add_exr_options(schema);
   schema
       .value("--map", &JobSettings::map_pattern, "PATTERN", Touch::output,
@@ -71,34 +72,19 @@ void add_output_options(JobSchema& schema) {
                "Quality of .jpg");
   schema.flag("--overwrite", &JobSettings::overwrite, Touch::output, "Replaces files that exist already")
       .decides_nothing()
-      .with(Trait::one_run);
+      .with(Trait::one_run)
+      .with(Trait::everyday);
   schema
       .flag("--resume", &JobSettings::resume, Touch::output,
             "Keeps finished frames of the same settings and inputs, after comparing their files with what was written, "
             "and renders the rest; where frames were made under others, it refuses, or renders them again with "
             "--overwrite")
       .decides_nothing()
-      .with(Trait::one_run);
-  schema
-      .flag("--trust-files", &JobSettings::trust_files, Touch::output,
-            "--resume believes the headers of finished files and does not read them whole")
-      .decides_nothing()
-      .with(Trait::one_run);
-  schema
-      .value(
-          "--grace", &JobSettings::grace, "DURATION", Touch::output,
-          "After a signal to end (TERM, INT, USR1, XCPU), the time to finish the frame in hand; then it is given up, "
-          "and the run goes on with --resume")
-      .decides_nothing()
-      .within(0, 1e18)
-      .with(Trait::one_run);
-  schema
-      .value("--max-time", &JobSettings::max_time, "DURATION", Touch::output,
-             "Ends in time as if by a signal, so that the run is over, --grace included, so long after its beginning: "
-             "55m before a queue's limit of an hour")
-      .decides_nothing()
-      .within(0, 1e18)
-      .with(Trait::one_run);
+      .with(Trait::one_run)
+      .with(Trait::everyday);
+}
+
+void add_talk_options(JobSchema& schema) {
   schema.group("Talk");
   schema
       .value(

@@ -20,5 +20,8 @@ void add_history_options(JobSchema& schema);
 void add_tracing_options(JobSchema& schema);
 void add_color_options(JobSchema& schema);
 void add_output_options(JobSchema& schema);
+void add_talk_options(JobSchema& schema);
+void add_limit_options(JobSchema& schema);
+void add_farm_options(JobSchema& schema);
 
 }  // namespace gazetrace

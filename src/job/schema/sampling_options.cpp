@@ -54,12 +54,6 @@ void add_region_options(JobSchema& schema) {
              "paper's circle in pixels")
       .with(Trait::always_stated)
       .idle_when({without_gaze(), without_regions()});
-  schema
-      .value("--border-blend-deg", foveation(&F::border_blend_deg), "DEG", Touch::sampling,
-             "Width in degrees of the rim about a region's border over which the density changes smoothly from one "
-             "region's rate to the next; 0: a hard border")
-      .within(0, 180)
-      .idle_when({without_gaze(), without_regions()});
 }
 
 void add_budget_options(JobSchema& schema) {
@@ -76,20 +70,19 @@ void add_budget_options(JobSchema& schema) {
       .value("--block-samples", foveation(&F::block_samples), "SAMPLES", Touch::sampling,
              "Density models: each place gets the smallest block that expects at least this many samples")
       .within(1, 65536)
-      .idle_when({without_density(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_regions(), with_uniform()});
   schema
       .value(
           "--max-block", foveation(&F::max_block_px), "1|2|4|8|16", Touch::sampling,
           "Density models: the largest side of a block, in pixels. With --falloff visible and --accumulate two-sided "
           "the default is 1, since frames are added up where their blocks are the same; 16 then counts as not given")
       .within(1, 16)
-      .idle_when({without_density(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_regions(), with_uniform()});
   schema
       .value("--density-floor", foveation(&F::density_floor), "DENSITY", Touch::sampling,
-             "Density models: the lowest density, as a share of the full rate; regions with a blended border go below "
-             "it where their own rates do")
+             "Density models: the lowest density, as a share of the full rate")
       .above(0, 1)
-      .idle_when({without_density(), with_hard_regions(), with_uniform()});
+      .idle_when({without_density(), with_regions(), with_uniform()});
 }
 
 void add_model_options(JobSchema& schema) {
@@ -188,26 +181,6 @@ void add_target_options(JobSchema& schema) {
       .need("gaze and another `falloff` than regions");
 }
 
-void add_term_options(JobSchema& schema) {
-  using F = FoveationSettings;
-  schema
-      .value("--contrast-strength", foveation(&F::contrast_strength), "0..1", Touch::sampling,
-             "Density models: reduces the rate where a first look at the frame, at an eighth of its size, finds no "
-             "contrast; 1 reduces it to as little as a quarter. A budget counts the samples of that look")
-      .within(0, 1)
-      .idle_when({without_gaze()});
-  schema
-      .flag("--retinal-velocity", foveation(&F::retinal_velocity), Touch::sampling,
-            "Density models: reduces the rate while the gaze moves, by as much as the motion reduces acuity")
-      .idle_when({without_gaze_log()});
-  schema
-      .value("--saccade-density", foveation(&F::saccade_density), "FACTOR", Touch::sampling,
-             "Density models: factor on the density during a saccade, at the gaze as well (see also --gaze-process "
-             "snap-to-landing); a budget is still met")
-      .within(0, 1)
-      .idle_when({without_gaze_log()});
-}
-
 }  // namespace
 
 void add_sampling_options(JobSchema& schema) {
@@ -220,19 +193,20 @@ void add_sampling_options(JobSchema& schema) {
              "from the samples is --filter, which has a 'linear', too. Where nothing names one, --target-jod and "
              "--target-relmse take visible")
       .with(Trait::always_stated)
-      .idle_when({without_any_gaze});
+      .idle_when({without_any_gaze})
+      .with(Trait::everyday);
   schema
       .value("--spp", foveation(&FoveationSettings::uniform_spp), "N", Touch::sampling,
              "Samples a pixel of uniform frames, the full rate of density models, and the budget of 'visible' where no "
              "other is given; plan --counts compares with it")
-      .within(1, kMostSamples);
+      .within(1, kMostSamples)
+      .with(Trait::everyday);
   add_region_options(schema);
   add_budget_options(schema);
   add_target_options(schema);
   schema.group("Density models ('gazetrace list falloffs')");
   add_model_options(schema);
   add_pilot_options(schema);
-  add_term_options(schema);
 }
 
 }  // namespace gazetrace

@@ -3,10 +3,25 @@
 
 namespace gazetrace {
 
-namespace {
-
-constexpr auto limit(auto member) {
-  return at(&JobSettings::limits, member);
+void add_scene_options(JobSchema& schema) {
+  schema.group("Scene and light");
+  schema.value("scene", &JobSettings::scene, "FILE", Touch::scene, "glTF 2.0 scene, .gltf or .glb")
+      .decides_by_file()
+      .with(Trait::everyday);
+  schema.value("--animation", &JobSettings::animation, "NAME|N", Touch::scene,
+               "The animation that plays, by name or number from 0; default: for each body and camera the first that "
+               "moves it ('gazetrace scene' lists them)");
+  schema
+      .value("--env", &JobSettings::environment, "FILE|sky|soft-sky|constant:R,G,B|none|auto", Touch::light,
+             "Light from all around: a lat-long .hdr or .exr, the built-in clear sky with its sun, one without a sun "
+             "(soft-sky), a constant radiance, or none; auto is the sky for a scene without light of its own, "
+             "otherwise none")
+      .decides_by_file()
+      .with(Trait::everyday);
+  schema.value("--env-rotation", &JobSettings::environment_rotation_deg, "DEG", Touch::light,
+               "Turns the environment about +y, degrees");
+  schema.value("--env-ev", &JobSettings::environment_ev, "STOPS", Touch::light, "Multiplies the environment by 2^STOPS")
+      .within(-kMaxStops, kMaxStops);
 }
 
 void add_limit_options(JobSchema& schema) {
@@ -26,47 +41,9 @@ void add_limit_options(JobSchema& schema) {
   schema
       .value("--max-memory", &JobSettings::max_memory, "BYTES", Touch::scene,
              "Refuses a scene that will take more memory, before it is loaded: 8G, 500M; 0: three quarters of what the "
-             "machine has. 'gazetrace scene FILE --estimate' says how much a scene will take")
+             "machine has. Nodes, and pictures beyond 200 times their file, may take a sixteenth of it. 'gazetrace "
+             "scene FILE --estimate' says how much a scene will take")
       .decides_nothing();
-  schema
-      .value("--max-texture", limit(&SceneLimits::texture_side_px), "PX", Touch::scene,
-             "Refuses pictures that are wider or higher")
-      .decides_nothing()
-      .within(1, 65536);
-  schema
-      .value("--max-expansion", limit(&SceneLimits::expansion), "TIMES", Touch::scene,
-             "Refuses pictures that unpack to more than 64 MiB and so many times their file's size")
-      .decides_nothing()
-      .within(1, 1e9);
-  schema.value("--max-nodes", limit(&SceneLimits::nodes), "N", Touch::scene, "Refuses scenes of more nodes")
-      .decides_nothing()
-      .within(1, 1e9);
-  schema
-      .value("--max-nesting", limit(&SceneLimits::nesting), "N", Touch::scene,
-             "Refuses scenes whose JSON is nested deeper")
-      .decides_nothing()
-      .within(8, 1000);
-}
-
-}  // namespace
-
-void add_scene_options(JobSchema& schema) {
-  schema.group("Scene and light");
-  schema.value("scene", &JobSettings::scene, "FILE", Touch::scene, "glTF 2.0 scene, .gltf or .glb").decides_by_file();
-  schema.value("--animation", &JobSettings::animation, "NAME|N", Touch::scene,
-               "The animation that plays, by name or number from 0; default: for each body and camera the first that "
-               "moves it ('gazetrace scene' lists them)");
-  schema
-      .value("--env", &JobSettings::environment, "FILE|sky|soft-sky|constant:R,G,B|none|auto", Touch::light,
-             "Light from all around: a lat-long .hdr or .exr, the built-in clear sky with its sun, one without a sun "
-             "(soft-sky), a constant radiance, or none; auto is the sky for a scene without light of its own, "
-             "otherwise none")
-      .decides_by_file();
-  schema.value("--env-rotation", &JobSettings::environment_rotation_deg, "DEG", Touch::light,
-               "Turns the environment about +y, degrees");
-  schema.value("--env-ev", &JobSettings::environment_ev, "STOPS", Touch::light, "Multiplies the environment by 2^STOPS")
-      .within(-kMaxStops, kMaxStops);
-  add_limit_options(schema);
 }
 
 }  // namespace gazetrace

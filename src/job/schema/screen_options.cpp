@@ -6,10 +6,11 @@ namespace gazetrace {
 OptionSchema<ScreenSettings> screen_schema() {
   OptionSchema<ScreenSettings> schema;
   schema.group("Screen (where the eye is)");
-  schema.value(
-      "--screen", &ScreenSettings::name, "NAME|FILE", Touch::screen,
-      "A known screen and its distance ('gazetrace list screens'), or a .json file; default: what the gaze log "
-      "states");
+  schema
+      .value("--screen", &ScreenSettings::name, "NAME|FILE", Touch::screen,
+             "A known screen and its distance ('gazetrace list screens'), or a .json file; default: what the gaze log "
+             "states")
+      .with(Trait::everyday);
   schema.value("--screen-px", &ScreenSettings::size_px, "W,H", Touch::screen, "Resolution of the screen");
   schema.value("--screen-cm", &ScreenSettings::size_cm, "W,H", Touch::screen,
                "Size of the screen's active area, centimetres");

@@ -35,18 +35,12 @@ void add_path_options(JobSchema& schema) {
       .with(Trait::trade_off)
       .with(Trait::always_stated);
   schema
-      .flag("--compensate-environment", trace(&TraceSettings::compensate_environment), Touch::tracing,
-            "Takes light samples of the environment only where it is brighter than half its mean: less noise in the "
-            "open, more indoors")
-      .with(Trait::trade_off);
-  schema
       .flag("--learn-light", trace(&TraceSettings::learn_light), Touch::tracing,
             "Each frame learns from some paths of its own where its light arrives from, and draws bounces towards it: "
             "less noise indoors and under arcades, without bias")
       .with(Trait::trade_off)
       .with(Trait::always_stated)
-      .idle_when({{"with `light-sampling` light",
-                   [](const JobSettings& job) { return job.trace.light_sampling == LightSampling::light_only; }}});
+      .idle_when({with_lights_sampled_alone()});
   schema
       .value("--clamp-indirect", trace(&TraceSettings::clamp_indirect), "RADIANCE", Touch::tracing,
              "The most that a sample may add after more than one scattering event, which removes fireflies but is "
@@ -60,14 +54,6 @@ void add_texture_options(JobSchema& schema) {
   schema
       .value("--pixel-filter", trace(&TraceSettings::filter), choices<PixelFilter>(), Touch::tracing,
              "Spread of the samples of a pixel; --filter guided has edges and texture of a box in any case")
-      .with(Trait::always_stated);
-  schema
-      .value("--pixel-cone", trace(&TraceSettings::pixel_cone), "PIXELS", Touch::tracing,
-             "Texture detail at first hits: width of a camera ray's footprint; 0: full resolution, averaged by the "
-             "samples; with --filter guided never less than 1")
-      .within(0, kWidestCone)
-      .with(Trait::trade_off)
-      .with(Trait::needs_truth)
       .with(Trait::always_stated);
   schema
       .value("--bounce-cone", trace(&TraceSettings::bounce_cone_rad), "RADIANS", Touch::tracing,
@@ -85,18 +71,10 @@ void add_tracing_options(JobSchema& schema) {
   add_path_options(schema);
   add_texture_options(schema);
   schema
-      .value("--sample-pattern", trace(&TraceSettings::sample_pattern), choices<SamplePattern>(), Touch::sampling,
-             "Random numbers of neighbouring pixels: independent (scrambled), or shared along a Z-curve, so that their "
-             "errors cancel over larger places (z-order)")
-      .with(Trait::trade_off)
-      .with(Trait::always_stated);
-  schema
       .value("--seed", trace(&TraceSettings::seed), "N", Touch::tracing,
              "Same seed, same pictures, for any number of threads")
       .with(Trait::own_seed)
       .with(Trait::always_stated);
-  schema.value("--bvh", &JobSettings::bvh, choices<BvhQuality>(), Touch::speed, "Build quality of the ray tracing tree")
-      .decides_nothing();
   schema
       .value("--threads", &JobSettings::threads, "N", Touch::speed,
              "0: as many as the machine has; pictures do not depend on it")

@@ -22,8 +22,7 @@ FrameSettings raw(FrameSettings settings, double spp, const char* filter) {
   settings.foveation.falloff = "uniform";
   settings.foveation.budget_spp = spp;
   settings.accumulate = {};
-  settings.reconstruction = {filter, {}};
-  settings.enhance_contrast = 0;
+  settings.reconstruction = {filter};
   settings.trace.clamp_indirect = 0;
   settings.trace.learn_light = false;
   return settings;

@@ -71,7 +71,6 @@ Pilot trace_pilot(const PosedScene& scene, const FrameRequest& request, const Fr
   TraceSettings trace = reconstruction.trace_settings(settings.trace);
   trace.seed = hash_combine(hash_combine(settings.trace.seed, kPilotTag), round);
   trace.footprint = share;
-  trace.pixel_cone *= share;
   trace.guides = false;
   trace.only_pixel.reset();
   const SamplingMap map = pilot_map(pilot.view, rates, map_context(request, trace.seed, settings.threads));

@@ -182,8 +182,6 @@ WindowPictures WindowClip::look(double spp, std::uint64_t round) {
       // All that the fall-off thinks of eye and picture is in the rates.
       own.foveation.falloff = own.foveation.falloff == "visible" ? "visible" : "map";
       own.foveation.budget_spp.reset();
-      own.foveation.retinal_velocity = false;
-      own.foveation.saccade_density = 1;
       own.rates_of = [&](const FrameRequest& request) { return rates.of(request, w); };
     }
     std::vector<ImageRgb> of_window = look_at(w, own);

@@ -26,9 +26,7 @@ WindowRates::WindowRates(PathTracer& tracer, const JudgedFrames& judged, const J
 bool WindowRates::is_steady() const {
   const FrameRequest& first = judged_.runs.front().front();
   const auto same = [&](const FrameRequest& request) {
-    return request.gaze_direction_render == first.gaze_direction_render &&
-           request.gaze_uncertainty_deg == first.gaze_uncertainty_deg &&
-           request.eye_speed_deg_s == first.eye_speed_deg_s && request.eye_in_saccade == first.eye_in_saccade;
+    return request.gaze_direction_render == first.gaze_direction_render;
   };
   const auto all_same = [&](const std::vector<FrameRequest>& run) { return std::all_of(run.begin(), run.end(), same); };
   return !judged_.gaze_moves && !(settings_.foveation.falloff == "visible" && judged_.view_moves) &&

@@ -4,16 +4,14 @@
 // that are like the one it sees, multiplies it by its own albedo and adds the emission that it sees:
 //   radiance(p) = emission(p) + albedo(p) * sum_c w(p, c) reflected(c) / sum_c w(p, c) albedo(c)
 // Emission, misses and texture thus come from the first hits at full resolution, and no edge of theirs is smoothed.
-// Sites that PassThrough keeps have their own mean, bit by bit. Pixels that lie between the same four blocks
-// are computed together (fill_squares.hpp). Pixels that an edge crosses then become the mean of what their rays see,
-// which most often is what a pixel beside them has (blend_edges.hpp).
+// Pixels that lie between the same four blocks are computed together (fill_squares.hpp). Pixels that an edge crosses
+// then become the mean of what their rays see, which most often is what a pixel beside them has (blend_edges.hpp).
 #include "reconstruct/surface_frame.hpp"
 
 namespace gazetrace {
 
-const FilterDefinition filter_guided{
-    .needs = kSurfaceNeeds, .blurs_blocks = false, .frame = [](const FilterInput& input) {
-      return frame_from_surfaces(input, smooth_surfaces);
-    }};
+const FilterDefinition filter_guided{.needs = kSurfaceNeeds, .frame = [](const FilterInput& input) {
+                                       return frame_from_surfaces(input, smooth_surfaces);
+                                     }};
 
 }  // namespace gazetrace

@@ -22,6 +22,6 @@ Frame paint_sites(const FilterInput& input) {
 
 }  // namespace
 
-const FilterDefinition filter_none{.blurs_blocks = false, .frame = paint_sites};
+const FilterDefinition filter_none{.frame = paint_sites};
 
 }  // namespace gazetrace

@@ -125,10 +125,9 @@ void denoise_surfaces(SurfaceCells& cells, const SamplingMap& map, const Smoothi
 
 }  // namespace
 
-const FilterDefinition filter_oidn{
-    .needs = kSurfaceNeeds, .blurs_blocks = false, .frame = [](const FilterInput& input) {
-      return frame_from_surfaces(input, denoise_surfaces);
-    }};
+const FilterDefinition filter_oidn{.needs = kSurfaceNeeds, .frame = [](const FilterInput& input) {
+                                     return frame_from_surfaces(input, denoise_surfaces);
+                                   }};
 
 }  // namespace gazetrace
 

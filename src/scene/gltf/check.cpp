@@ -8,6 +8,7 @@
 
 #include "core/json_problem.hpp"
 #include "gazetrace/error.hpp"
+#include "scene/gltf/estimate.hpp"
 #include "scene/gltf/json.hpp"
 #include "scene/gltf/material_extension.hpp"
 #include "scene/gltf/walker.hpp"
@@ -15,6 +16,8 @@
 namespace gazetrace {
 namespace {
 
+constexpr int kMostNesting = 200;
+constexpr std::uint64_t kNodeShare = 16;  // nodes may take one part in so many of the memory
 constexpr std::uint64_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
 
 using Step = Walker::Step;
@@ -427,11 +430,11 @@ const std::vector<std::string>& known_gltf_extensions() {
   return kKnown;
 }
 
-CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, const SceneLimits& limits) {
-  if (is_nested_too_deep(json_text, limits.nesting)) {
+CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, std::uint64_t memory_bytes) {
+  if (is_nested_too_deep(json_text, kMostNesting)) {
     throw Error(ErrorKind::input, path,
-                "the JSON is nested more than " + std::to_string(limits.nesting) + " deep, which is the limit",
-                "export the file again, or raise `max-nesting`");
+                "the JSON is nested more than " + std::to_string(kMostNesting) + " deep, which is the limit",
+                "export the file again");
   }
   Json root;
   try {
@@ -444,10 +447,11 @@ CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text,
     throw Error(ErrorKind::input, path, "is not a glTF file: its JSON is not an object");
   }
   const auto nodes = root.find("nodes");
-  if (nodes != root.end() && nodes->is_array() && nodes->size() > limits.nodes) {
+  const std::uint64_t most_nodes = memory_bytes / (kNodeShare * kNodeBytes);
+  if (nodes != root.end() && nodes->is_array() && nodes->size() > most_nodes) {
     throw Error(ErrorKind::input, path + ": nodes",
-                "there are " + std::to_string(nodes->size()) + " nodes; the limit is " + std::to_string(limits.nodes),
-                "join bodies that stand still, or raise `max-nodes`");
+                "there are " + std::to_string(nodes->size()) + " nodes; the limit is " + std::to_string(most_nodes),
+                "join bodies that stand still, or raise `max-memory`");
   }
   tidy_numbers(root);
   Walker walker(path, root);

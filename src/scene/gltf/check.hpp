@@ -35,7 +35,7 @@ struct CheckedGltf {
 // The extensions that are supported; extensionsRequired may name no others.
 const std::vector<std::string>& known_gltf_extensions();
 
-// Error(input) names the file, the JSON place and what is wrong.
-CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, const SceneLimits& limits = {});
+// `memory_bytes`: as SceneReadOptions, never 0. Error(input) names the file, the JSON place and what is wrong.
+CheckedGltf check_gltf_json(const std::string& path, std::string_view json_text, std::uint64_t memory_bytes);
 
 }  // namespace gazetrace

@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 // Bytes of the JSON while it is parsed, for each of its own: two trees of values, one after the other, and the
 // document.
 constexpr std::uint64_t kJsonBytes = 12;
-constexpr std::uint64_t kNodeBytes = 1200;     // the document's node, its places in the world, and what parsing took
 constexpr std::uint64_t kInstanceBytes = 400;  // in the scene and in the tree over instances
 // A triangle in a tree of high quality while it is built, and prepared for shading; and what the program and its
 // libraries take before. With these, what is reckoned for Sponza, Lost Empire, San Miguel and a grid of spheres is
@@ -216,23 +215,21 @@ SceneEstimate estimate_geometry(const GltfFile& file, const CheckedGltf& checked
   return estimate;
 }
 
-void check_file_memory(const std::string& path, const SceneLimits& limits) {
-  const std::uint64_t most = limits.memory_bytes > 0 ? limits.memory_bytes : most_memory_bytes();
+void check_file_memory(const std::string& path, std::uint64_t memory_bytes) {
   std::error_code unknown;
   const std::uint64_t bytes = fs::is_regular_file(path, unknown) ? fs::file_size(path, unknown) : 0;
-  if (!unknown && bytes > std::max(most, kProgramBytes)) {  // smaller ones are read, and what they need is told
-    throw Error(ErrorKind::input, path, "is a file of " + mib(bytes) + "; the limit of memory is " + mib(most),
+  if (!unknown && bytes > std::max(memory_bytes, kProgramBytes)) {  // smaller ones are read, and what they need is told
+    throw Error(ErrorKind::input, path, "is a file of " + mib(bytes) + "; the limit of memory is " + mib(memory_bytes),
                 "raise `max-memory`");
   }
 }
 
 void check_json_memory(const std::string& path, std::uint64_t file_bytes, std::string_view json,
-                       const SceneLimits& limits) {
-  const std::uint64_t most = limits.memory_bytes > 0 ? limits.memory_bytes : most_memory_bytes();
+                       std::uint64_t memory_bytes) {
   const std::uint64_t wanted = kProgramBytes + file_bytes + json_memory_bytes(json);
-  if (wanted > most) {
+  if (wanted > memory_bytes) {
     throw Error(ErrorKind::input, path,
-                "will take about " + mib(wanted) + " of memory to be parsed; the limit is " + mib(most),
+                "will take about " + mib(wanted) + " of memory to be parsed; the limit is " + mib(memory_bytes),
                 "keep large data in buffers, or raise `max-memory`");
   }
 }
@@ -253,16 +250,15 @@ void add_pictures(const TextureTable& textures, int threads, SceneEstimate& esti
   }
 }
 
-void check_memory(const SceneEstimate& estimate, const SceneLimits& limits, const std::string& path) {
-  const std::uint64_t most = limits.memory_bytes > 0 ? limits.memory_bytes : most_memory_bytes();
-  if (estimate.total_bytes() <= most) {
+void check_memory(const SceneEstimate& estimate, std::uint64_t memory_bytes, const std::string& path) {
+  if (estimate.total_bytes() <= memory_bytes) {
     return;
   }
   throw Error(ErrorKind::input, path,
               "will take about " + mib(estimate.total_bytes()) + " of memory (geometry " +
                   mib(estimate.geometry_bytes) + ", tree " + mib(estimate.tree_bytes) + ", textures " +
                   mib(estimate.texture_bytes + estimate.picture_bytes) + ", nodes " + mib(estimate.node_bytes) +
-                  ", files " + mib(estimate.file_bytes) + "); the limit is " + mib(most),
+                  ", files " + mib(estimate.file_bytes) + "); the limit is " + mib(memory_bytes),
               "make it smaller, or raise `max-memory`");
 }
 

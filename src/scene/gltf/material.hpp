@@ -21,8 +21,9 @@ namespace gazetrace {
 // however many entries and glTF images share it.
 class TextureTable {
  public:
-  TextureTable(const GltfDocument& document, const SceneLimits& limits)
-      : document_(document), limits_{limits.texture_side_px, limits.expansion, kFreeDecodedBytes} {}
+  // `memory_bytes`: as SceneReadOptions, never 0.
+  TextureTable(const GltfDocument& document, std::uint64_t memory_bytes)
+      : document_(document), limits_{kMostExpansion, memory_bytes / 16, true} {}
 
   // -1, with one warning per glTF texture, where the file names no picture that can be read.
   std::int32_t request(int gltf_texture, TextureUse use, Warnings& warnings);
@@ -47,6 +48,9 @@ class TextureTable {
   };
   int picture_of_image(int image);
   ImageRgba decode(const Picture& picture, const std::string& place) const;
+
+  // Pictures of one colour pack a thousand to one, and small ones may.
+  static constexpr double kMostExpansion = 200;
 
   const GltfDocument& document_;
   PictureLimits limits_;

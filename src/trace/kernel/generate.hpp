@@ -11,7 +11,6 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
   RayBatch& rays = work_.rays[0];
   PathBatch& paths = work_.paths[0];
   const CameraRays& camera = *frame_.camera;
-  const auto cone = static_cast<float>(frame_.settings.pixel_cone);
   const auto begin_path = [&](std::size_t i, const CameraRays::Ray& ray) __attribute__((always_inline)) {
     set_ray(rays, i, ray.origin, ray.direction, ray.tnear, ray.tfar);
     rays.alpha_key[i] = alpha_key(i, 0);
@@ -20,8 +19,9 @@ inline void PathKernel<kFeatures, kDiffuse>::start(int count) {
     paths.g[i] = 1;
     paths.b[i] = 1;
     paths.pdf[i] = 0;
-    paths.cone_width[i] = camera.cone_width() * cone;
-    paths.cone_spread[i] = ray.cone_spread * cone;
+    // The samples of a pixel average its textures at full resolution.
+    paths.cone_width[i] = 0;
+    paths.cone_spread[i] = 0;
     work_.radiance.r[i] = 0;
     work_.radiance.g[i] = 0;
     work_.radiance.b[i] = 0;

@@ -15,13 +15,6 @@ namespace {
 
 constexpr int kCellsAcross = 2048;
 
-// The share of the mean radiance that compensation subtracts. With equal numbers of light and BSDF samples, the mixture
-// of the balance heuristic follows the sky where p_light = 2 p_sky - p_bsdf. A BSDF is treated as uniform over the sky,
-// 1 / (4 pi), which leaves what exceeds half the mean. Measured by tests/benchmarks/trade_offs.cpp.
-constexpr double kCompensation = 0.5;
-// A sky of which less than this share exceeds the subtracted radiance is sampled without compensation.
-constexpr double kLeastExcess = 0.02;
-
 // The mean of the bilinear interpolation over each pixel, which has the weights 1, 6, 1 (eighths) along each axis.
 std::vector<double> interpolated_luminance(const ImageRgb& picture) {
   const int w = picture.width_px;
@@ -73,7 +66,7 @@ double probability(const float* cumulative, std::size_t i) {
 
 }  // namespace
 
-EnvironmentSampler::EnvironmentSampler(const Environment& environment, EnvironmentDensity density) {
+EnvironmentSampler::EnvironmentSampler(const Environment& environment) {
   if (!environment.present()) {
     return;
   }
@@ -100,27 +93,17 @@ EnvironmentSampler::EnvironmentSampler(const Environment& environment, Environme
   const std::vector<double> mean = interpolated_luminance(*picture_);
   std::vector<double> cells(static_cast<std::size_t>(columns_) * rows_);
   std::vector<double> row_weights(rows_);
-  const auto fill = [&](double taken_off) {
-    std::fill(cells.begin(), cells.end(), 0.0);
-    std::fill(row_weights.begin(), row_weights.end(), 0.0);
-    double sum = 0;
-    for (int y = 0; y < h; ++y) {
-      const double solid_angle = (std::cos(kPi * y / h) - std::cos(kPi * (y + 1) / h)) * 2 * kPi / w;
-      const auto r = static_cast<std::size_t>(y / k);
-      for (int x = 0; x < w; ++x) {
-        const double weight = std::max(mean[picture_->index(x, y)] - taken_off, 0.0) * solid_angle;
-        cells[r * columns_ + static_cast<std::size_t>(x / k)] += weight;
-        row_weights[r] += weight;
-      }
+  for (int y = 0; y < h; ++y) {
+    const double solid_angle = (std::cos(kPi * y / h) - std::cos(kPi * (y + 1) / h)) * 2 * kPi / w;
+    const auto r = static_cast<std::size_t>(y / k);
+    for (int x = 0; x < w; ++x) {
+      const double weight = std::max(mean[picture_->index(x, y)], 0.0) * solid_angle;
+      cells[r * columns_ + static_cast<std::size_t>(x / k)] += weight;
+      row_weights[r] += weight;
     }
-    for (const double weight : row_weights) {
-      sum += weight;
-    }
-    return sum;
-  };
-  total_ = fill(0);
-  if (density == EnvironmentDensity::compensated && fill(kCompensation * total_ / (4 * kPi)) < kLeastExcess * total_) {
-    fill(0);
+  }
+  for (const double weight : row_weights) {
+    total_ += weight;
   }
   cell_pdf_.assign(cells.size(), 0.0F);
   if (!(total_ > 0)) {

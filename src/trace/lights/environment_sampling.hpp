@@ -14,18 +14,11 @@
 
 namespace gazetrace {
 
-// compensated: proportional to what exceeds half the mean radiance, for use with multiple importance sampling only.
-// BSDF samples find a uniform sky as well as light samples do, so light samples are better spent on what is brighter
-// (Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling", 2019). The
-// density is zero where nothing exceeds it, so that light samples alone would lose light. It does not know what hides
-// the sky, so indoors it costs more than it gains.
-enum class EnvironmentDensity : std::uint8_t { plain, compensated };
-
 class EnvironmentSampler {
  public:
   EnvironmentSampler() = default;
   // Keeps a reference to the picture, which must outlive it. An absent environment is black.
-  explicit EnvironmentSampler(const Environment& environment, EnvironmentDensity density = EnvironmentDensity::plain);
+  explicit EnvironmentSampler(const Environment& environment);
 
   struct Value {
     Vec3f radiance;

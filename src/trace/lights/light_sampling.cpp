@@ -131,8 +131,7 @@ double area_of(const EmissiveTriangle& triangle) {
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene, LightChoice choice, EnvironmentDensity density)
-    : environment_(scene.environment, density) {
+LightSampler::LightSampler(const Scene& scene, LightChoice choice) : environment_(scene.environment) {
   const double radius = scene_radius_m(scene);
   auto [triangle_powers, places] = collect_triangles(scene);
   first_of_duplicates_ = first_of_duplicates(places);

@@ -54,10 +54,8 @@ struct EmissiveTriangle {
 
 class LightSampler {
  public:
-  // Keeps a reference to the scene's environment picture, which must outlive it. A compensated density is for use with
-  // MIS only.
-  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic,
-                        EnvironmentDensity density = EnvironmentDensity::plain);
+  // Keeps a reference to the scene's environment picture, which must outlive it.
+  explicit LightSampler(const Scene& scene, LightChoice choice = LightChoice::automatic);
 
   // False where sample() never returns a valid sample.
   [[nodiscard]] bool any() const noexcept {

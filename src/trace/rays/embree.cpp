@@ -57,7 +57,7 @@ void RayScene::Impl::check(const char* what) const {
 
 RTCScene RayScene::Impl::new_scene() const {
   RTCScene scene = rtcNewScene(device);
-  rtcSetSceneBuildQuality(scene, high_quality ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
 
@@ -99,7 +99,7 @@ RayScene::Impl::~Impl() {
   }
 }
 
-RayScene::RayScene(int threads, bool high_quality, const AlphaSource* alpha) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(int threads, const AlphaSource* alpha) : impl_(std::make_unique<Impl>()) {
   // 0 keeps the task library's own limit; any other number would apply to the whole process.
   const std::string config = "threads=" + std::to_string(threads < resolve_threads(0) ? std::max(threads, 0) : 0);
   impl_->device = rtcNewDevice(config.c_str());
@@ -109,7 +109,6 @@ RayScene::RayScene(int threads, bool high_quality, const AlphaSource* alpha) : i
   }
   rtcSetDeviceMemoryMonitorFunction(impl_->device, count_memory, &impl_->bytes);
   impl_->alpha = alpha;
-  impl_->high_quality = high_quality;
   impl_->top = impl_->new_scene();
 }
 

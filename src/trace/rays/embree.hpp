@@ -46,7 +46,7 @@ inline constexpr std::uint32_t kRejected = 0xfffffffeU;
 
 class RayScene {
  public:
-  RayScene(int threads, bool high_quality, const AlphaSource* alpha);
+  RayScene(int threads, const AlphaSource* alpha);
   ~RayScene();
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;

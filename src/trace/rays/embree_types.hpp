@@ -159,7 +159,6 @@ struct RayScene::Impl {
   std::vector<RTCScene> meshes;
   std::vector<std::size_t> steps;  // number of time steps of each mesh's vertices
   const AlphaSource* alpha = nullptr;
-  bool high_quality = true;
   bool timed = false;
   std::uint32_t next_id = 0;
 

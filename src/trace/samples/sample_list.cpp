@@ -6,20 +6,11 @@
 #include "core/instruction_sets.hpp"
 
 namespace gazetrace {
-namespace {
-
-constexpr std::uint64_t kWholeFrame = 0x5a2d6f72646572ULL;  // differs from every first pixel
-
-}  // namespace
-
 SiteSequence SampleList::sequence_of_site(const Site& site, int first_x, int first_y) const {
-  if (follows_curve_) {
-    return {make_sample_key(seed_, frame_, kWholeFrame), curve_index_, halves_, 0};
-  }
   // Every pixel belongs to one site only, so a site's first pixel identifies it.
   return {make_sample_key(seed_, frame_,
                           (static_cast<std::uint64_t>(first_y) << 32U) | static_cast<std::uint64_t>(first_x)),
-          0, halves_, static_cast<std::uint8_t>((site.block_x ^ site.block_y) & 1)};
+          halves_, static_cast<std::uint8_t>((site.block_x ^ site.block_y) & 1)};
 }
 
 GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBatch& out) {
@@ -29,7 +20,6 @@ GAZETRACE_CLONES int SampleList::next(const PixelFilterSampler& filter, SampleBa
   while (filled < kBatchSize && site_ < end_) {
     const Site& site = map_->sites[site_];
     if (sample_ >= site.samples) {
-      curve_index_ += site.samples;
       ++site_;
       sample_ = 0;
       continue;

@@ -9,25 +9,17 @@
 #include "gazetrace/foveation.hpp"
 #include "trace/kernel/path_batch.hpp"
 #include "trace/samples/pixel_filter.hpp"
-#include "trace/samples/z_order.hpp"
 
 namespace gazetrace {
 
 // Goes through the sites [first, first + count) of a map in order, and through the samples of each. Neighbouring
-// entries are neighbours in the picture, so that packets of 16 rays are coherent. With `z_order` all sites share one
-// sequence of random numbers along that curve; without, each has its own.
+// entries are neighbours in the picture, so that packets of 16 rays are coherent. Each site has a sequence of random
+// numbers of its own.
 class SampleList {
  public:
   SampleList(const SamplingMap& map, std::uint32_t first_site, std::uint32_t site_count, std::uint64_t seed,
-             std::int32_t frame, const ZOrder* z_order = nullptr, bool halves = false)
-      : map_(&map),
-        site_(first_site),
-        end_(first_site + site_count),
-        seed_(seed),
-        frame_(frame),
-        halves_(halves),
-        follows_curve_(z_order != nullptr),
-        curve_index_(z_order != nullptr ? z_order->first_index(first_site) : 0) {}
+             std::int32_t frame, bool halves = false)
+      : map_(&map), site_(first_site), end_(first_site + site_count), seed_(seed), frame_(frame), halves_(halves) {}
 
   // Fills in up to kBatchSize samples and returns their number, which is 0 at the end.
   int next(const PixelFilterSampler& filter, SampleBatch& out);
@@ -41,8 +33,6 @@ class SampleList {
   std::uint64_t seed_;
   std::int32_t frame_;
   bool halves_;  // as TraceSettings::halves
-  bool follows_curve_;
-  std::uint64_t curve_index_;  // of the first sample of site_
   std::vector<PixelIndex> pixels_;
 };
 

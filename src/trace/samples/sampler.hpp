@@ -33,8 +33,8 @@ constexpr std::uint32_t dimension_of(int bounce, BounceDimension d) noexcept {
          static_cast<std::uint32_t>(d);
 }
 
-// Identifies a sequence of points in a frame: that of a place (pixel or site), or one that all sites share
-// (z_order.hpp). Make it once and keep it in the path's state.
+// Identifies the sequence of points of a place (pixel or site) in a frame. Make it once and keep it in the path's
+// state.
 struct SampleKey {
   std::uint64_t value = 0;
 };
@@ -51,20 +51,18 @@ struct SamplePoint {
   std::uint8_t half = 0;
 };
 
-// Where the samples of a site are in the sequences of random numbers, which is all that a sampling pattern decides.
+// Where the samples of a site are in the sequences of random numbers.
 struct SiteSequence {
   SampleKey key;
-  std::uint64_t first = 0;  // the index that the site's first sample takes
   // As TraceSettings::halves: there are two sequences, and samples belong to them in turn, the first of a site to
   // sequence (first + odd) % 2. Sites of a single sample thus are in both.
   bool halves = false;
   std::uint8_t odd = 0;
 };
 
-// Sequences have 2^32 points; those beyond belong to another one.
 [[gnu::always_inline]] inline constexpr SamplePoint sample_point(const SiteSequence& site,
                                                                  std::uint32_t sample) noexcept {
-  std::uint64_t at = site.first + sample;
+  std::uint32_t at = sample;
   std::uint8_t half = 0;
   SampleKey key = site.key;
   if (site.halves) {
@@ -72,8 +70,7 @@ struct SiteSequence {
     at >>= 1U;
     key = half == 0 ? key : SampleKey{hash64(key.value + 0x68616c66ULL)};
   }
-  const std::uint64_t beyond = at >> 32U;
-  return {beyond == 0 ? key : SampleKey{hash64(key.value + beyond)}, static_cast<std::uint32_t>(at), half};
+  return {key, at, half};
 }
 
 namespace sampler_detail {

@@ -41,11 +41,9 @@ SurfaceSorter sorter_for(const CameraRays& camera) {
 
 }  // namespace
 
-SiteSummer::SiteSummer(const FrameContext& context, const SamplingMap& map, std::int32_t frame,
-                       std::uint32_t first_site, SparseFrame& out)
+SiteSummer::SiteSummer(const FrameContext& context, std::int32_t frame, std::uint32_t first_site, SparseFrame& out)
     : frame_(frame),
       surfaces_(context.settings.surfaces),
-      pass_through_(map, context.settings.pass_through_samples),
       out_(out),
       site_(first_site),
       sorter_(sorter_for(*context.camera)) {}
@@ -74,7 +72,7 @@ void SiteSummer::add(const Workspace& work, std::size_t count) {
       add_groups(work.groups, i, sum_.groups);
     }
     halves_.add(luminance(to_double(radiance)), work.samples.half[i]);
-    if (surfaces_ && pass_through_.needs_filtering(site_)) {
+    if (surfaces_) {
       sorter_.add(work.surfaces, i, to_double(radiance), work.samples.half[i]);
       if (!out_.first_hits.empty()) {
         first_hits_.add(work.surfaces, i, work.samples.half[i]);

@@ -38,9 +38,8 @@ struct SiteGuideSums {
 class SiteSummer {
  public:
   // For samples of sites from `first_site` on. Stores into the arrays of `out`, which must be as long as the map; of
-  // first_surface, which join_surfaces() completes, the number of surfaces. Keeps references to `map` and `out`.
-  SiteSummer(const FrameContext& context, const SamplingMap& map, std::int32_t frame, std::uint32_t first_site,
-             SparseFrame& out);
+  // first_surface, which join_surfaces() completes, the number of surfaces. Keeps a reference to `out`.
+  SiteSummer(const FrameContext& context, std::int32_t frame, std::uint32_t first_site, SparseFrame& out);
 
   // The first `count` samples of a batch that the kernel has traced.
   void add(const Workspace& work, std::size_t count);
@@ -59,7 +58,6 @@ class SiteSummer {
 
   std::int32_t frame_;
   bool surfaces_;  // as TraceSettings
-  PassThrough pass_through_;
   SparseFrame& out_;
   std::uint32_t site_;
   SiteSum sum_;

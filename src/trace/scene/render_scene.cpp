@@ -110,7 +110,7 @@ RenderScene::RenderScene(const Scene& scene, const TracerOptions& options)
     : materials(make_materials(scene)), layered(make_layered_materials(scene)), features(features_of(scene)) {
   const Stopwatch watch;
   const AlphaSource* alpha = this;
-  rays = std::make_unique<RayScene>(options.threads, options.bvh_quality == BvhQuality::high, alpha);
+  rays = std::make_unique<RayScene>(options.threads, alpha);
   const MeshUses uses = uses_of_meshes(scene);
   triangles.reserve(uses.triangles);
   add_baked_meshes(scene, uses.baked);

@@ -104,7 +104,7 @@ Traced Renderer::trace(const FoveationSettings& settings, const std::optional<Ga
 }
 
 Picture Renderer::filtered(const Traced& traced, const std::string& filter) {
-  const Reconstruction reconstruction({filter, {}});
+  const Reconstruction reconstruction({filter});
   const std::optional<GuideSettings> wanted = reconstruction.guide_settings({});
   if (wanted && !guides_) {
     const Stopwatch watch;

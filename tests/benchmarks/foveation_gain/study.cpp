@@ -89,7 +89,7 @@ class Study {
       }
     }
     for (const std::string& filter : settings_.filters) {
-      surfaces_ = surfaces_ || Reconstruction({filter, {}}).needs().surfaces;
+      surfaces_ = surfaces_ || Reconstruction({filter}).needs().surfaces;
     }
   }
 
@@ -254,7 +254,7 @@ void Study::time_arm(const std::string& name, const Gaze& gaze, const FoveationS
     if (rows_.has(row)) {
       continue;
     }
-    const bool surfaces = Reconstruction({filter, {}}).needs().surfaces;
+    const bool surfaces = Reconstruction({filter}).needs().surfaces;
     std::optional<Traced>& of_filter = traced[surfaces ? 1 : 0];
     if (!of_filter) {
       of_filter = renderer_.trace(settings, steering, round, surfaces);

@@ -118,7 +118,7 @@ def cases(arguments, folder):
                  Case("stock glass", "principled", False, matched_scenes.glass_balls(folder, env, 0.4))]
         if arguments.sponza:
             view = ["--eye=8,2,-0.3", "--target=-8,3,-0.3", "--yfov=50", f"--env={env}"]
-            full = ("--pixel-cone=0", "--bounce-cone=0")
+            full = ("--bounce-cone=0",)
             scene = (matched_scenes.without_normal_maps(arguments.sponza, folder), view)
             made += [Case("sponza", "matte", True, scene, ours=full),
                      # What each rule is worth: gazetrace's normal maps and mip levels, Mitsuba's own ways.

@@ -47,7 +47,7 @@ std::vector<Variant> two_sided_variants() {
 
 std::vector<Variant> variants_of(const std::string& filter) {
   std::vector<Variant> variants = make_variants();
-  const bool surfaces = Reconstruction({filter, {}}).needs().surfaces;
+  const bool surfaces = Reconstruction({filter}).needs().surfaces;
   std::erase_if(variants, [&](const Variant& variant) { return variant.orders && surfaces; });
   return variants;
 }

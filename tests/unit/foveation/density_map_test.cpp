@@ -186,116 +186,6 @@ TEST(DensityMap, MirrorSymmetricAboutTheGaze) {
   }
 }
 
-TEST(DensityMap, UncertainGazeWidens) {
-  const PlanarView view = small_view();
-  const Vec3d gaze = view.direction(240, 135);
-  MapContext uncertain;
-  uncertain.uncertainty_deg = 3;
-  for (const std::string name : {"mar", "acuity", "linear", "log-polar"}) {
-    const ImageGray sure = *falloff_density(model(name), view, gaze);
-    const ImageGray wide = *falloff_density(model(name), view, gaze, uncertain);
-    // On the horizontal line through the gaze: what is seen at e + 3 degrees is what was at e.
-    for (int x = 300; x < 470; x += 17) {
-      const double here = eccentricity_deg(view, gaze, x + 0.5, 135);
-      const double target_px = 240 + std::tan((here - 3) * kRadPerDeg) / view.step_x;
-      if (target_px > 240 && name == "linear") {
-        const FoveationSettings settings = model(name);
-        const double e = here - 3;
-        const Vec3d ramp = settings.parameters.ramp;
-        const double p = e <= ramp.x ? 1 : e < ramp.y ? 1 + (ramp.z - 1) * (e - ramp.x) / (ramp.y - ramp.x) : ramp.z;
-        EXPECT_NEAR(wide(x, 135), p, 2e-4);
-      }
-      EXPECT_GE(wide(x, 135), sure(x, 135)) << name;
-    }
-  }
-  // Hard regions are widened as before.
-  FoveationSettings wider = widened({}, 3);
-  EXPECT_EQ(make_sampling_map({}, view, gaze, uncertain).region, make_sampling_map(wider, view, gaze).region);
-}
-
-TEST(DensityMap, TermsMultiply) {
-  const PlanarView view = small_view();
-  const Vec3d gaze = view.direction(240, 135);
-  FoveationSettings settings = model("linear");
-  settings.retinal_velocity = true;
-  settings.saccade_density = 0.25;
-  MapContext context;
-  const ImageGray still = *falloff_density(settings, view, gaze, context);
-  context.gaze_speed_deg_s = 10;
-  const ImageGray moving = *falloff_density(settings, view, gaze, context);
-  context.in_saccade = true;
-  const ImageGray flying = *falloff_density(settings, view, gaze, context);
-  const double factor = std::pow((57.69 - 27.78) / 60, 2);
-  for (const auto& [x, y] : {std::pair{240, 135}, {400, 200}, {20, 30}}) {
-    EXPECT_NEAR(moving(x, y) / still(x, y), factor, 1e-5);
-    EXPECT_NEAR(flying(x, y) / moving(x, y), 0.25, 1e-5);
-  }
-  ImageGray contrast(2, 1);
-  contrast(0, 0) = 1;
-  contrast(1, 0) = 0.5;
-  context = {};
-  context.contrast = &contrast;
-  const ImageGray dulled = *falloff_density(settings, view, gaze, context);
-  EXPECT_EQ(dulled(3, 100), still(3, 100));
-  EXPECT_NEAR(dulled(475, 100) / still(475, 100), 0.5, 1e-6);
-  EXPECT_NEAR(dulled(239, 50) / still(239, 50), 0.75, 2e-3);  // between the two texels' centres
-}
-
-// A model that asks for more than the display shows has no more than a full rate for a term to take from: what is left
-// is the factor's part everywhere, and of the whole frame.
-TEST(DensityMap, ContrastAndFlightTakeTheirPartOfWhatIsLimitedToTheFullRate) {
-  const PlanarView view = small_view();
-  const Vec3d gaze = view.direction(240, 135);
-  ImageGray contrast(1, 1);
-  for (const FalloffInfo& info : falloffs()) {
-    if (info.name == "uniform" || info.name == "regions" || info.from_picture) {
-      continue;
-    }
-    SCOPED_TRACE(info.name);
-    FoveationSettings settings = model(info.name);
-    settings.density_floor = 1e-12;
-    const ImageGray plain = *falloff_density(settings, view, gaze);
-    const double samples = expected_sum(make_sampling_map(settings, view, gaze));
-    for (const double left : {0.5, 0.1, 0.0}) {
-      settings.saccade_density = left;
-      MapContext flight;
-      flight.in_saccade = true;
-      const ImageGray flying = *falloff_density(settings, view, gaze, flight);
-      contrast(0, 0) = static_cast<float>(left);
-      MapContext dull;
-      dull.contrast = &contrast;
-      const ImageGray dulled = *falloff_density(settings, view, gaze, dull);
-      for (std::size_t i = 0; i < plain.pixels.size(); ++i) {
-        const double expected = std::max(left * static_cast<double>(plain.pixels[i]), 1e-12);
-        ASSERT_NEAR(static_cast<double>(flying.pixels[i]) / expected, 1, 1e-6) << "pixel " << i;
-        ASSERT_NEAR(static_cast<double>(dulled.pixels[i]) / expected, 1, 1e-6) << "pixel " << i;
-      }
-      if (left == 0.5) {
-        // Larger blocks take the density at their middle: the sum is the same to a percent or two.
-        EXPECT_NEAR(expected_sum(make_sampling_map(settings, view, gaze, flight)) / samples, left, 0.02);
-      }
-    }
-  }
-}
-
-// An infinite cut-off times a factor of zero is no number; the floor holds there, too.
-TEST(DensityMap, AnInfiniteCutoffKeepsItsFloorInFlight) {
-  const PlanarView view = view_of_display(display_by_name("paper"), {}, 160, 90);
-  FoveationSettings settings = model("mar");
-  settings.parameters.mar_foveal_deg = 0;
-  settings.saccade_density = 0;
-  MapContext context;
-  context.in_saccade = true;
-  context.uncertainty_deg = 3;
-  const SamplingMap map = make_sampling_map(settings, view, view.direction(80, 45), context);
-  expect_consistent(map);
-  EXPECT_EQ(map.samples(), 160U * 90 * 32 / 512);
-  const ImageGray density = *falloff_density(settings, view, view.direction(80, 45), context);
-  for (const float p : density.pixels) {
-    ASSERT_EQ(p, 1.0F / 512);
-  }
-}
-
 // The bump of a table may lie within one block.
 TEST(DensityMap, BlocksSeeTheBumpOfATable) {
   const PlanarView view = small_view();
@@ -338,7 +228,6 @@ TEST(DensityMap, ExtremesGiveMaps) {
   // Regions wider than the frame, and a floor of 1.
   FoveationSettings settings;
   settings.region_angles_deg = {300, 360};
-  settings.border_blend_deg = 10;
   const SamplingMap all_fovea = make_sampling_map(settings, plain, Vec3d{0, 0, -1});
   EXPECT_EQ(all_fovea.samples(), 32U * 61 * 37);
   settings = model("mar");

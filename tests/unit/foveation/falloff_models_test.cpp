@@ -13,7 +13,6 @@
 #include "foveation/acuity_curve.hpp"
 #include "foveation/density_field.hpp"
 #include "foveation/falloff_table.hpp"
-#include "foveation/terms/terms.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/foveation.hpp"
 
@@ -251,14 +250,6 @@ TEST(FalloffCutoff, RetinaDiffersByDirectionAndEye) {
   EXPECT_NEAR(cutoff(FalloffEye::right, 30), expected, 1e-9);
 }
 
-TEST(FalloffTerms, RetinalVelocity) {
-  EXPECT_EQ(retinal_velocity_factor(0), 1);
-  EXPECT_EQ(retinal_velocity_factor(0.825), 1);
-  EXPECT_NEAR(retinal_velocity_factor(10), std::pow((57.69 - 27.78) / 60, 2), 1e-12);
-  EXPECT_NEAR(retinal_velocity_factor(100), std::pow((57.69 - 2 * 27.78) / 60, 2), 1e-12);
-  EXPECT_NEAR(retinal_velocity_factor(500), std::pow(0.1 / 60, 2), 1e-15);
-}
-
 TEST(FalloffTable, IsMonotoneAndGoesThroughItsPoints) {
   const std::vector<Vec2d> points{{0, 1}, {4, 0.9}, {5, 0.2}, {10, 0.2}, {40, 0.01}};
   const MonotoneCubic curve(points);
@@ -304,15 +295,12 @@ std::vector<Extreme> extremes() {
 TEST(FalloffExtremes, DensityIsFiniteAndWithinItsLimits) {
   for (const std::string& name : density_models()) {
     for (const Extreme& extreme : extremes()) {
-      for (const double blend : {0.0, 3.0}) {
-        FoveationSettings settings = model(blend > 0 ? "regions" : name);
-        settings.border_blend_deg = blend;
-        const auto density = falloff_density(settings, extreme.view, extreme.gaze);
-        ASSERT_TRUE(density) << name;
-        for (const float p : density->pixels) {
-          ASSERT_GE(p, static_cast<float>(settings.density_floor)) << name << ", " << extreme.what;
-          ASSERT_LE(p, 1.0F) << name << ", " << extreme.what;
-        }
+      const FoveationSettings settings = model(name);
+      const auto density = falloff_density(settings, extreme.view, extreme.gaze);
+      ASSERT_TRUE(density) << name;
+      for (const float p : density->pixels) {
+        ASSERT_GE(p, static_cast<float>(settings.density_floor)) << name << ", " << extreme.what;
+        ASSERT_LE(p, 1.0F) << name << ", " << extreme.what;
       }
     }
   }

@@ -22,6 +22,7 @@ std::vector<FormerOption> two_modes() {
           former_option(FormerKind::gone, "--mode slow", "", "give a higher `spp`"),
           former_option(FormerKind::renamed, "--mode *", "--spp *", "one number is enough"),
           former_option(FormerKind::renamed, "--quick", "--russian-roulette", "the field calls it so"),
+          former_option(FormerKind::renamed, "--fast", "--spp 2", "it says more"),
           former_option(FormerKind::elsewhere, "--rays", "", "the number of samples a pixel is `spp`")};
 }
 
@@ -45,6 +46,12 @@ TEST(FormerOptions, ARenamedOptionBecomesTheOnesThatTookItsPlace) {
   EXPECT_THAT(now("quick", "false").settings, ElementsAre(Pair("russian-roulette", ElementsAre("false"))));
   EXPECT_EQ(now("mode", "fast").notice, "`mode` fast is now `spp` 2 `bounces` 1; it says more");
   EXPECT_EQ(now("quick", "true").notice, "`quick` is now `russian-roulette`; the field calls it so");
+}
+
+TEST(FormerOptions, AFlagThatWasNotSetSetsNothing) {
+  EXPECT_THAT(now("fast", "true").settings, ElementsAre(Pair("spp", ElementsAre("2"))));
+  EXPECT_TRUE(now("fast", "false").settings.empty());
+  EXPECT_EQ(now("fast", "false").notice, "");
 }
 
 TEST(FormerOptions, WhatNoRowSpeaksOfStaysAsItIs) {

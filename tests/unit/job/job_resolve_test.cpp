@@ -81,7 +81,7 @@ TEST_F(Resolve, SaysWhatItDecidedAndWhy) {
   EXPECT_EQ(decisions.at("camera"), "still, from `eye`");
   EXPECT_THAT(decisions.at("environment"), HasSubstr("the built-in sky"));
   EXPECT_EQ(resolved.pipeline.reconstruction.filter, "guided");
-  set_option(job_, "filter", "tent");
+  set_option(job_, "filter", "linear");
   const ResolvedJob named = resolve(job_);
   decisions = {named.decisions.begin(), named.decisions.end()};
   EXPECT_FALSE(decisions.contains("filter"));
@@ -127,7 +127,7 @@ TEST_F(Resolve, APlanNeedsNoSceneAndHashesNothing) {
 }
 
 TEST_F(Resolve, FramesHaveWhatTheirChannelsShow) {
-  set_option(job_, "filter", "tent");
+  set_option(job_, "filter", "linear");
   for (const char* aov : {"", "albedo", "normal", "depth"}) {
     Job job = job_;
     if (*aov != 0) {

@@ -92,7 +92,7 @@ TEST(Job, TheCommandLineIsAboveAFileInWhateverOrder) {
 // Every pair of neighbours in the order of precedence, set in both orders.
 TEST(Job, OrderOfPrecedence) {
   // paper sets bounces = 3, reference sets spp = 1024, both set filter and accumulate.
-  const auto file = [](Job& job) { add_toml(job, "preset = \"paper\"\nspp = 7\nfilter = \"tent\"\n", "job.toml"); };
+  const auto file = [](Job& job) { add_toml(job, "preset = \"paper\"\nspp = 7\nfilter = \"linear\"\n", "job.toml"); };
   const auto preset = [](Job& job) { on_command_line(job, "preset", "reference"); };
   const auto option = [](Job& job) { on_command_line(job, "accumulate", "running"); };
   for (const bool reversed : {false, true}) {
@@ -118,7 +118,7 @@ TEST(Job, OrderOfPrecedence) {
     EXPECT_EQ(option_text(job, "preset"), "reference");
     EXPECT_THAT(decisions_of(job),
                 testing::IsSupersetOf({"preset reference from the command line replaces spp = 7 of job.toml:2",
-                                       "preset reference from the command line replaces filter = tent of job.toml:3",
+                                       "preset reference from the command line replaces filter = linear of job.toml:3",
                                        "the command line replaces preset = paper of job.toml:1"}));
   }
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <random>
 
 #include "color/baked_view.hpp"
@@ -71,23 +72,33 @@ TEST(ColorBaked, IsUsedOnlyWhereItPays) {
   for (std::size_t i = 0; i < large.pixels.size(); ++i) {
     large.pixels[i] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]};
   }
-  ColorSettings exact;
-  exact.precision = ViewPrecision::exact;
-  ColorSettings baked;
-  baked.precision = ViewPrecision::baked;
-  const ColorPipeline automatic_view{ColorSettings{}};
-  const ColorPipeline exact_view(exact);
-  const ColorPipeline baked_view(baked);
-  const auto bytes = [](const ColorPipeline& view, const ImageRgb& image, int bits, int threads) {
-    return view.apply(image, 0, bits, threads).bytes;
+  const OcioView exact(ColorSettings{});
+  const BakedView baked(exact, 2);
+  const auto shown = [&](const ImageRgb& image, bool by_table) {
+    std::vector<float> values;
+    for (const Vec3f& pixel : image.pixels) {
+      values.insert(values.end(), {pixel.x, pixel.y, pixel.z});
+    }
+    std::vector<std::uint8_t> bytes(values.size());
+    if (by_table) {
+      baked.apply_8(values.data(), image.pixels.size(), bytes.data());
+    } else {
+      exact.apply_8(values.data(), image.pixels.size(), bytes.data());
+    }
+    return bytes;
   };
-  automatic_view.prepare(large.width_px, large.height_px, 8, 2);
-  EXPECT_EQ(bytes(automatic_view, large, 8, 1), bytes(baked_view, large, 8, 2));
-  EXPECT_NE(bytes(automatic_view, large, 8, 1), bytes(exact_view, large, 8, 1));
-  EXPECT_EQ(bytes(automatic_view, large, 16, 1), bytes(exact_view, large, 16, 1));
+  const ColorPipeline view{ColorSettings{}};
+  view.prepare(large.width_px, large.height_px, 8, 2);
+  EXPECT_EQ(view.apply(large, 0, 8, 1).bytes, shown(large, true));
+  EXPECT_NE(view.apply(large, 0, 8, 1).bytes, shown(large, false));
   ImageRgb small(60, 50);
   std::copy_n(large.pixels.begin(), small.pixels.size(), small.pixels.begin());
-  EXPECT_EQ(bytes(automatic_view, small, 8, 1), bytes(exact_view, small, 8, 1));
+  EXPECT_EQ(view.apply(small, 0, 8, 1).bytes, shown(small, false));
+  std::vector<float> values(rgb.begin(), rgb.begin() + static_cast<std::ptrdiff_t>(3 * large.pixels.size()));
+  std::vector<std::uint16_t> wide(values.size());
+  exact.apply_16(values.data(), large.pixels.size(), wide.data());
+  const std::vector<std::uint8_t> bytes_16 = view.apply(large, 0, 16, 1).bytes;
+  EXPECT_EQ(std::memcmp(bytes_16.data(), wide.data(), bytes_16.size()), 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two clocks by anchors, and what the plan tells of latency, processing and uncertainty.
+// Two clocks by anchors, and what the plan tells of latency and processing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -244,47 +244,6 @@ TEST(PlanEvents, InterpolationJumpsOverASaccade) {
     EXPECT_THAT(gaze.reason, HasSubstr("not within a fixation"));
   }
   EXPECT_NEAR(gaze_at(log, mapping, 975 * kMs).u, 0.5, 1e-12);  // where nobody knows what the eye does
-}
-
-TEST(PlanUncertainty, GrowsByAccuracyPrecisionAndMotion) {
-  // 20 deg/s to the right, sampled at 100 Hz.
-  GazeLog log;
-  log.kind = GazeKind::direction;
-  for (std::int64_t i = 0; i < 300; ++i) {
-    GazeSample sample;
-    sample.t_ns = i * 10 * kMs;
-    sample.row = i + 1;
-    const double a = 0.2 * static_cast<double>(i) * kRadPerDeg;
-    sample.direction = {std::sin(a), 0, -std::cos(a)};
-    log.samples.push_back(sample);
-  }
-  PlanSettings settings = second_at(25);
-  settings.display.reset();
-  settings.gaze_latency_ns = 100 * kMs;
-  EXPECT_EQ(plan_frames(still(), &log, settings).frames[3].gaze_uncertainty_deg, 0);
-  settings.uncertainty = GazeUncertainty{0.5, 0.1};
-  EXPECT_NEAR(plan_frames(still(), &log, settings).frames[3].gaze_uncertainty_deg, 0.5 + 0.1 + 2.0, 1e-9);
-
-  FoveationSettings fovea;
-  const FoveationSettings wider = widened(fovea, 2.6);
-  EXPECT_NEAR(wider.region_angles_deg[0], fovea.region_angles_deg[0] + 5.2, 1e-12);  // diameters
-  fovea.reading = AngleReading::eccentricity;
-  EXPECT_NEAR(widened(fovea, 2.6).region_angles_deg[1], fovea.region_angles_deg[1] + 2.6, 1e-12);
-  EXPECT_EQ(widened(fovea, 0).region_angles_deg, fovea.region_angles_deg);
-  check_foveation(widened(fovea, 1000));
-}
-
-TEST(PlanUncertainty, ComesFromTheLog) {
-  SynthSettings synthetic;
-  synthetic.rate_hz = 1000;
-  synthetic.drift_deg = 0;
-  synthetic.noise_deg = 0.1;
-  GazeLog log = synthesize_gaze(synthetic).log;
-  EXPECT_TRUE(std::isnan(uncertainty_of(log).accuracy_deg));
-  // Two coordinates of 0.1 deg each.
-  EXPECT_NEAR(uncertainty_of(log).precision_deg, 0.1 * std::sqrt(2.0), 0.03);
-  log.calibrations = {{0, Eye::left, 0.4, 1, 1}, {0, Eye::right, 0.6, 1, 2}};
-  EXPECT_NEAR(uncertainty_of(log).accuracy_deg, 0.5, 1e-12);
 }
 
 }  // namespace

@@ -177,28 +177,6 @@ TEST(ReconstructGuided, NothingCrossesAnEdgeOfNormalDepthOrEmission) {
   }
 }
 
-TEST(ReconstructGuided, PixelsThatAreToPassThroughPassBitByBit) {
-  for (const std::uint32_t samples : {32U, 11U}) {
-    const SamplingMap map = block_map(true, samples);
-    const Guides guides = wall();
-    std::mt19937 random(5);
-    std::exponential_distribution<float> noise(1);
-    const SparseFrame sparse = trace_planted(map, guides, [&](int, int) { return noise(random); });
-    const Frame none = reconstruct(sparse, map, "none", 1);
-    const Frame frame = reconstruct(sparse, map, "guided", 1, &guides, samples);
-    int compared = 0;
-    for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
-      if (map.region.pixels[i] == 0) {
-        ++compared;
-        EXPECT_EQ(frame.radiance.pixels[i], none.radiance.pixels[i]);
-        EXPECT_EQ(frame.variance.pixels[i], none.variance.pixels[i]);
-      }
-      EXPECT_EQ(frame.sample_count.pixels[i], none.sample_count.pixels[i]);
-    }
-    EXPECT_EQ(compared, 19 * 21);
-  }
-}
-
 // Where a budget leaves few samples to look at, they are not kept as they are: noise is worst there of all places.
 TEST(ReconstructGuided, SinglePixelsWithFewSamplesAreSmoothedBesideCoarserBlocks) {
   const SamplingMap map = block_map(true, 1);

@@ -311,7 +311,7 @@ TEST(Reconstruct, OneSampledSiteFillsTheFrameAndNoneLeavesItBlack) {
       set_site(sparse, i, 0, 0);
     }
   }
-  for (const char* filter : {"none", "linear", "tent", "push-pull"}) {
+  for (const char* filter : {"none", "linear"}) {
     const Frame frame = reconstruct(sparse, map, filter, 1);
     for (const Vec3f& value : frame.radiance.pixels) {
       EXPECT_NEAR(value.x, 3, 1e-5) << filter;
@@ -319,7 +319,7 @@ TEST(Reconstruct, OneSampledSiteFillsTheFrameAndNoneLeavesItBlack) {
     }
   }
   set_site(sparse, only, 0, 0);
-  for (const char* filter : {"none", "linear", "tent", "push-pull"}) {
+  for (const char* filter : {"none", "linear"}) {
     const Frame frame = reconstruct(sparse, map, filter, 1);
     for (std::size_t i = 0; i < frame.radiance.pixels.size(); ++i) {
       EXPECT_EQ(frame.radiance.pixels[i], Vec3f{});
@@ -359,56 +359,7 @@ TEST(Reconstruct, ConstantsStayConstantToTheBit) {
   }
 }
 
-TEST(Reconstruct, ConstantsStayConstantInFiltersThatDivideByWeights) {
-  for (const SamplingMap& map : many_maps()) {
-    for (const char* filter : {"tent", "push-pull"}) {
-      const Frame frame = reconstruct(sample(map, [](double, double) { return 0.7F; }), map, filter, 1);
-      for (const Vec3f& value : frame.radiance.pixels) {
-        ASSERT_NEAR(value.x, 0.7F, 2e-6) << filter;
-        ASSERT_NEAR(value.y, 1.4F, 4e-6) << filter;
-      }
-    }
-  }
-}
-
-// Blocks that are no power of two lie across the pyramid's cells: what they say must be neither lost nor moved.
-TEST(ReconstructPushPull, BlocksOfAnySizeKeepTheMeanAndThePlace) {
-  constexpr int kSide = 168;
-  for (const int block : {2, 3, 4, 5, 6, 7, 8, 12, 14}) {
-    SCOPED_TRACE(block);
-    Layout layout;
-    layout.regions = {{"all", block, 8, SampleUnit::per_block}};
-    layout.region = Image<std::uint8_t>(kSide / block * block, kSide / block * block, 0);
-    const SamplingMap map = map_from_layout(std::move(layout));
-    std::mt19937 random{17};
-    std::uniform_real_distribution<double> level(0, 1);
-    const SparseFrame sparse = sample(map, [&](double, double) { return level(random); });
-    double traced = 0;
-    for (std::size_t i = 0; i < map.sites.size(); ++i) {
-      traced += static_cast<double>(sparse.sum[i].x) / 8 * map.sites[i].pixels;
-    }
-    double shown = 0;
-    const Frame frame = reconstruct(sparse, map, "push-pull", 1);
-    for (const Vec3f& value : frame.radiance.pixels) {
-      shown += static_cast<double>(value.x);
-    }
-    // Cells that the frame's edge cuts count for more than their area.
-    EXPECT_NEAR(shown / traced, 1, 0.004);
-
-    const Frame ramp = reconstruct(sample(map, [](double x, double y) { return x + 2 * y; }), map, "push-pull", 1);
-    double moved = 0;
-    for (int y = 2 * block; y < map.height_px - 2 * block; ++y) {
-      for (int x = 2 * block; x < map.width_px - 2 * block; ++x) {
-        const double off = static_cast<double>(ramp.radiance(x, y).x) - (x + 0.5 + 2 * (y + 0.5));
-        EXPECT_LE(std::abs(off), 1.5 * block + 1e-3) << x << ',' << y;  // half a block across and down
-        moved += off / ((map.width_px - 4.0 * block) * (map.height_px - 4.0 * block));
-      }
-    }
-    EXPECT_NEAR(moved, 0, 0.05 * block);
-  }
-}
-
-TEST(Reconstruct, SinglePixelSitesAreTheSameBitsInEveryFilterAndNothingLeavesTheSamplesRange) {
+TEST(Reconstruct, SinglePixelSitesAreTheSameBitsAndNothingLeavesTheSamplesRange) {
   std::mt19937 random{11};
   int compared = 0;
   for (const SamplingMap& map : many_maps()) {
@@ -418,21 +369,19 @@ TEST(Reconstruct, SinglePixelSitesAreTheSameBitsInEveryFilterAndNothingLeavesThe
       sparse.sum_square_luminance[i] = 9.0F * static_cast<float>(sparse.count[i]);
     }
     const Frame none = reconstruct(sparse, map, "none", 1);
-    for (const char* filter : {"linear", "tent", "push-pull"}) {
-      const Frame frame = reconstruct(sparse, map, filter, 1);
-      for (std::size_t i = 0; i < none.radiance.pixels.size(); ++i) {
-        ASSERT_EQ(none.sample_count.pixels[i], frame.sample_count.pixels[i]) << filter;
-        ASSERT_TRUE(frame.radiance.pixels[i].x >= 0.99999F && frame.radiance.pixels[i].x <= 2.00001F) << filter;
-        ASSERT_TRUE(frame.variance.pixels[i] >= 0 && frame.variance.pixels[i] <= 10) << filter;
-        if (map.regions[map.region.pixels[i]].block_px == 1) {
-          ++compared;
-          ASSERT_EQ(none.radiance.pixels[i], frame.radiance.pixels[i]) << filter;
-          ASSERT_EQ(none.variance.pixels[i], frame.variance.pixels[i]) << filter;
-        }
+    const Frame frame = reconstruct(sparse, map, "linear", 1);
+    for (std::size_t i = 0; i < none.radiance.pixels.size(); ++i) {
+      ASSERT_EQ(none.sample_count.pixels[i], frame.sample_count.pixels[i]);
+      ASSERT_TRUE(frame.radiance.pixels[i].x >= 0.99999F && frame.radiance.pixels[i].x <= 2.00001F);
+      ASSERT_TRUE(frame.variance.pixels[i] >= 0 && frame.variance.pixels[i] <= 10);
+      if (map.regions[map.region.pixels[i]].block_px == 1) {
+        ++compared;
+        ASSERT_EQ(none.radiance.pixels[i], frame.radiance.pixels[i]);
+        ASSERT_EQ(none.variance.pixels[i], frame.variance.pixels[i]);
       }
     }
   }
-  EXPECT_GT(compared, 5000);
+  EXPECT_GT(compared, 1700);
 }
 
 TEST(Reconstruct, SameBitsForAnyNumberOfThreads) {
@@ -440,7 +389,7 @@ TEST(Reconstruct, SameBitsForAnyNumberOfThreads) {
   for (const SamplingMap& map : many_maps()) {
     const SparseFrame sparse =
         sample(map, [&](double, double) { return std::uniform_real_distribution<float>(0, 9)(random); });
-    for (const char* filter : {"none", "linear", "tent", "push-pull"}) {
+    for (const char* filter : {"none", "linear"}) {
       EXPECT_EQ(reconstruct(sparse, map, filter, 1).radiance, reconstruct(sparse, map, filter, 2).radiance);
     }
   }
@@ -499,7 +448,7 @@ TEST(Reconstruct, RefusesUnknownFiltersAndForeignMaps) {
       names.push_back(info.name);
     }
   }
-  EXPECT_THAT(names, testing::ElementsAre("none", "linear", "tent", "push-pull", "guided"));
+  EXPECT_THAT(names, testing::ElementsAre("none", "linear", "guided"));
 }
 
 }  // namespace

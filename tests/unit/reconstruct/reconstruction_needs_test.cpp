@@ -19,8 +19,7 @@ TEST(ReconstructionNeeds, OnlyGuidedFiltersNeedMoreThanSums) {
     EXPECT_EQ(info.needs.guides.has_value(), guided);
     EXPECT_EQ(info.needs.surfaces, guided);
     EXPECT_EQ(info.needs.halves, guided);
-    EXPECT_EQ(info.blurs_blocks, !guided && info.name != "none");
-    EXPECT_EQ(Reconstruction({info.name, {}}).filter().name, info.name);
+    EXPECT_EQ(Reconstruction({info.name}).filter().name, info.name);
   }
 }
 
@@ -28,28 +27,25 @@ TEST(ReconstructionNeeds, TheTracerIsToldThem) {
   TraceSettings trace;
   trace.seed = 7;
   trace.guides = true;  // of AOVs, which no filter takes away
-  const TraceSettings guided = Reconstruction({"guided", 12}).trace_settings(trace);
+  const TraceSettings guided = Reconstruction({"guided"}).trace_settings(trace);
   EXPECT_TRUE(guided.surfaces);
   EXPECT_TRUE(guided.halves);
-  EXPECT_EQ(guided.pass_through_samples, 12U);
   EXPECT_TRUE(guided.guides);
   EXPECT_EQ(guided.seed, 7U);
   trace.surfaces = true;  // left over from another filter
-  EXPECT_FALSE(Reconstruction({"linear", {}}).trace_settings(trace).surfaces);
+  EXPECT_FALSE(Reconstruction({"linear"}).trace_settings(trace).surfaces);
 }
 
-// One ray stands for a pixel, so that its cone is never narrower than that; materials are those of the samples.
+// One ray stands for a pixel, so that its cone is as wide as that; materials are those of the samples.
 TEST(ReconstructionNeeds, GuidesFollowTheSamples) {
   TraceSettings trace;
   trace.diffuse = DiffuseModel::lambert;
-  EXPECT_FALSE(Reconstruction({"tent", {}}).guide_settings(trace).has_value());
-  const Reconstruction guided({"guided", {}});
-  const GuideSettings narrow = guided.guide_settings(trace).value();
-  EXPECT_EQ(narrow.pixel_cone, 1);
-  EXPECT_EQ(narrow.diffuse, DiffuseModel::lambert);
-  EXPECT_EQ(narrow.edge_rays, guided.needs().guides.value().edge_rays);
-  trace.pixel_cone = 2.5;
-  EXPECT_EQ(guided.guide_settings(trace).value().pixel_cone, 2.5);
+  EXPECT_FALSE(Reconstruction({"none"}).guide_settings(trace).has_value());
+  const Reconstruction guided({"guided"});
+  const GuideSettings settings = guided.guide_settings(trace).value();
+  EXPECT_EQ(settings.pixel_cone, 1);
+  EXPECT_EQ(settings.diffuse, DiffuseModel::lambert);
+  EXPECT_EQ(settings.edge_rays, guided.needs().guides.value().edge_rays);
 }
 
 TEST(ReconstructionNeeds, AFilterMustBeNamed) {
@@ -67,16 +63,14 @@ TEST(ChooseFilter, GuidedWhereAllSamplesAreThere) {
   EXPECT_EQ(choose_filter({.foveated = false}).name, "guided");
   EXPECT_NE(choose_filter({.foveated = false}).reason, choose_filter({}).reason);
   for (const FilterFacts& facts : std::vector<FilterFacts>{{.accumulates_sites = true},
-                                                           {.enhances_contrast = true},
                                                            {.foveated = false, .means_frames = true},
                                                            {.foveated = false, .single_pixel = true}}) {
     const FilterChoice choice = choose_filter(facts);
     EXPECT_EQ(choice.name, "linear");
     EXPECT_NE(choice.reason, choose_filter({}).reason);
     // What is chosen goes with what it was chosen for.
-    const FilterInfo filter = Reconstruction({choice.name, {}}).filter();
+    const FilterInfo filter = Reconstruction({choice.name}).filter();
     EXPECT_FALSE(filter.needs.surfaces);
-    EXPECT_TRUE(filter.blurs_blocks);
   }
 }
 

@@ -192,5 +192,22 @@ TEST(GazeReport, PrecisionIsThatOfTheNoise) {
   EXPECT_EQ(report.html.find("http://"), report.html.find("http://www.w3.org"));  // it loads nothing
 }
 
+TEST(GazeUncertainty, ComesFromTheLog) {
+  SynthSettings synthetic;
+  synthetic.rate_hz = 1000;
+  synthetic.drift_deg = 0;
+  synthetic.noise_deg = 0.1;
+  GazeLog log = synthesize_gaze(synthetic).log;
+  EXPECT_TRUE(std::isnan(uncertainty_of(log).accuracy_deg));
+  // Two coordinates of 0.1 deg each.
+  EXPECT_NEAR(uncertainty_of(log).precision_deg, 0.1 * std::sqrt(2.0), 0.03);
+  log.calibrations = {{0, Eye::left, 0.4, 1, 1}, {0, Eye::right, 0.6, 1, 2}};
+  EXPECT_NEAR(uncertainty_of(log).accuracy_deg, 0.5, 1e-12);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NEAR(known_uncertainty({kNan, 0.3}, log).accuracy_deg, 0.5, 1e-12);
+  EXPECT_EQ(known_uncertainty({kNan, 0.3}, log).precision_deg, 0.3);
+  EXPECT_EQ(known_uncertainty({0.7, kNan}, log).accuracy_deg, 0.7);
+}
+
 }  // namespace
 }  // namespace gazetrace

@@ -147,7 +147,7 @@ TEST(Nodes, MovingChainsAreReckonedBeforeTheyAreMade) {
   builder.json["animations"] = animation_of(builder, 1, {0, 1});
   const test::TempFolder folder;
   SceneReadOptions options;
-  options.limits.memory_bytes = std::uint64_t{512} << 20U;
+  options.memory_bytes = std::uint64_t{512} << 20U;
   try {
     static_cast<void>(load_scene(folder.write("chain.gltf", builder.text()), options));
     FAIL();

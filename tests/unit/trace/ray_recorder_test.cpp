@@ -30,7 +30,7 @@ std::unique_ptr<RayBatch> rays_in_a_row() {
 }
 
 TEST(RayRecorder, EveryRayThatHitsCounts) {
-  RayScene scene(1, false, nullptr);
+  RayScene scene(1, nullptr);
   RayGeometry triangle;
   triangle.positions = {{-5, -50, 0}, {10.5F, -50, 0}, {10.5F, 500, 0}};
   triangle.triangles = {{0, 1, 2}};

@@ -7,6 +7,8 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/gaze_uncertainty.hpp"
+#include "cli/job_help.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/gaze_aois.hpp"
@@ -18,6 +20,7 @@ namespace {
 struct AoisArguments {
   Job job;
   std::string areas, method = "auto", tables;
+  GazeUncertainty uncertainty;
   JsonOutput json;
 };
 
@@ -42,7 +45,7 @@ void write_tables(const AoisArguments& arguments, const AoiAnalysis& analysis) {
 }
 
 int run_aois(const AoisArguments& arguments) {
-  const AoisOfJob found = aois_of_job(arguments.job, arguments.areas, arguments.method);
+  const AoisOfJob found = aois_of_job(arguments.job, arguments.areas, arguments.method, arguments.uncertainty);
   print_warnings(found.warnings);
   if (!arguments.tables.empty()) {
     write_tables(arguments, found.analysis);
@@ -56,6 +59,10 @@ int run_aois(const AoisArguments& arguments) {
 Command add_gaze_aois_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<AoisArguments>();
   bind_job_options(app, arguments->job);
+  use_job_help(
+      app,
+      "gazetrace gaze aois --config examples/example.toml --aois out/aois.toml --gaze-accuracy 0.5 --tables out/aois");
+  add_uncertainty_options(app, arguments->uncertainty);
   app.add_option(
          "--aois", arguments->areas,
          "The areas, .toml or .json: rectangles, ellipses and polygons in fractions or pixels of the display, or "

@@ -8,6 +8,8 @@
 
 #include "cli/command.hpp"
 #include "cli/exit_codes.hpp"
+#include "cli/gaze_uncertainty.hpp"
+#include "cli/job_help.hpp"
 #include "cli/json_output.hpp"
 #include "gazetrace/error.hpp"
 #include "gazetrace/output.hpp"
@@ -66,6 +68,9 @@ int run_objects(ObjectsArguments& arguments) {
 Command add_gaze_objects_command(CLI::App& app, const Invocation& /*invocation*/) {
   auto arguments = std::make_shared<ObjectsArguments>();
   bind_job_options(app, arguments->job);
+  use_job_help(app,
+               "gazetrace gaze objects --config examples/example.toml --gaze-accuracy 0.5 --table out/objects.tsv");
+  add_uncertainty_options(app, arguments->objects.uncertainty);
   app.add_option("--table", arguments->table, "Where the table goes, .tsv or .json; default: as TSV to stdout")
       ->type_name("FILE");
   app.add_flag("--recorded-here", arguments->recorded_here,
