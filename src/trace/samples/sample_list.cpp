@@ -6,6 +6,7 @@
 #include "core/instruction_sets.hpp"
 
 namespace gazetrace {
+
 SiteSequence SampleList::sequence_of_site(const Site& site, int first_x, int first_y) const {
   // Every pixel belongs to one site only, so a site's first pixel identifies it.
   return {make_sample_key(seed_, frame_,
