@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,8 +21,11 @@ namespace gazetrace {
 FrameRate parse_frame_rate(std::string_view text);  // "24", "23.976" (2997/125), "24000/1001"; else Error(usage)
 std::string to_string(const FrameRate& rate);
 
+// A plan takes about a kilobyte a frame. These are more than nine hours at 30 frames a second.
+inline constexpr std::int64_t kMostPlannedFrames = 1'000'000;
+
 // "1-100", "1-100x2" (every second one) or "1,5,9-12". Frames are numbered from 1; the list is sorted and has no
-// duplicates. Error(usage) for anything else and for more than 10,000,000 frames.
+// duplicates. Error(usage) for anything else and for more than kMostPlannedFrames.
 std::vector<std::int32_t> parse_frame_list(std::string_view text);
 std::string format_frame_list(const std::vector<std::int32_t>& frames);
 
@@ -144,5 +148,7 @@ void join_plan(FramePlan& plan, std::int32_t frame_before, const GazeLog& log, c
 std::string gaze_ages_text(const GazeAges& ages);
 std::string plan_as_table(const FramePlan& plan);
 std::string plan_as_json(const FramePlan& plan);
+// The same text piece by piece, since that of a long plan takes more memory than the plan.
+void write_plan_json(const FramePlan& plan, const std::function<void(const std::string& text)>& write);
 
 }  // namespace gazetrace

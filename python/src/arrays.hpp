@@ -21,10 +21,16 @@ namespace py = pybind11;
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && std::is_standard_layout_v<Vec3f>);
 static_assert(sizeof(Vec2f) == 2 * sizeof(float) && std::is_standard_layout_v<Vec2f>);
 
+// pybind11 takes the memory as writable, whatever it is.
+inline py::array read_only(py::array array) {
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
 // The image's own memory as an array of the shape (height, width) or, for colours and vectors, (height, width, 3 or 2).
 // `owner` is what keeps that memory alive; the array refers to it.
 template <class T>
-py::array view_of(const Image<T>& image, const py::object& owner) {
+py::array array_over(const Image<T>& image, const py::object& owner) {
   const auto height = static_cast<py::ssize_t>(image.height_px);
   const auto width = static_cast<py::ssize_t>(image.width_px);
   if constexpr (std::is_same_v<T, Vec3f>) {
@@ -36,13 +42,19 @@ py::array view_of(const Image<T>& image, const py::object& owner) {
   }
 }
 
-// An array that takes over an image which nobody else needs.
+// A picture that the library goes on using.
+template <class T>
+py::array view_of(const Image<T>& image, const py::object& owner) {
+  return read_only(array_over(image, owner));
+}
+
+// An array that takes over an image which nobody else needs, so that it may be written to.
 template <class T>
 py::array given_away(Image<T> image) {
   auto kept = std::make_unique<Image<T>>(std::move(image));
   const Image<T>& pixels = *kept;
   const py::capsule owner(kept.release(), [](void* held) { delete static_cast<Image<T>*>(held); });
-  return view_of(pixels, owner);
+  return array_over(pixels, owner);
 }
 
 // One member of every element of a vector, as an array over the vector's own memory.
@@ -52,7 +64,8 @@ py::array column_of(const std::vector<S>& rows, T S::*member, const py::object& 
   if (rows.empty()) {
     return py::array(py::dtype::of<T>(), std::vector<py::ssize_t>{0});
   }
-  return py::array(py::dtype::of<T>(), {count}, {static_cast<py::ssize_t>(sizeof(S))}, &(rows.front().*member), owner);
+  return read_only(
+      py::array(py::dtype::of<T>(), {count}, {static_cast<py::ssize_t>(sizeof(S))}, &(rows.front().*member), owner));
 }
 
 // Numbers of any kind become 32-bit floats.

@@ -40,6 +40,9 @@ class RenderTest(TestCase):
         radiance = frame.radiance
         expected = radiance.copy()
         self.assertIsInstance(radiance.base, _core.Frame)
+        for picture in (radiance, frame.samples, frame.sampling_map.region):
+            with self.assertRaises(ValueError):  # the frame is not theirs to change
+                picture[0, 0] = 1
         del frame
         gc.collect()
         np.testing.assert_array_equal(radiance, expected)

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "gaze/angles.hpp"
+#include "gaze/unseen.hpp"
 #include "gazetrace/gaze.hpp"
 
 namespace gazetrace {
@@ -50,14 +51,6 @@ std::string milliseconds(std::int64_t t_ns) {
   return std::abs(ms) < 100 ? fmt::format("{:.1f} ms", ms) : fmt::format("{:.0f} ms", ms);
 }
 
-std::int64_t saturating_difference(std::int64_t a, std::int64_t b) {
-  std::int64_t difference = 0;
-  if (__builtin_sub_overflow(a, b, &difference)) {
-    return a > b ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
-  }
-  return difference;
-}
-
 class Resampler {
  public:
   Resampler(const GazeLog& log, const GazeMapping& mapping, std::int64_t t_ns,
@@ -70,8 +63,8 @@ class Resampler {
     result_.t_log_ns = t_ns;
     result_.age_is_known = !log.sample_age_unknown;
     if (movements != nullptr && after_ > 0 && after_ <= movements->size()) {
-      // In a gap, in a pause and after the end nobody saw what the eye did.
-      result_.movement = is_unseen() ? EyeMovement::lost : (*movements)[after_ - 1];
+      const bool unseen = is_unseen(samples_, after_ - 1, t_ns, mapping.max_interpolation_gap_ns);
+      result_.movement = unseen ? EyeMovement::lost : (*movements)[after_ - 1];
       result_.since_saccade_ns = since_saccade_ns();
     }
   }
@@ -108,15 +101,6 @@ class Resampler {
     // A log of one row stands for a gaze that never moves.
     return samples_.size() > 1 &&
            (age_ns > mapping_.max_interpolation_gap_ns || age_ns < -mapping_.max_interpolation_gap_ns);
-  }
-
-  // Whether the row before lies so far back that a row is missing at least, at the rate that the rows before it have.
-  [[nodiscard]] bool is_unseen() const {
-    constexpr std::int64_t kSteps = 3;
-    const GazeSample& before = samples_[after_ - 1];
-    const std::int64_t step_ns = after_ > 1 ? saturating_difference(before.t_ns, samples_[after_ - 2].t_ns) : 0;
-    const std::int64_t age_ns = age(before);
-    return is_gap(age_ns) && age_ns / kSteps > step_ns;
   }
 
   void take(const GazeSample& sample, GazeState state, std::string reason) {

@@ -71,6 +71,12 @@ Vec2d position_of(const RawSample& row, const Vec2d& corner, const Conventions& 
   return c.unit_scale == 1 ? at : Vec2d{at.x * c.unit_scale, at.y * c.unit_scale};
 }
 
+// Whether azimuth and elevation in degrees meet a plane in front of the eye. Beyond 90 degrees tan would come back from
+// the other side.
+bool is_ahead(const Vec2d& deg) {
+  return std::abs(deg.x) < 90 && std::abs(deg.y) < 90;
+}
+
 GazeSample sample_of(const RawSample& row) {
   GazeSample sample;
   sample.t_ns = row.t_ns;
@@ -169,6 +175,9 @@ ToFractions::ToFractions(const Conventions& c, const std::string& place)
 
 Vec2d ToFractions::operator()(const Vec2d& at) const {
   if (unit_ == PositionUnit::deg) {
+    if (!is_ahead(at)) {
+      return {kNan, kNan};
+    }
     // Azimuth and elevation taken as independent: x = d tan(azimuth), y = d tan(elevation).
     const double right = std::tan(at.x * kRadPerDeg) * display_.distance_cm + display_.eye_x_cm;
     const double up = std::tan(at.y * kRadPerDeg) * display_.distance_cm + display_.eye_y_cm;
@@ -212,7 +221,7 @@ GazeSample RowSamples::operator()(std::size_t row) const {
 void RowSamples::place_position(const RawSample& row, std::size_t i, GazeSample& sample) const {
   bool is_missing = false;
   const Vec2d at = (*to_fractions_)(position_of(row, corner_of(raw_, c_, i), c_, is_missing));
-  if (is_missing) {
+  if (is_missing || std::isnan(at.x)) {
     lose(sample.validity);
   }
   sample.u = c_.flip_x ? 1.0 - at.x : at.x;
@@ -229,7 +238,7 @@ void RowSamples::place_degrees(const RawSample& row, std::size_t i, GazeSample& 
   const double up = c_.origin.value == PositionOrigin::top_left && !raw_.directions_grow_up ? -1.0 : 1.0;
   bool is_missing = false;
   const Vec2d at = position_of(row, corner_of(raw_, c_, i), c_, is_missing);
-  const bool known = std::abs(at.x) < 90 && std::abs(at.y) < 90;
+  const bool known = is_ahead(at);
   sample.direction = known ? normalize(Vec3d{std::tan(at.x * kRadPerDeg), up * std::tan(at.y * kRadPerDeg), -1})
                            : Vec3d{kNan, kNan, kNan};
   if (!known) {

@@ -11,14 +11,11 @@
 namespace gazetrace {
 namespace {
 
-// More than four days at 24 frames a second, which is surely a wrong unit.
-constexpr double kMostFrames = 1e7;
-
 std::int64_t frames_until(double end_ns, const JobSettings& job) {
   // The last frame whose middle, start + (n - 1/2) / fps, is not after the end.
   const double span_s = (end_ns - static_cast<double>(job.start.ns)) * 1e-9;
   const double frames = span_s * static_cast<double>(job.fps.numerator) / static_cast<double>(job.fps.denominator);
-  if (!(frames < kMostFrames)) {
+  if (!(frames < static_cast<double>(kMostPlannedFrames))) {
     throw Error(ErrorKind::usage, "`frames`", fmt::format("camera path or gaze log stand for {:.3g} frames", frames),
                 "name the frames to render, or check `gaze-scale`, `gaze-offset` and `fps`");
   }

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <span>
@@ -147,7 +148,7 @@ void ExrPicture::add_half_rgb(const std::array<std::string, 3>& names, const Ima
     std::uint64_t here = 0;
     for (std::size_t i = run * kRun; i < end; ++i) {
       const float limited = std::clamp(values[i], -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX));
-      here += limited != values[i] ? 1U : 0U;
+      here += limited != values[i] && !std::isnan(values[i]) ? 1U : 0U;
       halves[i] = half(limited);
     }
     clamped += here;

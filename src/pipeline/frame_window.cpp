@@ -14,6 +14,18 @@
 #include "temporal/worth.hpp"
 
 namespace gazetrace {
+namespace {
+
+// All from the first to the last. A loop that counts up to the largest number of a frame would never end.
+std::vector<std::int32_t> frames_between(std::int64_t first, std::int64_t last) {
+  std::vector<std::int32_t> frames;
+  for (std::int64_t frame = first; frame <= last; ++frame) {
+    frames.push_back(static_cast<std::int32_t>(frame));
+  }
+  return frames;
+}
+
+}  // namespace
 
 FrameWindow::FrameWindow(const FrameRenderer& renderer, const FramePlan& plan, std::set<std::int32_t> counted)
     : renderer_(&renderer), counted_(std::move(counted)) {
@@ -89,7 +101,7 @@ const ReconstructedFrame& FrameWindow::alone(std::int32_t frame, bool read_by_ot
 
 TracedFrame FrameWindow::sum_of(const Run& run, const Guides* guides) const {
   std::vector<SamplesOfFrame> frames;
-  for (std::int32_t one = run.first; one <= run.last; ++one) {
+  for (const std::int32_t one : frames_between(run.first, run.last)) {
     const TracedFrame& traced = in_memory_.at(one).traced;
     frames.push_back({one, &traced.map, &traced.sparse});
   }
@@ -117,7 +129,7 @@ bool FrameWindow::only_views_move(const Run& window) const {
     return false;
   }
   const SamplingMap& size = in_memory_.at(window.first).traced.map;
-  for (std::int32_t frame = window.first; frame <= window.last; ++frame) {
+  for (const std::int32_t frame : frames_between(window.first, window.last)) {
     const TracedFrame& traced = in_memory_.at(frame).traced;
     if (traced.sparse.first_surface.empty() || traced.map.width_px != size.width_px ||
         traced.map.height_px != size.height_px) {
@@ -142,7 +154,7 @@ ReconstructedFrame FrameWindow::among_views(const Run& run, const Run& window, s
     }
     const ViewSamples base{frame, &request.camera, &all.map, &all.sparse};
     std::vector<ViewSamples> views;
-    for (std::int32_t one = window.first; one <= window.last; ++one) {
+    for (const std::int32_t one : frames_between(window.first, window.last)) {
       if (one < run.first || one > run.last) {
         const TracedFrame& traced = in_memory_.at(one).traced;
         views.push_back({one, &request_of(one).camera, &traced.map, &traced.sparse});
@@ -196,7 +208,7 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
   in_memory_.erase(in_memory_.begin(), in_memory_.lower_bound(window.first));
   TraceStats others;
   StageTimes times;
-  for (std::int32_t frame = window.first; frame <= window.last; ++frame) {
+  for (const std::int32_t frame : frames_between(window.first, window.last)) {
     if (in_memory_.contains(frame)) {
       continue;
     }
@@ -226,7 +238,7 @@ RenderedFrame FrameWindow::render(const FrameRequest& request, TemporalHistory& 
     }
   }
   const std::size_t at = read.size();
-  for (std::int32_t frame = run.last + 1; frame <= window.last; ++frame) {
+  for (const std::int32_t frame : frames_between(std::int64_t{run.last} + 1, window.last)) {
     read.push_back(&alone(frame, true, times));
   }
   const Run summed = run == window ? of_group(window, request.frame) : run;

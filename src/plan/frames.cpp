@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::string_view kRateRemedy = "write frames per second as 24, 23.976 or 24000/1001";
 constexpr std::string_view kListRemedy = "write frames as 1-100, 1-100x2 or 1,5,9-12";
-constexpr std::int64_t kMaxFrames = 10'000'000;
 
 [[noreturn]] void bad_rate(std::string_view text, std::string_view problem) {
   throw Error(ErrorKind::usage, "", fmt::format("'{}' {}", text, problem), kRateRemedy);
@@ -60,8 +59,8 @@ void append_range(std::string_view item, std::vector<std::int32_t>& frames) {
   if (*last < *first) {
     bad_list(item, "counts backwards");
   }
-  if ((std::int64_t{*last} - *first) / step + static_cast<std::int64_t>(frames.size()) >= kMaxFrames) {
-    bad_list(item, fmt::format("makes more than {} frames", kMaxFrames));
+  if ((std::int64_t{*last} - *first) / step + static_cast<std::int64_t>(frames.size()) >= kMostPlannedFrames) {
+    bad_list(item, fmt::format("makes more than {} frames", kMostPlannedFrames));
   }
   for (std::int64_t frame = *first; frame <= *last; frame += step) {
     frames.push_back(static_cast<std::int32_t>(frame));

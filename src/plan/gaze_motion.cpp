@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/statistics.hpp"
+#include "gaze/unseen.hpp"
 
 namespace gazetrace {
 namespace {
@@ -19,7 +20,8 @@ double frame_ns(const PlanSettings& settings) {
 
 }  // namespace
 
-GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings) : log_(log) {
+GazeMotion::GazeMotion(const GazeLog* log, const PlanSettings& settings)
+    : log_(log), max_gap_ns_(settings.gaze.max_interpolation_gap_ns) {
   // Gaze of a single row never moves.
   if (log == nullptr || log->samples.size() < 2 || !knows_angles(*log)) {
     return;
@@ -35,8 +37,12 @@ std::size_t GazeMotion::row_at(std::int64_t t_log_ns) const {
   return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - log_->samples.begin() - 1, 0));
 }
 
+bool GazeMotion::is_seen(std::int64_t t_log_ns) const {
+  return t_log_ns >= log_->samples.front().t_ns && !is_unseen(log_->samples, row_at(t_log_ns), t_log_ns, max_gap_ns_);
+}
+
 bool GazeMotion::in_saccade(std::int64_t t_log_ns) const {
-  return !movements_.empty() && movements_[row_at(t_log_ns)] == EyeMovement::saccade;
+  return !movements_.empty() && is_seen(t_log_ns) && movements_[row_at(t_log_ns)] == EyeMovement::saccade;
 }
 
 bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64_t t_log_ns) const {
@@ -45,8 +51,12 @@ bool GazeMotion::did(EyeMovement movement, std::int64_t after_log_ns, std::int64
   }
   const auto first = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(std::min(after_log_ns, t_log_ns)));
   const auto last = movements_.begin() + static_cast<std::ptrdiff_t>(row_at(t_log_ns));
-  // The first row was already counted for the frame before; where it is the only one, it counts for this frame, too.
-  return std::find(first == last ? first : first + 1, last + 1, movement) != last + 1;
+  // The first row was already counted for the frame before; where it is the only one, it counts for this frame, too, as
+  // long as it says what the eye does.
+  if (first == last) {
+    return is_seen(t_log_ns) && *first == movement;
+  }
+  return std::find(first + 1, last + 1, movement) != last + 1;
 }
 
 std::optional<std::int64_t> effective_age_ns(const FrameRequest& request) {

@@ -19,7 +19,8 @@ class GazeMotion {
 
   // One for each sample of the log; nullptr where nothing is known.
   [[nodiscard]] const std::vector<EyeMovement>* movements() const { return movements_.empty() ? nullptr : &movements_; }
-  // Whether the eye is in a saccade at a time on the log's clock.
+  // Whether the eye is seen in a saccade at a time on the log's clock. Before the log, in its gaps and after its end
+  // nothing is known.
   [[nodiscard]] bool in_saccade(std::int64_t t_log_ns) const;
   // Whether the eye made this movement at any time after the first time and up to the second.
   [[nodiscard]] bool did(EyeMovement movement, std::int64_t after_log_ns, std::int64_t t_log_ns) const;
@@ -27,8 +28,10 @@ class GazeMotion {
  private:
   // The last sample that is not after the time; where all are after it, the first.
   [[nodiscard]] std::size_t row_at(std::int64_t t_log_ns) const;
+  [[nodiscard]] bool is_seen(std::int64_t t_log_ns) const;
 
   const GazeLog* log_;
+  std::int64_t max_gap_ns_;
   std::vector<EyeMovement> movements_;
 };
 

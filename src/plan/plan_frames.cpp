@@ -172,6 +172,7 @@ FramePlan plan_frames(const CameraPath& camera, const GazeLog* log, const PlanSe
   check_coverage(camera, settings, plan.warnings);
   const GazeGeometry geometry(camera, log, settings, plan.warnings);
   FramesWithoutGaze without_gaze(log, settings);
+  plan.frames.reserve(settings.frames.size());
   for (const std::int32_t frame : settings.frames) {
     FrameRequest request;
     request.frame = frame;

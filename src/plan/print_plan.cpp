@@ -103,6 +103,39 @@ Json camera_json(const Camera& camera) {
   return json;
 }
 
+using Row = std::vector<std::string>;
+
+Row row_of(const FrameRequest& request, bool with_true) {
+  const Vec3d& p = request.camera.pose.position_m;
+  const GazeAtTime& gaze = request.gaze_render;
+  Row row{fmt::format("{}", request.frame), fmt::format("{:.6f}", static_cast<double>(request.t_video_ns) * 1e-9),
+          fmt::format("{:.3f} {:.3f} {:.3f}", p.x, p.y, p.z), position_text(gaze)};
+  if (with_true) {
+    row.push_back(position_text(request.gaze_true));
+  }
+  row.emplace_back(to_string(gaze.state));
+  row.push_back(rows_text(gaze));
+  row.push_back(age_text(gaze));
+  row.emplace_back(has_rows(gaze) ? to_string(gaze.validity) : "-");
+  row.emplace_back(gaze.movement ? to_string(*gaze.movement) : "-");
+  row.push_back(gaze.reason);
+  return row;
+}
+
+const std::string kIndent = "\n    ";
+
+Json frame_json(const FrameRequest& request) {
+  return Json{{"frame", request.frame},
+              {"t_video_ns", request.t_video_ns},
+              {"size_px", Json::array({request.width_px, request.height_px})},
+              {"camera", camera_json(request.camera)},
+              {"gaze_render", gaze_json(request.gaze_render, request.gaze_direction_render)},
+              {"gaze_true", gaze_json(request.gaze_true, request.gaze_direction_true)},
+              {"eye_in_saccade", request.eye_in_saccade},
+              {"saccade_since_last_frame", request.saccade_since_last_frame},
+              {"blink_since_last_frame", request.blink_since_last_frame}};
+}
+
 }  // namespace
 
 std::string gaze_ages_text(const GazeAges& ages) {
@@ -125,68 +158,61 @@ std::string plan_as_table(const FramePlan& plan) {
   const bool with_true = !std::all_of(plan.frames.begin(), plan.frames.end(), same_gaze);
   const bool directions = std::any_of(plan.frames.begin(), plan.frames.end(),
                                       [](const FrameRequest& r) { return r.gaze_render.kind == GazeKind::direction; });
-  using Row = std::vector<std::string>;
-  std::vector<Row> rows;
-  rows.push_back({"frame", "time s", "position m", directions ? "gaze x y z" : "gaze u v"});
+  Row titles{"frame", "time s", "position m", directions ? "gaze x y z" : "gaze u v"};
   if (with_true) {
-    rows.back().emplace_back("true gaze");
+    titles.emplace_back("true gaze");
   }
   for (const std::string_view title : {"state", "rows", "age ms", "valid", "event", "reason"}) {
-    rows.back().emplace_back(title);
+    titles.emplace_back(title);
   }
-  for (const FrameRequest& request : plan.frames) {
-    const Vec3d& p = request.camera.pose.position_m;
-    const GazeAtTime& gaze = request.gaze_render;
-    Row row{fmt::format("{}", request.frame), fmt::format("{:.6f}", static_cast<double>(request.t_video_ns) * 1e-9),
-            fmt::format("{:.3f} {:.3f} {:.3f}", p.x, p.y, p.z), position_text(gaze)};
-    if (with_true) {
-      row.push_back(position_text(request.gaze_true));
-    }
-    row.emplace_back(to_string(gaze.state));
-    row.push_back(rows_text(gaze));
-    row.push_back(age_text(gaze));
-    row.emplace_back(has_rows(gaze) ? to_string(gaze.validity) : "-");
-    row.emplace_back(gaze.movement ? to_string(*gaze.movement) : "-");
-    row.push_back(gaze.reason);
-    rows.push_back(std::move(row));
-  }
-  std::vector<std::size_t> widths(rows.front().size());
-  for (const Row& row : rows) {
+  // Made twice, since the rows of a long plan take as much memory as the plan.
+  std::vector<std::size_t> widths(titles.size());
+  const auto widen = [&](const Row& row) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       widths[i] = std::max(widths[i], row[i].size());
     }
-  }
+  };
   std::string text;
-  for (const Row& row : rows) {
+  const auto add = [&](const Row& row) {
     for (std::size_t i = 0; i + 1 < row.size(); ++i) {
       // Text is aligned to the left, numbers to the right.
-      const std::string& title = rows.front()[i];
-      const bool is_text = title == "state" || title == "valid" || title == "event";
+      const bool is_text = titles[i] == "state" || titles[i] == "valid" || titles[i] == "event";
       text += is_text ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);
     }
     text += row.back() + "\n";
+  };
+  widen(titles);
+  for (const FrameRequest& request : plan.frames) {
+    widen(row_of(request, with_true));
+  }
+  add(titles);
+  for (const FrameRequest& request : plan.frames) {
+    add(row_of(request, with_true));
   }
   return text + notes_text(plan);
 }
 
-std::string plan_as_json(const FramePlan& plan) {
-  Json frames = Json::array();
+void write_plan_json(const FramePlan& plan, const std::function<void(const std::string& text)>& write) {
+  const auto text_of = [](const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); };
+  // Frame by frame, since a tree of all of them takes several times as much memory as the plan.
+  write("{\n  \"frames\": [");
   for (const FrameRequest& request : plan.frames) {
-    frames.push_back(Json{{"frame", request.frame},
-                          {"t_video_ns", request.t_video_ns},
-                          {"size_px", Json::array({request.width_px, request.height_px})},
-                          {"camera", camera_json(request.camera)},
-                          {"gaze_render", gaze_json(request.gaze_render, request.gaze_direction_render)},
-                          {"gaze_true", gaze_json(request.gaze_true, request.gaze_direction_true)},
-                          {"eye_in_saccade", request.eye_in_saccade},
-                          {"saccade_since_last_frame", request.saccade_since_last_frame},
-                          {"blink_since_last_frame", request.blink_since_last_frame}});
+    std::string text = text_of(frame_json(request));
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += kIndent.size()) {
+      text.replace(at, 1, kIndent);
+    }
+    write((&request == &plan.frames.front() ? "" : ",") + (kIndent + text));
   }
-  const Json json{{"frames", std::move(frames)},
-                  {"gaze_processing", plan.gaze_processing},
+  const Json json{{"gaze_processing", plan.gaze_processing},
                   {"effective_age", plan.ages ? ages_json(*plan.ages) : Json(nullptr)},
                   {"warnings", plan.warnings}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  write((plan.frames.empty() ? "]," : "\n  ],") + text_of(json).substr(1) + "\n");
+}
+
+std::string plan_as_json(const FramePlan& plan) {
+  std::string all;
+  write_plan_json(plan, [&](const std::string& text) { all += text; });
+  return all;
 }
 
 }  // namespace gazetrace

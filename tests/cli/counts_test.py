@@ -5,6 +5,8 @@ Display 3840 x 2160 px, 70.848 x 39.852 cm, at 60 cm; regions of 5.2 and 17 degr
 """
 
 import json
+import os
+import subprocess
 
 import harness
 
@@ -42,6 +44,22 @@ class Counts(harness.CliTest):
                     # Straddling blocks add sites: a little more is traced, never less.
                     self.assertGreaterEqual(frame["traced_samples"], nominal)
                     self.assertLess(frame["traced_samples"], 1.02 * nominal)
+
+    def test_long_plans_take_little_memory(self):
+        # The peak is that of the whole plan: a kilobyte a frame, and nothing for its text but that of the table.
+        def peak_of(frames, *more):
+            with open(os.devnull, "wb") as nowhere:
+                run = subprocess.Popen([harness.PROGRAM, "plan", "--eye", "0,0,0", "--target", "0,0,-1", "--gaze-at",
+                                        "0.5,0.5", *SCREEN, "--frames", frames, *more], stdout=nowhere)
+                _, status, usage = os.wait4(run.pid, 0)
+                run.returncode = status
+            self.assertEqual(status, 0)
+            return usage.ru_maxrss * 1024
+
+        for more in ([], ["--json"]):
+            self.assertLess(peak_of("1-51000", *more) - peak_of("1-1000", *more), 50000 * 1350, more)
+        self.assert_refused(["plan", "--eye", "0,0,0", "--target", "0,0,-1", "--frames", "1-2000000"],
+                            "makes more than 1000000 frames")
 
     def test_samples_per_pixel(self):
         for taus, ratio in zip(TAUS, (3.62, 7.02, 23.93)):

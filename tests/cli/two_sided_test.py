@@ -70,6 +70,12 @@ class TwoSided(harness.CliTest):
         self.assertEqual(self.render("whole", *rest, "--frames", "1-6", "--resume"), whole)
         self.assertNotEqual(self.render("alone", *rest[:-2], "--frames", "1-6", "--accumulate-hold", "1"), whole)
 
+    def test_the_largest_number_of_a_frame(self):
+        self.write("still.gltf", json.dumps(harness.box_gltf()))
+        self.run_ok("render", "still.gltf", "--size", "16x9", "--falloff", "uniform", "--spp", "1", "-o", "f.####.png",
+                    "--accumulate", "two-sided", "--frames", "2147483647")
+        self.assertEqual([path.name for path in self.folder.glob("f.*.png")], ["f.2147483647.png"])
+
     def test_frames_beyond_the_camera_path_are_not_read(self):
         # The path of one second has 24 frames.
         last = self.render("last", "--frames", "24")

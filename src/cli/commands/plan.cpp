@@ -189,6 +189,10 @@ int run_plan(const PlanArguments& arguments) {
     print_chunks(chunks, minutes, arguments.json);
     return exit_done;
   }
+  if (!arguments.counts && arguments.json.on_stdout()) {
+    write_plan_json(resolved.plan, [](const std::string& text) { print_result(with_flags(text)); });
+    return exit_done;
+  }
   if (!arguments.counts) {
     arguments.json.print(with_flags(plan_as_table(resolved.plan)),
                          [&] { return with_flags(plan_as_json(resolved.plan)); });

@@ -45,7 +45,7 @@ struct alignas(64) DirectionTable {
 class LearnedLight {
  public:
   // Nothing was learned: cell_at() finds nothing.
-  LearnedLight() = default;
+  LearnedLight() { roots_.fill(-1); }
   // The result does not depend on the number of threads. Records that carry no finite light are passed over.
   LearnedLight(const std::vector<LearningRecord>& records, int threads);
 
@@ -81,7 +81,7 @@ class LearnedLight {
 
   Vec3f origin_;
   float steps_per_m_ = 0;
-  std::array<std::int32_t, kFacings> roots_{};
+  std::array<std::int32_t, kFacings> roots_;
   std::vector<Children> nodes_;
   std::vector<DirectionTable> tables_;
   std::vector<float> shares_;

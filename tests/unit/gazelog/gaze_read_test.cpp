@@ -309,6 +309,20 @@ TEST_F(GazeRead, ColumnsByNameAndByNumber) {
   EXPECT_EQ(log.samples[1].u, 0.25);
 }
 
+// tan of 100 degrees is that of -80: a gaze to the far right would land on the left.
+TEST_F(GazeRead, NoScreenIsMetBeyond90Degrees) {
+  GazeReadOptions options = full_hd();
+  options.columns.position_unit = PositionUnit::deg;
+  const GazeLog log = read("t[s],x,y\n0,100,0\n1,0,-95\n2,-90,0\n3,89,0\n4,1,1\n", options);
+  ASSERT_EQ(log.samples.size(), 5U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(log.samples[i].validity, GazeValidity::lost) << i;
+  }
+  EXPECT_EQ(log.samples[3].validity, GazeValidity::off_screen);
+  EXPECT_GT(log.samples[3].u, 1);
+  EXPECT_EQ(log.samples[4].validity, GazeValidity::ok);
+}
+
 TEST_F(GazeRead, EyesOfOneTimeAreMerged) {
   const GazeLog log = read(
       "t[s],u[1],v[1],valid,eye,pupil,confidence\n"

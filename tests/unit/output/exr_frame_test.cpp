@@ -113,6 +113,20 @@ TEST(ExrFrame, HalfIsClampedAndCounted) {
             0U);
 }
 
+// What is no number was not too large, and stays no number.
+TEST(ExrFrame, NanIsNotClamped) {
+  const TemporaryFolder folder;
+  Frame frame = example_frame(5, 3);
+  frame.radiance(1, 1) = {std::numeric_limits<float>::quiet_NaN(), 1e6F, 0.5F};
+  const std::string path = folder / "nan.exr";
+  EXPECT_EQ(write_frame_exr(path, frame, nullptr, example_header(), settings(ExrPixels::half, "zip")).clamped_values,
+            1U);
+  const ImageRgb back = read_exr_rgb(path);
+  EXPECT_TRUE(std::isnan(back(1, 1).x));
+  EXPECT_EQ(back(1, 1).y, 65504);
+  EXPECT_EQ(back(1, 1).z, 0.5F);
+}
+
 TEST(ExrFrame, LayersKeepTheirTypes) {
   const TemporaryFolder folder;
   const Frame frame = example_frame(33, 17);

@@ -168,6 +168,30 @@ TEST(PlanFrames, NoSaccadeFallsBetweenTwoFrames) {
   EXPECT_GT(between, 0) << "none of them fell between";
 }
 
+// A log that loses the eye in the middle of a saccade, for a while or for good, does not say where it is since then.
+TEST(PlanFrames, ASaccadeDoesNotLastThroughAGap) {
+  PlanSettings settings = paper_settings();
+  settings.frames.clear();
+  for (int frame = 1; frame <= 72; ++frame) {
+    settings.frames.push_back(frame);
+  }
+  constexpr std::int64_t kEnd_ns = 608 * kMs;  // half of the saccade's time
+  for (const std::int64_t seen_again_ns : {1200 * kMs, 10'000 * kMs}) {
+    GazeLog log = jump(600 * kMs);
+    std::erase_if(log.samples, [&](const GazeSample& s) { return s.t_ns > kEnd_ns && s.t_ns < seen_again_ns; });
+    bool went_fast = false;
+    for (const FrameRequest& request : plan_frames(still(), &log, settings).frames) {
+      went_fast = went_fast || request.saccade_since_last_frame;
+      // The rows say nothing of what comes more than 75 ms later, which a gap is bridged for.
+      if (request.t_video_ns > kEnd_ns + 75 * kMs && request.t_video_ns < std::min(seen_again_ns, 2000 * kMs)) {
+        EXPECT_FALSE(request.eye_in_saccade) << request.frame;
+        EXPECT_FALSE(request.saccade_since_last_frame && request.t_video_ns > kEnd_ns + 117 * kMs) << request.frame;
+      }
+    }
+    EXPECT_TRUE(went_fast);
+  }
+}
+
 TEST(PlanFrames, CameraMustCoverTheFrames) {
   PlanSettings settings = paper_settings();
   EXPECT_EQ(

@@ -238,6 +238,7 @@ TEST(LearnedLight, NothingAndBadRecords) {
   EXPECT_FALSE(LearnedLight().pays());
   EXPECT_FALSE(LearnedLight({}, 1).pays());
   EXPECT_LT(LearnedLight({}, 1).cell_at({0, 0, 0}, {0, 1, 0}), 0);
+  EXPECT_LT(LearnedLight().cell_at({0, 0, 0}, {0, 1, 0}), 0);
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const std::vector<LearningRecord> good = records_of_floor(5000, light_of_window);
   std::vector<LearningRecord> records = good;
